@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -63,8 +64,8 @@ def drive_drawing(
 ) -> Drawing:
     """Draw a judged drive from above, at the first violation or at a time (s of the recording).
 
-    ``trace`` is the drive's; if empty it is the first one with a violation of the rules ``kept``
-    (None: of any rule). Raises RulecError: R0612 if there is no such drive.
+    ``trace`` is the drive's; if empty it is the one with the first violation in time of the rules
+    ``kept`` (None: of any rule). Raises RulecError: R0612 if there is no such drive.
     """
     drive, verdict = _chosen_drive(verdicts, trace, kept)
     scene = drive_scene(drive, verdict, verdicts, kept)
@@ -81,6 +82,7 @@ def _chosen_drive(
     verdicts: RecordingVerdicts, trace: str, kept: frozenset[str] | None
 ) -> tuple[Drive, Verdict]:
     first: tuple[Drive, Verdict] | None = None
+    first_s = math.inf
     why = "nobody in this recording drives on a lane"
     for answer in verdicts.answers():
         if isinstance(answer, NoDrive):
@@ -89,10 +91,16 @@ def _chosen_drive(
         if isinstance(answer.answer, NotJudged):
             raise answer.answer.error
         found = answer.drive, answer.answer
-        first = first or found
-        violated = {violation.rule for violation in answer.answer.violations}
-        if trace == answer.drive.arrays.id if trace else violated & (kept or violated):
+        if trace and trace == answer.drive.arrays.id:
             return found
+        times = (
+            answer.drive.time_s(violation.step)
+            for violation in answer.answer.violations
+            if kept is None or violation.rule in kept
+        )
+        violated_s = min(times, default=math.inf)
+        if first is None or violated_s < first_s:
+            first, first_s = found, violated_s
     if first is None or trace:
         message = why if first is None else f"there is no drive `{trace}`"
         raise NOT_IN_RECORDING.error(SourceLocation(verdicts.recording.name), message)

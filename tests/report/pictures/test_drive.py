@@ -14,7 +14,7 @@ import pytest
 
 import rulec
 from rulec.api.pictures import drive_drawing
-from rulec.extraction.recording_verdicts import RecordingVerdicts
+from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.recordings.recording import Light
 from rulec.report.pictures.drawing.canvas import Area, LabelText
@@ -297,6 +297,22 @@ def test_without_an_ego_it_is_the_first_that_violates_a_rule(rules):
     verdicts = RecordingVerdicts(found, rules, RequestedDrives(), "by hand")
     drawing = drive_drawing(verdicts, kept=frozenset({"following_distance"}))
     assert drawing.title == "made by hand, 1: 1 violation by near"
+
+
+def test_without_an_ego_it_is_the_first_in_time(rules):
+    # Car 5, first in the file, has to keep 20 + (400 - 225) / 16 = 31 m to car 1 and loses 2.5 m of
+    # 41 m in each state: it violates from state 5 on, car 1 from state 3 on. (To car 9 it has to
+    # keep 20 + (400 - 121) / 16 = 37 m and loses 4.5 m of 71 m: from state 8 on.)
+    found = closing_up()
+    found = replace(found, participants=(going(5, -45, 0, 20), *found.participants))
+    verdicts = RecordingVerdicts(found, rules, RequestedDrives(), "by hand")
+    times = {
+        answer.drive.ego: [violation.step for violation in answer.answer.violations]
+        for answer in verdicts.answers()
+        if isinstance(answer, DriveVerdict)
+    }
+    assert (times["5"], times["1"]) == ([5, 8], [3])
+    assert drive_drawing(verdicts).title == "made by hand, 1: 1 violation by near"
 
 
 @pytest.mark.parametrize("form", ["svg", "png", "pdf", "html"])

@@ -146,8 +146,8 @@ def trace(
     "--ego",
     default="",
     metavar="ID",
-    help="The vehicle, or one of its drives such as 373#2.  [default: the first that violates a "
-    "rule]",
+    help="The vehicle, or one of its drives such as 373#2.  [default: the first in time "
+    "that violates a rule]",
 )
 @shared.rules_option(
     "Only violations of rules like PATTERN; `*` and `?` are wild. May be given several times."
