@@ -32,8 +32,16 @@ def check(capsys, *arguments):
 
 def test_what_is_good(folder, capsys):
     (folder / "good.rules").write_text(GOOD)
-    assert check(capsys, "good.rules") == (0, "1 file checked, nothing found\n", "")
-    assert check(capsys, "esterle2019", "paper") == (0, "2 files checked, nothing found\n", "")
+    assert check(capsys, "good.rules") == (
+        0,
+        "1 file checked, nothing found; `rulec test` runs the examples\n",
+        "",
+    )
+    assert check(capsys, "esterle2019", "paper") == (
+        0,
+        "2 files checked, nothing found; `rulec test` runs the examples\n",
+        "",
+    )
     assert list(folder.iterdir()) == [folder / "good.rules"]
 
 
@@ -200,7 +208,7 @@ def test_fixes_are_written_and_leave_nothing_to_say(capsys, tmp_path):
     status, out, err = check(capsys, str(path), "--fix")
     assert (status, path.read_text()) == (0, after)
     assert (out, err) == (
-        "1 file checked, nothing found\n",
+        "1 file checked, nothing found; `rulec test` runs the examples\n",
         f"6 fixes written to {path}\n",
     )
     assert check(capsys, "-", "--fix")[0] == 2

@@ -82,6 +82,18 @@ the same in both: no_crowd
     )
 
 
+def test_a_provision_that_is_inherited_is_not_told_as_ones_own(tmp_path, capsys):
+    own = OLD.replace("rulebook old", "rulebook own")
+    (tmp_path / "own.rules").write_text(own, encoding="utf-8")
+    assert main(["diff", "./new.rules", "./own.rules", "--rule", "leave_room"]) == 1
+    told = "  cite: inherited, not confirmed: old § 5 in new, § 5 in own\n"
+    assert told in capsys.readouterr().out
+    asked = ["diff", "./new.rules", "./own.rules", "--rule", "leave_room", "--output-format", "csv"]
+    assert main(asked) == 1
+    (row,) = csv.DictReader(capsys.readouterr().out.splitlines())
+    assert (row["cite 1"], row["cite 2"]) == ("inherited, not confirmed: old § 5", "§ 5")
+
+
 def test_a_rulebook_does_not_differ_from_itself(capsys):
     assert main(["diff", "./old.rules", "./old.rules"]) == 0
     assert capsys.readouterr().out.endswith("4 shared rules: 4 equal\n")

@@ -63,14 +63,22 @@ def test_what_is_excluded_is_left_alone_in_folders_and_taken_by_name(project, ca
     Path("rulec.toml").write_text('exclude = ["old/", "*.draft.rules"]\n')
     Path("laws/new.draft.rules").write_text("rulebook")
     left = "left alone: 2 excluded (laws/old, laws/new.draft.rules)\n"
-    assert run(capsys, "check", "laws") == (0, "2 files checked, nothing found\n", left)
+    assert run(capsys, "check", "laws") == (
+        0,
+        "2 files checked, nothing found; `rulec test` runs the examples\n",
+        left,
+    )
     assert run(capsys, "fmt", "--check", "laws")[2].endswith(left)
     assert run(capsys, "test", "laws")[1].splitlines()[-1] == "2 examples: 2 passed, 0 failed"
     assert run(capsys, "test", "laws/old/two.rules")[1].count("pass  two") == 2
     # Its patterns are relative to the file of settings, wherever one is.
     monkeypatch.chdir("laws/old")
     left = "left alone: 2 excluded (../old, ../new.draft.rules)\n"
-    assert run(capsys, "check", "..") == (0, "2 files checked, nothing found\n", left)
+    assert run(capsys, "check", "..") == (
+        0,
+        "2 files checked, nothing found; `rulec test` runs the examples\n",
+        left,
+    )
 
 
 def test_nothing_but_vocabularies_is_a_mistake(project, capsys):
@@ -118,7 +126,11 @@ def test_after_a_change_it_is_done_again(verb, project, capsys, monkeypatch):
     assert status == 130
     assert err.splitlines().count("watching 4 files; Ctrl-C ends it") == 3
     assert (out + err).count("error[R0202]: nothing is called `q`") == 1
-    done = "4 files checked, nothing found" if verb == "check" else "4 examples: 4 passed, 0 failed"
+    done = (
+        "4 files checked, nothing found; `rulec test` runs the examples"
+        if verb == "check"
+        else "4 examples: 4 passed, 0 failed"
+    )
     assert out.count(done) == 2
 
 

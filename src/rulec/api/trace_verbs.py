@@ -273,7 +273,8 @@ class TraceVerbs(SessionSettings):
         """Draw a recorded drive from above, at its first violation or at a time of the recording.
 
         ``ego`` is a vehicle, or a drive such as ``373#2``; if empty it is the vehicle that
-        violates a rule first in time. ``only`` are the names of the rules whose violations are shown, if not all.
+        violates a rule first in time. ``only`` are the names of the rules whose violations are
+        shown, if not all.
         A page (``"html"``) has all moments. PNG and PDF take the extra ``pictures``.
 
         Raises:

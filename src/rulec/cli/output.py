@@ -224,7 +224,7 @@ def print_findings(
         columns=0 if to.is_file else excerpt_width(sys.stdout),
     )
     if not text and to.form == "full" and not unread:
-        text = f"{nothing}, nothing found"
+        text = nothing
     put_answer(text, to)
     print_diagnostics(unread)
     return ExitStatus.after(

@@ -16,7 +16,7 @@ from rulec.analysis.shared_compilation import at_one_step, compile_shared
 from rulec.analysis.trace_display import TraceTable, trace_table
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.logic.free_names import names_in
-from rulec.rulebook.rulebook_model import Remark, Rule, Rulebook
+from rulec.rulebook.rulebook_model import Remark, Rule, Rulebook, cited_law
 from rulec.trace import Trace
 from rulec.value_display import Rows, short_repr
 
@@ -52,10 +52,17 @@ class RulePair:
     def notes(self) -> tuple[tuple[str, str, str], ...]:
         """Further differences: their subject, and the version of each rulebook."""
         pairs = (
-            (name, *(str(getattr(rule, name)) or "none" for rule in (self.first, self.second)))
+            (name, _noted(self.first, self.second, name), _noted(self.second, self.first, name))
             for name in ("strength", "level", "weight", "cite", "certainty")
         )
         return tuple((name, first, second) for name, first, second in pairs if first != second)
+
+
+def _noted(rule: Rule, other: Rule, name: str) -> str:
+    # A book's provision is not told again of one that builds upon it.
+    if name == "cite" and (rule.cite, rule.inherited_from) != (other.cite, other.book):
+        return cited_law(rule.cite, rule.inherited_from) or "none"
+    return str(getattr(rule, name)) or "none"
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,8 +145,8 @@ class RulebookDiff(Rows):
                 "relation": relation,
                 "strength 1": one.strength if one else "",
                 "strength 2": two.strength if two else "",
-                "cite 1": one.cite if one else "",
-                "cite 2": two.cite if two else "",
+                "cite 1": cited_law(one.cite, one.inherited_from) if one else "",
+                "cite 2": cited_law(two.cite, two.inherited_from) if two else "",
             }
             for relation, one, two in (*both, *first, *second)
             if (rule := one or two)

@@ -82,7 +82,7 @@ def command(
     status = print_findings(
         list(dict.fromkeys(findings)),
         unread,
-        nothing=counted(len(rulebooks), "rulebook"),
+        nothing=f"{counted(len(rulebooks), 'rulebook')}, nothing found",
         to=to,
         fail_on=fail_on,
     )

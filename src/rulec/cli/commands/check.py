@@ -62,7 +62,8 @@ def command(
 
     Each is a name, a file, a pattern, a folder (the sources in and below it, but for what git
     ignores or rulec.toml excludes, and for environments), or `-` for standard input; without one it
-    is the working folder.
+    is the working folder. Examples are not run: `rulec test` does that, and names rules that have
+    none.
 
     Exit status: 0 no mistakes, 1 there are some, 2 a file could not be read.
     """
@@ -90,7 +91,8 @@ def command(
         status = print_findings(
             (*done.findings, *not_as_locked()),
             done.unread,
-            nothing=f"{counted(len(done.files), 'file')} checked",
+            nothing=f"{counted(len(done.files), 'file')} checked, nothing found"
+            "; `rulec test` runs the examples",
             to=to,
             fail_on=fail_on,
         )

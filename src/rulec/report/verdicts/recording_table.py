@@ -63,7 +63,9 @@ def _rule_counts(verdicts: RecordingVerdicts, tally: ViolationTally, width: int)
     if some_open:
         about = {word for rule in some_open for word in tally.open_rules[rule.name]}
         words = first_of(sorted(about, key=order.index), MOST_DEFAULTS)
-        parts.append(f"{len(some_open):,} open in some drive" + (f" ({words})" if words else ""))
+        parts.append(
+            f"{len(some_open):,} open in some drive" + (f" (words: {words})" if words else "")
+        )
     if never:
         parts.append(f"{len(never):,} cannot be judged from this recording")
     yield f"rules       {len(rules):,} rules: {', '.join(parts)}"
