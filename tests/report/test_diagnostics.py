@@ -132,6 +132,14 @@ def test_long_lines_are_cut_around_the_place(position):
     assert carets.count("^") == 4
 
 
+def test_a_place_beyond_what_is_quoted_of_its_line_is_at_the_end():
+    """As where a line ends in characters that its excerpt leaves out."""
+    place = SourceLocation("a", 1, 303, end_column=304, excerpt="x" * 300)
+    shown, carets = show(place).splitlines()[3:5]
+    assert shown.endswith("x")
+    assert carets.index("^") == len(shown)
+
+
 def test_a_label_outside_of_the_cut_is_at_the_edge():
     line = "x" * 500 + "HERE" + "y" * 500 + "THERE"
     text = show(at(line, "HERE"), labels=(Label(at(line, "THERE"), "far"),))

@@ -112,7 +112,7 @@ def command(
         print_result(json.dumps(monitor.snapshot()), "json")
     else:
         print_written(to.path, to)
-    if restore is None and monitor.so_far.state < 0 and not refused:
+    if restore is None and save is None and monitor.so_far.state < 0 and not refused:
         print_remark("rulec: no state came on standard input: nothing was judged")
         return ExitStatus.NOT_ANSWERED
     violated = {"violated"} if save is not None else {"violated", "pending"}

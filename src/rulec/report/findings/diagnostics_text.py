@@ -64,7 +64,8 @@ def _end_column(place: SourceLocation, length: int) -> int:
 
 def _window(excerpt: str, place: SourceLocation, columns: int) -> tuple[list[str], int, bool, bool]:
     """The characters shown, the first one's index, and marks for cut ends."""
-    column = (place.column or 1) - 1
+    # An excerpt may be cut before its line's end.
+    column = min((place.column or 1) - 1, len(excerpt))
     # A hostile line may have millions of characters: look only at what can be shown.
     start = max(0, column - columns)
     cells = [_cell(one) for one in excerpt[start : column + columns]]
