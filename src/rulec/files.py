@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import IO, Any, Final, cast
 from unicodedata import normalize
 
-from rulec.diagnostics import Label, RulecError, Source, SourceLocation, Span
+from rulec.diagnostics import Label, RulecError, Source, SourceLocation, Span, nearest_name
 from rulec.file_messages import (
     NOT_UTF8,
     TOO_LONG_TO_READ,
@@ -228,6 +228,8 @@ def opened(
         message = f"the file cannot be read: {reason_in_words(problem)}"
         if path.parts[:1] in (("http:",), ("https:",)):
             way_out = "download it first: rulec opens no connections"
+        elif isinstance(problem, FileNotFoundError):
+            way_out = _beside(path) or way_out
         place = SourceLocation(str(path))
         raise UNREADABLE_FILE.error(place, message, help=way_out, labels=labels) from None
     note_read(path)
@@ -237,6 +239,15 @@ def opened(
                 yield cast("IO[bytes]", unpacked)
         else:
             yield stream
+
+
+def _beside(path: Path) -> str:
+    """The question whether a file beside a missing one is meant; empty if none is called alike."""
+    with suppress(OSError, ValueError):
+        near = nearest_name(path.name, sorted(os.listdir(path.parent)), alike=0.8)  # noqa: PTH208 - names alone
+        if near is not None:
+            return f"did you mean `{path.with_name(near)}`?"
+    return ""
 
 
 def read_whole(stream: IO[bytes], path: Path, most: int) -> bytes:

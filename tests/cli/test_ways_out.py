@@ -165,6 +165,43 @@ def test_an_extra_is_installed_where_rulec_runs(origin, has_pip, command, monkey
         install_command.cache_clear()
 
 
+def test_what_a_newcomer_mistypes(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "cars.csv").write_text("track,t,x,y\na,0,1,2\n")
+    (tmp_path / "harbour.rules").write_text(
+        "rulebook harbour\nsignal p\nhard rule r { require p }\n"
+    )
+    (tmp_path / "t.jsonl").write_text('{"state": {}}\n')
+    (tmp_path / "build").mkdir()
+    compiled = '{"format": "rulec compiled rulebook"}'
+    (tmp_path / "build" / "nl.json").write_text(compiled)
+    verify = ["verify", "cars.csv", "-r", "esterle2019"]
+    for arguments, says, says_not in (
+        (
+            ["verify", "cars.csv", "-rulebook", "de"],
+            "`-rulebook`; did you mean `--rulebook`?",
+            "ul`",
+        ),
+        (["verify", "carz.csv", "-r", "esterle2019"], "did you mean `cars.csv`?", "1 trace"),
+        (["verify", "harbour.rules", "-r", "esterle2019"], "this is a rulebook", "but text"),
+        (["check", "cars.csv"], "this file is no rulebook; `rulec verify cars.csv", "cars.rules"),
+        (["check", "nobooks"], "available: `./harbour.rules`", "\n\n\n"),
+        (["verify", "cars.csv", "-r", "build"], "given by its file: `build/nl.json`", "end in"),
+        ([*verify, "--threshold", "near_m=200m"], "in m, not `200m`.", "?."),
+        ([*verify, "--threshold", "nera_m=5"], "did you mean `near_m`?\n", "?."),
+        ([*verify, "--input-format", "table"], "--input-format: there is no `table`", "--format:"),
+        ([*verify, "--format", "table"], "--format: there is no `table`", "--input-format:"),
+        (["monitor", "esterle2019", "--step", "0.1s"], "in seconds and without a unit", "R0"),
+        (
+            ["monitor", "esterle2019", "--restore", "t.jsonl"],
+            "give a file that `rulec monitor --save` has written",
+            "restore it",
+        ),
+    ):
+        status, text = said(capsys, *arguments)
+        assert (status, says in text, says_not in text) == (2, True, False), text
+
+
 def test_a_file_of_another_kind(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "rules.txt").write_text("rulebook rules\n")

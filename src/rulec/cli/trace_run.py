@@ -53,6 +53,7 @@ class TraceRun:
     engine: CEngine | None = None
     total: BatchTally = field(default_factory=BatchTally)
     judged: bool = False
+    opened: bool = False
     open_hard: bool = False
 
     def files(self, files: Sequence[str], form: Format | None, assumed: Assumptions) -> None:
@@ -72,7 +73,8 @@ class TraceRun:
             if self.to.wants_findings:
                 drives = self.total.judged - traces_before
                 self.to.found(FoundInRecording(file, "", drives, tuple(findings), tuple(rows)))
-        self.to.text(verdict_report.summary(self.total.counts, self.total.not_judged))
+        if self.total.judged or self.opened:
+            self.to.text(verdict_report.summary(self.total.counts, self.total.not_judged))
         if self.engine is not None:
             self.to.text(verdict_report.judged_by(self.engine.judged, self.engine.compiled_by))
 
@@ -130,9 +132,11 @@ class TraceRun:
         try:
             if file == "-":
                 stream = standard_input()
+                self.opened = True
                 yield from self._in_stream(stream, "standard input", form or "jsonl", assumed)
                 return
             with opened(Path(file)) as stream:
+                self.opened = True
                 yield from self._in_stream(stream, file, form or format_of(file), assumed)
         except RulecError as error:
             yield [error], 0, NotJudged(None, error)

@@ -91,7 +91,7 @@ def reworded(problem: click.ClickException) -> str:
         and (found := _NO_CHOICE.search(problem.message))
     ):
         given, choices = found["given"], [str(choice) for choice in kind.choices]
-        whose = "" if param.param_type_name == "argument" else f"{param.opts[-1]}: "
+        whose = "" if param.param_type_name == "argument" else f"{_as_typed(param, problem)}: "
         near = nearest_name(given, choices)
         every = f"it is one of {', '.join(choices)}"
         way_out = f"did you mean `{near}`? ({every})" if near else every
@@ -112,6 +112,14 @@ def reworded(problem: click.ClickException) -> str:
         way_out = f"did you mean `{near}`?" if near else f"it is one of {', '.join(names)}"
         return f"`{context.command_path} {found['given']}` is no command; {way_out}"
     return message
+
+
+def _as_typed(param: click.Parameter, problem: click.ClickException) -> str:
+    """The name of an option that the command line has, of those that it goes by."""
+    context = getattr(problem, "ctx", None)
+    given: tuple[str, ...] = () if context is None else context.find_root().obj or ()
+    typed = {word.partition("=")[0] for word in given}
+    return next((name for name in param.opts if name in typed), param.opts[-1])
 
 
 def ways_out(problem: click.UsageError) -> Iterator[str]:

@@ -198,6 +198,13 @@ def _measure(text: str, name: str, unit: str) -> float:
     return float(Fraction(match[1]) * given.factor / own.factor)
 
 
+_UNITS = {
+    f"_{end}": f" without a unit, in {unit}"
+    for end, unit in (("m", "m"), ("s", "s"), ("kmh", "km/h"), ("mps2", "m/s²"))
+}
+"""How names of thresholds end -> what is said of their unit."""
+
+
 def threshold_options(texts: Iterable[str]) -> Thresholds:
     """The usual thresholds but for some, from texts such as ``near_m=200``.
 
@@ -215,7 +222,8 @@ def threshold_options(texts: Iterable[str]) -> Thresholds:
         except ValueError:
             number = -1.0
         if not 0 <= number <= LARGEST:
-            raise ValueError(f"`{name}` is a number from 0 to {LARGEST:,.0f}, not `{value}`")
+            unit = next((says for end, says in _UNITS.items() if name.endswith(end)), "")
+            raise ValueError(f"`{name}` is a number from 0 to {LARGEST:,.0f}{unit}, not `{value}`")
         if isinstance(known[name], int) and number != int(number):
             raise ValueError(f"`{name}` is a whole number, not `{value}`")
         numbers[name] = int(number) if isinstance(known[name], int) else number

@@ -77,10 +77,11 @@ def test_thresholds_change_what_is_named_and_nothing_else():
     [
         ("near_m", "`near_m` is not written as in `near_m=200`"),
         ("nearm=2", "there is no threshold `nearm`"),
-        ("near_m=-1", "`near_m` is a number from 0 to 1,000,000, not `-1`"),
-        ("near_m=inf", "`near_m` is a number from 0 to 1,000,000, not `inf`"),
-        ("smoothing_s=1e308", "is a number from 0 to 1,000,000, not `1e308`"),
-        ("near_m=far", "`near_m` is a number from 0 to 1,000,000, not `far`"),
+        ("near_m=-1", "`near_m` is a number from 0 to 1,000,000 without a unit, in m, not `-1`"),
+        ("near_m=inf", "from 0 to 1,000,000 without a unit, in m, not `inf`"),
+        ("near_m=200m", "from 0 to 1,000,000 without a unit, in m, not `200m`"),
+        ("smoothing_s=1e308", "from 0 to 1,000,000 without a unit, in s, not `1e308`"),
+        ("standing_kmh=slow", "from 0 to 1,000,000 without a unit, in km/h, not `slow`"),
         ("fewest=2.5", "`fewest` is a whole number, not `2.5`"),
     ],
 )

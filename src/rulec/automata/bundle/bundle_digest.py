@@ -65,5 +65,7 @@ def without_digest(file: str, version: int, steps: Iterable[str]) -> RulecError:
 
 def _way_out(file: str, steps: Iterable[str] = ()) -> str:
     path = Path(file)
-    words = ["rulec", "compile", path.stem, *(word for step in steps for word in ("--step", step))]
-    return f"make it anew from its source: `{shlex.join([*words, '-o', str(path.parent)])}`"
+    # Which rulebook it was a damaged file does not say for sure, and its own name may be another.
+    words = ["rulec", "compile", "RULEBOOK", *(word for step in steps for word in ("--step", step))]
+    command = shlex.join([*words, "-o", str(path.parent)])
+    return f"make it anew from its source, a name or a path: `{command}`"

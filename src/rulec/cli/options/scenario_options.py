@@ -301,7 +301,7 @@ def requested_drives(
             len(texts) < len(options["assumed"]),
         )
     except ValueError as problem:
-        raise click.UsageError(f"{problem}.") from None
+        raise click.UsageError(_sentence(problem)) from None
 
 
 def scene_reading(options: dict[str, Any], vocabulary: Vocabulary | None) -> dict[str, Any]:
@@ -334,5 +334,11 @@ def assumptions(ends: Ending | None, texts: Sequence[str], vocabulary: Vocabular
         try:
             values = assumption_options(named, vocabulary)
         except ValueError as problem:
-            raise click.UsageError(f"{problem}.") from None
+            raise click.UsageError(_sentence(problem)) from None
     return Assumptions(ends, values, len(named) < len(texts))
+
+
+def _sentence(problem: ValueError) -> str:
+    """What is wrong; what ends in a question has its sign already."""
+    text = str(problem)
+    return text if text.endswith("?") else f"{text}."

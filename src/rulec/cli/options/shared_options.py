@@ -78,7 +78,9 @@ def _seconds(
     if "," in value and _SECONDS.fullmatch(value.replace(",", ".")):
         raise click.BadParameter(f"decimals have a point: {value.replace(',', '.')}")
     if not step:
-        raise click.BadParameter("it has to be a number above 0, such as 0.5 or 1/3")
+        raise click.BadParameter(
+            "it has to be a number above 0, in seconds and without a unit, such as 0.5 or 1/3"
+        )
     return step
 
 

@@ -13,6 +13,7 @@ class Verb(click.Command):
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Read the arguments. Raises click.UsageError."""
         if not ctx.resilient_parsing:
+            _refuse_one_dash(self, ctx, args)
             _refuse_repeated(self, ctx, args)
         return super().parse_args(ctx, args)
 
@@ -21,6 +22,18 @@ class VerbGroup(click.Group):
     """Verbs of one name, such as ``draw``."""
 
     command_class = Verb
+
+
+def _refuse_one_dash(verb: Verb, context: click.Context, arguments: list[str]) -> None:
+    """Refuse ``-rulebook``, which would be ``-r ulebook``."""
+    known = {name for option in verb.params for name in option.opts if name.startswith("--")}
+    for word in arguments:
+        if word == "--":
+            return
+        name = word.partition("=")[0]
+        if len(name) > 2 and not name.startswith("--") and f"-{name}" in known:
+            message = f"there is no option `{name}`; did you mean `-{name}`?"
+            raise click.UsageError(message, context)
 
 
 def _refuse_repeated(verb: Verb, context: click.Context, arguments: list[str]) -> None:

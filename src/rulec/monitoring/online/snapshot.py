@@ -169,7 +169,11 @@ def from_data(
     try:
         header = msgspec.convert(data, _Header)
     except ValueError as problem:  # msgspec's own, and texts that are none
-        raise _refused(f"this is not a saved monitor: {json_words(problem)}", place) from None
+        raise UNRESTORABLE_MONITOR.error(
+            place,
+            f"this is not a saved monitor: {json_words(problem)}",
+            help="give a file that `rulec monitor --save` has written",
+        ) from None
     if header.version not in (VERSION, PARTIAL_VERSION):
         raise _refused(
             f"this saved monitor is of version {header.version}; "

@@ -63,9 +63,17 @@ def find_rulebook(reference: str | Path, search_path: Sequence[Path]) -> Path:
 def meant_by(name: str, known: Sequence[str], search_path: Sequence[Path]) -> str:
     """What may be meant by a name that nothing has: a file of another ending, a country."""
     if "." in name and _is_file(Path(name)):
+        if _lead(Path(name)) not in ("rulebook", "vocabulary"):
+            return f"this file is no rulebook; `rulec verify {name} -r de` judges traffic by one"
         renamed = Path(name).with_suffix(SUFFIX).name
         return f"the name of a rulebook's file ends in `{SUFFIX}`: call it `{renamed}`"
-    return _by_title(name, known, search_path) or suggest(name, known)
+    shipped = {path.stem for path in rules_files(rulebooks_folder())}
+    # Of many names the first are shown: the reader's own are those that are not known anyway.
+    own_first = sorted(known, key=lambda one: one in shipped)
+    beside = [
+        f"./{path}" for path in sorted(Path().glob(f"*{SUFFIX}")) if _lead(path) == "rulebook"
+    ]
+    return _by_title(name, known, search_path) or suggest(name, [*beside, *own_first])
 
 
 def _by_name(name: str, search_path: Sequence[Path]) -> Path | None:

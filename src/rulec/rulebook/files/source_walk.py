@@ -154,12 +154,28 @@ def _first(names: Sequence[str], most: int) -> str:
 
 def _nothing_left(folder: str, left_alone: Sequence[LeftAlone]) -> Diagnostic:
     said = in_words(left_alone)
+    compiled = next(filter(_is_compiled, sorted(Path(folder).glob("*.json"))), None)
+    way_out = "give a folder with files whose names end in `.rules`, or a file by its own path"
+    if compiled is not None:
+        way_out = f"a compiled rulebook is given by its file: `{compiled}`"
     return NOTHING_LEFT.at(
         SourceLocation(folder),
         "there is no rulebook and no vocabulary in this folder",
-        help="give a folder with files whose names end in `.rules`, or a file by its own path",
+        help=way_out,
         notes=(f"left alone: {said}",) if said else (),
     )
+
+
+def _is_compiled(path: Path) -> bool:
+    with suppress(OSError):
+        if path.is_file():
+            with path.open("rb") as stream:
+                return b'"rulec compiled rulebook"' in stream.read(_HEAD_BYTES)
+    return False
+
+
+_HEAD_BYTES = 1000
+"""So far into a compiled rulebook its format is said."""
 
 
 def _locked(problem: OSError) -> Diagnostic:

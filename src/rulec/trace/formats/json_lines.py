@@ -207,6 +207,9 @@ def _no_traces(first: bytes, place: SourceLocation) -> RulecError | None:
         )
     if {b"trace", b"step"} <= set(first[:_LONGEST_HEAD_BYTES].strip().split(b",")):
         return _TRACE.bad("these are no traces in JSON, but CSV", place, "add `--input-format csv`")
+    if PurePath(place.file).suffix == ".rules":
+        way_out = f"give traces, and the rulebook by `-r {place.file}`"
+        return _TRACE.bad("this is a rulebook, and no traces", SourceLocation(place.file), way_out)
     if PurePath(place.file).suffix.lower() in _OF_TEXTS and not first.lstrip().startswith(
         (b"{", b"[")
     ):
