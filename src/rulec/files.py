@@ -195,6 +195,12 @@ def as_before(name: Path, path: Path) -> bool:
     return is_kept
 
 
+def from_here(file: str) -> str:
+    """A file below the working folder as it is named from there, as runners of tests want it."""
+    below = os.path.relpath(file) if os.path.isabs(file) else file  # noqa: PTH117 - a name alone
+    return file if below.split(os.sep)[0] == os.pardir else below
+
+
 def is_folder(path: Path) -> bool:
     """True for a folder; a name that nothing can have, such as one too long, is none."""
     try:

@@ -368,7 +368,7 @@ def test_files_without_a_digest_are_refused_with_the_command_that_makes_them_ane
         from_json(json.dumps(data).encode(), "my build/old.json")
     (diagnostic,) = caught.value.diagnostics
     assert (diagnostic.code, diagnostic.place.file) == ("R0411", "my build/old.json")
-    assert "`rulec compile old --step 1 --step 1/2 -o 'my build'`" in diagnostic.help
+    assert "`rulec compile RULEBOOK --step 1 --step 1/2 -o 'my build'`" in diagnostic.help
 
 
 def test_a_digest_that_is_not_in_its_place_is_none():

@@ -193,6 +193,15 @@ def test_junit_has_what_falls_short_as_a_failure(capsys, tmp_path, monkeypatch):
     assert failure.get("message") == "there is no example to run"
 
 
+def test_files_are_named_from_the_working_folder_for_runners(odd, capsys, tmp_path):
+    _, out, _ = run(capsys, str(tmp_path / odd), "--output-format", "junit")
+    files = {case.get("file") for case in ElementTree.fromstring(out).iter("testcase")}
+    assert files == {"odd.rules"}
+    (tmp_path / "bad.rules").write_text("rulebook bad\nhard rule A { require q }\n")
+    assert main(["check", str(tmp_path / "bad.rules"), "--output-format", "github"]) == 1
+    assert "::error file=bad.rules,line=2," in capsys.readouterr().out
+
+
 def test_junit_of_what_xml_cannot_hold(odd, capsys, tmp_path):
     (tmp_path / "odd.rules").write_text(ODD.replace("never", "a\uffffb\ufffec"), encoding="utf-8")
     assert run(capsys, odd)[0] == 1

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.source_text import address
+from rulec.files import from_here
 from rulec.report.text.terminal_text import visible
 
 FORMATS = ("full", "concise", "json", "github", "sarif")
@@ -70,7 +71,7 @@ def _command(diagnostic: Diagnostic) -> str:
     properties: dict[str, object] = {}
     if diagnostic.place is not None:
         place = diagnostic.place
-        properties = {"file": place.file, "line": place.line, "endLine": place.end_line}
+        properties = {"file": from_here(place.file), "line": place.line, "endLine": place.end_line}
         # Of a place over several lines GitHub takes no columns.
         if place.end_line in (None, place.line):
             properties |= {"col": place.column, "endColumn": place.end_column}

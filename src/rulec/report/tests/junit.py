@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 from rulec.book_tests.example_coverage import RuleCoverage, percent
 from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun
 from rulec.diagnostics.diagnostic import at
+from rulec.files import from_here
 from rulec.report.findings.diagnostics_text import render_diagnostics
 from rulec.report.tests.example_text import Besides, coverage_lines, failure
 from rulec.report.text.xml_text import HEAD, element, xml_text
@@ -42,7 +43,9 @@ def as_junit(
     for name, problems in besides.unread.items():
         suite = element(root, "testsuite", name=name, **_counts([], errors=1))
         place = next((found for one in problems if (found := one.place)), None)
-        where = {"file": name} if place is None else {"file": place.file, "line": place.line}
+        where = (
+            {"file": name} if place is None else {"file": from_here(place.file), "line": place.line}
+        )
         case = element(suite, "testcase", classname=name, name="reading", **where)
         first = problems[0]
         error = element(case, "error", type=first.code, message=first.message)
@@ -75,7 +78,7 @@ def _case(suite: ElementTree.Element, rulebook: str, example_outcome: ExampleOut
     }
     place = at(example_outcome.example.span)
     if place is not None:
-        attributes |= {"file": place.file, "line": str(place.line)}
+        attributes |= {"file": from_here(place.file), "line": str(place.line)}
     case = ElementTree.SubElement(
         suite, "testcase", {name: xml_text(value) for name, value in attributes.items()}
     )
