@@ -198,7 +198,7 @@ def as_before(name: Path, path: Path) -> bool:
 def from_here(file: str) -> str:
     """A file below the working folder as it is named from there, as runners of tests want it."""
     below = os.path.relpath(file) if os.path.isabs(file) else file  # noqa: PTH117 - a name alone
-    return file if below.split(os.sep)[0] == os.pardir else below
+    return file if below.startswith(os.pardir) else below
 
 
 def is_folder(path: Path) -> bool:
