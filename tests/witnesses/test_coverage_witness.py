@@ -60,6 +60,20 @@ def test_numbers_that_pass_the_limits():
     ]
 
 
+def test_numbers_are_not_below_zero_where_others_do():
+    assert proposed(always(number("", "=", 0, (1, gap("v"))))) == [
+        "reject { gap(v) = 1 m }",
+        "accept { gap(v) = 0 m }",
+    ]
+    # With a speed of 50 km/h, its default, the gap would be some -30 m.
+    both_below, both_above = proposed(always(number("", "<", 20, (1, gap("v")), (1, SPEED))))
+    assert "-" not in both_below + both_above
+    assert proposed(always(number("", "<", 0, (1, gap("v"))))) == [
+        "accept { gap(v) = -1 m }",
+        "reject { gap(v) = 0 m }",
+    ]
+
+
 def test_between_two_limits_that_are_close():
     low = number("", ">", "0.71", (1, gap("v")))
     high = number("", "<", "0.72", (1, gap("v")))

@@ -12,10 +12,11 @@ from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.logic.formula import Atom, Count, QuantityTerm
 from rulec.logic.semantics import holds
 from rulec.monitoring.verify import run
-from rulec.rulebook.rulebook_model import Example, Variable
+from rulec.rulebook.rulebook_model import Example, Rulebook, Variable
 from rulec.vocabulary import Enumeration, ObjectType, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
 from rulec.witnesses.shortest_traces import shortest_traces
+from support.builders.measured_vocabulary import MEASURED, gap, number
 from support.builders.rulebooks import P, Q, always, book, compile_here, eventually, no, rule
 from support.generators.random_formulas import VOCABULARY, formulas
 
@@ -30,6 +31,14 @@ def letters(trace):
         )
         for state in trace.states
     ]
+
+
+def test_numbers_are_not_below_zero_where_others_do():
+    rulebook = Rulebook(
+        "test", MEASURED, (rule("r", always(number("", "=", 0, (1, gap("v")))), "v: car"),)
+    )
+    found = shortest_traces(compile_here(rulebook).rules[0], MEASURED)
+    assert found.rejected.states == ({("gap", ("v",)): 1.0},)
 
 
 @given(formulas)

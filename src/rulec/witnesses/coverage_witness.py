@@ -16,7 +16,7 @@ from rulec.logic.printing import formula_text
 from rulec.rulebook.rulebook_model import ExampleState
 from rulec.rulebook.rules.axioms import ExampleValues
 from rulec.vocabulary import Vocabulary
-from rulec.witnesses.letter_functions import all_digits, counts_read, digits_of
+from rulec.witnesses.letter_functions import all_digits, counts_read, digits_of, is_natural
 from rulec.witnesses.state_synthesis import NumberDigits, numbers_near_thresholds, values_of
 
 
@@ -37,14 +37,18 @@ def is_possible(read: Read | NumberRead, digit: int) -> bool:
 
 
 def possible_letters(monitor: MealyMonitor) -> Mapping[int, int]:
-    """First letter of every letter class that some state has."""
+    """First letter of every letter class that some state has, without numbers below zero if any."""
     first: dict[int, int] = {}
+    natural: dict[int, int] = {}
     for letter, letter_class in enumerate(monitor.letters):
-        if letter_class == IMPOSSIBLE or letter_class in first:
+        if letter_class == IMPOSSIBLE or letter_class in natural:
             continue
-        if all(map(is_possible, monitor.reads, digits_of(letter, monitor.reads))):
-            first[letter_class] = letter
-    return first
+        digits = digits_of(letter, monitor.reads)
+        if all(map(is_possible, monitor.reads, digits)):
+            first.setdefault(letter_class, letter)
+            if all(map(is_natural, monitor.reads, digits)):
+                natural[letter_class] = letter
+    return first | natural
 
 
 def truth_values(

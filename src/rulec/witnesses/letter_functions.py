@@ -11,6 +11,7 @@ from itertools import product
 
 from rulec.automata.alphabet import count_letters, joined, letters_with, propositions_of, reads_of
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read
+from rulec.automata.thresholds import scale
 from rulec.logic import formula as ltl
 from rulec.logic.fold import bit_sets, fold
 from rulec.logic.free_names import rename_variables, variables_of
@@ -37,6 +38,13 @@ def digits_of(letter: int, reads: Sequence[Read | NumberRead]) -> tuple[int, ...
         letter, digit = divmod(letter, read.size)
         digits.append(digit)
     return tuple(digits)
+
+
+def is_natural(read: Read | NumberRead, digit: int) -> bool:
+    """Tell whether a quantity with this digit need not be below zero."""
+    if isinstance(read, Read) or scale(read).quantity is None:
+        return True
+    return digit == len(scale(read).floors) or scale(read).floors[digit] > 0
 
 
 def letter_of(digits: Sequence[int], reads: Sequence[Read | NumberRead]) -> int:

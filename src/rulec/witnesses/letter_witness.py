@@ -53,15 +53,23 @@ class LetterWitnesses:
         self._states: dict[int, state_synthesis.JointState | None] = {}
         self._undecided: set[int] = set()
         self._digits = list(letter_functions.all_digits(rule.machine.reads))
+        natural = [
+            [letter_functions.is_natural(read, digit) for digit in range(read.size)]
+            for read in rule.machine.reads
+        ]
+        self._below_zero = [
+            not all(known[digit] for known, digit in zip(natural, digits, strict=True))
+            for digits in self._digits
+        ]
         self._members: list[list[int]] = [[] for _ in rule.machine.successors[0]]
         for letter, letter_class in enumerate(rule.machine.letters):
             if letter_class != IMPOSSIBLE:
                 self._members[letter_class].append(letter)
         self._plain = [
-            0
+            known.index(True)
             if isinstance(read, NumberRead)
             else state_synthesis.default_digit(read, vocabulary) or 0
-            for read in rule.machine.reads
+            for read, known in zip(rule.machine.reads, natural, strict=True)
         ]
 
     def plainest(self, letter_class: int) -> int | None:
@@ -164,7 +172,11 @@ class LetterWitnesses:
     def _nearest_of(self, letter_class: int, digits: Sequence[int]) -> int | None:
         letters = sorted(
             self._members[letter_class],
-            key=lambda letter: (_distance(self._digits[letter], digits), letter),
+            key=lambda letter: (
+                _distance(self._digits[letter], digits),
+                self._below_zero[letter],
+                letter,
+            ),
         )
         return next((letter for letter in letters if self.state(letter) is not None), None)
 

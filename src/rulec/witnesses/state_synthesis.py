@@ -101,9 +101,8 @@ def solve_numbers(
         for term in quantities
         if (default := _default_number(term, vocabulary)) is not None
     }
-    # Most quantities are nothing below zero, though nobody has said so.
-    natural = [LinearBound({term: Fraction(-1)}, Fraction(0)) for term in quantities]
     order: list[Term] = [*quantities, *counts]
+    natural = _natural(quantities)
     solution = solve([*system, *natural], order, preferred, frozenset(counts))
     if solution is None:
         return solve(system, order, preferred, frozenset(counts))
@@ -132,9 +131,17 @@ def numbers_near_thresholds(
         order += [*new[1:], *new[:1]]
     near = frozenset(quantities) - preferred.keys()
     solution = solve(system, order[::-1], preferred, near_bounds=near)
+    if solution and min(solution.values()) < 0:
+        natural = solve([*system, *_natural(quantities)], order[::-1], preferred, near_bounds=near)
+        solution = natural or solution
     if solution is None or not all(map(_is_float, solution.values())):
         return None
     return {term: float(solution[term]) for term in listed}
+
+
+def _natural(quantities: Iterable[QuantityTerm]) -> list[LinearBound]:
+    """Bounds at zero: most quantities are nothing below it, though nobody has said so."""
+    return [LinearBound({term: Fraction(-1)}, Fraction(0)) for term in quantities]
 
 
 def _default_number(term: QuantityTerm, vocabulary: Vocabulary) -> Fraction | None:
