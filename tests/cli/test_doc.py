@@ -83,6 +83,17 @@ def test_a_rule_that_overrides(page):
     assert "says" not in section(page, "### Changed (§ 10a)").split("```diff")[1]
 
 
+def test_ones_own_rules_stand_before_those_that_are_inherited(folder, capsys):
+    base = 'rulebook land\nuse road\nhard rule first { cite "1" require never tunnel }\n'
+    own = 'rulebook town\nextends land\nlaw "T"\nhard rule second { require never lane_change }\n'
+    (folder / "land.rules").write_text(base, encoding="utf-8")
+    (folder / "town.rules").write_text(own, encoding="utf-8")
+    page = written(capsys, "./town.rules", "--output-format", "markdown")
+    assert re.findall(r"^### (\w+)", section(page, "## Rules"), re.MULTILINE) == ["Second"]
+    inherited = section(page, "## Rules inherited, not confirmed")
+    assert re.findall(r"^### (\w+)", inherited, re.MULTILINE) == ["First"]
+
+
 def test_its_examples(page):
     rule = section(page, "### Changed (§ 10a)")
     assert "**Example 1: allowed ✔**\n\n| state | 0 |\n| --- | --- |\n| speed, km/h | 20 |" in rule

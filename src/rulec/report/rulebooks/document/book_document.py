@@ -127,7 +127,13 @@ def _body(
     rulebook = spoken_book(loaded.rulebook, words.language)
     yield Heading(2, words.say("Rules"))
     yield words.say(ABOUT_RULES if rulebook.rules else "None.")
-    for rule in rulebook.rules:
+    own = [rule for rule in rulebook.rules if not rule.inherited_from]
+    others = [rule for rule in rulebook.rules if rule.inherited_from]
+    for rule in own:
+        yield from rule_section(rule, inherited, rulebook, words, picture)
+    if own and others:
+        yield Heading(2, words.say("Rules inherited, not confirmed"))
+    for rule in others:
         yield from rule_section(rule, inherited, rulebook, words, picture)
     yield from _values_section(inherited, rulebook.at, words)
     yield from _definitions_section(inherited, words)
