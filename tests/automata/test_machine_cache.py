@@ -43,7 +43,7 @@ def asked(tmp_path, monkeypatch):
 
     def answer(_, job):
         given.append(job)
-        return answer_to(job, diagram_compiler.COMPILER)
+        return answer_to(job, diagram_compiler.COMPILER), 0.0
 
     monkeypatch.setattr(compiler, "_worker", worker)
     monkeypatch.setattr(compiler, "_ask", answer)
@@ -125,7 +125,7 @@ def test_another_rulec_asks_anew(asked, monkeypatch, name):
 
 
 def test_what_is_no_machine_is_not_kept(asked, monkeypatch):
-    monkeypatch.setattr(compiler, "_ask", lambda _, one: asked.append(one) or Failed("memory"))
+    monkeypatch.setattr(compiler, "_ask", lambda _, one: (asked.append(one) or Failed("memory"), 0))
     assert ASKED([job()]) == ASKED([job()]) == ([Failed("memory")], "2.13")
     assert len(asked) == 2
     monkeypatch.setattr(compiler, "_ask", lambda _, one: asked.append(one))

@@ -124,7 +124,7 @@ def test_drives_are_written_alike_by_any_number_of_processes(ending, drives, mon
 
 
 NUMBERS = {
-    "-1": "'--jobs': it has to be a whole number from 0 to 256; 0 is one for each processor",
+    "-1": "--jobs: it has to be a whole number from 0 to 256; 0 is one for each processor",
     "x": "it has to be a whole number from 0 to 256",
     "257": "it has to be a whole number from 0 to 256",
     "1.5": "it has to be a whole number from 0 to 256",

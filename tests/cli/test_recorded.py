@@ -46,7 +46,7 @@ def test_json(answer):
     assert status == 0
     # What cells cannot tell is unknown, and no default but what is presumed
     assert set(found["by_default"]) <= {"told_to_stop", "told_to_go"}
-    assert "safe_gap" in found["unknown"]
+    assert "speed" in found["unknown"]
     assert found["traces"] == sum(found[x] for x in ("satisfying", "violating", "open"))
     assert "junction_priority" in found["judged"]
     assert not set(found["judged"]) & {rule["rule"] for rule in found["not_judged"]}

@@ -268,7 +268,7 @@ def test_rates_of_duckdb_are_those_of_rulec(folder_of, tmp_path):
     """Traces, whose distance nobody knows, and tracks; of 22 drives 14 break some rule."""
     parquet.write_table(pyarrow.table(tracks([0, 1, 3, 6])), folder_of / "tracks.parquet")
     run([folder_of], tmp_path / "out", road_map=lanes(tmp_path))
-    found = asked_of_duckdb(tmp_path / "out")[1]
+    found = asked_of_duckdb(tmp_path / "out")[2]
     rates = [dict(zip(found.columns, row, strict=True)) for row in found.fetchall()]
     expected = {row["rule"]: row for row in rulec.rates_of_findings(tmp_path / "out").rows()}
     assert {row["rule"] for row in rates} <= expected.keys()
@@ -285,11 +285,12 @@ def test_rates_of_duckdb_are_those_of_rulec(folder_of, tmp_path):
 def test_what_the_page_asks_duckdb_is_what_the_summary_says(folder_of, tmp_path):
     done = run([folder_of], tmp_path / "out")
     rules = done.tally.rules
-    counts, _, twice = (found.fetchall() for found in asked_of_duckdb(tmp_path / "out"))
+    counts, found_ones, _, twice = (found.fetchall() for found in asked_of_duckdb(tmp_path / "out"))
     outcomes = ("violated", "open", "not_judged")
     assert counts == [
         (name, *(rules[name, one] for one in outcomes)) for name in sorted({x for x, _ in rules})
     ]
+    assert len(found_ones) == sum(n for (_, outcome), n in rules.items() if outcome == "violated")
     assert rules["slowly", "violated"] == len(range(0, DRIVES, 3))
     assert rules["distance", "violated"] == len(range(1, DRIVES, 3))
     assert twice == []

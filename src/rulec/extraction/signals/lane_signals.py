@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise, product
 
 import numpy as np
+import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
@@ -17,7 +18,8 @@ from rulec.extraction.signals.measured_numbers import own_widths
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.recordings.recording import Lanelet, LaneMark
+from rulec.recordings.recording import Lanelet, LaneMark, is_lane
+from rulec.scenario.recorded.route import lanelet_area
 from rulec.trace.plain_arrays import distinct
 
 _INDICATORS = frozenset({"left_indicator", "right_indicator"})
@@ -197,7 +199,9 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
         context.ego_extents.left_of_max[0],
     )
     measured = _across(context, low, high, (0.0, unmoved))
-    outer, every = _outer_lines(context), slice(None)
+    every = slice(None)
+    outer = _outer_lines(context)
+    outer &= ~_on_a_lane_beside(context, np.flatnonzero((measured & outer).any(axis=1)))[:, None]
     found = _under(context, measured & ~outer, every)
     # Beyond the road's edge there may be premises, a place to park or a lane that nobody drew
     not_told = ~found[:, 0] & _under(context, measured, every)[:, [0, -1]].any(axis=1)
@@ -240,6 +244,25 @@ def _outer_lines(context: DriveContext) -> Flags:
     there = np.pad(context.existing_lanes, ((0, 0), (1, 1)))
     outer: Flags = there[:, 1:] != there[:, :-1]
     return outer
+
+
+def _on_a_lane_beside(context: DriveContext, asked: NDArray[intp]) -> Flags:
+    """Of the states asked for those in which ego reaches onto a lane that is none of its road's.
+
+    As where a file does not say which lanes of the other direction lie beside ego's.
+    """
+    found = np.zeros(context.states, dtype=bool)
+    own = {lanelet.id for row in context.road.rows for lanelet in row if lanelet is not None}
+    lanes = context.recording.lanelets.values() if asked.size else ()
+    areas = [lanelet_area(lane) for lane in lanes if is_lane(lane) and lane.id not in own]
+    if areas:
+        tree = shapely.STRtree(areas)
+        half, heading = own_widths(context)[asked] / 2, context.ego.heading[0, asked]
+        for side in (-half, half):
+            x = context.ego.x[0, asked] - side * np.sin(heading)
+            y = context.ego.y[0, asked] + side * np.cos(heading)
+            found[asked[tree.query(shapely.points(x, y), predicate="intersects")[0]]] = True
+    return found
 
 
 def _half_across(context: DriveContext) -> Floats:

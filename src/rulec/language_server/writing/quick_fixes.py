@@ -18,7 +18,14 @@ from rulec.language_server.workspace.editor_workspace import (
 from rulec.language_server.workspace.published_diagnostics import diagnostics_of
 from rulec.language_server.workspace.text_positions import TextPositions
 from rulec.language_server.writing.described_edits import Edit, another_name, described_edits
+from rulec.rulebook.files.reference_messages import (
+    EXTENDS_CIRCLE,
+    NAME_NOT_FOUND,
+    WRONG_KIND_OF_FILE,
+)
 from rulec.syntax.keywords import DECLARATION_WORDS
+from rulec.syntax.messages.mismatch import UNEXPECTED_WORD, UNTERMINATED_TEXT
+from rulec.syntax.messages.structure import NOT_A_RULEBOOK, OUTSIDE_BRACES, UNBALANCED_BRACE
 
 _WORD = re.compile(r"[^\W\d]\w*")
 _QUOTED = re.compile(r"`([^`…]+)`")
@@ -36,10 +43,18 @@ _ONLY_THE_AUTHOR_KNOWS = re.compile(
     r"|(?:give it|choose) another name"
 )
 
-_HIDING = frozenset({"R0117", "R0206", "R0213", "R0703"})
+_HIDING = frozenset(
+    one.code for one in (NOT_A_RULEBOOK, WRONG_KIND_OF_FILE, EXTENDS_CIRCLE, NAME_NOT_FOUND)
+)
 """Behind these mistakes there may be others, which nobody has looked for."""
 
-_UNREADABLE = frozenset({"R0104", "R0105", "R0108", "R0109", "R0117"})
+_UNREADABLE = frozenset(
+    one.code
+    for one in (
+        *(UNEXPECTED_WORD, UNTERMINATED_TEXT),
+        *(UNBALANCED_BRACE, OUTSIDE_BRACES, NOT_A_RULEBOOK),
+    )
+)
 
 _RULE_HEAD = re.compile(r"(?:hard|soft)\s+rule\s+$")
 _DELETING = ("delete", "leave", "keep one")
