@@ -128,7 +128,7 @@ def test_what_is_no_machine_is_not_kept(asked, monkeypatch):
     monkeypatch.setattr(compiler, "_ask", lambda _, one: (asked.append(one) or Failed("memory"), 0))
     assert ASKED([job()]) == ASKED([job()]) == ([Failed("memory")], "2.13")
     assert len(asked) == 2
-    monkeypatch.setattr(compiler, "_ask", lambda _, one: asked.append(one))
+    monkeypatch.setattr(compiler, "_ask", lambda _, one: (asked.append(one), 0))
     assert ASKED([job(), job()]) == ([None, None], "2.13")
     assert len(asked) == 4
     assert not cache_folder().exists()

@@ -43,9 +43,10 @@ LOOK_IN_EMACS = """
 
 
 def lines(language):
-    """The lines of the page's only block in a language."""
-    (block,) = re.findall(rf"^  ```{language}\n(.*?)^  ```", PAGE, re.MULTILINE | re.DOTALL)
-    return block.replace("\n  ", "\n").strip().splitlines()
+    """The lines of the page's first block in a language, for a rulec on the path."""
+    block, *_ = re.findall(rf"^  ```{language}\n(.*?)^  ```", PAGE, re.MULTILINE | re.DOTALL)
+    on_path = block.replace("/home/me/rulec/.venv/bin/", "")
+    return on_path.replace("\n  ", "\n").strip().splitlines()
 
 
 @pytest.mark.parametrize("language", ["lua", "elisp"])
