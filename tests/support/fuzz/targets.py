@@ -129,6 +129,8 @@ class Workplace:
         findings = self.folder / "findings.jsonl"
         judged = self.folder / "traces.jsonl"
         in_words("verify", judged, "-r", "esterle2019", "--exposure", "-o", findings)
+        table = self.folder / "findings.csv"
+        in_words("verify", judged, "-r", "esterle2019", "--exposure", "-o", table)
 
     def write(self, name, content):
         """Write a file, and return it."""
@@ -264,7 +266,8 @@ def saved_monitors(place, pick):
     """Monitors that go on where they were."""
     file = place.write("tried.json", mutated_json(place.text("saved.json"), pick))
     if pick.random() < 0.3:
-        return ["maneuvers", str(place.folder / "scenario.toml"), "--after", file]
+        scenario = str(place.folder / "scenario.toml")
+        return ["maneuvers", scenario, "-r", "esterle2019", "--after", file]
     return ["monitor", "esterle2019", "--restore", file]
 
 
@@ -302,12 +305,15 @@ def several_steps(place, pick):
 
 def rate_tables(place, pick):
     """Findings as a table, and what rates are told by."""
+    written = place.text("findings.csv")
     names = ("file", "trace", "rule", "opportunities", "violated", "duration_s", "distance_m")
     rows = [
         [pick.choice(("", "1", "-1", "1e308", "nan", "a", "=1+1")) for _ in names] for _ in "abc"
     ]
     text = "\n".join(map(",".join, [names, *rows]))
     data = mutated_words(text, pick, [text]) if pick.random() < 0.5 else text.encode()
+    if pick.random() < 0.6:
+        data = mutated_words(written, pick, [written, text])
     file = place.write("tried.csv", data)
     more = pick.choice(
         ([], ["--by", "file"], ["--confidence", pick.choice(("0", "nan", "1e-300"))])
