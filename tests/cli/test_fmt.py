@@ -148,6 +148,13 @@ def test_what_a_name_means_nowhere_matters_not(folder, capsys):
     assert fmt(capsys, "good.rules")[0] == 0
 
 
+@pytest.mark.parametrize("pattern", ["next[1e9 steps]", "no*such"])
+def test_a_pattern_that_nothing_is_called_like(pattern, folder, capsys):
+    status, _, err = fmt(capsys, pattern)
+    assert status == 2
+    assert "R0733" in err
+
+
 def test_standard_input(folder, capsys, monkeypatch):
     as_input(monkeypatch, UGLY.encode())
     assert fmt(capsys, "-") == (0, GOOD, "")

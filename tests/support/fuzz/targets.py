@@ -343,7 +343,8 @@ def arguments(place, pick):
     """Words after a verb."""
     verb = pick.choice(list(VERBS))
     command = rulec.get_command(click.Context(rulec), verb)
-    options = [name for one in command.params for name in one.opts]
+    # Who watches does so until somebody interrupts it.
+    options = [name for one in command.params for name in one.opts if name != "--watch"]
     files = ["lane.rules", "traces.jsonl", "out/lane.json", "scenario.toml", "books", "nowhere"]
     words = [*options, *(str(place.folder / name) for name in files), "esterle2019", "1", "-"]
     words += [word.replace("\0", "") for word in STRANGE_WORDS]

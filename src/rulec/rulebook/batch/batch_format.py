@@ -100,10 +100,11 @@ def _at(reference: str, search_path: Sequence[Path], excluded: Exclusion | None)
 
 def _named(reference: str, search_path: Sequence[Path]) -> Path | None:
     try:
-        (path,) = find_sources(reference, search_path).paths
+        paths = find_sources(reference, search_path).paths
     except RulecError:
         return None
-    return None if path == Path(reference) else path
+    # A pattern is none, whatever it matches.
+    return paths[0] if len(paths) == 1 and paths[0] != Path(reference) else None
 
 
 def formatted(name: str, path: Path | None, data: bytes) -> Formatted:
