@@ -17,7 +17,7 @@ _HEAD = """\
 Which words of the vocabulary [`road`](vocabulary.md) some file of each [format](formats.md) can
 tell, so that a rulebook may be judged by them. A particular file may lack signs, lamps or weather:
 `rulec audit R --source FILE` says what it does tell, and which rules can be judged on that;
-[Recorded traffic](recordings.md#words) says how each word is found. `.ci/task regenerate` writes
+[Recorded traffic](recorded_words.md) says how each word is found. `.ci/task regenerate` writes
 this page, as `rulec formats --words --output-format markdown` does its table.
 
 """

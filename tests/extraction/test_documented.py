@@ -1,4 +1,4 @@
-"""docs/recordings.md says what there is: every threshold with its value, and every word."""
+"""docs/recordings.md has every threshold with its value, docs/recorded_words.md every word."""
 
 import re
 from dataclasses import fields
@@ -19,7 +19,11 @@ from rulec.vocabulary import Quantity
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import recording, straight, vehicle
 
-PAGE = (Path(__file__).parents[2] / "docs/recordings.md").read_text()
+DOCS = Path(__file__).parents[2] / "docs"
+PAGE = (DOCS / "recordings.md").read_text()
+DEFINITIONS, WRONG = (
+    (DOCS / "recorded_words.md").read_text().split("## What each word may get wrong")
+)
 
 SIGNALS = (ego_signals, participant_signals, following_signals, map_signals, line_signals)
 """The passes that measure numbers."""
@@ -42,8 +46,7 @@ def test_every_threshold_with_its_value():
 
 
 def test_every_word():
-    section = PAGE[PAGE.index("## Words") : PAGE.index("## Tolerances and durations")]
-    cells = [line.split("|")[1] for line in section.splitlines() if line.startswith("| `")]
+    cells = [line.split("|")[1] for line in DEFINITIONS.splitlines() if line.startswith("| `")]
     documented = {word for cell in cells for word in re.findall(r"`(\w+)`", cell)}
     lane = straight(1, 0, 99, signs=frozenset({"STOP", "YIELD", "NO_OVERTAKING_START"}))
     lane = straight(1, 0, 99, signs=lane.signs, limit_mps=9.0, types=frozenset({"highway"}))
@@ -53,10 +56,9 @@ def test_every_word():
 
 
 def test_every_word_is_told_by_the_formats_that_the_page_says():
-    section = PAGE[PAGE.index("## Words") : PAGE.index("## Tolerances and durations")]
     told = {"commonroad": set(), "sumo": set()}
     needs = ""
-    for line in section.splitlines():
+    for line in DEFINITIONS.splitlines():
         if line.startswith("| `"):
             cells = [cell.strip() for cell in line.strip("|").split("|")]
             needs = needs if cells[2:] == ["the same"] else "".join(cells[2:])
@@ -72,8 +74,7 @@ def test_every_word_is_told_by_the_formats_that_the_page_says():
 
 def rows_of_what_may_be_wrong():
     """The words of each row, and its other cells."""
-    section = PAGE[PAGE.index("## What each word may get wrong") : PAGE.index("## Thresholds")]
-    for line in section.splitlines():
+    for line in WRONG.splitlines():
         if line.startswith("| `"):
             words, *cells = (cell.strip() for cell in line.strip("|").split("|"))
             yield re.findall(r"`(\w+)`", words), cells

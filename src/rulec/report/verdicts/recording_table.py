@@ -89,7 +89,7 @@ def _unjudged(rules: Sequence[CompiledRule], tally: ViolationTally, width: int) 
     if len(rules) > MOST_UNJUDGED:
         yield from _folded("", f"and {len(rules) - MOST_UNJUDGED:,} more", width)
     if by_words:
-        yield from _folded("", "docs/recordings.md, Words: what tells the words in brackets", width)
+        yield from _folded("", "docs/recorded_words.md: what tells the words in brackets", width)
 
 
 def _folded(label: str, text: str, width: int) -> list[str]:
