@@ -164,7 +164,7 @@ class _File:
             entry = None if compiled is None else placed(compiled, tables)
             written = msgspec.structs.replace(text, rulebook=entry)
             write_own(self.path, tables.file(msgspec.json.encode(written)))
-            tidy(self.path.parent, f"*{_ENDING}", MOST_FILES)
+            tidy(self.path.parent, _ENDING, MOST_FILES)
 
 
 def _cached(

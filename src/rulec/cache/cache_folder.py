@@ -8,7 +8,7 @@ from functools import cache
 from hashlib import sha256
 from pathlib import Path
 
-from rulec.files import OF_OTHERS, is_own, written_whole
+from rulec.files import OF_OTHERS, is_own
 from rulec.resources import package_files
 
 
@@ -46,11 +46,23 @@ def usable_folder() -> Path | None:
 
 
 def write_own(path: Path, data: bytes) -> None:
-    """Write a file of the cache, for its owner alone. Raises OSError, RulecError R0702."""
+    """Put a file of the cache there whole, for its owner alone. Raises OSError.
+
+    Nothing waits for the disk: whoever reads knows a file that was cut when the machine stopped.
+    """
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-    with written_whole(path) as stream:
-        stream.write(data)
-    path.chmod(0o600)
+    part = path.with_name(f".{path.name}.{os.urandom(8).hex()}.part")
+    try:
+        with open(part, "xb", opener=_for_its_owner) as stream:
+            stream.write(data)
+        part.replace(path)
+    except BaseException:
+        part.unlink(missing_ok=True)
+        raise
+
+
+def _for_its_owner(name: str, flags: int) -> int:
+    return os.open(name, flags, 0o600)
 
 
 @cache
@@ -62,9 +74,13 @@ def program_digest() -> str:
     return seen.hexdigest()
 
 
-def tidy(folder: Path, pattern: str, most: int) -> None:
-    """Remove the half of some files that was unused longest, if there are too many."""
-    kept = list(folder.glob(pattern))
+def tidy(folder: Path, ending: str, most: int) -> None:
+    """Remove the half of the files with an ending that was unused longest, if there are too many.
+
+    It is called whenever one is written, so nothing but names is looked at before.
+    """
+    kept = [name for name in os.listdir(folder) if name.endswith(ending)]  # noqa: PTH208
     if len(kept) > most:
-        for path in sorted(kept, key=lambda file: file.stat().st_mtime)[: len(kept) // 2]:
+        paths = [folder / name for name in kept if not name.startswith(".")]
+        for path in sorted(paths, key=lambda file: file.stat().st_mtime)[: len(kept) // 2]:
             path.unlink(missing_ok=True)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
-from rulec.cache.cache_folder import program_digest, tidy, usable_folder
+from rulec.cache.cache_folder import program_digest, tidy, usable_folder, write_own
 from rulec.cache.keeping import is_keeping
 from rulec.files import is_own
 from rulec.version import __version__
@@ -66,11 +66,10 @@ class KeptBytes:
         if folder is None or not contents:
             return
         with suppress(OSError, ValueError):
-            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
             for key, data in contents.items():
                 packed = zlib.compress(data, _QUICKLY)
-                _put(self._path(folder, key), _digest(key, packed) + packed)
-            tidy(folder, f"*.{self.kind}", self.most)
+                write_own(self._path(folder, key), _digest(key, packed) + packed)
+            tidy(folder, f".{self.kind}", self.most)
 
     def _path(self, folder: Path, key: str) -> Path:
         return folder / f"{key}.{self.kind}"
@@ -79,19 +78,3 @@ class KeptBytes:
 def _digest(key: str, packed: bytes) -> bytes:
     """What tells whether a file is as it was written, and under its own name."""
     return sha256(key.encode() + packed).digest()
-
-
-def _put(path: Path, data: bytes) -> None:
-    """Put a file there whole, for its owner alone.
-
-    Nothing waits for the disk: a file that is lost or cut when the machine stops is not there.
-    """
-    part = path.with_name(f".{path.name}.{os.urandom(8).hex()}.part")
-    handle = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(data)
-        part.replace(path)
-    except BaseException:
-        part.unlink(missing_ok=True)
-        raise

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import partial
 
@@ -13,7 +13,7 @@ from rulec.extraction.drives import Drives, NoDrive
 from rulec.extraction.recording_parts import RecordingPart, egos_of, recording_parts
 from rulec.extraction.to_trace import Drive, TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_recording
-from rulec.extraction.traffic_thresholds import LARGEST, USUAL, Thresholds
+from rulec.extraction.traffic_thresholds import USUAL, Thresholds, hinted, pair_of
 from rulec.recordings.recording import Recording, Side
 from rulec.recordings.recording_messages import NOT_IN_RECORDING
 from rulec.rulebook.rulebook_model import Traffic
@@ -146,28 +146,16 @@ def assumption_options(texts: Iterable[str], vocabulary: Vocabulary) -> dict[str
     """
     values: dict[str, Value] = {}
     for text in texts:
-        name, value = _pair(text, "built_up=true")
+        name, value = pair_of(text, "built_up=true")
         declaration = vocabulary.declarations.get(name)
         if declaration is None:
             known = [x.name for x in vocabulary.declarations.values() if not x.parameters]
             message = f"vocabulary `{vocabulary.name}` has no `{name}`"
-            raise ValueError(_hinted(message, name, known))
+            raise ValueError(hinted(message, name, known))
         if declaration.parameters:
             raise ValueError(f"`{name}` is about objects; only what is about none can be assumed")
         values[name] = _value(value, declaration)
     return values
-
-
-def _pair(text: str, example: str) -> tuple[str, str]:
-    name, equals, value = text.partition("=")
-    if not equals or not name.strip() or not value.strip():
-        raise ValueError(f"`{text}` is not written as in `{example}`")
-    return name.strip(), value.strip()
-
-
-def _hinted(message: str, name: str, known: Iterable[str], otherwise: str = "") -> str:
-    hint = did_you_mean(name, list(known))
-    return f"{message}; {hint}" if hint else message + otherwise
 
 
 def _value(text: str, declaration: Declaration) -> Value:
@@ -179,7 +167,7 @@ def _value(text: str, declaration: Declaration) -> Value:
         case Enumeration(name, _, values):
             if text not in values:
                 message = f"`{name}` is one of {named(values)}, not `{text}`"
-                raise ValueError(_hinted(message, text, values))
+                raise ValueError(hinted(message, text, values))
             return text
         case Quantity(name, _, unit):
             return _measure(text, name, unit)
@@ -196,35 +184,3 @@ def _measure(text: str, name: str, unit: str) -> float:
         example = f"50 {unit}" if unit else "50"
         raise ValueError(f"`{name}` is a number such as `{example}`, not `{text}`")
     return float(Fraction(match[1]) * given.factor / own.factor)
-
-
-_UNITS = {
-    f"_{end}": f" without a unit, in {unit}"
-    for end, unit in (("m", "m"), ("s", "s"), ("kmh", "km/h"), ("mps2", "m/s²"))
-}
-"""How names of thresholds end -> what is said of their unit."""
-
-
-def threshold_options(texts: Iterable[str]) -> Thresholds:
-    """The usual thresholds but for some, from texts such as ``near_m=200``.
-
-    Raises ValueError: with what is wrong, for people.
-    """
-    known = {field.name: field.default for field in fields(Thresholds)}
-    numbers: dict[str, float | int] = {}
-    for text in texts:
-        name, value = _pair(text, "near_m=200")
-        if name not in known:
-            message, among = f"there is no threshold `{name}`", f" among {named(list(known))}"
-            raise ValueError(_hinted(message, name, known, among))
-        try:
-            number = float(value)
-        except ValueError:
-            number = -1.0
-        if not 0 <= number <= LARGEST:
-            unit = next((says for end, says in _UNITS.items() if name.endswith(end)), "")
-            raise ValueError(f"`{name}` is a number from 0 to {LARGEST:,.0f}{unit}, not `{value}`")
-        if isinstance(known[name], int) and number != int(number):
-            raise ValueError(f"`{name}` is a whole number, not `{value}`")
-        numbers[name] = int(number) if isinstance(known[name], int) else number
-    return replace(Thresholds(), **numbers)  # type: ignore[arg-type]

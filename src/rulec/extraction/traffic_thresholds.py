@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
 
+from rulec.diagnostics import did_you_mean, named
 from rulec.scenario.recorded.lane_coordinates import TOUCHING_M
 from rulec.value_display import short_repr
 
@@ -141,3 +142,49 @@ LEAST_S: Mapping[str, float] = MappingProxyType(
 
 Others have none: they are of one moment, or cannot waver.
 """
+
+
+def threshold_options(texts: Iterable[str]) -> Thresholds:
+    """The usual thresholds but for some, from texts such as ``near_m=200``.
+
+    Raises ValueError: with what is wrong, for people.
+    """
+    known = {field.name: field.default for field in fields(Thresholds)}
+    numbers: dict[str, float | int] = {}
+    for text in texts:
+        name, value = pair_of(text, "near_m=200")
+        if name not in known:
+            message, among = f"there is no threshold `{name}`", f" among {named(list(known))}"
+            raise ValueError(hinted(message, name, known, among))
+        try:
+            number = float(value)
+        except ValueError:
+            number = -1.0
+        if not 0 <= number <= LARGEST:
+            unit = next((says for end, says in _UNITS.items() if name.endswith(end)), "")
+            raise ValueError(f"`{name}` is a number from 0 to {LARGEST:,.0f}{unit}, not `{value}`")
+        if isinstance(known[name], int) and number != int(number):
+            raise ValueError(f"`{name}` is a whole number, not `{value}`")
+        numbers[name] = int(number) if isinstance(known[name], int) else number
+    return replace(Thresholds(), **numbers)  # type: ignore[arg-type]
+
+
+def pair_of(text: str, example: str) -> tuple[str, str]:
+    """Name and value of a text such as ``near_m=200``. Raises ValueError."""
+    name, equals, value = text.partition("=")
+    if not equals or not name.strip() or not value.strip():
+        raise ValueError(f"`{text}` is not written as in `{example}`")
+    return name.strip(), value.strip()
+
+
+def hinted(message: str, name: str, known: Iterable[str], otherwise: str = "") -> str:
+    """A message with a name that may be meant, else with something else behind it."""
+    hint = did_you_mean(name, list(known))
+    return f"{message}; {hint}" if hint else message + otherwise
+
+
+_UNITS = {
+    f"_{end}": f" without a unit, in {unit}"
+    for end, unit in (("m", "m"), ("s", "s"), ("kmh", "km/h"), ("mps2", "m/s²"))
+}
+"""How names of thresholds end -> what is said of their unit."""

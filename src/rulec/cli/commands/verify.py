@@ -135,6 +135,7 @@ def command(
 
     inputs = input_files(files)
     refuse_overwriting(to, inputs.paths)
+    scenario_options.check_thresholds(options["thresholds"])
     books = [read_machines(name, at) for name in dict.fromkeys(rulebooks_named(rulebooks))]
     if len(books) > 1 and STANDARD_OUTPUT in inputs.paths:
         raise click.UsageError("standard input is read once; give a file, or one rulebook")

@@ -278,6 +278,18 @@ def given_drives_option(options: Mapping[str, Any]) -> str | None:
     return next(given, None)
 
 
+def check_thresholds(texts: Sequence[str]) -> None:
+    """Say what is wrong with thresholds, before any work. Raises click.UsageError."""
+    if texts:
+        # numpy and shapely, 150 ms: only for recordings.
+        from rulec.extraction.traffic_thresholds import threshold_options
+
+        try:
+            threshold_options(texts)
+        except ValueError as problem:
+            raise click.UsageError(_sentence(problem)) from None
+
+
 def requested_drives(
     egos: tuple[str, ...], options: Mapping[str, Any], vocabulary: Vocabulary | None
 ) -> RequestedDrives:
@@ -287,7 +299,8 @@ def requested_drives(
         click.UsageError: an assumption or a threshold is none.
     """
     # numpy and shapely, 150 ms: only for recordings.
-    from rulec.extraction.selection import RequestedDrives, assumption_options, threshold_options
+    from rulec.extraction.selection import RequestedDrives, assumption_options
+    from rulec.extraction.traffic_thresholds import threshold_options
 
     if options["assumed"] and vocabulary is None:
         raise click.UsageError("--assume needs a rulebook, in whose words it is: --rulebook R")

@@ -135,7 +135,26 @@ class _Search:
             }
             fitting.append({item: states for item, states in busy.items() if states})
         if all(fitting):
+            self._count((), nobody, fitting)
             yield from self._extended((), nobody, fitting)
+
+    def _count(
+        self,
+        chosen: tuple[str, ...],
+        cubes: Mapping[int, tuple[int, ...]],
+        fitting: Sequence[Mapping[str, frozenset[int]]],
+    ) -> None:
+        """Raise RulecError R0718 if more choices than the limit would be tried from here on.
+
+        Most are of the last variable, and those are counted without a look at any.
+        """
+        own = fitting[len(chosen)]
+        self._tried += len(own) - sum(item in own for item in chosen)
+        if self._tried > self._most:
+            raise CHOICES.exceeded(self._cast.place, f"rule `{self._rule.name}`")
+        if len(chosen) + 1 < len(fitting):
+            for longer, both in self._next(chosen, cubes, own):
+                self._count(longer, both, fitting)
 
     def _extended(
         self,
@@ -147,16 +166,22 @@ class _Search:
         if len(chosen) == len(fitting):
             yield chosen
             return
-        for item, own in fitting[len(chosen)].items():
-            if item in chosen:
-                continue
-            self._tried += 1
-            if self._tried > self._most:
-                raise CHOICES.exceeded(self._cast.place, f"rule `{self._rule.name}`")
-            longer = *chosen, item
-            both = self._longer(cubes, longer, own)
-            if both:
-                yield from self._extended(longer, both, fitting)
+        for longer, both in self._next(chosen, cubes, fitting[len(chosen)]):
+            yield from self._extended(longer, both, fitting)
+
+    def _next(
+        self,
+        chosen: tuple[str, ...],
+        cubes: Mapping[int, tuple[int, ...]],
+        fitting: Mapping[str, frozenset[int]],
+    ) -> Iterator[tuple[tuple[str, ...], Mapping[int, tuple[int, ...]]]]:
+        """The chosen and one object more, with what is read of them where they may not be kept."""
+        for item, own in fitting.items():
+            if item not in chosen:
+                longer = *chosen, item
+                both = self._longer(cubes, longer, own)
+                if both:
+                    yield longer, both
 
     def _longer(
         self, cubes: Mapping[int, tuple[int, ...]], chosen: tuple[str, ...], own: Container[int]

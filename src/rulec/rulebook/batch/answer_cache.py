@@ -59,11 +59,11 @@ class AnswerQuestion:
         stamp = self._stamp(paths)
         if path is None or stamp is None:
             return
-        with suppress(OSError, RulecError, ValueError):
+        with suppress(OSError, ValueError):
             kept = {"sources": paths, "stamp": stamp, "answer": answer}
             text = json.dumps(kept).encode()
             write_own(path, _digest(text) + b"\n" + text)
-            tidy(path.parent, f"*{_ENDING}", MOST_ANSWERS)
+            tidy(path.parent, _ENDING, MOST_ANSWERS)
 
     def _path(self) -> Path | None:
         folder = usable_folder()

@@ -97,10 +97,10 @@ def remember(
         "dependencies": [asdict(dependency) for dependency in dependencies],
         "findings": [asdict(finding) for finding in findings],
     }
-    with suppress(OSError, RulecError, ValueError):
+    with suppress(OSError, ValueError):
         text = json.dumps(data).encode()
         write_own(folder / f"{question.place()}.json", _digest(text) + b"\n" + text)
-        tidy(folder, "*.json", MOST_FILES)
+        tidy(folder, ".json", MOST_FILES)
 
 
 def _digest(text: bytes) -> bytes:

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 from hashlib import sha256
 
 from rulec.cache.cache_folder import program_digest, usable_folder, write_own
-from rulec.diagnostics import RulecError
 from rulec.files import is_own
 from rulec.version import __version__
 
@@ -60,7 +59,7 @@ class KnownForms:
         if folder is None or not self.is_changed:
             return
         kept = {"program": _program(), "digests": list(self.digests)[-MOST_TEXTS:]}
-        with suppress(OSError, RulecError):
+        with suppress(OSError):
             write_own(folder / _FILE, json.dumps(kept).encode())
 
 
