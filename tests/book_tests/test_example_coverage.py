@@ -23,7 +23,11 @@ only is one of lone
 
 def covered(*rules, pattern=None):
     rulebook = parse_rulebook(HEAD + "\n".join(rules))
-    return coverage(run_rulebook_examples(rulebook, compile_rulebook(rulebook), pattern=pattern))
+    return coverage(
+        run_rulebook_examples(
+            rulebook, compile_rulebook(rulebook), patterns=() if pattern is None else (pattern,)
+        )
+    )
 
 
 WORDS = parse_rulebook(HEAD + "hard rule A { require p }").vocabulary

@@ -24,7 +24,9 @@ quantity gap(v: t) in m
 
 def run(*rules, pattern=None, head=HEAD):
     rulebook = parse_rulebook(head + "\n".join(rules))
-    return run_rulebook_examples(rulebook, compile_rulebook(rulebook), pattern=pattern)
+    return run_rulebook_examples(
+        rulebook, compile_rulebook(rulebook), patterns=() if pattern is None else (pattern,)
+    )
 
 
 def test_examples_become_traces():

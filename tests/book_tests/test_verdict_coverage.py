@@ -14,7 +14,9 @@ HEAD = "rulebook sample\nsignal p, q default false\nquantity v in m default 0\n"
 
 def run_of(*rules, pattern=None):
     rulebook = parse_rulebook(HEAD + "\n".join(rules))
-    return run_rulebook_examples(rulebook, compile_rulebook(rulebook), pattern=pattern)
+    return run_rulebook_examples(
+        rulebook, compile_rulebook(rulebook), patterns=() if pattern is None else (pattern,)
+    )
 
 
 def said(*rules, pattern=None):

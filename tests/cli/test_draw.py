@@ -78,7 +78,7 @@ def test_a_part_of_a_trace(tmp_path, capfd):
     assert "CONGESTED" not in texts(file)
 
 
-PASSING = ("docs/samples/passing.fcd.xml", "--net", "docs/samples/passing.net.xml", "-r", "de")
+PASSING = ("docs/samples/passing.fcd.xml", "--map", "docs/samples/passing.net.xml", "-r", "de")
 
 
 def test_all_rows_of_a_trace(tmp_path, capfd):

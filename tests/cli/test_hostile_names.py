@@ -128,7 +128,7 @@ def test_the_first_trace_is_judged_and_its_violation_explained(tree, capfd):
 
 @pytest.mark.parametrize("form", ["csv", "jsonl"])
 def test_data_goes_to_standard_output_whole(form, capfd):
-    assert main(["traces", "s1", "-o", "-", "--output-format", form, "--limit", "3"]) == 0
+    assert main(["traces", "s1", "-o", "-", "--output-format", form, "--first", "3"]) == 0
     out = capfd.readouterr().out
     assert out.endswith("\n")
     assert len({line.split(",")[0] for line in out.splitlines()}) == 3 + (form == "csv")

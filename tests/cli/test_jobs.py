@@ -116,7 +116,7 @@ def test_drives_are_written_alike_by_any_number_of_processes(ending, drives, mon
         assert main([*command, "-o", f"{jobs}.{ending}", "-j", jobs]) == 0
         assert capsys.readouterr().out == f"wrote 3 drives to {jobs}.{ending}\n"
     assert Path(f"1.{ending}").read_bytes() == Path(f"2.{ending}").read_bytes()
-    assert main([*command, "-o", f"few.{ending}", "-j", "2", "--limit", "2"]) == 0
+    assert main([*command, "-o", f"few.{ending}", "-j", "2", "--first", "2"]) == 0
     if ending != "parquet":
         assert Path(f"1.{ending}").read_bytes().startswith(Path(f"few.{ending}").read_bytes())
     assert main(["verify", f"few.{ending}", "-r", "./tiny.rules"]) in (0, 1)

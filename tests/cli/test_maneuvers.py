@@ -200,7 +200,7 @@ def test_traces_to_standard_output(capfdbinary):
 
 def test_a_limit(tmp_path, capsys):
     file = tmp_path / "t.jsonl"
-    assert main(["traces", "s2", "--limit", "5", "-o", str(file)]) == 0
+    assert main(["traces", "s2", "--first", "5", "-o", str(file)]) == 0
     assert len(file.read_text().splitlines()) == 5
     assert "wrote 5 of 139 traces" in capsys.readouterr().out
 
@@ -208,7 +208,7 @@ def test_a_limit(tmp_path, capsys):
 def test_too_many_traces_are_not_begun(tmp_path, capsys):
     file = tmp_path / "t.jsonl"
     assert main(["traces", "s2", "--step", "0.25", "-o", str(file)]) == 2
-    assert "--limit" in capsys.readouterr().err
+    assert "--first" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
 
 

@@ -280,7 +280,7 @@ def test_a_monitor_that_is_interrupted_leaves_no_file(tmp_path, monkeypatch):
 @pytest.mark.parametrize("name", ["--output-format", "--format"])
 def test_the_former_name_is_taken_and_not_shown(name, capsys, tmp_path):
     file = tmp_path / "traces"
-    assert main(["traces", "s1", "-o", str(file), name, "csv", "--limit", "1"]) == 0
+    assert main(["traces", "s1", "-o", str(file), name, "csv", "--first", "1"]) == 0
     assert file.read_text().startswith("trace,step,")
     capsys.readouterr()
     assert main(["traces", "--help"]) == 0

@@ -104,7 +104,7 @@ def started(arguments, folder):
 def test_a_signal_leaves_nothing_half_written(number, tmp_path):
     file = str(tmp_path / "traces.jsonl")
     process = started(
-        ["traces", "s2", "--step", "0.25", "--limit", "5000000", "-o", file], tmp_path
+        ["traces", "s2", "--step", "0.25", "--first", "5000000", "-o", file], tmp_path
     )
     process.send_signal(number)
     process.communicate()
@@ -116,7 +116,7 @@ def test_files_that_exist_survive_what_goes_wrong(tmp_path):
     file = tmp_path / "traces.jsonl"
     file.write_text("old")
     process = subprocess.Popen(
-        [*RULEC, "traces", "s2", "--step", "0.25", "--limit", "5000000", "-o", str(file)],
+        [*RULEC, "traces", "s2", "--step", "0.25", "--first", "5000000", "-o", str(file)],
         stderr=subprocess.PIPE,
         preexec_fn=as_from_a_terminal,
     )

@@ -38,13 +38,13 @@ def test_every_verb_takes_the_net(files, tmp_path, capfd, words):
     ]
     assert main(words) == 2
     assert "[R0614]" in capfd.readouterr().err
-    assert main([*words, "--net", net]) == 0, capfd.readouterr().err
+    assert main([*words, "--map", net]) == 0, capfd.readouterr().err
     assert capfd.readouterr().err == ""
 
 
 def test_what_the_file_leaves_open_is_said(files, capfd):
     file, net = files
-    words = ["maneuvers", file, "-r", "esterle2019", "--net", net, "--ego", "f.0"]
+    words = ["maneuvers", file, "-r", "esterle2019", "--map", net, "--ego", "f.0"]
     assert main(words) == 0
     said = "note        types that no file describes are taken to be as usual: `small` (car, 5 m)"
     assert said in capfd.readouterr().out
@@ -52,15 +52,15 @@ def test_what_the_file_leaves_open_is_said(files, capfd):
     scene = json.loads(capfd.readouterr().out)["scene"]
     assert scene["reference"] == "in_1"
     assert [said.partition("note        ")[2]] == scene["remarks"]
-    assert main(["verify", file, "-r", "gb", "--net", net]) == 0
+    assert main(["verify", file, "-r", "gb", "--map", net]) == 0
     assert said in capfd.readouterr().out
-    assert main(["verify", file, "-r", "gb", "--net", net, "--json"]) == 0
+    assert main(["verify", file, "-r", "gb", "--map", net, "--json"]) == 0
     assert json.loads(capfd.readouterr().out)["remarks"] == scene["remarks"]
 
 
 def test_who_can_be_ego_is_said(files, capfd):
     file, net = files
-    assert main(["maneuvers", file, "-r", "esterle2019", "--net", net]) == 2
+    assert main(["maneuvers", file, "-r", "esterle2019", "--map", net]) == 2
     error = capfd.readouterr().err
     assert "[R0612]" in error
     assert "--ego: `f.0`" in error
@@ -69,7 +69,7 @@ def test_who_can_be_ego_is_said(files, capfd):
 def test_a_net_without_recorded_traffic(tmp_path, files, capfd):
     traces = tmp_path / "traces.jsonl"
     traces.write_text("", encoding="utf-8")
-    assert main(["verify", str(traces), "-r", "gb", "--net", files[1]]) == 2
+    assert main(["verify", str(traces), "-r", "gb", "--map", files[1]]) == 2
     assert "--map is for recorded traffic" in capfd.readouterr().err
 
 
@@ -83,5 +83,5 @@ def test_what_a_file_is_tells_its_content(files, tmp_path, capfd):
     _, net = files
     other = tmp_path / "recording.dat"
     other.write_text("\n" + DRIVE, encoding="utf-8")
-    assert main(["verify", str(other), "-r", "gb", "--net", net]) == 0
+    assert main(["verify", str(other), "-r", "gb", "--map", net]) == 0
     assert "recording: 1 drive" in capfd.readouterr().out

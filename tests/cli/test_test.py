@@ -97,7 +97,7 @@ def test_failing_examples_say_where_and_what(odd, capsys):
     ],
 )
 def test_patterns(odd, capsys, pattern, names):
-    status, out, _ = run(capsys, odd, "--run", pattern)
+    status, out, _ = run(capsys, odd, "--rule", pattern)
     lines = [line for line in out.splitlines() if line.startswith(("pass", "FAIL"))]
     assert [line.split(" ", 3)[3] for line in lines] == names
     assert status == (2 if not names else 0 if names == ["A/1"] else 1)
@@ -107,16 +107,16 @@ def test_nothing_to_run_fails_only_if_asked_to(odd, capsys):
     empty = "rulebook empty\nuse paper\nhard rule A (v: vehicle) { require always not r(v) }\n"
     Path("empty.rules").write_text(empty)
     warned = "warning[R0408]: rule `A` has no example\n"
-    status, out, err = run(capsys, "empty.rules", "--run", "A", "--coverage")
+    status, out, err = run(capsys, "empty.rules", "--rule", "A", "--coverage")
     assert (status, err.startswith(warned)) == (0, True)
     assert "coverage 0.0 %\n0 examples: 0 passed, 0 failed\n" in out
-    status, _, err = run(capsys, "empty.rules", "--run", "A", "--fail-on-empty")
+    status, _, err = run(capsys, "empty.rules", "--rule", "A", "--fail-on-empty")
     assert (status, err.splitlines()[-1]) == (1, "rulec: there is no example to run")
 
 
 def test_a_pattern_that_matches_nothing_is_a_mistake(odd, capsys):
     for pattern, help_text in (("a", "did you mean `A`?"), ("A/4", "RULE or RULE/LABEL")):
-        status, out, err = run(capsys, odd, "--run", pattern, "--coverage")
+        status, out, err = run(capsys, odd, "--rule", pattern, "--coverage")
         assert (status, out) == (2, "")
         assert f"error[R0460]: no rule and no example matches `{pattern}`\n" in err
         assert help_text in err
@@ -179,7 +179,7 @@ def test_junit_has_what_falls_short_as_a_failure(capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     source = "rulebook a\nsignal p\nhard rule r { require always p accept { p } }\n"
     (tmp_path / "a.rules").write_text(source)
-    status, out, _ = run(capsys, "a.rules", "--threshold", "90", "--output-format", "junit")
+    status, out, _ = run(capsys, "a.rules", "--fail-under", "90", "--output-format", "junit")
     assert status == 1
     root = ElementTree.fromstring(out)
     assert [root.get(name) for name in ("tests", "failures", "errors")] == ["2", "1", "0"]
@@ -263,7 +263,7 @@ def test_a_proposed_example_leaves_out_what_has_its_default(capsys, tmp_path, mo
 
 
 def test_coverage(odd, capsys):
-    _, out, _ = run(capsys, odd, "--coverage", "--run", "B")
+    _, out, _ = run(capsys, odd, "--coverage", "--rule", "B")
     # B: from the first state, in which f(v) has not been yet, two classes of letters lead on.
     assert "odd B: 1 of 2 edges, 1 of 2 values of atoms (50.0 %)\n" in out
     assert "  `f(v)` is never true\n" in out
@@ -280,7 +280,7 @@ def test_threshold(odd, capsys, threshold, status, tmp_path):
         "hard rule B { require always not q }\n"
         "hard rule C { require always not q accept { not q } reject { q } }\n"
     )
-    found, out, err = run(capsys, odd, "--threshold", threshold)
+    found, out, err = run(capsys, odd, "--fail-under", threshold)
     assert "coverage 66.7 %" in out
     assert found == status
     assert ("below the" in err) == bool(status)
@@ -298,8 +298,8 @@ def test_a_rulebook_with_mistakes_does_not_keep_the_others_from_being_tested(odd
     ("arguments", "words"),
     [
         (["build/a.json"], "`build/a.json` is compiled and has no examples"),
-        (["esterle2019", "--threshold", "101"], "--threshold"),
-        (["esterle2019", "--threshold", "nan"], "--threshold"),
+        (["esterle2019", "--fail-under", "101"], "--fail-under"),
+        (["esterle2019", "--fail-under", "nan"], "--fail-under"),
         (["esterle2019", "--output-format", "sarif"], "it is one of full, json, junit"),
     ],
 )

@@ -254,7 +254,7 @@ def test_every_format_is_written_and_judged_alike(form, tmp_path, capsys):
 
 def test_csv_in_a_pipe(capsys, monkeypatch, tmp_path):
     path = tmp_path / "in"
-    assert main(["traces", "s1", "-o", "-", "--format", "csv", "--limit", "3"]) == 0
+    assert main(["traces", "s1", "-o", "-", "--format", "csv", "--first", "3"]) == 0
     path.write_text(capsys.readouterr().out)
     with path.open() as stream:
         monkeypatch.setattr("sys.stdin", stream)

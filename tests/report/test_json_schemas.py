@@ -81,7 +81,7 @@ LINES = [
     ("verdict", ["verify", RECORDING, "-r", "de", "--json", "--explain", "1"]),
     ("state", ["monitor", "esterle2019", "--json"]),
     ("envelope", ["envelopes", "s1", "-r", "esterle2019", "-o", "-", "--format", "jsonl"]),
-    ("trace", ["traces", "s1", "--limit", "5", "-o", "-", "--format", "jsonl"]),
+    ("trace", ["traces", "s1", "--first", "5", "-o", "-", "--format", "jsonl"]),
 ]
 
 

@@ -176,7 +176,8 @@ class RulebookVerbs(SessionSettings):
         """Run a rulebook's examples whose RULE or RULE/LABEL matches the pattern."""
         from rulec.batch.example_batch import ExampleRequest, run_examples
 
-        return run_examples(ExampleRequest(self.search_path, self.at, pattern), reference)
+        patterns = () if pattern is None else (pattern,)
+        return run_examples(ExampleRequest(self.search_path, self.at, patterns), reference)
 
     def coverage(self, run: ExampleRun) -> tuple[RuleCoverage, ...]:
         """Measure what the examples of a run cover, rule by rule."""

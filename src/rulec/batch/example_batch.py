@@ -25,7 +25,7 @@ class ExampleRequest:
 
     folders: Sequence[str | Path] = ()
     at: str = ""
-    pattern: str | None = None
+    patterns: Sequence[str] = ()
     measured: bool = False
 
 
@@ -33,7 +33,7 @@ def run_examples(request: ExampleRequest, rulebook: str | Path) -> ExampleRun:
     """Run a rulebook's examples. Raises RulecError."""
     loaded = read_rulebook(rulebook, request.folders, request.at)
     compiled = StepCompiler(loaded.rulebook).at_own_steps()
-    return run_rulebook_examples(loaded.rulebook, compiled, loaded.warnings, request.pattern)
+    return run_rulebook_examples(loaded.rulebook, compiled, loaded.warnings, request.patterns)
 
 
 MeasuredRun = tuple[ExampleRun, tuple[RuleCoverage, ...]]

@@ -23,12 +23,12 @@ EXAMPLE_FAILED = Code(
 
 NOTHING_TO_RUN = Code(
     "R0460",
-    title="no rule and no example is matched by `--run`",
-    why="With `--run PATTERN`, `rulec test` runs the examples whose `RULE` or `RULE/LABEL` the "
+    title="no rule and no example is matched by `--rule`",
+    why="With `--rule PATTERN`, `rulec test` runs the examples whose `RULE` or `RULE/LABEL` the "
     "pattern matches. If it matches none, nothing was tested and nothing is covered, which says "
     "as little about the rulebook as a test that was never written.",
-    bad="rulec test esterle2019 --run R7",
-    good="rulec test esterle2019 --run R1",
+    bad="rulec test esterle2019 --rule R7",
+    good="rulec test esterle2019 --rule R1",
     kind="command",
 )
 
@@ -70,13 +70,13 @@ def unexercised(rule: Rule, missing: set[bool], *, any_examples: bool) -> Diagno
     )
 
 
-def nothing_to_run(pattern: str, rules: Sequence[str]) -> Diagnostic:
-    """R0460: a pattern that matches none of these rules, nor an example of theirs."""
-    name = pattern.partition("/")[0]
+def nothing_to_run(patterns: Sequence[str], rules: Sequence[str]) -> Diagnostic:
+    """R0460: patterns that match none of these rules, nor an example of theirs."""
+    name = patterns[0].partition("/")[0]
     known = f"rules are {named(rules)}" if rules else "there is no rule"
     return NOTHING_TO_RUN.at(
         None,
-        f"no rule and no example matches `{pattern}`",
+        f"no rule and no example matches {named(patterns)}",
         help=did_you_mean(name, [rule for rule in rules if rule != name])
         or f"write RULE or RULE/LABEL, with `*` for anything: {known}",
     )

@@ -77,8 +77,8 @@ def percent(rules: Iterable[RuleCoverage]) -> float:
 def coverage(run: ExampleRun) -> tuple[RuleCoverage, ...]:
     """The coverage of every rule by the examples that were run.
 
-    Where a pattern chose, rules are left out that it does not match, nor any of their examples. One
-    that it matches and that has no example is there: nothing of it is covered.
+    Where patterns chose, rules are left out that none matches, nor any of their examples. One
+    that one matches and that has no example is there: nothing of it is covered.
     """
     covered = []
     for rule, compiled, outcomes in _by_rule(run):
@@ -170,11 +170,11 @@ def _shortest_paths(machine: MealyMonitor, symbols: Iterable[int]) -> Mapping[in
 def uncovered_verdicts(run: ExampleRun) -> Iterator[Diagnostic]:
     """Warnings (R0408) about rules whose examples show one of two verdicts.
 
-    Rules with an example that fails are left out, for that has to be mended first. Where a pattern
-    chose among the examples, it is only said of the rules that it names that they have none.
+    Rules with an example that fails are left out, for that has to be mended first. Where patterns
+    chose among the examples, it is only said of the rules that they name that they have none.
     """
     for rule, compiled, outcomes in _by_rule(run):
-        if run.pattern is not None and (outcomes or not run.names(rule)):
+        if run.patterns and (outcomes or not run.names(rule)):
             continue
         shown = {outcome.accepted for outcome in outcomes}
         if len(shown) < 2 and all(outcome.passed for outcome in outcomes):

@@ -55,7 +55,7 @@ class ExampleOutcome:
 class ExampleRun(Rows):
     """Compiled rulebook with its warnings and the outcomes of its examples.
 
-    ``pattern`` is what chose among them; None if all were run.
+    ``patterns`` are what chose among them; none if all were run.
     """
 
     __repr__ = short_repr
@@ -64,11 +64,11 @@ class ExampleRun(Rows):
     compiled: CompiledRulebook
     outcomes: tuple[ExampleOutcome, ...]
     warnings: tuple[Diagnostic, ...] = ()
-    pattern: str | None = None
+    patterns: Sequence[str] = ()
 
     def names(self, rule: Rule) -> bool:
         """Tell whether the rule itself was asked for, rather than some examples of it."""
-        return self.pattern is None or fnmatchcase(rule.name, self.pattern)
+        return _is_wanted([rule.name], self.patterns)
 
     def rows(self) -> list[dict[str, Any]]:
         """One row an example."""
@@ -88,9 +88,9 @@ def run_rulebook_examples(
     rulebook: Rulebook,
     compiled: CompiledRulebook,
     warnings: tuple[Diagnostic, ...] = (),
-    pattern: str | None = None,
+    patterns: Sequence[str] = (),
 ) -> ExampleRun:
-    """Run examples, all or those whose ``RULE`` or ``RULE/LABEL`` match.
+    """Run examples, all or those whose ``RULE`` or ``RULE/LABEL`` a pattern matches.
 
     An example without a label goes by its number. ``compiled`` is the rulebook compiled, the
     warnings are passed on.
@@ -101,11 +101,14 @@ def run_rulebook_examples(
         _outcome(rule, machine, compiled, example, number)
         for rule, machine in zip(rulebook.rules, compiled.rules, strict=True)
         for number, example in enumerate(rule.examples, 1)
-        if pattern is None
-        or fnmatchcase(rule.name, pattern)
-        or fnmatchcase(f"{rule.name}/{example.label or number}", pattern)
+        if _is_wanted([rule.name, f"{rule.name}/{example.label or number}"], patterns)
     )
-    return ExampleRun(rulebook, compiled, outcomes, warnings, pattern)
+    return ExampleRun(rulebook, compiled, outcomes, warnings, patterns)
+
+
+def _is_wanted(names: Sequence[str], patterns: Sequence[str]) -> bool:
+    """Tell whether a pattern matches one of the names of a thing, or there is no pattern."""
+    return not patterns or any(fnmatchcase(name, one) for one in patterns for name in names)
 
 
 def _outcome(

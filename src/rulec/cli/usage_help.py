@@ -119,7 +119,8 @@ def _as_typed(param: click.Parameter, problem: click.ClickException) -> str:
     context = getattr(problem, "ctx", None)
     given: tuple[str, ...] = () if context is None else context.find_root().obj or ()
     typed = {word.partition("=")[0] for word in given}
-    return next((name for name in param.opts if name in typed), param.opts[-1])
+    names = [*param.opts, *getattr(param, "former", ())]
+    return next((name for name in names if name in typed), param.opts[-1])
 
 
 def ways_out(problem: click.UsageError) -> Iterator[str]:

@@ -98,7 +98,7 @@ ENGINE_MISSING = Code(
     "R0713",
     title="an engine is not installed",
     why="Ray and Spark are installed on request: `.venv/bin/python -m pip install -e '.[ray]'` "
-    "in the checkout, or `'.[spark]'`, which takes Java 17 as well. `--engine local` needs "
+    "in the checkout, or `'.[spark]'`, which takes Java 17 as well. `--on local` needs "
     "neither.",
     kind="circumstance",
 )
@@ -113,10 +113,8 @@ def other_fleet(folder: Path, why: str) -> RulecError:
 
 
 def engine_missing(engine: str, package: str) -> RulecError:
-    otherwise = "use `--engine local`"
-    return missing_package(
-        ENGINE_MISSING, f"`--engine {engine}`", package, engine, otherwise=otherwise
-    )
+    otherwise = "use `--on local`"
+    return missing_package(ENGINE_MISSING, f"`--on {engine}`", package, engine, otherwise=otherwise)
 
 
 def java_missing(home: str | None) -> RulecError:
@@ -125,5 +123,5 @@ def java_missing(home: str | None) -> RulecError:
         f"there is no Java in `{home}`, which JAVA_HOME names"
         if home
         else "Spark takes Java 17, and there is no `java` on the path",
-        help="install Java 17 and let JAVA_HOME name its folder, or use `--engine local`",
+        help="install Java 17 and let JAVA_HOME name its folder, or use `--on local`",
     )

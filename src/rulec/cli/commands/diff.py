@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     is_flag=True,
     help="Compare every two of the rulebooks named, or of all that there are.",
 )
-@shared.rules_option("Only rules like PATTERN; `*` and `?` are wild. May be given several times.")
+@shared.rules_option("Only rules like PATTERN")
 @click.option(
     "--pair",
     "paired",

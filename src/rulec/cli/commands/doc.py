@@ -26,7 +26,7 @@ _ENDINGS = endings_of("html", "markdown")
 @output_options(
     _ENDINGS,
     "the document",
-    former="--format",
+    former=["--format"],
     instead="A browser prints the page and saves it as PDF.",
     folders=True,
 )

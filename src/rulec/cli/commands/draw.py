@@ -50,7 +50,7 @@ if TYPE_CHECKING:
 _WHY_ONE = "a picture shows what one rulebook says"
 
 _picture_options = output_options(
-    endings_of("svg", "png", "pdf", "html"), "the picture", required=True, former="--format"
+    endings_of("svg", "png", "pdf", "html"), "the picture", required=True, former=["--format"]
 )
 
 _judging_options = shared.combined(
@@ -89,12 +89,10 @@ def command(context: click.Context) -> None:
 @click.option(
     "--trace", "trace_id", metavar="ID", help="Draw the trace with this id.  [default: the first]"
 )
-@shared.rules_option(
-    "Only what rules like PATTERN read; `*` and `?` are wild. May be given several times."
-)
+@shared.rules_option("Only what rules like PATTERN read")
 @click.option(
     "--object",
-    "objects",
+    "only",
     multiple=True,
     metavar="ID",
     help="Of the objects only this one. May be given several times.",
@@ -113,7 +111,7 @@ def trace(
     rulebook: str,
     trace_id: str | None,
     patterns: tuple[str, ...],
-    objects: tuple[str, ...],
+    only: tuple[str, ...],
     every_row: bool,
     input_format: Format | None,
     at: str,
@@ -130,13 +128,13 @@ def trace(
 
     rules = read_machines(rulebook, at)
     drawn = _trace(file, trace_id, input_format)
-    for item in objects:
+    for item in only:
         if item not in drawn.objects:
             raise click.UsageError(
                 f"trace `{drawn.id}` has no object `{item}`; it has {named(list(drawn.objects))}."
             )
     used = _only(rulebook_for_trace(drawn, rules), patterns)
-    _write(trace_drawing(drawn, used, objects, patterns, every_row=every_row), to)
+    _write(trace_drawing(drawn, used, only, patterns, every_row=every_row), to)
 
 
 @command.command()
@@ -149,9 +147,7 @@ def trace(
     help="The vehicle, or one of its drives such as 373#2.  [default: the first in time "
     "that violates a rule]",
 )
-@shared.rules_option(
-    "Only violations of rules like PATTERN; `*` and `?` are wild. May be given several times."
-)
+@shared.rules_option("Only violations of rules like PATTERN")
 @click.option(
     "--at-time",
     "at_s",

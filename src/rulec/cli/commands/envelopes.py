@@ -31,7 +31,7 @@ _WHY_ONE = "a planner's table has the maneuvers of one rulebook"
 @click.command(cls=Verb)
 @graph_options
 @shared.rulebook_option(_WHY_ONE)
-@output_options(TABLES, "the table", required=True, former="--format")
+@output_options(TABLES, "the table", required=True, former=["--format"])
 @shared.number_option(
     "--list", "number", "Write the N cheapest satisfying maneuvers.", least=1, default=1
 )

@@ -44,15 +44,11 @@ if TYPE_CHECKING:
     help="The folder of the findings; by several rulebooks, of a folder for each. A run that was "
     "stopped goes on there.",
 )
-@shared.choice_option("--engine", ["local", "ray", "spark"], "Who gives the work to processes.")
-@shared.jobs_option("Judge so many recordings, or pieces of tables, at a time")
-@click.option(
-    "--end",
-    "ends",
-    type=click.Choice(["cut", "complete"]),
-    help="Of traces: cut out of something longer, or over at their end.  [default: as they say, "
-    "else complete]",
+@shared.choice_option(
+    "--on", ["local", "ray", "spark"], "Who gives the work to processes.", former=["--engine"]
 )
+@shared.jobs_option("Judge so many recordings, or pieces of tables, at a time")
+@shared.end_option
 @scenario_options.drives_options
 @scenario_options.recording_options
 @shared.at_option
@@ -60,7 +56,7 @@ def command(
     inputs: tuple[str, ...],
     rulebooks: tuple[str, ...],
     folder: Path,
-    engine: Any,
+    on: Any,
     jobs: Jobs,
     ends: Ending | None,
     at: str,
@@ -93,7 +89,7 @@ def command(
             scenario_options.requested_drives((), dict(options), rules.vocabulary),
             scenario_options.recording_source("-", dict(options)),
             ends,
-            engine,
+            on,
             jobs,
         )
         own = folder if len(books) == 1 else folder / name

@@ -13,7 +13,7 @@ import click
 from rulec.batch.jobs import Jobs
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options import shared_options as shared
-from rulec.cli.options.output_options import Output, endings_of, output_options
+from rulec.cli.options.output_options import Output, RenamedOption, endings_of, output_options
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import print_lost, put_answer, sources_of_rulebooks
 from rulec.cli.watching import watch as watch_sources
@@ -39,12 +39,9 @@ def _number(
 
 @click.command(cls=Verb)
 @shared.rulebooks_argument("[RULEBOOK]...", required=False)
-@click.option(
-    "--run",
-    "pattern",
-    metavar="PATTERN",
-    help="Run the examples whose RULE or RULE/LABEL this matches; * and ? are wild. "
-    "One without a label goes by its number.",
+@shared.rules_option(
+    "Only examples whose RULE or RULE/LABEL is like PATTERN, by its number one without a label",
+    former=["--run"],
 )
 @output_options(endings_of("full", "json", "junit"), "the outcomes: text, JSON, or JUnit XML")
 @click.option("--fail-on-empty", is_flag=True, help="Fail if there is no example to run.")
@@ -56,7 +53,10 @@ def _number(
     "both true and false.",
 )
 @click.option(
-    "--threshold",
+    "--fail-under",
+    "percent",
+    cls=RenamedOption,
+    former=["--threshold"],
     type=click.FloatRange(0, 100),
     callback=_number,
     metavar="PERCENT",
@@ -67,11 +67,11 @@ def _number(
 @shared.at_option
 def command(
     rulebooks: tuple[str, ...],
-    pattern: str | None,
+    patterns: tuple[str, ...],
     to: Output,
     fail_on_empty: bool,
     with_coverage: bool,
-    threshold: float | None,
+    percent: float | None,
     jobs: Jobs,
     watch: bool,
     at: str,
@@ -81,15 +81,15 @@ def command(
     It is a name, the path of a source, a pattern, or a folder: all rulebooks in and below it.
     Without one it is the working folder.
 
-    Exit status: 0 all pass, 1 one fails, or --fail-on-empty or --threshold says so, 2 a rulebook
-    could not be read or compiled, or --run matches nothing.
+    Exit status: 0 all pass, 1 one fails, or --fail-on-empty or --fail-under says so, 2 a rulebook
+    could not be read or compiled, or --rule matches nothing.
     """
     references = rulebooks or (".",)
-    measured = with_coverage or threshold is not None
+    measured = with_coverage or percent is not None
 
     def run() -> int:
-        wanted = WantedExamples(pattern, at, measured=measured, fails_empty=fail_on_empty)
-        return _tested(references, wanted, threshold, to, jobs)
+        wanted = WantedExamples(patterns, at, measured=measured, fails_empty=fail_on_empty)
+        return _tested(references, wanted, percent, to, jobs)
 
     if watch:
         watch_sources(run, references)
@@ -100,7 +100,7 @@ def command(
 class WantedExamples:
     """Which examples are run, on which day, and what is asked of them."""
 
-    pattern: str | None
+    patterns: tuple[str, ...]
     at: str
     measured: bool
     fails_empty: bool
@@ -109,7 +109,7 @@ class WantedExamples:
 def _tested(
     references: Sequence[str],
     wanted: WantedExamples,
-    threshold: float | None,
+    percent: float | None,
     to: Output,
     jobs: Jobs,
 ) -> int:
@@ -125,7 +125,7 @@ def _tested(
     runs: list[ExampleRun] = []
     coverages: list[tuple[RuleCoverage, ...]] = []
     unread: dict[str, Sequence[Diagnostic]] = {}
-    request = ExampleRequest(search_path(), wanted.at, wanted.pattern, wanted.measured)
+    request = ExampleRequest(search_path(), wanted.at, wanted.patterns, wanted.measured)
     answers = measured_runs(request, rulebooks, jobs, partial(print_lost, "tested"))
     for name, answer in zip(rulebooks, answers, strict=True):
         if isinstance(answer, RulecError):
@@ -138,14 +138,14 @@ def _tested(
         coverages.append(covers)
     answered = not unread
     if (
-        wanted.pattern is not None
+        wanted.patterns
         and answered
         and not any(run.outcomes or any(map(run.names, run.rulebook.rules)) for run in runs)
     ):
         names = dict.fromkeys(rule.name for run in runs for rule in run.rulebook.rules)
-        raise RulecError([nothing_to_run(wanted.pattern, list(names))])
+        raise RulecError([nothing_to_run(wanted.patterns, list(names))])
     covered = coverages if wanted.measured else None
-    short = shortcomings(runs, covered, threshold, fail_on_empty=wanted.fails_empty)
+    short = shortcomings(runs, covered, percent, fail_on_empty=wanted.fails_empty)
     if runs or to.form != "full":
         put_answer(render(runs, covered, to.form, Besides(unread, short)), to)
     for sentence in short.values():

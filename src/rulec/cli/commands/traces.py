@@ -41,12 +41,13 @@ Piece = TypeVar("Piece")
     "Write the traces in this rulebook's words, with the partition that it reads.",
     required=False,
 )
-@output_options(TABLES, "the traces", required=True, former="--format")
+@output_options(TABLES, "the traces", required=True, former=["--format"])
 @shared.number_option(
-    "--limit",
-    "limit",
+    "--first",
+    "first",
     f"Write the first N only; needed where there are more than {MOST_TRACES:,}.",
     least=1,
+    former=["--limit"],
 )
 @click.option(
     "--recorded",
@@ -60,7 +61,7 @@ def command(
     scenario: str,
     rulebook: str | None,
     to: Output,
-    limit: int | None,
+    first: int | None,
     recorded: bool,
     jobs: Jobs,
     **options: Any,
@@ -72,7 +73,7 @@ def command(
     """
     if recorded:
         file = Path(file_named(scenario))
-        _write_drives(file, to, jobs, rulebook=rulebook, limit=limit, options=options)
+        _write_drives(file, to, jobs, rulebook=rulebook, first=first, options=options)
         return
     about = {name: options.pop(name) for name in ("thresholds", "assumed", "as_recorded")}
     option = scenario_options.given_drives_option(about)
@@ -96,12 +97,12 @@ def command(
         else:
             graph = rulec.find_maneuvers(scene, rules, **options).paths
         total = count_paths(graph)
-    if limit is None and total > MOST_TRACES:
+    if first is None and total > MOST_TRACES:
         raise click.UsageError(
             f"There are {shown_count(total)} traces; that would fill a disk. "
-            "Name how many to write with --limit N, or count them with `rulec maneuvers`."
+            "Name how many to write with --first N, or count them with `rulec maneuvers`."
         )
-    wanted = total if limit is None else min(limit, total)
+    wanted = total if first is None else min(first, total)
     with progress(f"writing {to.path}", wanted) as tell:
         traces = _counted_aloud(all_traces(graph, scene.name, wanted), tell)
         kinds = kinds_in(chain.from_iterable(graph.states))
@@ -122,7 +123,7 @@ def _write_drives(
     jobs: Jobs,
     *,
     rulebook: str | None,
-    limit: int | None,
+    first: int | None,
     options: dict[str, Any],
 ) -> None:
     # numpy and shapely, 200 ms: only for recordings.
@@ -146,7 +147,7 @@ def _write_drives(
 
     def counted(pieces: Iterable[Piece]) -> Iterator[Piece]:
         nonlocal count
-        for piece in islice(pieces, limit):
+        for piece in islice(pieces, first):
             count += 1
             yield piece
 

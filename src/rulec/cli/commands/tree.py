@@ -10,21 +10,17 @@ from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import open_session, put_answer, sources_of_rulebooks, width_of
+from rulec.diagnostics import named
 from rulec.report.text.terminal_text import wants_color
 from rulec.settings import search_path
 
 
 @click.command(cls=Verb)
 @shared.rulebooks_argument("[RULEBOOK...]", required=False)
-@click.option(
-    "--rule",
-    "pattern",
-    metavar="PATTERN",
-    help="Show only the rules whose name this matches; * and ? are wild.",
-)
+@shared.rules_option("Only rules like PATTERN")
 @output_options(endings_of("text", "json"), "the tree")
 @shared.at_option
-def command(rulebooks: tuple[str, ...], pattern: str | None, to: Output, at: str) -> None:
+def command(rulebooks: tuple[str, ...], patterns: tuple[str, ...], to: Output, at: str) -> None:
     """Show what a RULEBOOK inherits, overrides, softens and drops, and which book set what.
 
     It is given by its name or the path of its source. Of several RULEBOOKs, or without any of all
@@ -39,14 +35,14 @@ def command(rulebooks: tuple[str, ...], pattern: str | None, to: Output, at: str
     rulebooks = sources_of_rulebooks(rulebooks, "cannot be taken apart")
     width, color = width_of(to), wants_color(sys.stdout)
     if len(rulebooks) == 1:
-        inherited = lineage_tree.chosen(open_session(at).tree(rulebooks[0]), pattern)
-        if pattern is not None and not inherited.rules:
-            raise click.UsageError(f"{inherited.book} has no rule like `{pattern}`")
+        inherited = lineage_tree.chosen(open_session(at).tree(rulebooks[0]), patterns)
+        if patterns and not inherited.rules:
+            raise click.UsageError(f"{inherited.book} has no rule like {named(patterns)}")
         shown = lineage_tree.as_json(inherited)
         if to.form == "text":
             shown = lineage_tree.as_text(inherited, width, color=color)
     else:
-        if pattern is not None:
+        if patterns:
             raise click.UsageError("--rule chooses among the rules of one RULEBOOK; give one")
         session = open_session(at)
         if rulebooks:

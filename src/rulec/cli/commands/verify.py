@@ -61,13 +61,7 @@ _OF_SEVERAL_BOOKS = ("text", "json", "jsonl", "csv", "parquet")
     is_flag=True,
     help="Count hard rules that are open, for want of values or of an end, as violated.",
 )
-@click.option(
-    "--end",
-    "ends",
-    type=click.Choice(["cut", "complete"]),
-    help="Of traces: cut out of something longer, or over at their end.  [default: as the file "
-    "says, else complete]",
-)
+@shared.end_option
 @shared.step_option(
     "Of traces: take S for the seconds from state to state where a trace's own differ by at most a "
     "twentieth, as a logger's clock makes them; others are not judged."

@@ -80,25 +80,31 @@ class Output:
         return self.path.endswith("/") or os.path.isdir(self.path)  # noqa: PTH112
 
 
-class _Renamed(click.Option):
-    """An option whose further names still work, and are no longer shown."""
+class RenamedOption(click.Option):
+    """An option that is still taken by its ``former`` names, which nothing shows any more."""
 
-    def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
-        shown, self.opts = self.opts, self.opts[:1]
+    def __init__(self, *declared: Any, former: Sequence[str] = (), **settings: Any) -> None:
+        super().__init__(*declared, **settings)
+        self.former = [*former]
+
+    def add_to_parser(self, parser: Any, ctx: click.Context) -> None:
+        """Let the parser know all the names."""
+        shown, self.opts = self.opts, [*self.opts, *self.former]
         try:
-            return super().get_help_record(ctx)
+            super().add_to_parser(parser, ctx)
         finally:
             self.opts = shown
 
 
 def input_format_option(
-    names: Sequence[str], what: str, former: str = ""
+    names: Sequence[str], what: str, former: Sequence[str] = ()
 ) -> Callable[[Decorated], Decorated]:
-    """``--input-format NAME``, which was called ``former``."""
+    """``--input-format NAME``, which had these ``former`` names."""
     return click.option(
-        *filter(None, ("--input-format", former)),
+        "--input-format",
         "input_format",
-        cls=_Renamed,
+        cls=RenamedOption,
+        former=former,
         metavar="NAME",
         type=click.Choice(names),
         help=f"The format of {what}.",
@@ -111,7 +117,7 @@ def output_options(
     *,
     required: bool = False,
     multiple: bool = False,
-    former: str = "",
+    former: Sequence[str] = (),
     alias: str = "",
     instead: str = "",
     folders: bool = False,
@@ -147,9 +153,10 @@ def output_options(
             + ("" if required else "  [default: standard output]"),
         ),
         click.option(
-            *filter(None, ("--output-format", former)),
+            "--output-format",
             "output_format",
-            cls=_Renamed,
+            cls=RenamedOption,
+            former=former,
             type=click.Choice(list(endings)),
             help=f"The format of {what}.  [default: what FILE ends with; {default} on standard "
             "output]",

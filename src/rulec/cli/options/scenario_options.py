@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from rulec.cli.options.output_options import input_format_option
+from rulec.cli.options.output_options import RenamedOption, input_format_option
 from rulec.cli.options.shared_options import choice_option, combined
 from rulec.cli.options.shell_completion import complete_scenarios
 from rulec.cli.standard_input import file_named
@@ -58,8 +58,9 @@ _roads_options = combined(
     [
         click.option(
             "--map",
-            "--net",
             "map_path",
+            cls=RenamedOption,
+            former=["--net"],
             metavar="FILE",
             type=click.Path(dir_okay=False, path_type=Path),
             help="For recorded traffic without roads of its own: the map.  [default: for SUMO's "
@@ -94,7 +95,7 @@ recording_or_trace_options = combined(
             (*_RECORDING_FORMATS, *TRACE_FORMATS),
             "traces: jsonl, csv or parquet; or of recorded traffic, one of `rulec formats`.  "
             "[default: what the file shows, of traces what it ends with, else jsonl]",
-            former="--format",
+            former=["--format"],
         ),
     ]
 )

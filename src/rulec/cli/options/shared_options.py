@@ -15,7 +15,7 @@ from click.core import ParameterSource
 
 from rulec.batch.jobs import Jobs, chosen_jobs
 from rulec.cache.keeping import keeping
-from rulec.cli.options.output_options import endings_of, output_options
+from rulec.cli.options.output_options import RenamedOption, endings_of, output_options
 from rulec.cli.options.shell_completion import complete_rulebooks
 from rulec.cli.standard_input import read_as_file
 from rulec.report.findings.finding_formats import FORMATS
@@ -43,11 +43,18 @@ def combined(options: Sequence[Callable[[Any], Any]]) -> Callable[[Decorated], D
 
 
 def choice_option(
-    name: str, choices: Sequence[str], help_text: str
+    name: str, choices: Sequence[str], help_text: str, former: Sequence[str] = ()
 ) -> Callable[[Decorated], Decorated]:
     """One of several words, of which the first is the default."""
-    kind = click.Choice(choices)
-    return click.option(name, type=kind, default=choices[0], show_default=True, help=help_text)
+    return click.option(
+        name,
+        cls=RenamedOption,
+        former=former,
+        type=click.Choice(choices),
+        default=choices[0],
+        show_default=True,
+        help=help_text,
+    )
 
 
 def number_option(
@@ -55,7 +62,7 @@ def number_option(
 ) -> Callable[[Decorated], Decorated]:
     """A whole number from ``least`` to ``most``, with further settings of click."""
     kind = click.IntRange(least, most)
-    settings.setdefault("metavar", "N")
+    settings = {"metavar": "N", "cls": RenamedOption, **settings}
     return click.option(name, field, type=kind, show_default=True, help=help_text, **settings)
 
 
@@ -185,9 +192,26 @@ def steps_option(help_text: str) -> Callable[[Decorated], Decorated]:
     )
 
 
-def rules_option(help_text: str) -> Callable[[Decorated], Decorated]:
-    """``--rule PATTERN``, any number of them."""
-    return click.option("--rule", "patterns", multiple=True, metavar="PATTERN", help=help_text)
+def rules_option(help_text: str, former: Sequence[str] = ()) -> Callable[[Decorated], Decorated]:
+    """``--rule PATTERN``, any number of them, which had these ``former`` names."""
+    return click.option(
+        "--rule",
+        "patterns",
+        cls=RenamedOption,
+        former=former,
+        multiple=True,
+        metavar="PATTERN",
+        help=f"{help_text}; `*` and `?` are wild. May be given several times.",
+    )
+
+
+end_option = click.option(
+    "--end",
+    "ends",
+    type=click.Choice(["cut", "complete"]),
+    help="Of traces: cut out of something longer, or over at their end.  [default: as they say, "
+    "else complete]",
+)
 
 
 def _jobs(context: click.Context, parameter: click.Parameter, value: str | None) -> Jobs:

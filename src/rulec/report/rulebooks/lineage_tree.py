@@ -64,11 +64,15 @@ class ForestDocument(JsonDocument, frozen=True, kw_only=True):
     books: Sequence[rule_lineage.BookHeader]
 
 
-def chosen(inherited: rule_lineage.BookLineage, pattern: str | None) -> rule_lineage.BookLineage:
-    """Lineage of rules that match a pattern; everything without a pattern."""
-    if pattern is None:
+def chosen(
+    inherited: rule_lineage.BookLineage, patterns: Sequence[str]
+) -> rule_lineage.BookLineage:
+    """Lineage of rules that one of the patterns matches; everything without a pattern."""
+    if not patterns:
         return inherited
-    rules = tuple(rule for rule in inherited.rules if fnmatchcase(rule.name, pattern))
+    rules = tuple(
+        rule for rule in inherited.rules if any(fnmatchcase(rule.name, one) for one in patterns)
+    )
     return rule_lineage.BookLineage(inherited.books, rules, ())
 
 
