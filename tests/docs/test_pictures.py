@@ -7,14 +7,14 @@ from pathlib import Path
 import pytest
 
 from rulec.cli.main import main
+from support.builders.recordings import BESIDE
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "docs" / "pictures"
-COMMANDS = re.findall(
-    r"^\$ \./rulec (draw .*?) -o (\w+\.svg)$",
-    (ROOT / "docs" / "pictures.md").read_text(),
-    re.MULTILINE,
-)
+PAGE = (ROOT / "docs" / "pictures.md").read_text()
+COMMANDS = re.findall(r"^\$ \./rulec (draw .*?) -o (\w+\.svg)$", PAGE, re.MULTILINE)
+OF_RECORDINGS = re.findall(r"^\./rulec (draw .*?) -o (\w+\.svg)$", PAGE, re.MULTILINE)
+"""Of recordings that do not ship."""
 
 
 @pytest.mark.parametrize(("command", "name"), COMMANDS)
@@ -24,5 +24,15 @@ def test_a_picture_is_up_to_date(command, name, tmp_path, monkeypatch):
     assert (tmp_path / name).read_bytes() == (FOLDER / name).read_bytes()
 
 
+@pytest.mark.skipif(not BESIDE.is_dir(), reason="there are no shared recordings")
+@pytest.mark.parametrize(("command", "name"), OF_RECORDINGS)
+def test_a_picture_of_a_recording_is_up_to_date(command, name, tmp_path, monkeypatch):
+    monkeypatch.chdir(BESIDE)
+    main([*shlex.split(command), "-o", str(tmp_path / name)])
+    assert (tmp_path / name).read_bytes() == (FOLDER / name).read_bytes()
+
+
 def test_every_picture_has_its_command():
-    assert {name for _, name in COMMANDS} == {file.name for file in FOLDER.iterdir()}
+    assert {name for _, name in COMMANDS + OF_RECORDINGS} == {
+        file.name for file in FOLDER.iterdir()
+    }
