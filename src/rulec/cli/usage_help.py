@@ -84,7 +84,7 @@ def reworded(problem: click.ClickException) -> str:
         and isinstance(kind, click.types.IntParamType)
         and (found := _NO_NUMBER.match(problem.message))
     ):
-        return f"{param.opts[-1]}: `{found['given']}` is no whole number"
+        return f"{_as_typed(param, problem)}: `{found['given']}` is no whole number"
     if (
         param is not None
         and isinstance(kind, click.Choice)
@@ -100,7 +100,7 @@ def reworded(problem: click.ClickException) -> str:
         return f"{problem.option_name} is given without a value"
     is_missing = isinstance(problem, click.MissingParameter)
     if isinstance(param, click.Option) and not is_missing:
-        return f"{param.opts[-1]}: {problem.message}"
+        return f"{_as_typed(param, problem)}: {problem.message}"
     if found := _TOO_MUCH.match(message):
         words = found["given"].split()
         many = "an argument" if len(words) == 1 else f"{len(words)} arguments"
