@@ -119,7 +119,7 @@ def _as_typed(param: click.Parameter, problem: click.ClickException) -> str:
     context = getattr(problem, "ctx", None)
     given: tuple[str, ...] = () if context is None else context.find_root().obj or ()
     typed = {word.partition("=")[0] for word in given}
-    names = [*param.opts, *getattr(param, "former", ())]
+    names = [*param.opts[-1:], *getattr(param, "former", ())]
     return next((name for name in names if name in typed), param.opts[-1])
 
 
