@@ -8,7 +8,7 @@ furthest apart, by what can still come of their states.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from itertools import combinations, groupby, product
 from typing import TypeAlias
@@ -107,6 +107,15 @@ class RunPairs:
                 self._open.append(frozenset(n for n, own in enumerate(digits) if own & own - 1))
             word += [number] * length
         return tuple(word)
+
+    @property
+    def n_starts(self) -> int:
+        """In how many states runs may begin."""
+        return len(self._machine.starts)
+
+    def are_settled(self, word: _Word, fixed: Set[int]) -> bool:
+        """Whether each letter of a word is one, once the digits of some reads are fixed."""
+        return all(self._open[number] <= fixed for number in set(word))
 
     def prospects(self, word: _Word) -> list[bytes]:
         """For each letter of a word what may come of each state: see ``Prospects``."""
@@ -309,10 +318,17 @@ class Dependence:
     def decides(self, names: frozenset[str]) -> bool:
         """Whether completions that agree on these names agree on the outcome."""
         fixed = tuple([n for n, about in enumerate(self._unknown) if about and about <= names])
-        starts = self._runs.starts(same=BEFORE in names)
+        groups = list(self._groups(names))
+        is_same = BEFORE in names
+        if (is_same or self._runs.n_starts == 1) and all(
+            len(group) == 1 and self._runs.are_settled(group[0], set(fixed)) for group in groups
+        ):
+            # There is one run for each group
+            return True
+        starts = self._runs.starts(same=is_same)
         return all(
             self._agree(one, other, fixed, starts)
-            for group in self._groups(names)
+            for group in groups
             for one, other in product(group, repeat=2)
         )
 
