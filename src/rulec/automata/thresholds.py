@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from math import inf, nextafter
 
 from rulec.automata.mealy_monitor import NumberRead, Threshold
-from rulec.logic.formula import QuantityTerm
+from rulec.logic.formula import Comparison, Proposition, QuantityTerm
 from rulec.logic.free_names import names_in, variables_of
 from rulec.trace import Value
 from rulec.vocabulary.written_numbers import WrittenNumber
@@ -64,6 +65,23 @@ def floor_of(threshold: Threshold) -> float:
     number = _decimal(result)
     passes = number >= threshold.limit if threshold.inclusive else number > threshold.limit
     return result if passes else nextafter(result, inf)
+
+
+@lru_cache(maxsize=1 << 12)
+def bound_in_floats(
+    proposition: Proposition,
+) -> tuple[QuantityTerm, Callable[[float], bool]] | None:
+    """The quantity that a comparison is about, and what floats stand in its relation; else None.
+
+    It is exact: floats stand for their decimals, as in ``floor_of``.
+    """
+    match proposition:
+        case Comparison(((1, QuantityTerm() as term),), relation, limit):
+            if relation in ("=", "!="):
+                return None
+            floor = floor_of(Threshold(limit, relation in (">=", "<")))
+            return term, floor.__le__ if relation in (">=", ">") else floor.__gt__
+    return None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

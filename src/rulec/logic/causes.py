@@ -38,8 +38,7 @@ def instants_among(
 ) -> dict[Formula, list[bool]]:
     """The deciding instants, from the ``extended_values`` on a word of so many letters."""
     length, last = len(known[formula]), n_letters - 1
-    onward = {part: _Column.of(values) for part, values in known.items()}
-    backward = {part: _Column.of(values[::-1]) for part, values in known.items()}
+    onward, backward = _Columns(known), _Columns(known, turned=True)
     # A part begins to decide where its mark is above 0, and ceases to where it is below.
     marks = {part: [0] * (length + 1) for part in known}
     marks[formula][:2] = [1, -1]
@@ -79,17 +78,33 @@ class _Column:
     @staticmethod
     def of(values: Sequence[bool]) -> _Column:
         """The column of these values."""
-        following: dict[bool, list[int]] = {}
-        for value in (False, True):
-            numbers = [len(values)]
-            for instant in range(len(values) - 1, -1, -1):
-                numbers.append(instant if values[instant] == value else numbers[-1])
-            following[value] = numbers[::-1]
-        return _Column(values, following[False], following[True])
+        never = len(values)
+        next_false, next_true = [never] * (never + 1), [never] * (never + 1)
+        false = true = never
+        for instant in range(never - 1, -1, -1):
+            if values[instant]:
+                true = instant
+            else:
+                false = instant
+            next_false[instant], next_true[instant] = false, true
+        return _Column(values, next_false, next_true)
 
     def next(self, value: bool, instant: int) -> int:
         """The next instant with this value."""
         return (self.next_true if value else self.next_false)[min(instant, len(self.values))]
+
+
+class _Columns(dict[Formula, _Column]):
+    """The columns of parts whose values are known, perhaps turned around; made once asked for."""
+
+    def __init__(self, known: Mapping[Formula, Sequence[bool]], *, turned: bool = False) -> None:
+        super().__init__()
+        self._known, self._turned = known, turned
+
+    def __missing__(self, part: Formula) -> _Column:
+        values = self._known[part]
+        column = self[part] = _Column.of(values[::-1] if self._turned else values)
+        return column
 
 
 _ALONE = {

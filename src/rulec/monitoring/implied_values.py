@@ -49,8 +49,7 @@ def with_implied_signals(state: State, vocabulary: Vocabulary) -> State:
     ahead = [
         (cause, items)
         for cause in implied.keys() & state.keys()
-        for items, value in values_in(state[cause], len(vocabulary.declarations[cause].parameters))
-        if value is True
+        for items in _true_of(state[cause], len(vocabulary.declarations[cause].parameters))
     ]
     while ahead:
         cause, items = ahead.pop()
@@ -59,6 +58,13 @@ def with_implied_signals(state: State, vocabulary: Vocabulary) -> State:
                 filled[effect] = put(filled.get(effect), items, True)
                 ahead.append((effect, items))
     return state if filled == state else filled
+
+
+def _true_of(said: Any, depth: int) -> list[tuple[str, ...]]:
+    """The objects of which a signal is true."""
+    if depth == 1 and type(said) is dict:
+        return [(item,) for item, value in said.items() if value is True]
+    return [items for items, value in values_in(said, depth) if value is True]
 
 
 def _mentions(said: Any, items: tuple[str, ...]) -> bool:

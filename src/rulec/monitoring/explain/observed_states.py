@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead
+from rulec.automata.thresholds import bound_in_floats
 from rulec.logic import formula as ltl
-from rulec.logic.kleene import Unknown, holds, weighted_sum
+from rulec.logic.kleene import Unknown, evaluator_of, weighted_sum
 from rulec.monitoring.explain.margins import Margin, margin_in
 from rulec.monitoring.state_view import StateView
 from rulec.trace import Value
@@ -51,7 +52,17 @@ class ObservedStates:
 
     def truths(self, proposition: ltl.Proposition) -> list[bool]:
         """Truth of a proposition in each state."""
-        return [holds(proposition, self.bound, view) is True for view in self.views]
+        evaluate, bound = evaluator_of(proposition), self.bound
+        in_floats = bound_in_floats(proposition)
+        if in_floats is None:
+            return [evaluate(bound, view) is True for view in self.views]
+        term, stands = in_floats
+        items, found = self.items(term.arguments), []
+        for view in self.views:
+            value = view.value(term.name, items)
+            own = stands(value) if type(value) is float else evaluate(bound, view) is True
+            found.append(own)
+        return found
 
     def word(self, machine: MealyMonitor) -> list[Letter]:
         """The letters that a machine reads, digit by digit."""

@@ -11,6 +11,9 @@ from rulec.trace import Trace, Value
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
 
+_PLAIN = frozenset((bool, float, int, str))
+"""Types of most values that are known."""
+
 
 def completed(trace: Trace, vocabulary: Vocabulary) -> Trace:
     """The trace with defaults, or least values, for what is unknown, and the middles of bounds."""
@@ -37,7 +40,10 @@ def with_all_defaults(vocabulary: Vocabulary) -> Vocabulary:
 
 
 def _known(value: Any, declaration: Declaration, depth: int) -> Any:
-    if isinstance(value, Mapping):
+    kind = type(value)
+    if kind in _PLAIN and not depth:
+        return value
+    if kind is dict or isinstance(value, Mapping):
         return {name: _known(inner, declaration, depth - 1) for name, inner in value.items()}
     if depth:
         return {}  # unknown of all objects
