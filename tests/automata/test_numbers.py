@@ -8,8 +8,9 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from rulec.automata.mealy_monitor import NumberRead, Threshold
-from rulec.automata.thresholds import exact, floor_of, scale
-from rulec.logic.formula import Constant, Count, QuantityTerm
+from rulec.automata.thresholds import bound_in_floats, exact, floor_of, scale
+from rulec.logic.formula import Comparison, Constant, Count, QuantityTerm
+from rulec.logic.linear_comparison import stands
 
 floats = st.floats(allow_nan=False, allow_infinity=False)
 SPEED = QuantityTerm("speed", ("v",))
@@ -47,6 +48,25 @@ def test_a_subclass_of_float_is_read_as_its_value():
             return "Own"
 
     assert exact(Own(0.1)) == Fraction(1, 10)
+
+
+@given(limits(), st.sampled_from(["<", "<=", ">=", ">"]), floats, st.booleans())
+@example(Fraction(1, 10), "<", 0.1, False)
+@example(Fraction(1, 10), ">", 0.1, False)
+@example(Fraction(10**400), "<", 0.1, False)
+def test_a_bound_of_floats_is_that_of_their_decimals(limit, relation, value, near):
+    if near and abs(limit) < 10**300:
+        value = float(limit)
+    found = bound_in_floats(Comparison(((Fraction(1), SPEED),), relation, limit))
+    assert found is not None
+    term, is_met = found
+    assert term == SPEED
+    assert is_met(value) is stands(exact(value), relation, limit)
+
+
+def test_equality_and_sums_have_no_bound_of_floats():
+    assert bound_in_floats(Comparison(((Fraction(1), SPEED),), "=", Fraction(1))) is None
+    assert bound_in_floats(Comparison(((Fraction(1), SPEED),) * 2, "<", Fraction(1))) is None
 
 
 @given(scales(), floats | st.integers())
