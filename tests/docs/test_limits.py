@@ -19,7 +19,7 @@ from rulec.rulebook.arithmetic import size_limits
 from rulec.rulebook.files import source_walk
 from rulec.scenario import scenario_files, time_grid
 from rulec.scenario.toml import schema
-from rulec.syntax import scanner
+from rulec.syntax import parser, scanner
 from rulec.trace.formats import json_line_problems, table_reader
 from rulec.trace.formats.arrow import parquet
 
@@ -33,6 +33,7 @@ FIXED = {
     "folders inside one another that are walked for recordings": recording_inputs.DEEPEST_FOLDER,
     "bytes of `rulec.toml`": files.MAX_SETTINGS_BYTES,
     "words and signs of a source": scanner.MAX_TOKENS,
+    "states of an example": parser.MOST_EXAMPLE_STATES,
     "operators, atoms and comparisons of a rule, definitions put in": size_limits.MOST_PARTS,
     "operators inside one another, definitions put in": size_limits.DEEPEST,
     "digits of a number in compiled files and saved monitors": MOST_DIGITS,

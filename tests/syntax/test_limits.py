@@ -137,3 +137,14 @@ for before, part, behind in {REPEATED!r}:
     parse(Source("hostile.rules", before + part * (100_000 // len(part)) + behind))
 """
     subprocess.run([sys.executable, "-c", program], check=True, timeout=600)
+
+
+def test_an_example_of_too_many_states_is_one_error_at_its_head():
+    def with_states(number):
+        return f"{HEAD}p\n  accept {{ {'; '.join(['p'] * number)} }}\n}}"
+
+    assert len(parse_rulebook(with_states(10_000)).rules[0].examples[0].states) == 10_000
+    one = only(with_states(10_001))
+    assert (one.code, one.place.line) == ("R0111", 4)
+    assert "10,001 states" in one.message
+    assert "`rulec verify`" in one.help

@@ -25,6 +25,9 @@ from rulec.syntax.split_file import FileSplitter
 MAX_PIECE = 10_000
 """Tokens in one piece; keeps what one formula can cost in time and memory small."""
 
+MOST_EXAMPLE_STATES = 10_000
+"""States of one example, which are read and judged whenever its rulebook is compiled."""
+
 _BEHIND_NAME = ("is", "in", "default", "(", "=", ":")
 _NAMING_PROVISIONS = ("option", "param", "define")
 
@@ -190,6 +193,10 @@ class PieceReader:
         return keyword, self.read("clause", piece, items.clause), span
 
     def _example(self, pieces: ExamplePieces) -> tree.ExampleItem | None:
+        if len(pieces.states) > MOST_EXAMPLE_STATES:
+            first, number = self._first_token(pieces.head), len(pieces.states)
+            self.mistakes.append(_messages().too_many_states(first, number, MOST_EXAMPLE_STATES))
+            return None
         head = self.read("example_head", pieces.head, items.example_head)
         states = [self.read("state", piece, items.state) for piece in pieces.states]
         if head is None or not states or None in states:

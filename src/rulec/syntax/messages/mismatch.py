@@ -37,9 +37,10 @@ UNTERMINATED_TEXT = Code(
 
 FORMULA_TOO_DEEP = Code(
     "R0111",
-    title="a formula is too deep or too long",
-    why="A formula may be nested 200 levels deep and have 10,000 words and signs. Nobody can read "
-    "more, and such a formula comes from a program; say its parts in rules of their own.",
+    title="a formula is too deep, or it or an example too long",
+    why="A formula may be nested 200 levels deep and have 10,000 words and signs, an "
+    "example 10,000 states. Nobody can read more, and it comes from a program: say a formula's "
+    "parts in rules of their own, and judge a drive that was recorded as a trace of its own.",
     bad=f"rulebook example\nsignal p\nhard rule r {{\n  require\n{'    ' + '!' * 67}\n"
     f"{'    ' + '!' * 67}\n{'    ' + '!' * 67} p\n}}\n",
     good="rulebook example\nsignal p\nhard rule r { require never p }\n",
@@ -165,6 +166,15 @@ def too_long(span: Span, limit: int) -> Diagnostic:
         span,
         f"this goes on for more than {limit:,} words and signs",
         help="split it into several parts",
+    )
+
+
+def too_many_states(span: Span, number: int, limit: int) -> Diagnostic:
+    return FORMULA_TOO_DEEP.at(
+        span,
+        f"the example has {number:,} states, and at most {limit:,} are read",
+        help="tell the moments that matter; `rulec verify` judges whole drives, as traces in a "
+        "file of their own",
     )
 
 
