@@ -113,6 +113,13 @@ PAIRS: Final = ResourceLimit(
     "analyze its parts in rulebooks of their own",
 )
 
+COMPARISONS: Final = ResourceLimit(
+    "comparisons",
+    30_000,
+    "pairs of rules of one name in two rulebooks",
+    "name fewer rulebooks, or only some rules, with `--rule PATTERN`",
+)
+
 TYPE_DEPTH: Final = ResourceLimit(
     "type_depth",
     100,
@@ -167,6 +174,7 @@ LIMITS: Final = {
         COMPILING,
         CUBES,
         PAIRS,
+        COMPARISONS,
         TYPE_DEPTH,
         SEARCH,
         CITES,

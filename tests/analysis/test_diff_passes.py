@@ -30,6 +30,7 @@ from rulec.analysis.lineage.rule_lineage import (
     LineageStep,
     RuleHistory,
 )
+from rulec.diagnostics import RulecError
 from rulec.logic.formula import Atom, Binary, BinaryOperator
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rulebook_model import Variable
@@ -157,6 +158,17 @@ class TestComparisonMatrix:
         assert told == [1, 2, 3, 4, 5, 6]
         assert steps(BOOKS) == 6
         assert steps(BOOKS, ["r"]) == 4
+
+    def test_more_pairs_than_the_limit_are_refused_at_a_rule_that_most_have(self, monkeypatch):
+        monkeypatch.setenv("RULEC_LIMITS", "comparisons=4")
+        assert len(comparison_matrix(BOOKS).shared) == 2
+        monkeypatch.setenv("RULEC_LIMITS", "comparisons=3")
+        with pytest.raises(RulecError) as caught:
+            comparison_matrix(BOOKS)
+        (one,) = caught.value.diagnostics
+        assert (one.code, one.place.line) == ("R0718", 3)
+        assert "3 rulebooks: 4 pairs" in one.message
+        assert "--limit comparisons=" in one.help
 
     def test_more_laws_than_letters(self):
         (one, *_) = comparison_matrix(BOOKS).rules

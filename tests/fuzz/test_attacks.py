@@ -111,6 +111,9 @@ FEW_OF = ("beside", "stopped")
 PARITY = " xor ".join(f"p{number}" for number in range(14))
 SIGNALS = ", ".join(f"p{number}" for number in range(14))
 CHAIN = "type t0\n" + "".join(f"type t{n} is t{n - 1}\n" for n in range(1, 5000))
+ALIKE = "rulebook b{}\nsignal p default false\n" + "".join(
+    f"hard rule r{n} {{{{ require always p }}}}\n" for n in range(5)
+)
 SURFACES = "".join(
     f'[[road.surface]]\ntype = "crossing"\ns = [{n}.0, {n}.5]\n' for n in range(30_000)
 )
@@ -184,6 +187,30 @@ COSTLY = {
         2,
         "R0502",
     ),
+    "30 objects of which everything is true, for six variables, state by state": (
+        {
+            "-": lambda: traces(
+                {
+                    "objects": THIRTY,
+                    "state": {name: dict.fromkeys(THIRTY, True) for name in FEW_OF},
+                }
+            )
+        },
+        ["monitor", "./crowd.rules"],
+        2,
+        "R0718",
+    ),
+    "an example of 100,000 states": (
+        {
+            "long.rules": lambda: (
+                "rulebook long\nsignal p default false\nhard rule r {\n  require always p\n"
+                f"  accept {{ {'; '.join(['p'] * 100_000)} }}\n}}\n"
+            )
+        },
+        ["check", "./long.rules"],
+        1,
+        "R0111",
+    ),
     "100,000 objects in a state": (
         {"-": lambda: traces({"objects": {f"o{n}": "car" for n in range(100_000)}, "state": {}})},
         ["monitor", "./crowd.rules"],
@@ -205,6 +232,12 @@ COSTLY = {
         ["verify", "t.jsonl", "-r", "./soon.rules"],
         2,
         "R0718",
+    ),
+    "a tree of 120 rulebooks with five rules each, compared with each other": (
+        {f"b{n}.rules": lambda n=n: ALIKE.format(n) for n in range(120)},
+        ["diff", "--all", "--rule", "r*", *(f"./b{n}.rules" for n in range(120))],
+        2,
+        "--limit comparisons=",
     ),
     "a parity of 14 signals, drawn": (
         {

@@ -12,6 +12,8 @@ from string import ascii_uppercase
 from rulec.analysis.diff.rule_comparison import RuleRelation, rule_relation
 from rulec.analysis.diff.rulebook_comparison import rules_matching
 from rulec.analysis.shared_compilation import AnalyzedRule, at_one_step, compile_shared
+from rulec.diagnostics.diagnostic import at
+from rulec.resource_limits import COMPARISONS
 from rulec.rulebook.rulebook_model import Remark, Rule, Rulebook
 
 CONVERSE: Mapping[RuleRelation, RuleRelation] = {
@@ -101,13 +103,14 @@ def comparison_matrix(
     """Compare every two of the rulebooks, rule by rule.
 
     The arguments are as for ``diff_rulebooks``; ``tell`` is told how much is done of ``steps``.
-    Raises RulecError.
+    Raises RulecError, R0718 beyond the limit `comparisons`.
     """
     ours = [rules_matching(book, patterns) for book in books]
     having: dict[str, list[int]] = {}
     for number, rules in enumerate(ours):
         for name in rules:
             having.setdefault(name, []).append(number)
+    _refuse_too_many(ours, having)
     stepped: list[dict[str, Rule]] = [{} for _ in books]
     for name, numbers in having.items():
         if len(numbers) > 1:
@@ -132,6 +135,17 @@ def comparison_matrix(
         shared_rules.append(SharedRule(name, laws, versions, relations, remarks))
         tell(len(books) + len(shared_rules))
     return ComparisonMatrix(tuple(books), tuple(shared_rules))
+
+
+def _refuse_too_many(
+    ours: Sequence[Mapping[str, Rule]], having: Mapping[str, Sequence[int]]
+) -> None:
+    """Raise RulecError R0718, at a rule that most have, for too many pairs to compare."""
+    if having:
+        name, numbers = max(having.items(), key=lambda item: len(item[1]))
+        place = at(ours[numbers[0]][name].span)
+        amount = sum(len(numbers) * (len(numbers) - 1) // 2 for numbers in having.values())
+        COMPARISONS.within(amount, place, f"{len(ours)} rulebooks")
 
 
 def steps(books: Sequence[Rulebook], patterns: Sequence[str] = ()) -> int:
