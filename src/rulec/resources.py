@@ -37,6 +37,12 @@ def package_files() -> Iterator[tuple[str, os.stat_result]]:
                     yield entry.path, entry.stat()
 
 
+def emacs_mode() -> Path:
+    """The major mode for Emacs."""
+    installed = _PACKAGE / "data" / "editors" / "emacs" / "rulec-mode.el"
+    return installed if installed.is_file() else _PACKAGE.parent / "editors/emacs/rulec-mode.el"
+
+
 def scenarios_folder() -> Path:
     """The folder of the built-in scenarios."""
     return _PACKAGE / "scenario" / "builtin"

@@ -2,7 +2,6 @@
 
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -48,13 +47,3 @@ def done():
         return ended.stdout
 
     return run
-
-
-@pytest.fixture
-def rulec_on_path(tmp_path):
-    """A folder with the program ``rulec`` of this checkout."""
-    folder = tmp_path / "bin"
-    folder.mkdir()
-    (folder / "rulec").write_text(f'#!/bin/sh\nexec "{sys.executable}" -m rulec "$@"\n')
-    (folder / "rulec").chmod(0o755)
-    return folder

@@ -1,13 +1,21 @@
-"""The lines that the documentation gives for Neovim and Emacs, run in them with the real server."""
+"""The lines for the settings of Neovim and Emacs, run in them with the real server."""
 
+import json
 import os
 import re
+import sys
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
+
+from rulec.cli.commands.lsp import command
+from rulec.language_server.editor_settings import editor_settings
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "editors.md").read_text(encoding="utf-8")
+PLACE = "/home/me/rulec"
+"""A checkout, on the page."""
 MISSPELT = """rulebook lane
 use paper
 
@@ -42,30 +50,46 @@ LOOK_IN_EMACS = """
 """
 
 
-def lines(language):
-    """The lines of the page's first block in a language, for a rulec on the path."""
-    block, *_ = re.findall(rf"^  ```{language}\n(.*?)^  ```", PAGE, re.MULTILINE | re.DOTALL)
-    on_path = block.replace("/home/me/rulec/.venv/bin/", "")
-    return on_path.replace("\n  ", "\n").strip().splitlines()
+EDITOR = {"lua": "neovim", "elisp": "emacs"}
 
 
-@pytest.mark.parametrize("language", ["lua", "elisp"])
-def test_an_editor_takes_three_lines(language):
-    assert len(lines(language)) == 3
+def settings(editor):
+    """What `rulec lsp --settings` prints for an editor."""
+    pytest.importorskip("pygls", reason="the server needs pygls")
+    printed = CliRunner().invoke(command, ["--settings", editor])
+    assert printed.exit_code == 0, printed.output
+    return printed.output
+
+
+@pytest.mark.parametrize("language", EDITOR)
+def test_an_editor_takes_three_lines_which_the_page_shows(language, monkeypatch):
+    (block,) = re.findall(rf"^  ```{language}\n(.*?)^  ```", PAGE, re.MULTILINE | re.DOTALL)
+    shown = re.sub("^  ", "", block, flags=re.MULTILINE)
+    python = Path(sys.executable)
+    home = shown.replace(f"{PLACE}/.venv/bin", str(python.parent)).replace(PLACE, str(ROOT))
+    assert settings(EDITOR[language]) == home
+    assert len(home.splitlines()) == 3
+
+
+def test_where_there_is_no_script_python_starts_it(monkeypatch, tmp_path):
+    monkeypatch.setattr(sys, "executable", str(tmp_path / 'my "own"' / "python"))
+    told = dict(re.findall(r"^(command|args) = (.*)$", editor_settings("helix"), re.MULTILINE))
+    # Strings and lists are written in TOML as in JSON.
+    assert json.loads(told["command"]) == sys.executable
+    assert json.loads(told["args"]) == ["-m", "rulec", "lsp"]
+    told = json.loads("{" + editor_settings("vscode") + "}")
+    assert told == {"rulec.command": [sys.executable, "-m", "rulec"]}
 
 
 @pytest.fixture
-def project(tmp_path, rulec_on_path):
+def project(tmp_path):
     """A folder with a rulebook that has a mistake, and the environment to look at it."""
-    pytest.importorskip("pygls", reason="the server needs pygls")
     folder = tmp_path / "project"
     folder.mkdir()
     (folder / "rulec.toml").touch()
     (folder / "lane.rules").write_text(MISSPELT)
-    path = f"{rulec_on_path}:{os.environ['PATH']}"
     return folder, {
         **os.environ,
-        "PATH": path,
         "HOME": str(tmp_path),
         "XDG_STATE_HOME": str(tmp_path),
     }
@@ -75,9 +99,9 @@ def project(tmp_path, rulec_on_path):
 def test_neovim_shows_a_mistake(project, program, done):
     folder, environment = project
     neovim = program("nvim")
-    if re.match(r"NVIM v0\.(\d|10)\.", done(neovim, "--version")):
-        pytest.skip("Neovim is older than 0.11")
-    (folder / "init.lua").write_text("\n".join(lines("lua")))
+    if re.match(r"NVIM v0\.[0-7]\.", done(neovim, "--version")):
+        pytest.skip("Neovim is older than 0.8")
+    (folder / "init.lua").write_text(settings("neovim"))
     (folder / "look.lua").write_text(LOOK_IN_NEOVIM)
     command = (neovim, "--headless", "-u", "init.lua", "lane.rules", "-S", "look.lua")
     assert "rulec 4 R0202" in done(*command, cwd=folder, env=environment)
@@ -89,9 +113,7 @@ def test_emacs_shows_a_mistake_and_highlights(project, program, done):
     emacs = program("emacs")
     if "nil" in done(emacs, "--batch", "--eval", '(princ (locate-library "eglot"))'):
         pytest.skip("Emacs has no eglot")
-    mode = ROOT / "src/editors/emacs/rulec-mode.el"
-    text = "\n".join(lines("elisp")).replace("rulec-mode.el", str(mode))
-    (folder / "init.el").write_text(text)
+    (folder / "init.el").write_text(settings("emacs"))
     (folder / "look.el").write_text(LOOK_IN_EMACS)
     told = done(emacs, "--batch", "-l", "init.el", "-l", "look.el", cwd=folder, env=environment)
     assert re.search(r"^rulec-mode 5 .*R0202", told, re.MULTILINE)

@@ -5,15 +5,22 @@ from __future__ import annotations
 import click
 
 from rulec.cli.options.verb_class import Verb
+from rulec.language_server.editor_settings import EDITORS, editor_settings
 
 
 @click.command(cls=Verb)
+@click.option(
+    "--settings",
+    "editor",
+    type=click.Choice([*EDITORS]),
+    help="Print what to put into this editor's settings, and end.",
+)
 @click.option("--stdio", is_flag=True, help="What some editors add, and what it does anyway.")
-def command(*, stdio: bool) -> None:  # noqa: ARG001 - what editors say, and what it does anyway
+def command(*, editor: str | None, stdio: bool) -> None:  # noqa: ARG001 - it does so anyway
     """Answer an editor: diagnostics, completion, renaming and the like.
 
     Editors start it themselves and speak the Language Server Protocol with it, over standard input
-    and output; docs/editors.md says how each is told. Takes the extra
+    and output; `--settings` prints how each is told. Takes the extra
     `lsp`: in a checkout `.venv/bin/python -m pip install -e '.[lsp]'`.
     """
     # The message, 5 ms: not for --help.
@@ -26,4 +33,7 @@ def command(*, stdio: bool) -> None:  # noqa: ARG001 - what editors say, and wha
         if (problem.name or "").partition(".")[0] not in ("pygls", "lsprotocol", "cattrs"):
             raise
         raise no_pygls() from None
-    serve()
+    if editor is None:
+        serve()
+    else:
+        click.echo(editor_settings(editor), nl=False)
