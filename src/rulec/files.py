@@ -9,6 +9,7 @@ import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
+from dataclasses import replace
 from errno import EACCES, EISDIR
 from io import SEEK_CUR, SEEK_END, BufferedReader, RawIOBase
 from pathlib import Path
@@ -339,8 +340,10 @@ def without_null(source: Source) -> Source:
     """The source itself. Raises RulecError R0101 for a null character."""
     null = source.text.find("\0")
     if null >= 0:
+        place = Span(source, null, null + 1).place
         raise NOT_UTF8.error(
-            Span(source, null, null + 1),
+            # It is no rulebook, and may be anything, such as a process's environment.
+            replace(place, excerpt=""),
             "the file holds a null character and is not a text",
             help="give a file of plain text in UTF-8",
         )

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from rulec.cli.main import main
+
 ROOT = Path(__file__).parents[2]
 SECRET = "hunter2-of-the-deploy-key"
 BOOK = (
@@ -106,3 +108,42 @@ def test_settings_that_are_a_link_stop_every_command(target, checkout):
         assert done.returncode == 2
         assert b"R0730" in done.stderr
         assert SECRET.encode() not in done.stdout + done.stderr
+
+
+LINKED = {
+    "environment": f"HOME=/\0KEY={SECRET}\0",
+    "assignments": f"HOME=/\nKEY={SECRET}\n",
+    "a word": SECRET,
+    "a table": f"trace,step,key\na,0,{SECRET}\n",
+    "JSON that is cut": f'{{"key": "{SECRET}",',
+    "TOML": f'key = "{SECRET}"\n',
+    "YAML": f"key: {SECRET}\n",
+}
+READING = [
+    ["verify", "link", "-r", "atlantis"],
+    ["verify", "link*", "-r", "atlantis"],
+    ["find", "stopped", "link", "-r", "atlantis"],
+    ["maneuvers", "link", "-r", "esterle2019"],
+    ["maneuvers", "s1", "-r", "esterle2019", "--after", "link"],
+    ["draw", "scene", "link", "-o", "scene.svg"],
+    ["draw", "trace", "link", "-r", "atlantis", "-o", "trace.svg"],
+    ["audit", "rulebooks/atlantis.rules", "--law", "link"],
+    ["audit", "rulebooks/atlantis.rules", "--compare", "link"],
+    ["monitor", "atlantis", "--restore", "link"],
+    ["verify-compiled", "link"],
+    ["rates", "link"],
+]
+
+
+@pytest.mark.parametrize("content", LINKED)
+def test_no_line_behind_a_link_out_of_the_tree_is_quoted(content, checkout, monkeypatch, capsys):
+    (checkout.parent / "secret.txt").write_text(LINKED[content])
+    for name in ("link", "link.jsonl", "link.csv", "link.toml"):
+        (checkout / name).symlink_to("../secret.txt")
+    monkeypatch.chdir(checkout)
+    for words in READING:
+        for name in ("link", "link.jsonl", "link.csv", "link.toml"):
+            assert main([name if word == "link" else word for word in words]) == 2
+            said = "".join(capsys.readouterr())
+            assert SECRET not in said
+            assert said

@@ -47,7 +47,7 @@ def test_every_file_once_and_in_the_order_that_is_given(folder):
 
 def test_a_pattern_like_which_nothing_is_called(folder):
     found = input_files(["drives/b.xml", "*.osi"])
-    assert found.paths == ("drives/b.xml",)
+    assert found.paths == ("drives/b.xml", "drives/road.net.xml")
     (problem,) = found.problems
     assert (problem.diagnostics[0].code, problem.diagnostics[0].place.file) == ("R0701", "*.osi")
 
@@ -86,6 +86,13 @@ def test_links_out_of_the_folder_are_refused_and_the_rest_is_read(folder):
     (folder / "drives" / "out.xml").symlink_to("/etc/hostname")
     found = input_files(["drives"])
     assert found.paths == ("drives/b.xml", "drives/deep/a.xml.gz")
+    assert [one.code for error in found.problems for one in error.diagnostics] == ["R0730"]
+
+
+def test_links_out_of_the_tree_that_a_pattern_matches_are_refused(folder):
+    (folder / "drives" / "out.xml").symlink_to("/etc/hostname")
+    found = input_files(["drives/*.xml"])
+    assert found.paths == ("drives/b.xml", "drives/road.net.xml")
     assert [one.code for error in found.problems for one in error.diagnostics] == ["R0730"]
 
 

@@ -75,7 +75,14 @@ def _matching(argument: str, problems: list[RulecError]) -> Sequence[str]:
     # As the shell does it: what begins with a point has to be named so.
     found = sorted(glob.glob(argument, recursive=True))  # noqa: PTH207
     # What is in a folder that matches, too, counts as the folder's.
-    files = [path for path in found if not Path(path).is_dir()]
+    files = []
+    for path in found:
+        if not Path(path).is_dir():
+            try:
+                refuse_link_out(Path(path))
+                files.append(path)
+            except RulecError as error:
+                problems.append(error)
     if not found:
         message = "no file is called like that; `*`, `?` and `[…]` stand for other letters"
         problems.append(
@@ -83,7 +90,7 @@ def _matching(argument: str, problems: list[RulecError]) -> Sequence[str]:
                 SourceLocation(argument), message, help="check the pattern and the working folder"
             )
         )
-    return files or found
+    return files or [path for path in found if Path(path).is_dir()]
 
 
 def _is_searched(path: Path) -> bool:

@@ -5,15 +5,18 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import groupby
+from pathlib import Path
 from typing import TextIO
 
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.diagnostics.source_text import SourceLocation, address
 from rulec.report.text.console import page_width, print_aside
 from rulec.report.text.terminal_text import cell_width, styled, visible, wants_color
+from rulec.work_trees import leads_out
 
 MAX_WIDTH = 100
 """Columns of a shown line that goes to no terminal; a longer one is cut around the place."""
@@ -158,7 +161,27 @@ def _summary(every: Sequence[Diagnostic]) -> str:
     return ", ".join(parts)
 
 
+def _without_others_lines(diagnostic: Diagnostic) -> Diagnostic:
+    """A diagnostic that quotes no file behind a link out of its tree.
+
+    Whoever made the tree may not read that file; who does may print it where they can.
+    """
+    labels = tuple([replace(one, place=_unquoted(one.place)) for one in diagnostic.labels])
+    place = None if diagnostic.place is None else _unquoted(diagnostic.place)
+    return replace(diagnostic, place=place, labels=labels)
+
+
+def _unquoted(place: SourceLocation) -> SourceLocation:
+    if not place.excerpt:
+        return place
+    with suppress(OSError, ValueError):  # a name that nothing can have
+        if not leads_out(Path(place.file)):
+            return place
+    return replace(place, column=None, end_column=None, excerpt="")
+
+
 def _block(diagnostic: Diagnostic, paint: _Paint, columns: int) -> Iterator[str]:
+    diagnostic = _without_others_lines(diagnostic)
     severity = _STYLES[diagnostic.severity]
     head = paint(f"{diagnostic.severity}[{diagnostic.code}]", severity)
     yield f"{head}{paint(f': {visible(diagnostic.message)}', 'bold')}"
