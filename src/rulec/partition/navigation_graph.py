@@ -40,7 +40,7 @@ FINEST_S = Fraction(1, 20)
 COMFORTABLE = 4.0
 """And where no path is left that takes no more acceleration and braking than this (m/s²),"""
 
-COMFORTABLE_S = Fraction(1, 4)
+COMFORTABLE_S = Fraction(1, 8)
 """down to this (s)."""
 
 

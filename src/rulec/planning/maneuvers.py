@@ -31,7 +31,7 @@ from rulec.planning.ranking.cheapest import Maneuver, cheapest
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant, count_classes, variants
 from rulec.planning.ranking.least_violating import RankedManeuver, front, ranked, with_penalty
 from rulec.planning.ranking.penalties import Penalty, PenaltyOrder, ranks_of
-from rulec.planning.ranking.proven import MOST_TRIED, proven, with_trajectory
+from rulec.planning.ranking.proven import MOST_TRIED, least_promised, proven, with_trajectory
 from rulec.planning.ranking.pruning import (
     Blaming,
     RuleOutcomes,
@@ -228,13 +228,14 @@ class Maneuvers(Rows):
 
     @cached_property
     def least_braking(self) -> float | None:
-        """How hard every maneuver brakes at least (m/s²), if that is more than 4; None else.
-
-        What can be driven, with ego's body, may brake harder still.
-        """
+        """How hard every maneuver brakes at least (m/s²), if that is more than 4; None else."""
         from rulec.partition.emergencies import least_braking  # only in an emergency
 
-        return least_braking(self.graph)
+        least = least_braking(self.graph)
+        if least is None or self._search is None:
+            return least
+        every = explore(node_transformers(self.paths, []))
+        return least_promised(every, self.graph, self._search.braking_bounds) or least
 
     def without_each_rule(self) -> dict[str, int]:
         """By hard rule, most first, how many maneuvers violate it and no other hard rule."""

@@ -28,21 +28,30 @@ class LinearProgram:
     """Least ``cost`` over variables within bounds and rows within bounds."""
 
     def __init__(self, cost: Row, low: Row, high: Row) -> None:
-        self._size = len(cost)
+        self._size, self._count = len(cost), 0
         self._solver = highspy.Highs()  # type: ignore[no-untyped-call]
         for name, value in (("output_flag", False), ("threads", 1), ("presolve", "off")):
             self._solver.setOptionValue(name, value)
         no_rows = (0, np.empty(0, dtype=np.int32), np.empty(0, dtype=np.int32), np.empty(0))
         self._solver.addCols(self._size, cost, _finite(low), _finite(high), *no_rows)
 
-    def add(self, rows: NDArray[np.float64], low: Row, high: Row) -> None:
-        """Keep each of these rows, times the variables, between its bounds."""
+    def add(self, rows: NDArray[np.float64], low: Row, high: Row) -> int:
+        """Keep each of these rows, times the variables, between its bounds: the first's number."""
+        first = self._count
+        self._count += len(rows)
         used = rows != 0
         counts = used.sum(axis=1)
         starts = np.concatenate(([0], np.cumsum(counts)[:-1])).astype(np.int32)
         indices = np.nonzero(used)[1].astype(np.int32)
         coefficients = (len(indices), starts, indices, rows[used])
         self._solver.addRows(len(rows), _finite(low), _finite(high), *coefficients)
+        return first
+
+    def change(self, numbers: NDArray[np.intp], low: Row, high: Row) -> None:
+        """Keep rows of these numbers between other bounds."""
+        own = numbers.astype(np.int32)
+        bounds = _finite(low), _finite(high)
+        self._solver.changeRowsBounds(len(own), own, *bounds)  # type: ignore[attr-defined]
 
     def solved(self) -> Solution | None:
         """A solution; None if there is none."""

@@ -1,31 +1,30 @@
 """The cheapest maneuvers of which a trajectory proves that ego can drive them.
 
-What a path costs at least is known from its graph: what its changes of cell cost, and how far its
-cells are from where ego would get at its speed. Paths are looked at in this order, until none can
-be cheaper than those found, or ``MOST_TRIED`` have been looked at.
+What a path costs at least is known from its beginning on, by linear programs. Paths are looked at
+in this order, until none can be cheaper than those found, or so many have been looked at.
 """
 
 from __future__ import annotations
 
 from bisect import insort
-from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import islice, pairwise
 from typing import TYPE_CHECKING
 
-from rulec.partition.navigation_graph import COMFORTABLE
 from rulec.planning.product.graph_product import Memory, Product
 from rulec.planning.ranking.cheapest import Maneuver, cheapest
+from rulec.planning.ranking.guided_ways import ALIKE, change_cost, guided_ways
 
 if TYPE_CHECKING:
     from rulec.partition import NavigationGraph
+    from rulec.partition.motion.way_bounds import WayBounds
     from rulec.partition.motion.witness_trajectory import WitnessSearch
 
 MOST_TRIED = 40
-"""So many paths are looked at, and as many more for each maneuver that is wanted but one."""
+"""So many paths are looked at for each maneuver that is wanted."""
 
-MOST_SAMPLED, MORE_TRIED = 20, 120
-"""Where none of them is comfortable so many of sampled motions, and so many further ones."""
+MOST_BOUNDS = 800
+"""So many beginnings of paths, too."""
 
 
 def proven(
@@ -33,38 +32,21 @@ def proven(
 ) -> list[Maneuver]:
     """The ``n`` cheapest accepted paths that can be driven, with their trajectories.
 
-    Where among those that cost least there are not so many, or none that is comfortable, sampled
-    motions are followed, too.
+    Where bounds do not lead to so many, those are looked at that cost least by their cells.
     """
     found: list[Maneuver] = []
-    candidates = cheapest(product)
-    _add_of(islice(candidates, MOST_TRIED * n), found, n, graph, search)
-    if len(found) < n or not comfortable(found):
-        from rulec.planning.ranking.sampled_ways import sampled_ways  # NumPy, where it is needed
-
-        known = {maneuver.nodes for maneuver in found}
-        sampled = islice(sampled_ways(product, graph, search), MOST_SAMPLED)
-        for candidate in sampled:
-            if candidate.nodes not in known:
-                _add(found, candidate, graph, search)
-        _add_of(islice(candidates, MORE_TRIED), found, n, graph, search)
-    return found[:n]
-
-
-def _add_of(
-    candidates: Iterator[Maneuver],
-    found: list[Maneuver],
-    n: int,
-    graph: NavigationGraph,
-    search: WitnessSearch,
-) -> None:
-    """Add those that are proved, until no other one can be among the cheapest."""
-    known = {maneuver.nodes for maneuver in found}
-    for candidate in candidates:
-        if len(found) >= n and candidate.cost >= found[n - 1].cost:
+    looked_at: set[tuple[int, ...]] = set()
+    ways = guided_ways(product, graph, search.bounds, MOST_BOUNDS * n)
+    for way in islice(ways, MOST_TRIED * n):
+        if len(found) >= n and way.promises >= found[n - 1].cost:
             break
-        if candidate.nodes not in known:
-            _add(found, candidate, graph, search)
+        looked_at.add(way.maneuver.nodes)
+        _add(found, way.maneuver, graph, search)
+    if len(found) < n:
+        for candidate in islice(cheapest(product), MOST_TRIED * n):
+            if candidate.nodes not in looked_at:
+                _add(found, candidate, graph, search)
+    return found[:n]
 
 
 def _add(
@@ -75,12 +57,6 @@ def _add(
         insort(found, driven, key=lambda maneuver: (maneuver.cost, maneuver.nodes))
 
 
-def comfortable(found: Sequence[Maneuver]) -> bool:
-    """Whether the first maneuver takes no more acceleration and braking than is usual."""
-    own = found[0].trajectory if found else None
-    return own is not None and max(own.greatest_acceleration, own.greatest_braking) <= COMFORTABLE
-
-
 def with_trajectory(
     maneuver: Maneuver, graph: NavigationGraph, search: WitnessSearch
 ) -> Maneuver | None:
@@ -89,10 +65,17 @@ def with_trajectory(
     if trajectory is None:
         return None
     changes = sum(
-        1 / (margin * graph.step_s)
+        change_cost(graph, p, node, target)
         for p, (node, target) in enumerate(pairwise(maneuver.nodes))
-        if (margin := graph.margins[p][node][graph.successors[p][node].index(target)]) is not None
-        and not graph.goes_on(p, node, target)
     )
     cost = changes + trajectory.cost.total
     return replace(maneuver, cost=cost, changes=changes, trajectory=trajectory)
+
+
+def least_promised(
+    product: Product[Memory], graph: NavigationGraph, bounds: WayBounds
+) -> float | None:
+    """What driving costs at least on every accepted path; None if that takes too long to find."""
+    ways = guided_ways(product, graph, bounds, MOST_BOUNDS, driving_only=True)
+    first = next(ways, None)
+    return None if first is None else max(first.promises - ALIKE, 0.0)

@@ -1,0 +1,162 @@
+"""On which sides of others ego is along a path, and where a motion overlaps them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.partition.motion.linear_program import Row, Solution
+from rulec.partition.motion.motion_program import MotionProgram, PlaceRows
+from rulec.scenario import Box
+from rulec.scenario.geometry import centred
+from rulec.scenario.motion import swept
+
+CHECK_S = 0.05
+"""At every multiple of this, and twice in a piece, ego overlaps nobody."""
+
+GAP_M = 0.01
+"""So far ego stays from others, for the solver's rounding."""
+
+Side = str
+"""Where ego is of an obstacle: behind, in_front, right, left."""
+
+_SIDES = {
+    "b": "behind",
+    "f": "in_front",
+    "r": "right",
+    "l": "left",
+    "behind": "behind",
+    "in_front_of": "in_front",
+    "right_of": "right",
+    "left_of": "left",
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cut:
+    """A row that keeps ego between bounds; equal if its ``name`` is."""
+
+    name: tuple[object, ...]
+    row: Row
+    low: float
+    high: float
+
+
+class OthersBeside:
+    """Others along a graph's layers, and how near ego comes to them."""
+
+    def __init__(self, motion: MotionProgram) -> None:
+        self._motion, self._graph = motion, motion.graph
+
+    @cached_property
+    def times(self) -> Row:
+        """Where others are looked at: ends and middles of pieces, multiples of 0.05 s."""
+        count, piece = self._motion.count, self._motion.piece
+        own = np.arange(2 * count + 1) * piece / 2
+        every = np.arange(int(count * piece / CHECK_S + 1e-9) + 1) * CHECK_S
+        return np.unique(np.concatenate((own, every)).round(9))
+
+    @cached_property
+    def along(self) -> PlaceRows:
+        """Where ego is along the road at these times."""
+        return self._motion.along(self.times)
+
+    @cached_property
+    def across(self) -> PlaceRows:
+        """Where it is across."""
+        return self._motion.across(self.times)
+
+    @cached_property
+    def boxes(self) -> dict[str, tuple[NDArray[np.bool_], NDArray[np.float64]]]:
+        """By obstacle where it is at these times, and s_min, s_max, d_min, d_max there."""
+        result = {}
+        for obstacle in self._graph.scenario.obstacles:
+            boxes = [swept(obstacle, time, time) for time in self.times.tolist()]
+            there = np.array([box is not None for box in boxes])
+            if there.any():
+                rows = [(b.s_min, b.s_max, b.d_min, b.d_max) if b else (0.0,) * 4 for b in boxes]
+                result[obstacle.id] = there, np.array(rows)
+        return result
+
+    @cached_property
+    def body(self) -> tuple[float, float]:
+        """Half of ego's length and width; 0 where such a body would stand in somebody."""
+        ego, bounds = self._graph.scenario.ego, self._motion.bounds
+        length, width = ego.length or bounds.length, ego.width or bounds.width
+        body = centred(ego.s, ego.d, length, width)
+        for there, boxes in self.boxes.values():
+            if there[0] and Box(*boxes[0].tolist()).overlaps(body):
+                return ego.length / 2, ego.width / 2
+        return length / 2, width / 2
+
+    def overlaps(
+        self,
+        solution: Solution,
+        path: Sequence[int],
+        until: float,
+        *,
+        sure: bool = False,
+        preferred: Collection[Side] = (),
+    ) -> Iterator[Cut]:
+        """Rows for where a solution overlaps somebody up to a time, by the path's cells.
+
+        Those that are ``sure`` are kept by whatever goes along the path: its cells leave one side.
+        Of several sides one that is ``preferred`` is taken, then the one that is nearest.
+        """
+        last = int(np.searchsorted(self.times, until + 1e-9))
+        along, across = self.along, self.across
+        s = along.rows[:last] @ solution.values + along.fixed[:last]
+        d = across.rows[:last] @ solution.values + across.fixed[:last]
+        length, width = self.body
+        for name, (all_there, all_boxes) in self.boxes.items():
+            there, boxes = all_there[:last], all_boxes[:last]
+            # How far ego is beside, on each side; it overlaps where on all sides that is not enough
+            beyond = {
+                "behind": boxes[:, 0] - length - s,
+                "in_front": s - boxes[:, 1] - length,
+                "right": boxes[:, 2] - width - d,
+                "left": d - boxes[:, 3] - width,
+            }
+            hit = there & (np.maximum.reduce(list(beyond.values())) < -1e-6)
+            for k in np.flatnonzero(hit).tolist():
+                sides = self.sides(name, float(self.times[k]), path)
+                if sure and len(sides) != 1:
+                    continue
+                side = max(
+                    sides or set(beyond), key=lambda side: (side in preferred, beyond[side][k])
+                )
+                if sure:
+                    yield self._cut(name, side, k)
+                    continue
+                # Together with those just before and after: it will be near there, too.
+                for j in range(max(k - 1, 1), min(k + 2, len(s))):
+                    if there[j]:
+                        yield self._cut(name, side, j)
+
+    def _cut(self, name: str, side: Side, k: int) -> Cut:
+        """The row that keeps ego on a side of somebody at a time."""
+        (length, width), boxes = self.body, self.boxes[name][1]
+        places = self.along if side in ("behind", "in_front") else self.across
+        low, high = {
+            "behind": (-np.inf, boxes[k, 0] - length - GAP_M),
+            "in_front": (boxes[k, 1] + length + GAP_M, np.inf),
+            "right": (-np.inf, boxes[k, 2] - width - GAP_M),
+            "left": (boxes[k, 3] + width + GAP_M, np.inf),
+        }[side]
+        fixed = float(places.fixed[k])
+        return Cut((name, side, k), places.rows[k], float(low) - fixed, float(high) - fixed)
+
+    def sides(self, name: str, time: float, path: Sequence[int]) -> set[Side]:
+        """On which sides of an obstacle the path's cells are around a time."""
+        layer = min(int(time / self._graph.step_s + 1e-9), len(path) - 1)
+        sides: set[Side] = set()
+        for p in {layer, min(layer + 1, len(path) - 1)}:
+            for own, relation in self._graph.layers[p].cells[path[p]].signature.items():
+                if self._graph.objects[own].id == name:
+                    words = (relation,) if isinstance(relation, str) else relation
+                    sides.update(_SIDES[word] for word in words if word in _SIDES)
+        return sides

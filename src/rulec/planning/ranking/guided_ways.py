@@ -1,0 +1,126 @@
+"""Accepted paths in the order of what driving them costs at least, found from their beginnings.
+
+What the first part of a path costs at least is told by a linear program; its changes of cell cost,
+and those to come do, at least. The part that promises least is gone on with, each time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from heapq import heappop, heappush
+from itertools import count
+from typing import TYPE_CHECKING, Generic, TypeAlias
+
+from rulec.planning.product.graph_product import Memory, Product, ProductNode
+from rulec.planning.ranking.cheapest import Maneuver, maneuver
+
+if TYPE_CHECKING:
+    from rulec.partition import NavigationGraph
+    from rulec.partition.motion.way_bounds import WayBound, WayBounds
+
+ALIKE = 0.01
+"""Of parts that promise as much but for this, the longest one is gone on with."""
+
+_Costs: TypeAlias = list[dict[ProductNode[Memory], float]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GuidedWay:
+    """A path, without its cost, which is at least what it ``promises``."""
+
+    maneuver: Maneuver
+    promises: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Part(Generic[Memory]):
+    """The first part of a path up to a ``node``: its changes of cell, and what driving it costs.
+
+    The bound is that of all but its last cell, unless ``is_known``.
+    """
+
+    path: tuple[int, ...]
+    node: ProductNode[Memory]
+    changes: float
+    bound: WayBound | None
+    is_known: bool
+
+    def promises(self, to_come: _Costs[Memory]) -> float:
+        driving = 0.0 if self.bound is None else self.bound.cost
+        return self.changes + to_come[len(self.path) - 1][self.node] + driving
+
+
+def guided_ways(
+    product: Product[Memory],
+    graph: NavigationGraph,
+    bounds: WayBounds,
+    most: int,
+    *,
+    driving_only: bool = False,
+) -> Iterator[GuidedWay]:
+    """Paths, the cheapest first but for ``ALIKE``; so many bounds are found at most.
+
+    Those of which a bound tells that they cannot be driven are left out. With ``driving_only``
+    changes of cell cost nothing.
+    """
+    to_come = _changes_to_come(product, graph, free=driving_only)
+    queue: list[tuple[int, int, float, int, _Part[Memory]]] = []
+    numbers = count()
+
+    def put(part: _Part[Memory]) -> None:
+        promises = part.promises(to_come)
+        layers = -len(part.path)
+        heappush(queue, (int(promises / ALIKE), layers, promises, next(numbers), part))
+
+    for start in product.counts[0]:
+        if start in to_come[0]:
+            put(_Part((start[0],), start, 0.0, None, is_known=True))
+    while queue:
+        *_, part = heappop(queue)
+        layer = len(part.path) - 1
+        if not part.is_known:
+            if not most:
+                return
+            most -= 1
+            bound = bounds.of(part.path, part.bound.cuts if part.bound else frozenset())
+            if bound is not None:
+                put(_Part(part.path, part.node, part.changes, bound, is_known=True))
+        elif layer == len(graph.layers) - 1:
+            found = maneuver(product.graph, part.path, 0)
+            yield GuidedWay(found, part.promises(to_come))
+        else:
+            for step, _ in product.steps[layer][part.node]:
+                if step in to_come[layer + 1]:
+                    changes = part.changes
+                    if not driving_only:
+                        changes += change_cost(graph, layer, part.node[0], step[0])
+                    put(_Part((*part.path, step[0]), step, changes, part.bound, is_known=False))
+
+
+def change_cost(graph: NavigationGraph, p: int, node: int, target: int) -> float:
+    """What going from a cell of layer ``p`` to one of the next costs by its margin."""
+    margin = graph.margins[p][node][graph.successors[p][node].index(target)]
+    if margin is None or graph.goes_on(p, node, target):
+        return 0.0
+    return 1 / (margin * graph.step_s)
+
+
+def _changes_to_come(
+    product: Product[Memory], graph: NavigationGraph, *, free: bool
+) -> _Costs[Memory]:
+    """What changes of cell cost at least from each product node to a goal, by layer."""
+    costs: _Costs[Memory] = [dict.fromkeys(product.ends, 0.0)]
+    for p in reversed(range(len(product.steps))):
+        later = costs[-1]
+        here: dict[ProductNode[Memory], float] = {}
+        known: dict[tuple[int, int], float] = {}
+        for node, onward in product.steps[p].items():
+            for step, _ in onward:
+                if step in later:
+                    edge = node[0], step[0]
+                    if edge not in known:
+                        known[edge] = 0.0 if free else change_cost(graph, p, *edge)
+                    here[node] = min(here.get(node, float("inf")), known[edge] + later[step])
+        costs.append(here)
+    return costs[::-1]

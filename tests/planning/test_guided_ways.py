@@ -1,0 +1,83 @@
+"""What the first maneuver costs: nothing that is looked at is cheaper, and ego goes on again."""
+
+from itertools import islice
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rulec import RulecError, compile_rulebook, find_maneuvers
+from rulec.planning.ranking.cheapest import cheapest
+from rulec.planning.ranking.guided_ways import ALIKE, guided_ways
+from rulec.planning.ranking.proven import with_trajectory
+from rulec.scenario import (
+    ConstantAcceleration,
+    Ego,
+    MotionBounds,
+    Obstacle,
+    Road,
+    Scenario,
+    Trajectory,
+)
+
+PAPER = compile_rulebook("esterle2019")
+
+
+def car(name, s, speed, d=0.0):
+    return Obstacle(name, "vehicle", 4.0, 1.8, ConstantAcceleration(s, d, speed))
+
+
+@st.composite
+def scenes(draw):
+    """Ego at 10 m/s on one of two lanes, and up to three others."""
+    others = [
+        car(
+            f"c{k}", draw(st.floats(-30, 50)), draw(st.floats(0, 15)), draw(st.sampled_from([0, 4]))
+        )
+        for k in range(draw(st.integers(0, 3)))
+    ]
+    ego = Ego(0.0, 0.0, 4.0, 1.8, speed=10.0, bounds=MotionBounds())
+    road = Road((-50.0, 500.0), (-2.0, 2.0, 6.0))
+    return Scenario("h", road, ego, tuple(others), step_s=1.0, horizon_s=3.0)
+
+
+@given(scenes())
+@settings(max_examples=20)
+def test_no_path_is_cheaper_than_it_promises(scene):
+    try:
+        found = find_maneuvers(scene, PAPER)
+    except RulecError:
+        return
+    search, graph = found._search, found.graph
+    ways = islice(guided_ways(found.product, graph, search.bounds, 10_000), 400)
+    promises = {way.maneuver.nodes: way.promises for way in ways}
+    for one in islice(cheapest(found.product), 400):
+        driven = with_trajectory(one, graph, search)
+        if driven is not None:
+            assert driven.cost >= promises[one.nodes] - 1e-6
+
+
+@given(scenes())
+@settings(max_examples=20)
+def test_the_first_one_is_the_cheapest(scene):
+    try:
+        found = find_maneuvers(scene, PAPER)
+    except RulecError:
+        return
+    every = [with_trajectory(one, found.graph, found._search) for one in cheapest(found.product)]
+    costs = [one.cost for one in every if one is not None]
+    first = found.cheapest(1)
+    assert bool(first) == bool(costs)
+    assert not first or first[0].cost <= min(costs) + ALIKE
+
+
+def test_who_waited_goes_on():
+    # Somebody crosses ego's lane between 1 and 3 s, about where ego would be at 2.5 s
+    crossing = Obstacle("x", "vehicle", 2.0, 2.0, Trajectory(((0, 25, 6), (4, 25, -6))))
+    ego = Ego(0.0, 0.0, 4.0, 1.8, speed=10.0, bounds=MotionBounds())
+    road = Road((-50.0, 500.0), (-2.0, 2.0))
+    found = find_maneuvers(Scenario("h", road, ego, (crossing,), step_s=0.5), PAPER)
+    (first,) = found.cheapest(1)
+    states = first.trajectory.states
+    assert min(v for _, _, v, _, _ in states) < 9.0
+    assert states[-1][2] == pytest.approx(10.0, abs=1.0)
