@@ -67,6 +67,11 @@ def refuse_no_source(path: Path, labels: tuple[Label, ...] = (), tree: Path | No
     Raises RulecError: R0730 for a link out of the tree, R0731 for pipes, sockets and devices.
     """
     refuse_link_out(path, labels, tree)
+    refuse_no_file(path, labels)
+
+
+def refuse_no_file(path: Path, labels: tuple[Label, ...] = ()) -> None:
+    """Refuse pipes, sockets and devices. Raises RulecError R0731."""
     try:
         mode = path.stat().st_mode
     except (OSError, ValueError):

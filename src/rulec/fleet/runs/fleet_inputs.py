@@ -16,7 +16,7 @@ from rulec.recordings.recording_files import is_recording
 from rulec.recordings.recording_inputs import STANDARD_INPUT, input_files
 from rulec.trace.formats.arrow.parquet_columns import parquet_names
 from rulec.trace.formats.table_reader import STEP, TRACE
-from rulec.work_trees import leads_out, tree_of
+from rulec.work_trees import leads_out, refuse_no_file, tree_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +48,12 @@ def fleet_inputs(arguments: Sequence[str]) -> FleetInputs:
         # A folder of tables alone has no recordings, and need not.
         problems += (one for one in found.problems if not below or _is_link_out(one))
         for path in found.paths:
+            try:
+                # Each file is read by whichever process is free, perhaps on another machine.
+                refuse_no_file(Path(path))
+            except RulecError as error:
+                problems.append(error)
+                continue
             if path.lower().endswith(PARQUET) and _is_table(path):
                 tables[path] = None
             elif path != STANDARD_INPUT and is_recording(path):
