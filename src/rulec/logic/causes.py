@@ -44,6 +44,9 @@ def instants_among(
     marks[formula][:2] = [1, -1]
     result = {}
     for part in reversed(list(known)):  # all that it is an operand of has been before it
+        if not any(marks[part]):
+            result[part] = [False] * n_letters
+            continue
         begun, decides = 0, []
         for instant, mark in enumerate(marks[part][:length]):
             begun += mark

@@ -6,7 +6,7 @@ to itself may be); nothing else is (Kleene, "Introduction to metamathematics", 1
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache, partial
@@ -65,17 +65,21 @@ def weighted_sum(
     terms: Sequence[tuple[Fraction, ltl.Term]], binding: ObjectBinding, state: PartialState
 ) -> Fraction | Unknown:
     """The sum of coefficient times term: exact, or its bounds if those of all terms are known."""
+    return _summed((factor, number_of(term, binding, state)) for factor, term in terms)
+
+
+def _summed(numbers: Iterable[tuple[Fraction, Fraction | Unknown]]) -> Fraction | Unknown:
+    """The sum of coefficient times number, as ``weighted_sum``."""
     total = width = Fraction(0)
     unknown: Unknown | None = None
-    for coefficient, term in terms:
-        number = number_of(term, binding, state)
+    for coefficient, number in numbers:
         if isinstance(number, Unknown):
             if not isinstance(number, Between):
                 return number
             unknown = unknown or number
             width += abs(coefficient) * (number.high - number.low)
             number = number.low if coefficient > 0 else number.high
-        total += coefficient * number
+        total += number if coefficient == 1 else coefficient * number
     return (
         total if unknown is None else Between(unknown.name, unknown.objects, total, total + width)
     )
@@ -95,11 +99,21 @@ def objects_counted(
     count: ltl.Count, binding: ObjectBinding, state: PartialState
 ) -> tuple[str, ...] | Unknown:
     """The objects that count."""
+    alias, evaluate = alias_of(count.variable, count.body), evaluator_of(count.body)
+    return _counted(count, alias, evaluate, binding, state)
+
+
+def _counted(
+    count: ltl.Count,
+    alias: str | None,
+    evaluate: Evaluator,
+    binding: ObjectBinding,
+    state: PartialState,
+) -> tuple[str, ...] | Unknown:
     result = []
     fitting: dict[str, bool] = {}
     inner = dict(binding)
     present = state.objects
-    alias, evaluate = alias_of(count.variable, count.body), evaluator_of(count.body)
     candidates = present if alias is None else [binding[alias]] if binding[alias] in present else []
     for name in candidates:
         type_name = present[name]
@@ -168,10 +182,16 @@ def _atom_of_one(name: str, argument: str, expected: bool | str) -> Evaluator:
 
 
 def _comparison(comparison: ltl.Comparison) -> Evaluator:
-    terms, relation, limit = comparison.terms, comparison.relation, comparison.limit
+    relation, limit = comparison.relation, comparison.limit
+    readers = [(factor, _reader_of(term)) for factor, term in comparison.terms]
+    ((factor, read), *others) = readers
+    is_sum = bool(others) or factor != 1
 
     def evaluate(binding: ObjectBinding, state: PartialState) -> bool | Unknown:
-        number = weighted_sum(terms, binding, state)
+        if is_sum:
+            number = _summed((factor, read(binding, state)) for factor, read in readers)
+        else:
+            number = read(binding, state)
         if not isinstance(number, Unknown):
             return stands(number, relation, limit)
         if not isinstance(number, Between):
@@ -180,6 +200,19 @@ def _comparison(comparison: ltl.Comparison) -> Evaluator:
         return Unknown(number.name, number.objects) if surely is None else surely
 
     return evaluate
+
+
+def _reader_of(term: ltl.Term) -> Callable[[ObjectBinding, PartialState], Fraction | Unknown]:
+    """``number_of`` one term, for which all is prepared that it always needs."""
+    if isinstance(term, ltl.QuantityTerm):
+        return partial(number_of, term)
+    alias, evaluate = alias_of(term.variable, term.body), evaluator_of(term.body)
+
+    def number(binding: ObjectBinding, state: PartialState) -> Fraction | Unknown:
+        objects = _counted(term, alias, evaluate, binding, state)
+        return objects if isinstance(objects, Unknown) else Fraction(len(objects))
+
+    return number
 
 
 def _settled(left: Evaluator, right: Evaluator, *, by: bool) -> Evaluator:

@@ -9,7 +9,7 @@ from typing import Any
 from rulec.monitoring.state_validation import has_partial_values
 from rulec.trace import Trace, Value
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
+from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval, OneOf
 
 _PLAIN = frozenset((bool, float, int, str))
 """Types of most values that are known."""
@@ -42,6 +42,8 @@ def with_all_defaults(vocabulary: Vocabulary) -> Vocabulary:
 def _known(value: Any, declaration: Declaration, depth: int) -> Any:
     kind = type(value)
     if kind in _PLAIN and not depth:
+        return value
+    if kind is dict and depth == 1 and UNKNOWN_TYPES.isdisjoint(map(type, value.values())):
         return value
     if kind is dict or isinstance(value, Mapping):
         return {name: _known(inner, declaration, depth - 1) for name, inner in value.items()}
