@@ -2,7 +2,7 @@
 
 The key is the job, formula, facts and remarks included, and the compiler; so a rule of which
 nothing has changed is not compiled again, by whatever command and in whatever rulebook. Only
-machines are kept, all of which have been proved.
+machines are kept, all of which have been proved. Those of shipped rulebooks ship with them.
 """
 
 from __future__ import annotations
@@ -17,10 +17,22 @@ import msgspec
 from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.worker import compiler_choice
+from rulec.cache.keeping import is_keeping
 from rulec.cache.kept_bytes import KeptBytes
+from rulec.cache.shipped_bytes import ShippedBytes, shipped, shipped_key
 
 MOST_MACHINES = 6000
 """So many are kept; those longest unused go first. A large rulebook has 200 for a step."""
+
+
+SHIPPED = "machine"
+MAKERS = (
+    *("logic", "automata/spot_bridge", "automata/decision_diagrams"),
+    *(f"automata/worker/{name}.py" for name in ("job_answers", "machine_cache")),
+    *(f"automata/{name}.py" for name in ("alphabet", "axiom_instances", "compiler_jobs")),
+    *(f"automata/{name}.py" for name in ("guards", "mealy_monitor", "tables", "thresholds")),
+)
+"""The kind of what ships, and the code that it comes from."""
 
 
 class KeptMachine(msgspec.Struct, array_like=True):
@@ -41,6 +53,10 @@ class MachineCache:
     def __init__(self, choice: str) -> None:
         self._kept = KeptBytes("machine", MOST_MACHINES)
         self._compiler = f"{choice} {_installed()}" if self._kept.can_be else None
+        # Who chooses a compiler gets what it makes, and who has no Spot what the other one makes.
+        is_usual = not compiler_choice.choice() and (choice or find_spec(compiler_choice.SPOT))
+        self._shipped = shipped(SHIPPED, MAKERS) if is_keeping() and is_usual else ShippedBytes({})
+        self._choice = choice
 
     def recalled(self, jobs: Sequence[Job]) -> tuple[list[Done | None], str | None]:
         """The answer to each job, None where it is not known; and Spot's version, None likewise."""
@@ -53,7 +69,9 @@ class MachineCache:
         return answers, spot
 
     def _recalled(self, job: Job) -> KeptMachine | None:
-        data = None if self._compiler is None else self._kept.recall(self._key(job))
+        data = self._shipped.recall(machine_key(self._choice, job))
+        if data is None and self._compiler is not None:
+            data = self._kept.recall(self._key(job))
         if data is not None:
             with suppress(ValueError):  # what msgspec says is one
                 return msgspec.msgpack.decode(data, type=KeptMachine)
@@ -66,12 +84,23 @@ class MachineCache:
         contents = {}
         for job, answer in zip(jobs, answers, strict=True):
             if isinstance(answer, Done) and answer.machine.reads == job.reads:
-                contents[self._key(job)] = msgspec.msgpack.encode(_kept(answer, spot))
+                contents[self._key(job)] = as_bytes(answer, spot)
         self._kept.keep(contents)
 
     def _key(self, job: Job) -> str:
         # What is shown of a job is all of it but for places in files.
         return self._kept.key(str(self._compiler), repr(job))
+
+
+def machine_key(choice: str, job: Job) -> bytes:
+    """Under which the answer to a job ships; an empty choice is the usual one, Spot."""
+    return shipped_key(choice or compiler_choice.SPOT, repr(job))
+
+
+def as_bytes(answer: Done, spot: str, *, with_text: bool = True) -> bytes:
+    """A machine as it is kept, with the version of Spot that made it, and its automaton as text."""
+    kept = _kept(answer, spot)
+    return msgspec.msgpack.encode(kept if with_text else msgspec.structs.replace(kept, hoa=""))
 
 
 def _installed() -> str:

@@ -1,4 +1,4 @@
-"""Cache of syntax trees, by the text that they were read from.
+"""Cache of syntax trees, by the text that they were read from; those of shipped texts ship, too.
 
 Anything odd about a file of the cache, and the text is read anew.
 """
@@ -10,7 +10,9 @@ import json
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
+from rulec.cache.keeping import is_keeping
 from rulec.cache.kept_bytes import KeptBytes
+from rulec.cache.shipped_bytes import shipped, shipped_key
 from rulec.diagnostics import Diagnostic, Source
 from rulec.syntax import tree
 from rulec.syntax.caching.tree_codec import decoded, encoded
@@ -19,22 +21,42 @@ from rulec.syntax.parser import parse
 MOST_TREES = 200
 """So many are kept; those longest unused go first."""
 
+SHIPPED = "tree"
+MAKERS = ("grammar", "syntax")
+"""The kind of what ships, and the code that it comes from."""
+
 
 def parsed(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
     """What ``parse`` says of a text, from the cache if it is there, and kept there if not."""
+    if not is_keeping():
+        return parse(source)
+    known = _recalled(shipped(SHIPPED, MAKERS).recall(shipped_key(source.text)), source)
+    if known is not None:
+        return known, ()
     kept = KeptBytes("tree", MOST_TREES)
     if not kept.can_be:
         return parse(source)
     key = kept.key(source.text)
-    data = kept.recall(key)
-    if data is not None:
-        with suppress(ValueError, TypeError, LookupError, RecursionError), _without_collection():
-            return decoded(json.loads(data), source), ()
+    known = _recalled(kept.recall(key), source)
+    if known is not None:
+        return known, ()
     file, mistakes = parse(source)
     if not mistakes:
         with suppress(ValueError, TypeError, RecursionError):
-            kept.keep({key: json.dumps(encoded(file, source), separators=(",", ":")).encode()})
+            kept.keep({key: as_bytes(file, source)})
     return file, mistakes
+
+
+def as_bytes(file: tree.File, source: Source) -> bytes:
+    """A tree as it is kept. Raises TypeError, ValueError or RecursionError if it cannot be."""
+    return json.dumps(encoded(file, source), separators=(",", ":")).encode()
+
+
+def _recalled(data: bytes | None, source: Source) -> tree.File | None:
+    if data is not None:
+        with suppress(ValueError, TypeError, LookupError, RecursionError), _without_collection():
+            return decoded(json.loads(data), source)
+    return None
 
 
 @contextmanager

@@ -1,0 +1,175 @@
+"""What ships beside the rulebooks so that nobody's first call parses or compiles them.
+
+The trees of all sources, and the machines of all rulebooks that commands ask for: at the steps of
+their examples and at usual ones, by both compilers, and for words that are cut.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from fractions import Fraction
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+from rulec.automata import compiler, prefix_machines, second_compiler
+from rulec.automata.compiler_jobs import Done, Failed, Job
+from rulec.automata.step_compilation import StepCompiler
+from rulec.automata.worker import machine_cache
+from rulec.cache.keeping import keeping
+from rulec.cache.shipped_bytes import ShippedBytes, shipped, shipped_file, shipped_key, shipped_text
+from rulec.diagnostics import RulecError, Source
+from rulec.resources import rulebooks_folder
+from rulec.rulebook.loader import read_rulebook
+from rulec.syntax.caching import tree_cache
+from rulec.syntax.parser import parse
+
+STEPS_S = (None, Fraction(1), Fraction(1, 2), Fraction(1, 10))
+"""The steps of machines that ship; None are those of the rules' own examples."""
+
+_BOOKS = shipped_key("which rulebooks, of which texts")
+TRIED = ("esterle2019", "de")
+"""Of these rulebooks it is seen each time whether what commands ask for is there."""
+
+
+@dataclass(frozen=True, slots=True)
+class Book:
+    """A rulebook's share: digests of the texts that it was read from, and how its keys begin."""
+
+    texts: dict[str, str]
+    keys: list[str] = field(default_factory=list)
+
+
+def trees_text() -> bytes:
+    """The file of trees."""
+    entries = {}
+    for path in _sources():
+        source = Source(path.name, path.read_text(encoding="utf-8"))
+        file, mistakes = parse(source)
+        assert not mistakes, path
+        entries[shipped_key(source.text)] = tree_cache.as_bytes(file, source)
+    return shipped_text(entries, tree_cache.MAKERS)
+
+
+def are_trees_current() -> bool:
+    """Tell whether the trees are those of the texts and of the code that there are."""
+    keys = {shipped_key(path.read_text(encoding="utf-8")) for path in _sources()}
+    return _there(tree_cache).keys == keys
+
+
+def machines_text() -> bytes:
+    """The file of machines; of rulebooks whose texts are as they were, those that are there."""
+    there = _there(machine_cache)
+    entries: dict[bytes, bytes] = {}
+    books: dict[str, Book] = {}
+    known = _books(there)
+    whole = {key.hex()[:_SHOWN]: key for key in there.keys}
+    for name in names():
+        book = known.get(name)
+        if book is not None and _is_as_it_was(book) and name not in TRIED:
+            own = {whole[short]: there.recall(whole[short]) or b"" for short in book.keys}
+        else:
+            own, texts = asked_for(name)
+            book = Book(texts, sorted(key.hex()[:_SHOWN] for key in own))
+        entries |= own
+        books[name] = book
+    entries[_BOOKS] = json.dumps(
+        {name: [book.texts, book.keys] for name, book in books.items()}, separators=(",", ":")
+    ).encode()
+    return shipped_text(entries, machine_cache.MAKERS)
+
+
+def are_machines_current() -> bool:
+    """Tell whether the texts are those of which the machines are, and the code.
+
+    What is asked for is seen of a few rulebooks.
+    """
+    there = _there(machine_cache)
+    known = _books(there)
+    return (
+        [*known] == names()
+        and all(map(_is_as_it_was, known.values()))
+        and all(asked_for(name)[0].keys() <= there.keys for name in TRIED)
+    )
+
+
+def asked_for(name: str) -> tuple[dict[bytes, bytes], dict[str, str]]:
+    """All machines that commands ask for of a rulebook, and digests of what it is read from."""
+    with keeping(), _recorded() as entries:
+        rulebook = read_rulebook(name).rulebook
+        steps = StepCompiler(rulebook)
+        for step in STEPS_S:
+            try:
+                compiled = steps.at_own_steps() if step is None else steps(step)
+            except RulecError:
+                continue  # a bound that is no multiple of the step
+            second_compiler.certified(compiled)
+            prefix_machines.prefix_machines(compiled)
+    return entries, {one.name: one.sha256 for one in rulebook.sources}
+
+
+@contextmanager
+def _recorded() -> Iterator[dict[bytes, bytes]]:
+    entries: dict[bytes, bytes] = {}
+    ask = compiler.answers_to
+
+    def asked(
+        jobs: Sequence[Job], *, choice: str | None = None, **rest: Any
+    ) -> tuple[list[Done | Failed | None], str]:
+        answers, spot = ask(jobs, choice=choice, **rest)
+        for job, answer in zip(jobs, answers, strict=True):
+            if isinstance(answer, Done) and answer.machine.reads == job.reads:
+                key = machine_cache.machine_key(choice or "", job)
+                # Of the second compiler nobody wants more than the tables.
+                entries[key] = machine_cache.as_bytes(answer, spot, with_text=not choice)
+        return answers, spot
+
+    prefix_machines._KNOWN.clear()
+    with (
+        patch.object(compiler, "answers_to", asked),
+        patch.object(prefix_machines, "answers_to", asked),
+    ):
+        yield entries
+
+
+_SHOWN = 12
+
+
+def names() -> list[str]:
+    """All shipped rulebooks, in alphabetical order."""
+    return [path.stem for path in _sources() if path.parent.name == path.stem]
+
+
+def _sources() -> list[Path]:
+    return sorted(rulebooks_folder().rglob("*.rules"))
+
+
+def _there(kind: Any) -> ShippedBytes:
+    shipped.cache_clear()
+    return shipped(kind.SHIPPED, kind.MAKERS)
+
+
+def _books(there: ShippedBytes) -> dict[str, Book]:
+    data = there.recall(_BOOKS)
+    return {} if data is None else {name: Book(*one) for name, one in json.loads(data).items()}
+
+
+def _is_as_it_was(book: Book) -> bool:
+    now = _digests()
+    return all(now.get(name) == digest for name, digest in book.texts.items())
+
+
+def _digests() -> dict[str, str]:
+    """Of all sources, by their base names."""
+    return {path.name: sha256(path.read_bytes()).hexdigest() for path in _sources()}
+
+
+SHIPPED: Mapping[str, tuple[Callable[[], bytes], Callable[[], bool]]] = {
+    f"rulebooks/{shipped_file(tree_cache.SHIPPED).name}": (trees_text, are_trees_current),
+    f"rulebooks/{shipped_file(machine_cache.SHIPPED).name}": (machines_text, are_machines_current),
+}
+"""Path from the root -> what makes its content, and whether it is what would be made now."""
