@@ -22,7 +22,12 @@ MOST_TREES = 200
 """So many are kept; those longest unused go first."""
 
 SHIPPED = "tree"
-MAKERS = ("grammar", "syntax")
+MAKERS = (
+    *("grammar", "syntax/building", "syntax/caching"),
+    *(f"syntax/{name}.py" for name in ("assembly", "file_pieces", "grammar", "item_boundaries")),
+    *(f"syntax/{name}.py" for name in ("keywords", "parse_nodes", "parser", "parser_tables")),
+    *(f"syntax/{name}.py" for name in ("scanner", "split_file", "split_rule", "tree")),
+)
 """The kind of what ships, and the code that it comes from."""
 
 
