@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from rulec.extraction.source_tolerances import Tolerances
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.road_extents import RoadExtents, any_lane, at_columns, part_of
+from rulec.extraction.tracks.road_extents import RoadExtents, any_lane, part_of
 from rulec.extraction.tracks.road_places import KMH as KMH
 from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.tracks.surroundings import Surroundings
-from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
+from rulec.extraction.tracks.tracks import Flags, Floats, Tracks, end_to_end
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Recording, Side
 from rulec.trace.end_to_end import EndToEnd
@@ -355,15 +355,7 @@ def drives_context(
         relevant[own[0], spans.columns] = in_sight[own[0], spans.columns] = False
     are_near = relevant | in_sight
     rows = are_near.any(axis=1).nonzero()[0]
-    at, where = np.broadcast_arrays(rows[:, None], columns)
-    tracks, extents = places.tracks.at(at, where, rows), places.extents.at(at, where)
-    there, touched = (at_columns(x, at, where) for x in (places.there, places.touched))
-    elsewhere = places.elsewhere[at, where]
-    absent = ~spans.any(are_near[rows])
-    if absent.any():
-        tracks, extents = tracks.without(absent), extents.without(absent)
-        there, touched = (values & ~absent[..., None] for values in (there, touched))
-        elsewhere = elsewhere & ~absent
+    laid = rows, egos.columns, ~spans.any(are_near[rows])
     return DriveContext(
         recording=surroundings.recording,
         thresholds=places.thresholds,
@@ -374,13 +366,13 @@ def drives_context(
         own=egos.own,
         ego=egos.places.tracks.at(*own, members),
         ego_extents=ego,
-        tracks=tracks,
-        extents=extents,
+        tracks=places.tracks.end_to_end(*laid),
+        extents=places.extents.end_to_end(*laid),
         relevant=relevant[rows],
         in_sight=in_sight[rows],
-        there=there,
-        touched=touched,
-        elsewhere=elsewhere,
+        there=end_to_end(places.there, *laid),
+        touched=end_to_end(places.touched, *laid),
+        elsewhere=end_to_end(places.elsewhere, *laid),
         surroundings=surroundings,
         alone=egos.alone,
     )

@@ -18,7 +18,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
+from rulec.extraction.tracks.tracks import Flags, Floats, Tracks, end_to_end
 from rulec.scenario.recorded.lane_coordinates import outline_bounds
 from rulec.scenario.recorded.reference_line import turn
 
@@ -137,11 +137,17 @@ class RoadExtents:
             part.__dict__[name] = getattr(self, name)[rows, columns]
         return part
 
-    def without(self, absent: Flags) -> RoadExtents:
-        """The same without who is not there, by row and column."""
-        part = RoadExtents(**{name: _blank(getattr(self, name), absent) for name in _FIELDS})
-        part.__dict__["s"] = _blank(self.s, absent)
-        return part
+    def end_to_end(
+        self, rows: NDArray[intp], ranges: Sequence[slice], absent: Flags
+    ) -> RoadExtents:
+        """Some participants in several ranges of columns, without who is ``absent`` there."""
+
+        def laid(values: Floats) -> Floats:
+            return end_to_end(values, rows, ranges, absent)
+
+        found = RoadExtents(**{name: laid(getattr(self, name)) for name in _FIELDS})
+        found.__dict__["s"] = laid(self.s)
+        return found
 
     def and_one(self, other: RoadExtents, row: int) -> RoadExtents:
         """These extents, and behind them a row of others in the same steps."""
@@ -154,10 +160,6 @@ class RoadExtents:
 
 
 _FIELDS = tuple(field.name for field in fields(RoadExtents))
-
-
-def _blank(values: Floats, absent: Flags) -> Floats:
-    return np.where(absent if values.ndim == 2 else absent[..., None], np.nan, values)
 
 
 def at_columns(values: NDArray[Any], rows: NDArray[intp], columns: NDArray[intp]) -> NDArray[Any]:

@@ -145,18 +145,14 @@ class Tracks:
             **{name: getattr(self, name)[rows, columns] for name in _ARRAYS},
         )
 
-    def without(self, absent: Flags) -> Tracks:
-        """The same without who is not there, by row and column."""
-
-        def blank(values: NDArray[Any]) -> NDArray[Any]:
-            return values & ~absent if values.dtype == bool else np.where(absent, np.nan, values)
-
+    def end_to_end(self, rows: NDArray[intp], ranges: Sequence[slice], absent: Flags) -> Tracks:
+        """Some participants in several ranges of columns, without who is ``absent`` there."""
         return Tracks(
-            participants=self.participants,
+            participants=tuple(self.participants[row] for row in rows.tolist()),
             types=self.types,
-            rows=self.rows,
+            rows=self.rows[rows],
             first=self.first,
-            **{name: blank(getattr(self, name)) for name in _ARRAYS},
+            **{name: end_to_end(getattr(self, name), rows, ranges, absent) for name in _ARRAYS},
         )
 
     def of_type(self, name: str) -> Flags:
@@ -295,3 +291,23 @@ def _poses(body: Participant) -> tuple[NDArray[intp], Floats]:
         else:
             poses.append((state.x, state.y, state.heading, state.speed))
     return np.fromiter(outlines, dtype=intp, count=len(poses)), np.array(poses)
+
+
+def end_to_end(
+    values: NDArray[Any], rows: NDArray[intp], ranges: Sequence[slice], absent: Flags
+) -> NDArray[Any]:
+    """Some rows in several ranges of columns, one behind the other.
+
+    Flags are false, and numbers NaN, for who is ``absent``, by row and column; a third axis stays
+    the first in memory.
+    """
+    by_lane = np.moveaxis(values, -1, 0) if values.ndim > 2 else values[None]
+    found = np.empty((len(by_lane), *absent.shape), dtype=values.dtype)
+    begin = 0
+    for own in ranges:
+        end = begin + own.stop - own.start
+        found[:, :, begin:end] = by_lane[:, :, own].take(rows, axis=1)
+        begin = end
+    if absent.any():
+        np.copyto(found, False if values.dtype == bool else np.nan, where=absent)
+    return np.moveaxis(found, 0, -1) if values.ndim > 2 else found[0]
