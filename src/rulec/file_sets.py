@@ -15,9 +15,12 @@ import fcntl
 import json
 import os
 import re
+import signal
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from threading import current_thread, main_thread
+from typing import Any
 
 import msgspec
 
@@ -57,10 +60,37 @@ def write_together(folder: Path, contents: Mapping[str, bytes]) -> None:
                     part = f".rulec-{mark}-{number}.part"
                     names[part] = name
                     _write_new(folder / part, path, content)
-            _commit(folder, mark, names)
-        finally:
+            with _signals_held_back():
+                _commit(folder, mark, names)
+                _finish(folder)
+        except BaseException:
             # Whatever happened: if there is a manifest the new files count, else the old ones.
-            _finish(folder)
+            with _signals_held_back():
+                _finish(folder)
+            raise
+
+
+@contextmanager
+def _signals_held_back() -> Iterator[None]:
+    """Let Ctrl-C and other wishes that this program end wait until the block has ended.
+
+    Else they could come between two files' new names, and leave the rest to the next program.
+    Threads other than the first are never told of signals.
+    """
+    came: list[int] = []
+    before: dict[int, Any] = {}
+    try:
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            handler = signal.getsignal(number)
+            if callable(handler) and current_thread() is main_thread():
+                before[number] = handler
+                signal.signal(number, lambda number, _: came.append(number))
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        for number in came[:1]:
+            before[number](number, None)
 
 
 @contextmanager
@@ -72,7 +102,8 @@ def _alone_in(folder: Path) -> Iterator[None]:
             fcntl.flock(handle, fcntl.LOCK_EX)
         yield
     finally:
-        os.close(handle)
+        with _signals_held_back():
+            os.close(handle)
 
 
 def _write_new(part: Path, path: Path, content: bytes) -> None:

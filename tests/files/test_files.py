@@ -5,6 +5,7 @@ import io
 import os
 import resource
 import shutil
+import signal
 import unicodedata
 from functools import partial
 from pathlib import Path
@@ -166,6 +167,45 @@ def test_a_set_that_was_killed_is_finished_or_undone_by_the_next(tmp_path, monke
         assert now == {b"new"} if is_begun else now in ({b"old"}, {b"new"})
         assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "b", "c", "d"]
     assert 4 <= n < 100
+
+
+def interrupted_before(n, write, monkeypatch):
+    """Do what writes; Ctrl-C comes before its n-th call to the system. Whether it came to it."""
+    left = [n]
+
+    def counted(real, *arguments, **more):
+        left[0] -= 1
+        if left[0] == -1:
+            os.kill(os.getpid(), signal.SIGINT)
+        return real(*arguments, **more)
+
+    with monkeypatch.context() as patch:
+        for step in ("replace", "unlink", "open", "fsync", "fstat", "scandir", "stat", "close"):
+            patch.setattr(os, step, partial(counted, getattr(os, step)))
+        before = signal.signal(signal.SIGINT, signal.default_int_handler)
+        try:
+            write()
+        except KeyboardInterrupt:
+            return True
+        finally:
+            signal.signal(signal.SIGINT, before)
+    return False
+
+
+def test_a_set_that_is_interrupted_is_whole_and_leaves_nothing_else(tmp_path, monkeypatch):
+    new = dict.fromkeys("abc", b"new")
+    found = []
+    for n in range(300):
+        for name in new:
+            (tmp_path / name).write_bytes(b"old")
+        if not interrupted_before(n, lambda: write_together(tmp_path, new), monkeypatch):
+            break
+        assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "b", "c"]
+        (content,) = {(tmp_path / name).read_bytes() for name in new}
+        found.append(content)
+    assert 20 <= n < 300
+    assert set(found) == {b"old", b"new"}
+    assert found == sorted(found, reverse=True)
 
 
 @pytest.mark.parametrize(

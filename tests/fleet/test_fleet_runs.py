@@ -24,6 +24,7 @@ from rulec.fleet.carried_rulebook import carried
 from rulec.fleet.judged_by import judged_by
 from rulec.fleet.runs import work_units as units_module
 from rulec.fleet.runs.fleet_folder import FleetFolder
+from rulec.fleet.runs.fleet_inputs import fleet_inputs
 from rulec.fleet.runs.fleet_run import FleetSettings, run_fleet
 from rulec.fleet.runs.fleet_summary import as_text
 from rulec.fleet.runs.local_engine import judged_locally
@@ -235,6 +236,14 @@ def test_a_folder_of_another_fleet_is_refused(folder_of, tmp_path):
         (out / "_manifest.json").write_text(text)
         with pytest.raises(RulecError, match="cannot be read"):
             run([folder_of], out)
+
+
+def test_pipes_and_devices_are_no_files_of_a_fleet(tmp_path):
+    os.mkfifo(tmp_path / "pipe.parquet")
+    for path in (str(tmp_path / "pipe.parquet"), "/dev/zero"):
+        found = fleet_inputs([path])
+        assert found.paths == ()
+        assert [one.code for error in found.problems for one in error.diagnostics] == ["R0731"]
 
 
 def test_files_that_hold_no_drives_are_named_and_the_others_are_judged(folder_of, tmp_path):
