@@ -80,11 +80,11 @@ def _signals_held_back() -> Iterator[None]:
     came: list[int] = []
     before: dict[int, Any] = {}
     try:
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            handler = signal.getsignal(number)
+        for wish in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            handler = signal.getsignal(wish)
             if callable(handler) and current_thread() is main_thread():
-                before[number] = handler
-                signal.signal(number, lambda number, _: came.append(number))
+                before[wish] = handler
+                signal.signal(wish, lambda number, _: came.append(number))
         yield
     finally:
         for number, handler in before.items():
