@@ -13,6 +13,8 @@ import pyarrow.parquet
 from rulec.cli.main import VERBS, main, rulec
 from support.builders.compiled_files import sealed
 from support.fuzz.mutators import STRANGE_WORDS, mutated_json, mutated_words
+from support.fuzz.recorded_traffic import maps, recordings
+from support.fuzz.signed_books import signatures
 from support.generators.mutated_files import mutated_bytes
 
 TOP = Path(__file__).resolve().parents[3]
@@ -321,17 +323,6 @@ def rate_tables(place, pick):
     return ["rates", file, *more]
 
 
-def signatures(place, pick):
-    """Signatures beside compiled rulebooks, and keys."""
-    key = "untrusted comment: key\nRWQf6LRCGA9i53mlYecO4IzT51TGPpvWucNSCh1CBM0QTaLn73Y7GFO3\n"
-    place.write("tried.json", place.text("out/lane.json"))
-    place.write("tried.json.minisig", mutated_words(key * 2, pick, [key]))
-    public = place.write("tried.pub", mutated_words(key, pick, [key]))
-    traces = str(place.folder / "traces.jsonl")
-    book = str(place.folder / "tried.json")
-    return ["verify", traces, "-r", book, "--require-signed", pick.choice((public, key[-57:-1]))]
-
-
 def formulas(place, pick):
     """A formula that moments are sought for."""
     text = mutated_words(FORMULA, pick, [LANE])
@@ -371,6 +362,8 @@ TARGETS = {
         several_steps,
         rate_tables,
         signatures,
+        recordings,
+        maps,
         arguments,
     )
 }

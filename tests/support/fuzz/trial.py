@@ -10,6 +10,7 @@ import signal
 import sys
 import tempfile
 import time
+import warnings
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -24,6 +25,8 @@ LONGEST_WAIT_S = 600
 MOST_MIB = 2 << 10
 COMMANDS = re.compile(r"^::(?!error |warning |notice )", re.MULTILINE)
 """What a runner of workflows would obey, but for annotations."""
+WARNINGS = re.compile(r"^.*:\d+: \w*Warning: .*$", re.MULTILINE)
+"""What Python says itself, of places in its modules."""
 CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
 
 
@@ -74,7 +77,10 @@ def _try_one(trial, place, seed):
     status, problem = None, ""
     file = place.folder / STANDARD_INPUT
     typed = file.read_bytes() if file.exists() else b'{"b": ["v"]}\n'
-    with _quiet(typed) as streams, _in(place.folder):
+    with _quiet(typed) as streams, _in(place.folder), warnings.catch_warnings():
+        # Else each place is warned of once in a process, and the first command would say it all.
+        for kind in (RuntimeWarning, UserWarning):
+            warnings.simplefilter("always", kind)
         # Others may have the machine: it is processor time that counts, and an end of all waiting.
         signal.signal(signal.SIGPROF, _hang)
         signal.signal(signal.SIGALRM, _wait)
@@ -100,6 +106,8 @@ def _try_one(trial, place, seed):
         problem = f"status {status}: {said[-300:]}"
     if not problem and "Traceback" in said:
         problem = f"a traceback: {said[-300:]}"
+    if not problem and (found := WARNINGS.search(streams[1].getvalue())):
+        problem = f"a warning of Python: {found[0]}"
     # Files of rulec's own are quoted as they are, on standard output alone
     if not problem and (found := COMMANDS.search(said) or CONTROLS.search(streams[1].getvalue())):
         problem = f"{found[0]!r} goes out: {said[max(0, found.start() - 100) :][:200]!r}"
