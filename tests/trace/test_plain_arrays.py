@@ -1,9 +1,13 @@
 """Arrays' different numbers and medians, as NumPy has them."""
 
+import statistics
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from rulec.trace.plain_arrays import distinct, median
+from rulec.trace.plain_arrays import distinct, median, medians, sorted_in
 
 
 @pytest.mark.parametrize("numbers", [[], [3], [2, 1, 2], [[5, 1], [1, 5]], [0.5, -0.0, 0.0]])
@@ -14,3 +18,18 @@ def test_distinct_numbers_are_those_of_numpy(numbers):
 @pytest.mark.parametrize("numbers", [[3], [2.5, 1], [4, 1, 3], [0.1, 0.3, 0.2, 0.7], [1, np.nan]])
 def test_the_median_is_that_of_numpy(numbers):
     assert median(np.array(numbers)) == pytest.approx(np.median(numbers), abs=0.0, nan_ok=True)
+
+
+@given(st.lists(st.tuples(st.integers(0, 9), st.integers(-3, 3)), max_size=60), st.booleans())
+def test_groups_are_sorted_and_halved(entries, lonely):
+    # One group far larger than others has no rows of their own
+    entries = entries + [(3, k % 5) for k in range(40)] * lonely
+    groups = np.array([group for group, _ in entries], dtype=np.intp)
+    values = np.array([value for _, value in entries], dtype=float)
+    wanted = sorted(range(len(entries)), key=lambda k: (groups[k], values[k], k))
+    assert sorted_in(groups, values).tolist() == wanted
+    found, sizes = medians(groups, values, 10)
+    for group in range(10):
+        own = [value for number, value in entries if number == group]
+        assert sizes[group] == len(own)
+        assert found[group] == statistics.median(own) if own else np.isnan(found[group])

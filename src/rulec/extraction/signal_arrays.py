@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy import intp
@@ -14,6 +15,7 @@ from rulec.extraction.tracks.tracks import Flags
 from rulec.scenario.paper_words import PAPER_SURFACE
 from rulec.trace import Value
 from rulec.trace.end_to_end import EndToEnd, UnlikeDrivesError
+from rulec.trace.shared_columns import SharedColumns
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_columns import smallest_unsigned
 from rulec.trace.vocabulary_projection import fits, is_about, known_type
@@ -200,41 +202,49 @@ def with_signals(
     """
     columns = signals.columns
     cells, bounds = _cells(present, spans)
-    parts = tuple(map(slice, bounds[:-1], bounds[1:]))
 
-    def of_drives(name: str, column: SignalColumn) -> list[SignalColumn]:
-        """A signal's values in each drive: of the world, or of who is present."""
-        if name in columns.world:
-            return [column[own] for own in spans.slices]
-        values = column.ravel().take(cells)
-        return [values[own] for own in parts]
+    def gathered(name: str, column: SignalColumn) -> SignalColumn:
+        """A signal's values end to end: of the world, or of who is present."""
+        return column if name in columns.world else column.ravel().take(cells)
 
-    def all_of(values: Mapping[str, SignalColumn]) -> list[dict[str, SignalColumn]]:
-        by_name = {name: of_drives(name, own) for name, own in values.items()}
-        return [{name: own[k] for name, own in by_name.items()} for k in range(len(traces))]
+    world = {name: gathered(name, own) for name, own in columns.world.items()}
+    about = {name: gathered(name, own) for name, own in columns.about.items()}
+    names = world.keys() | about.keys()
+    unknown = {x: gathered(x, own) for x, own in columns.unknown.items() if x in names}
+    intervals = {
+        x: (gathered(x, low), gathered(x, high))
+        for x, (low, high) in columns.bounds.items()
+        if x in names
+    }
+    counts = [0, *np.cumsum([len(own) for own in present]).tolist()]
+    rows = np.array([presence.row for own in present for presence in own], dtype=intp)
+    told = [(x.first, x.last) for own in present for x in own]
+    every = np.array(told, dtype=intp).reshape(-1, 2)
+    only = {name: flags[rows] for name, flags in columns.only.items() if name in about}
+    about_names = frozenset(name for name in names if name not in columns.world)
+    nothing: dict[str, SignalColumn] = {}
 
-    names = columns.world.keys() | columns.about.keys()
-    world, about = all_of(columns.world), all_of(columns.about)
-    unknown = all_of({x: own for x, own in columns.unknown.items() if x in names})
-    low, high = (
-        all_of({x: own[end] for x, own in columns.bounds.items() if x in names}) for end in (0, 1)
-    )
-    rows = [np.array([presence.row for presence in own], dtype=intp) for own in present]
-    only = {name: flags for name, flags in columns.only.items() if name in columns.about}
-    return [
-        replace(
-            trace,
-            spans=np.array([(x.first, x.last) for x in present[k]], dtype=intp).reshape(-1, 2),
-            world=world[k],
-            about=about[k],
-            texts=signals.texts,
-            unknown={} if defaults else unknown[k],
-            absent=unknown[k] if defaults else {},
-            bounds={} if defaults else {name: (own, high[k][name]) for name, own in low[k].items()},
-            only={name: flags[rows[k]] for name, flags in only.items()},
+    def part(values: Mapping[str, Any], k: int) -> SharedColumns:
+        cells_of = slice(bounds[k], bounds[k + 1])
+        return SharedColumns(values, about_names, spans.slices[k], cells_of)
+
+    found = []
+    for k, trace in enumerate(traces):
+        own = slice(counts[k], counts[k + 1])
+        found.append(
+            replace(
+                trace,
+                spans=every[own],
+                world=part(world, k),
+                about=part(about, k),
+                texts=signals.texts,
+                unknown=nothing if defaults else part(unknown, k),
+                absent=part(unknown, k) if defaults else nothing,
+                bounds={} if defaults else part(intervals, k),
+                only=SharedColumns(only, about_names, own, own),
+            )
         )
-        for k, trace in enumerate(traces)
-    ]
+    return found
 
 
 def _cells(

@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import count
 from math import hypot
-from typing import NamedTuple
+from typing import NamedTuple, overload
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signal_arrays import (
@@ -173,6 +174,44 @@ class Place(NamedTuple):
     lanelet: str
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class DrivePlaces(Sequence[Place]):
+    """Places state by state, which are made when they are asked for.
+
+    ``lanelets`` are those that ``numbers`` name by state.
+    """
+
+    x: Floats
+    y: Floats
+    numbers: NDArray[np.intp]
+    lanelets: tuple[str, ...]
+
+    def part(self, states: slice) -> DrivePlaces:
+        """Those of some states."""
+        return DrivePlaces(self.x[states], self.y[states], self.numbers[states], self.lanelets)
+
+    def __len__(self) -> int:
+        return len(self.x)
+
+    @overload
+    def __getitem__(self, state: int) -> Place: ...
+
+    @overload
+    def __getitem__(self, state: slice) -> tuple[Place, ...]: ...
+
+    def __getitem__(self, state: int | slice) -> Place | tuple[Place, ...]:
+        if isinstance(state, slice):
+            return tuple([self[k] for k in range(*state.indices(len(self)))])
+        x, y = round(float(self.x[state]), 2), round(float(self.y[state]), 2)
+        return Place(x, y, self.lanelets[int(self.numbers[state])])
+
+    def __eq__(self, other: object) -> bool:
+        """Whether they are the same places."""
+        return isinstance(other, Sequence) and tuple(self) == tuple(other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+
 @dataclass(frozen=True)
 class Drive:
     """A drive of ``ego`` as a trace from ``start_s`` (s of the recording) on.
@@ -190,7 +229,7 @@ class Drive:
     arrays: TraceArrays
     kinds: Mapping[str, type]
     decided_by: Mapping[str, DecidedBy] = field(default_factory=dict, compare=False)
-    places: tuple[Place, ...] = field(default=(), compare=False)
+    places: Sequence[Place] = field(default=(), compare=False)
 
     @cached_property
     def trace(self) -> Trace:
@@ -265,7 +304,7 @@ def to_traces(
         traces.append(empty)
     arrays = with_signals(traces, chosen, present, spans, defaults=writer.defaults)
     decided_by = _decided_by(context, chosen, present)
-    places, starts = list(_places(context)), context.steps[spans.begins].tolist()
+    places, starts = _places(context), context.steps[spans.begins].tolist()
     return [
         Drive(
             ego,
@@ -273,7 +312,7 @@ def to_traces(
             own,
             kinds,
             decided_by=decided,
-            places=tuple(places[columns]),
+            places=places.part(columns),
         )
         for ego, start, own, decided, columns in zip(
             egos, starts, arrays, decided_by, spans.slices, strict=True
@@ -313,7 +352,7 @@ def _names_written(writer: TraceWriter) -> SignalNames:
     return declared if writer.names is None else declared & writer.names
 
 
-def _places(context: DriveContext) -> Iterator[Place]:
-    ids = own_lanelets(context).values(lambda lanelet: lanelet.id)
-    x, y = ([round(m, 2) for m in values[0].tolist()] for values in (context.ego.x, context.ego.y))
-    return map(Place, x, y, ids)
+def _places(context: DriveContext) -> DrivePlaces:
+    own = own_lanelets(context)
+    ids = tuple([lanelet.id for lanelet in own.lanelets])
+    return DrivePlaces(context.ego.x[0], context.ego.y[0], own.number, ids)

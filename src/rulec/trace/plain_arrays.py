@@ -11,6 +11,9 @@ _Number = TypeVar("_Number", bound=np.generic)
 
 _INT16_MAX = np.iinfo(np.int16).max
 
+_MOST_EMPTY = 8
+"""Rows of groups may take so many times the room of their values."""
+
 
 def distinct(values: NDArray[_Number]) -> NDArray[_Number]:
     """The different numbers in an array, ascending; without NaN."""
@@ -31,23 +34,14 @@ def median(values: NDArray[Any]) -> float:
 
 def sorted_in(groups: NDArray[np.intp], values: NDArray[np.float64]) -> NDArray[np.intp]:
     """The order by groups, and by values in each of them; equal ones stay in theirs."""
-    order = _sorted_in(groups, values)
-    ascending, numbers = values[order], groups[order]
-    is_new = np.ones(len(order) + 1, dtype=bool)
-    is_new[1:-1] = (ascending[1:] != ascending[:-1]) | (numbers[1:] != numbers[:-1])
-    equal = np.flatnonzero(~(is_new[:-1] & is_new[1:]))
-    if len(equal):
-        own, runs = order[equal], np.cumsum(is_new[:-1])[equal]
-        order[equal] = own[np.lexsort((own, runs))]
-    return order
-
-
-def _sorted_in(groups: NDArray[np.intp], values: NDArray[np.float64]) -> NDArray[np.intp]:
-    """The same with equal ones in any order."""
-    order = np.argsort(values)
-    # Small whole numbers are sorted in linear time
-    numbers = groups if groups.max(initial=0) > _INT16_MAX else groups.astype(np.int16)
-    return order[np.argsort(numbers[order], kind="stable")]
+    order, begins, rows = _in_rows(groups, values)
+    if rows is None:
+        return np.lexsort((values, groups))
+    within = np.argsort(rows, axis=1, kind="stable")
+    sizes = np.diff(begins, append=len(order))
+    there = np.arange(rows.shape[1]) < sizes[:, None]
+    own: NDArray[np.intp] = order[(within + begins[:, None])[there]]
+    return own
 
 
 def medians(
@@ -55,7 +49,42 @@ def medians(
 ) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
     """The median and the size of each of so many groups, NaN of an empty one."""
     sizes = np.bincount(groups, minlength=count)
-    ordered = np.append(values[_sorted_in(groups, values)], np.nan)
-    begins = np.cumsum(sizes) - sizes
-    low, high = begins + np.maximum(sizes - 1, 0) // 2, begins + sizes // 2
-    return np.where(sizes > 0, (ordered[low] + ordered[high]) / 2, np.nan), sizes
+    order, begins, rows = _in_rows(groups, values)
+    found = np.full(count, np.nan)
+    if rows is None:
+        ordered = values[np.lexsort((values, groups))]
+        own = np.flatnonzero(sizes)
+        low, high = begins + (sizes[own] - 1) // 2, begins + sizes[own] // 2
+        found[own] = (ordered[low] + ordered[high]) / 2
+        return found, sizes
+    if len(order):
+        rows = np.sort(rows, axis=1)
+        own = groups[order[begins]]
+        numbers, middle = np.arange(len(own)), sizes[own]
+        found[own] = (rows[numbers, (middle - 1) // 2] + rows[numbers, middle // 2]) / 2
+    return found, sizes
+
+
+def _in_rows(
+    groups: NDArray[np.intp], values: NDArray[np.float64]
+) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.float64] | None]:
+    """The order by groups, where each of them begins in it, and its values in a row.
+
+    Rows end in NaN, which sorts behind everything. They are None where groups are so unlike in
+    size that rows would be mostly empty.
+    """
+    # Small whole numbers are sorted in linear time
+    numbers = groups if groups.max(initial=0) > _INT16_MAX else groups.astype(np.int16)
+    is_sorted = bool((numbers[1:] >= numbers[:-1]).all())
+    order = np.arange(len(groups)) if is_sorted else np.argsort(numbers, kind="stable")
+    ascending = numbers if is_sorted else numbers[order]
+    is_new = np.ones(len(order), dtype=bool)
+    np.not_equal(ascending[1:], ascending[:-1], out=is_new[1:])
+    begins = np.flatnonzero(is_new)
+    longest = int(np.diff(begins, append=len(order)).max(initial=0))
+    if longest * len(begins) > _MOST_EMPTY * len(order):
+        return order, begins, None
+    rows = np.full((len(begins), longest), np.nan)
+    row = np.cumsum(is_new) - 1
+    rows[row, np.arange(len(order)) - begins[row]] = values[order]
+    return order, begins, rows

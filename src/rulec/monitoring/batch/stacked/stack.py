@@ -6,7 +6,7 @@ stands in *cells*, one for each state in which an object is there, object by obj
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -22,6 +22,7 @@ from rulec.monitoring.batch.columns.columnize import (
     one_value,
 )
 from rulec.trace.plain_arrays import distinct
+from rulec.trace.shared_columns import SharedColumns
 from rulec.trace.trace_arrays import Flags, TraceArrays, starts_of
 from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
@@ -58,6 +59,7 @@ class Stack:
 
     def __init__(self, traces: Sequence[TraceArrays], vocabulary: Vocabulary) -> None:
         self.traces = traces
+        self._pieces = tuple(_pieces(traces))
         self.vocabulary = vocabulary
         lengths = np.array([trace.n_states for trace in traces], dtype=np.intp)
         self.begins = np.concatenate([np.zeros(1, dtype=np.intp), np.cumsum(lengths)])
@@ -155,9 +157,9 @@ class Stack:
         is_about = name in self.traces[0].about
         if declaration is None or len(declaration.parameters) != is_about:
             raise UnencodableError
-        parts = [trace.about[name] if is_about else trace.world[name] for trace in self.traces]
-        unknown = self._joined(name, [trace.unknown for trace in self.traces], parts)
-        unsaid = self._joined(name, [trace.absent for trace in self.traces], parts)
+        parts = [piece.about[name] if is_about else piece.world[name] for piece in self._pieces]
+        unknown = self._joined(name, [piece.unknown for piece in self._pieces], parts)
+        unsaid = self._joined(name, [piece.absent for piece in self._pieces], parts)
         if is_about:
             unsaid = _either(unsaid, self._not_about(name, declaration))
         upper = None
@@ -165,8 +167,8 @@ class Stack:
             values = self._places(name, declaration, parts)
             unfit = values >= len(declaration.values)
         elif isinstance(declaration, Signal):
-            values = np.concatenate(parts)
-            if values.dtype != bool or any(name in trace.texts for trace in self.traces):
+            values = _end_to_end(parts)
+            if values.dtype != bool or any(name in piece.texts for piece in self._pieces):
                 raise UnencodableError
             unfit = np.zeros(0, dtype=bool)
         else:
@@ -200,38 +202,40 @@ class Stack:
         """The places among the declared values; the one after these for any other."""
         places = {value: place for place, value in enumerate(declaration.values)}
         found = []
-        for trace, part in zip(self.traces, parts, strict=True):
-            texts = trace.texts.get(name)
+        for piece, part in zip(self._pieces, parts, strict=True):
+            texts = piece.texts.get(name)
             if texts is None:
                 raise UnencodableError
             if texts != declaration.values:
                 table = [places.get(text, len(places)) for text in texts]
                 part = np.array(table, dtype=np.intp).take(part)
             found.append(part)
-        return np.concatenate(found)
+        return _end_to_end(found)
 
     def _numbers(self, name: str, parts: Sequence[Array]) -> tuple[Array, Array | None]:
         """The numbers, or the least that they may be, and the greatest, if some are apart."""
-        for trace, part in zip(self.traces, parts, strict=True):
-            if part.dtype.kind not in "fiu" or name in trace.texts:
+        for piece, part in zip(self._pieces, parts, strict=True):
+            if part.dtype.kind not in "fiu" or name in piece.texts:
                 raise UnencodableError
             if part.dtype.kind != "f" and (np.abs(part) > EXACT_IN_FLOATS).any():
                 raise UnencodableError
-        if not any(name in trace.bounds for trace in self.traces):
-            return np.concatenate(parts).astype(np.float64), None
+        if not any(name in piece.bounds for piece in self._pieces):
+            return _end_to_end(parts).astype(np.float64, copy=False), None
         bounds = [
-            trace.bounds.get(name, (part, part))
-            for trace, part in zip(self.traces, parts, strict=True)
+            piece.bounds.get(name, (part, part))
+            for piece, part in zip(self._pieces, parts, strict=True)
         ]
-        low, high = (np.concatenate(ends).astype(np.float64) for ends in zip(*bounds, strict=True))
+        low, high = (
+            _end_to_end(ends).astype(np.float64, copy=False) for ends in zip(*bounds, strict=True)
+        )
         return low, high
 
     def _not_about(self, name: str, declaration: Declaration) -> Flags | None:
         """The cells of the objects that a name is not said of."""
         every = [
-            trace.only.get(name, np.ones(len(trace.objects), dtype=bool)) for trace in self.traces
+            piece.only.get(name, np.ones(piece.n_objects, dtype=bool)) for piece in self._pieces
         ]
-        said = np.concatenate(every)
+        said = _end_to_end(every)
         if (said & ~self.of_type(declaration.parameters[0])).any():
             raise UnencodableError
         return None if said.all() else np.repeat(~said, np.diff(self.starts))
@@ -241,13 +245,78 @@ class Stack:
     ) -> Flags | None:
         if not any(name in own for own in flags):
             return None
-        joined = np.concatenate(
+        joined = _end_to_end(
             [
                 own.get(name, np.zeros(len(part), dtype=bool))
                 for own, part in zip(flags, parts, strict=True)
             ]
         )
         return joined if joined.any() else None
+
+
+@dataclass(frozen=True, slots=True)
+class _Piece:
+    """What one trace says, or several do that have their columns in the same arrays."""
+
+    world: Mapping[str, Array]
+    about: Mapping[str, Array]
+    unknown: Mapping[str, Flags]
+    absent: Mapping[str, Flags]
+    bounds: Mapping[str, tuple[Array, Array]]
+    only: Mapping[str, Flags]
+    texts: Mapping[str, tuple[str, ...]]
+    n_objects: int
+
+    def with_next(self, other: _Piece) -> _Piece | None:
+        """Both together, if all that they say stands together."""
+        if other.texts is not self.texts:
+            return None
+        both = []
+        for own, theirs in zip(self._columns(), other._columns(), strict=True):
+            joined = own.with_next(theirs) if isinstance(own, SharedColumns) else None
+            if joined is None and (own or theirs or type(own) is not type(theirs)):
+                return None
+            both.append(own if joined is None else joined)
+        world, about, unknown, absent, bounds, only = both
+        return _Piece(
+            world,
+            about,
+            unknown,
+            absent,
+            bounds,
+            only,
+            self.texts,
+            self.n_objects + other.n_objects,
+        )
+
+    def _columns(self) -> tuple[Mapping[str, Any], ...]:
+        return self.world, self.about, self.unknown, self.absent, self.bounds, self.only
+
+
+def _pieces(traces: Sequence[TraceArrays]) -> Iterator[_Piece]:
+    """What the traces say, those together that are in the same arrays."""
+    last: _Piece | None = None
+    for trace in traces:
+        piece = _Piece(
+            trace.world,
+            trace.about,
+            trace.unknown,
+            trace.absent,
+            trace.bounds,
+            trace.only,
+            trace.texts,
+            len(trace.objects),
+        )
+        joined = None if last is None else last.with_next(piece)
+        if joined is None and last is not None:
+            yield last
+        last = piece if joined is None else joined
+    if last is not None:
+        yield last
+
+
+def _end_to_end(parts: Sequence[Array]) -> Array:
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
 
 def _either(one: Flags | None, other: Flags | None) -> Flags | None:
