@@ -258,55 +258,56 @@ class Stack:
 class _Piece:
     """What one trace says, or several do that have their columns in the same arrays."""
 
-    world: Mapping[str, Array]
-    about: Mapping[str, Array]
-    unknown: Mapping[str, Flags]
-    absent: Mapping[str, Flags]
-    bounds: Mapping[str, tuple[Array, Array]]
-    only: Mapping[str, Flags]
+    columns: tuple[Mapping[str, Any], ...]
     texts: Mapping[str, tuple[str, ...]]
     n_objects: int
+
+    @staticmethod
+    def of(trace: TraceArrays) -> _Piece:
+        columns = (trace.world, trace.about, trace.unknown, trace.absent, trace.bounds, trace.only)
+        return _Piece(columns, trace.texts, len(trace.objects))
+
+    @property
+    def world(self) -> Mapping[str, Array]:
+        return self.columns[0]
+
+    @property
+    def about(self) -> Mapping[str, Array]:
+        return self.columns[1]
+
+    @property
+    def unknown(self) -> Mapping[str, Flags]:
+        return self.columns[2]
+
+    @property
+    def absent(self) -> Mapping[str, Flags]:
+        return self.columns[3]
+
+    @property
+    def bounds(self) -> Mapping[str, tuple[Array, Array]]:
+        return self.columns[4]
+
+    @property
+    def only(self) -> Mapping[str, Flags]:
+        return self.columns[5]
 
     def with_next(self, other: _Piece) -> _Piece | None:
         """Both together, if all that they say stands together."""
         if other.texts is not self.texts:
             return None
         both = []
-        for own, theirs in zip(self._columns(), other._columns(), strict=True):
+        for own, theirs in zip(self.columns, other.columns, strict=True):
             joined = own.with_next(theirs) if isinstance(own, SharedColumns) else None
             if joined is None and (own or theirs or type(own) is not type(theirs)):
                 return None
             both.append(own if joined is None else joined)
-        world, about, unknown, absent, bounds, only = both
-        return _Piece(
-            world,
-            about,
-            unknown,
-            absent,
-            bounds,
-            only,
-            self.texts,
-            self.n_objects + other.n_objects,
-        )
-
-    def _columns(self) -> tuple[Mapping[str, Any], ...]:
-        return self.world, self.about, self.unknown, self.absent, self.bounds, self.only
+        return _Piece(tuple(both), self.texts, self.n_objects + other.n_objects)
 
 
 def _pieces(traces: Sequence[TraceArrays]) -> Iterator[_Piece]:
     """What the traces say, those together that are in the same arrays."""
     last: _Piece | None = None
-    for trace in traces:
-        piece = _Piece(
-            trace.world,
-            trace.about,
-            trace.unknown,
-            trace.absent,
-            trace.bounds,
-            trace.only,
-            trace.texts,
-            len(trace.objects),
-        )
+    for piece in map(_Piece.of, traces):
         joined = None if last is None else last.with_next(piece)
         if joined is None and last is not None:
             yield last
