@@ -13,6 +13,7 @@ from rulec.extraction import traffic_thresholds
 from rulec.rates import finding_rows
 from rulec.recordings import recording, recording_inputs
 from rulec.recordings.encodings.arrow import arrow_tables
+from rulec.recordings.opendrive import lane_lines, opendrive_map
 from rulec.report.findings.code_registry import all_codes
 from rulec.resource_limits import LIMITS, MOST_DIGITS
 from rulec.rulebook.arithmetic import size_limits
@@ -46,6 +47,8 @@ FIXED = {
     "bytes of a row group of Parquet, unpacked, beside 1,024 a cell": parquet.LARGEST_GROUP,
     "time steps of a recording, from the first to the last": recording.MOST_STEPS,
     "time steps of a recording for one that is in it": recording.SPARSEST,
+    "places on the borders of one road of an OpenDRIVE map": lane_lines.MOST_PLACES,
+    "places on the borders of all its roads": opendrive_map.MOST_PLACES,
     "cells of a table of a recording in Parquet, its rows times the columns that are read": (
         arrow_tables.MOST_CELLS
     ),

@@ -5,6 +5,7 @@ import pytest
 
 from rulec.diagnostics import RulecError
 from rulec.recordings.map_files import read_map
+from rulec.recordings.opendrive import opendrive_map
 from support.builders.opendrive_files import (
     cubic,
     document,
@@ -97,3 +98,10 @@ def test_lanes_that_wind_without_end(tmp_path):
         tmp_path, document(road(1, lanes, plan=geometry(length=2000), length=2000))
     )
     assert "wind so much" in found.message
+
+
+def test_lanes_of_all_roads_together_that_wind_without_end(tmp_path, monkeypatch):
+    monkeypatch.setattr(opendrive_map, "MOST_PLACES", 100)
+    found = problem_with(tmp_path, GOOD)
+    assert "over 100 places" in found.message
+    assert found.place.line > 1

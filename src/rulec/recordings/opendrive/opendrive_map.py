@@ -37,8 +37,8 @@ from rulec.recordings.opendrive.signal_catalogues import country_of
 from rulec.recordings.recording import LONGEST_M, Lanelet, ObservedLight, Points, Side
 from rulec.recordings.road_map import RoadMap
 
-MOST_PLACES = 20_000_000
-"""Of all borders of a map together, some 300 MB of memory."""
+MOST_PLACES = 2_000_000
+"""Of all borders of a map together: some seconds, and 100 MB of memory."""
 
 NARROWEST_M = 0.05
 """Lanes that are nowhere wider are none."""
