@@ -42,6 +42,7 @@ def instants_among(
     # A part begins to decide where its mark is above 0, and ceases to where it is below.
     marks = {part: [0] * (length + 1) for part in known}
     marks[formula][:2] = [1, -1]
+    of_operand: dict[int, list[int]] = {}
     result = {}
     for part in reversed(list(known)):  # all that it is an operand of has been before it
         if not any(marks[part]):
@@ -60,8 +61,11 @@ def instants_among(
             else:
                 reasons = list(_reasons(part, instant, onward, ends=semantics == "finite"))
             for operand, start, stop in reasons:
-                marks[operand][start] += 1
-                marks[operand][stop + 1] -= 1
+                own = of_operand.get(id(operand))
+                if own is None:
+                    own = of_operand[id(operand)] = marks[operand]
+                own[start] += 1
+                own[stop + 1] -= 1
         # What comes after the word's end is its last letter again.
         result[part] = [*decides[:last], any(decides[last:])]
     return result
@@ -97,16 +101,22 @@ class _Column:
         return (self.next_true if value else self.next_false)[min(instant, len(self.values))]
 
 
-class _Columns(dict[Formula, _Column]):
-    """The columns of parts whose values are known, perhaps turned around; made once asked for."""
+class _Columns:
+    """The columns of parts whose values are known, perhaps turned around; made once asked for.
+
+    Parts are looked up as the objects that they are: a formula's hash is that of all its parts.
+    """
 
     def __init__(self, known: Mapping[Formula, Sequence[bool]], *, turned: bool = False) -> None:
-        super().__init__()
         self._known, self._turned = known, turned
+        self._made: dict[int, _Column] = {}
 
-    def __missing__(self, part: Formula) -> _Column:
-        values = self._known[part]
-        column = self[part] = _Column.of(values[::-1] if self._turned else values)
+    def __getitem__(self, part: Formula) -> _Column:
+        column = self._made.get(id(part))
+        if column is None:
+            values = self._known[part]
+            column = _Column.of(values[::-1] if self._turned else values)
+            self._made[id(part)] = column
         return column
 
 
@@ -133,9 +143,7 @@ which they hold."""
 _WEAK = frozenset((BinaryOperator.WEAK_UNTIL, BinaryOperator.STRONG_RELEASE))
 
 
-def _reasons(
-    part: Formula, instant: int, columns: Mapping[Formula, _Column], *, ends: bool
-) -> Iterator[_Reason]:
+def _reasons(part: Formula, instant: int, columns: _Columns, *, ends: bool) -> Iterator[_Reason]:
     match part:
         case Unary(UnaryOperator.NOT, operand):
             yield operand, instant, instant
@@ -159,7 +167,7 @@ def _of_search(
     right: Formula,
     instant: int,
     *,
-    columns: Mapping[Formula, _Column],
+    columns: _Columns,
     ends: bool,
 ) -> Iterator[_Reason]:
     """The reasons for the value of a search for ``right``.

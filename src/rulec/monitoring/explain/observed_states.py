@@ -52,6 +52,10 @@ class ObservedStates:
 
     def truths(self, proposition: ltl.Proposition) -> list[bool]:
         """Truth of a proposition in each state."""
+        if isinstance(proposition, ltl.Atom):
+            name, items = proposition.name, self.items(proposition.arguments)
+            wanted = proposition.value or True
+            return [view.value(name, items) == wanted for view in self.views]
         evaluate, bound = evaluator_of(proposition), self.bound
         in_floats = bound_in_floats(proposition)
         if in_floats is None:
