@@ -87,3 +87,28 @@ def test_lanes_that_join_and_leave(tmp_path):
     assert "on_0" not in found
     assert {found.get(f"b_{k}") for k in (1, 2)} == {None}
     assert {found[f"e_{k}"] for k in (0, 1)} == {"mainCarriageWay"}
+
+
+@pytest.mark.parametrize("pieces", [1, 2])
+def test_a_lane_that_joins_and_ends_needs_no_type(tmp_path, pieces):
+    """From another road than those beside it, over one edge or two, and then on to none."""
+    found = kinds(
+        tmp_path,
+        *(edge("a", "x", "y", 2, ""), edge("on", "o", "y", 1, ""), edge("b", "y", "z", 3, "")),
+        *(edge("c", "z", "w", 3 if pieces == 2 else 2, ""), edge("d", "w", "v", 2, "")),
+        *(lead("a", "b", (0, 1), (1, 2)), lead("on", "b", (0, 0))),
+        lead("b", "c", *([(0, 0), (1, 1), (2, 2)] if pieces == 2 else [(1, 0), (2, 1)])),
+        lead("c", "d", *([(1, 0), (2, 1)] if pieces == 2 else [(0, 0), (1, 1)])),
+    )
+    joining = {key for key, kind in found.items() if kind == "accessRamp"}
+    assert joining == ({"b_0", "c_0"} if pieces == 2 else {"b_0"})
+
+
+def test_a_lane_of_the_road_itself_that_ends_is_none_to_join(tmp_path):
+    """Three lanes of one road become two: there they take turns."""
+    found = kinds(
+        tmp_path,
+        *(edge("a", "x", "y", 3, ""), edge("b", "y", "z", 3, ""), edge("c", "z", "w", 2, "")),
+        *(lead("a", "b", (0, 0), (1, 1), (2, 2)), lead("b", "c", (1, 0), (2, 1))),
+    )
+    assert "accessRamp" not in found.values()

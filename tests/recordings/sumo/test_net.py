@@ -155,6 +155,43 @@ def test_only_where_roads_meet_is_a_junction(tmp_path):
     assert "intersection" in lanelets(tmp_path, text)[":x_0_0"].types
 
 
+@pytest.mark.parametrize(
+    ("side_way", "foes", "meets"),
+    [
+        # Nobody is in anybody's way where a road parts
+        ("in", ("000", "000", "000"), False),
+        # Lanes of one road become one; all go over a crossing
+        ("in", ("0010", "0001", "0000", "0000"), False),
+        ("in", ("1000", "1000", "1000", "0111"), False),
+        # Another road joins the first way
+        ("side", ("100", "000", "001"), True),
+    ],
+)
+def test_a_node_whose_ways_do_not_meet_is_no_junction(tmp_path, side_way, foes, meets):
+    """Nets part roads anywhere; there nobody turns off, and no rule of junctions holds."""
+    ways = [":x_0_0", ":x_0_1", ":x_2_0", ":x_c0_0"][: len(foes[0])]
+    rows = "".join(f'<request index="{k}" response="" foes="{x}"/>' for k, x in enumerate(foes))
+    text = ROAD_NET.replace(
+        "</net>",
+        '<edge id=":x_2" function="internal"><lane id=":x_2_0" index="0" speed="9" '
+        'shape="200,-4.8 202,-9"/></edge><edge id="side" from="x" to="c"><lane id="side_0" '
+        f'index="0" speed="9" shape="202,-9 202,-90"/></edge><junction id="x" type="priority" '
+        f'intLanes="{" ".join(ways)}">{rows}</junction><connection from="{side_way}" '
+        f'to="side" fromLane="{0 if side_way == "side" else 1}" toLane="0" via=":x_2_0"/></net>',
+    )
+    found = lanelets(tmp_path, text)
+    assert ("intersection" in found[":x_0_0"].types) == meets
+    assert bool(found[":x_0_0"].junction) == meets
+
+
+def test_where_more_is_allowed_within_a_junction_that_holds(tmp_path):
+    """As before a road on which one may go faster: who speeds up there does what the net says."""
+    text = ROAD_NET.replace('speed="13.89" length="4.00"', 'speed="19.44" length="4.00"')
+    found = lanelets(tmp_path, text)
+    assert found[":x_0_0"].limit_mps * 3.6 == pytest.approx(70)
+    assert found["in_1"].limit_mps * 3.6 == pytest.approx(50)
+
+
 LIGHT = """\
 <tlLogic id="x" type="static" programID="0" offset="5">
   <phase duration="30" state="Gr"/><phase duration="3" state="yr"/><phase duration="7" state="rG"/>

@@ -2,7 +2,9 @@
 
 A lane goes on where each lane of its road leads to one of the next road, for the next kilometre or
 up to the net's end: signs and arrows that send lanes to places of their own stand no earlier. A
-road of one lane needs none. Lanes join and leave where links do (``_link`` in the road's type).
+road of one lane needs none. Lanes join and leave where links do (``_link`` in the road's type); and
+a lane that comes from another road than those beside it, and ends, is there to join, whatever the
+types are.
 """
 
 from __future__ import annotations
@@ -27,11 +29,13 @@ def lane_kinds(net: SumoNet, drivable: Set[str]) -> dict[str, str]:
     # To turn round is no way on
     onward: dict[str, list[str]] = defaultdict(list)
     before: dict[str, set[str]] = defaultdict(set)
+    back: dict[str, list[str]] = defaultdict(list)
     for connection in net.connections:
         if {connection.start, connection.end} <= drivable:
             own, after = net.lanes[connection.start].edge, net.lanes[connection.end].edge
             if (after.start, after.end) != (own.end, own.start):
                 onward[connection.start].append(connection.end)
+                back[connection.end].append(connection.start)
                 before[after.id].add(own.type)
     edges: dict[str, list[str]] = defaultdict(list)
     for name in drivable:
@@ -52,7 +56,25 @@ def lane_kinds(net: SumoNet, drivable: Set[str]) -> dict[str, str]:
                 kinds[lane] = "exitRamp"
             elif joined and goes_on and not onward[lane]:
                 kinds[lane] = "accessRamp"
+            elif goes_on and not onward[lane]:
+                kinds.update(dict.fromkeys(_from_joining(net, lane, edges, back), "accessRamp"))
     return kinds
+
+
+def _from_joining(net: SumoNet, lane: str, edges: _Lanes, back: _Lanes) -> list[str]:
+    """A lane and those before it, from where it came onto its road; none if it did not join it."""
+    way: list[str] = []
+    while lane not in way:
+        way.append(lane)
+        beside = {start for other in edges[net.lanes[lane].edge.id] for start in back[other]}
+        own = {net.lanes[start].edge.id for start in back[lane]}
+        others = {net.lanes[start].edge.id for start in beside - set(back[lane])}
+        if own and others and own.isdisjoint(others):
+            return way
+        if len(back[lane]) != 1 or not own <= others:
+            break
+        (lane,) = back[lane]
+    return []
 
 
 def _goes_on(net: SumoNet, edge: str, edges: _Lanes, onward: _Lanes) -> bool:

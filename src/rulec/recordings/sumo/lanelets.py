@@ -1,7 +1,7 @@
 """The lanes of a SUMO net as lanelets.
 
 A lane's border lies half its width beside its middle. Within a junction the limit of the road that
-leads there goes on: what the net says there is how fast one gets around the bend.
+leads there goes on, unless the net allows more there: less is how fast one gets around the bend.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from rulec.recordings.sumo.net import NetConnection, NetEdge, NetLane, SumoNet
 from rulec.recordings.sumo.right_of_way import (
     LEVEL_CROSSINGS,
     UNREGULATED,
+    nodes_where_ways_meet,
     rights_of_ways,
     signs_of_lanes,
 )
@@ -53,7 +54,9 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
         for end in ends:
             before[end].append(start)
     origins = _origins(net, before)
-    limits = {key: _unrounded(road.speed) for key, road in origins.items()}
+    limits = {
+        key: _unrounded(max(road.speed, net.lanes[key].speed)) for key, road in origins.items()
+    }
     driven = {key for key in origins if _permitted(net.lanes[key]) - _WALKERS - _RIDERS - _RAILS}
     kinds = lane_kinds(net, driven)
     junctions = _junctions(net)
@@ -183,12 +186,14 @@ def junction_of(lane: NetLane) -> str:
 
 
 def _junctions(net: SumoNet) -> set[str]:
+    """The nodes at which roads meet: nets part edges anywhere, as where a lane begins to leave."""
     arms: dict[str, set[str]] = defaultdict(set)
     for lane in net.lanes.values():
         if lane.edge.function == "" and not _permitted(lane) <= _WALKERS:
             arms[lane.edge.start].add(lane.edge.end)
             arms[lane.edge.end].add(lane.edge.start)
-    return {node for node, others in arms.items() if len(others) >= _ARMS}
+    meet = nodes_where_ways_meet(net)
+    return {node for node, others in arms.items() if len(others) >= _ARMS and node in meet}
 
 
 def _types(

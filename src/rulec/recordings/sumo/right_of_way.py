@@ -49,6 +49,30 @@ def rights_of_ways(net: SumoNet) -> dict[str, WayRights]:
     return rights
 
 
+def nodes_where_ways_meet(net: SumoNet) -> set[str]:
+    """The nodes at which ways of different roads cross or join, and those whose ways nobody knows.
+
+    Ways of one road that part, or that become fewer, meet no other traffic, and who walks across is
+    at a crossing.
+    """
+    roads = {
+        connection.via: net.lanes[connection.start].edge.id
+        for connection in net.connections
+        if connection.via and connection.start in net.lanes
+    }
+    meet = set()
+    for junction in net.junctions.values():
+        known = len(junction.ways) == len(junction.foes)
+        for way, bits in zip(junction.ways, junction.foes, strict=False):
+            foes = {roads.get(foe) for foe in _named(bits, [(x,) for x in junction.ways])}
+            if known and way in roads and foes - {None, roads[way]}:
+                meet.add(junction.id)
+        if not known or not junction.ways:
+            meet.add(junction.id)
+    nodes = {node for edge in net.edges.values() for node in (edge.start, edge.end)}
+    return meet | (nodes - net.junctions.keys())
+
+
 def _lanes_of(way: str, onward: Mapping[str, str], backward: Mapping[str, str]) -> tuple[str, ...]:
     """The lanes of a way through a junction, which may be parted where one waits in it."""
     lanes = [way]
