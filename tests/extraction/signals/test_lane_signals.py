@@ -49,6 +49,38 @@ def test_a_mark_that_may_lie_elsewhere_may_not_have_been_crossed(ys, name, unkno
     assert not signals.unknown["lane_change"][~changed].any()
 
 
+LEFT = frozenset({"left_indicator"})
+INDICATORS = frozenset({"left_indicator", "right_indicator"})
+
+
+@pytest.mark.parametrize(
+    ("lit", "expected"),
+    [
+        # Up to the state before the change, which is state 2
+        ({0: LEFT, 1: LEFT, 2: frozenset(), 3: frozenset()}, "far_indicator"),
+        ({0: LEFT, 1: frozenset(), 2: frozenset(), 3: frozenset()}, "no_indicator"),
+        ({0: frozenset(), 1: frozenset(), 2: frozenset(), 3: LEFT}, "no_indicator"),
+    ],
+)
+def test_the_indicator_before_a_change_of_lanes_counts(lit, expected):
+    body = replace(vehicle(7, CHANGE), lamps=lit, shows=INDICATORS)
+    found = changes(body=body)
+    assert found.values("indicator")[2] == expected
+    assert not found.unknown["indicator"].any()
+
+
+@pytest.mark.parametrize(("y", "unknown"), [(2.4, False), (2.6, True), (4.0, True)])
+@pytest.mark.parametrize("lamp", ["none", "left_indicator"])
+def test_of_who_jumps_to_another_lane_unlit_nobody_knows(y, unknown, lamp):
+    """A state takes 0.5 s here, so that 2.5 m across are 5 m/s."""
+    on = frozenset({lamp}) & INDICATORS
+    path = {0: (0, 0), 1: (5, 0), 2: (10, y), 3: (15, max(y, 3))}
+    body = replace(vehicle(7, path), lamps=dict.fromkeys(range(4), on), shows=INDICATORS)
+    found = changes(body=body)
+    assert found.world["lane_change"].tolist() == [False, False, True, False]
+    assert found.unknown["indicator"].tolist() == [False, False, unknown and not on, False]
+
+
 def clear(x, speed, **thresholds):
     """Is the left lane clear in the state of the change, when ego is at 10 m?"""
     other = steady(8, x - 1.0 * speed, 4, speed=speed)

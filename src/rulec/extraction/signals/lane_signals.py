@@ -39,6 +39,9 @@ _STEADY_MPS = 1.0
 
 _EXACT_M = 0.1
 
+_JUMP_MPS = 5.0
+"""Nobody steers across so fast: simulators change lanes in a step, with or without a signal."""
+
 _MOVED_OFF_M, _STOOD_S = 1.0, 1.0
 """A box of who is parked wanders by less; who stays there for so long stands."""
 
@@ -93,7 +96,8 @@ def _indicator(context: DriveContext) -> SignalColumns:
     """Ego's indicator, if the recording has its lamps.
 
     Both at once are no indication, as hazard lights are none; a file that says that these are off
-    contradicts itself, and nobody knows what both mean in that drive at other times.
+    contradicts itself, and nobody knows what both mean in that drive at other times. Who changes
+    lanes has indicated it if it did up to the state before; of who jumps there nobody knows.
     """
     egos = context.ego.participants
     if not context.spans.agreed([ego.lamps and ego.shows >= _INDICATORS for ego in egos]):
@@ -110,11 +114,25 @@ def _indicator(context: DriveContext) -> SignalColumns:
     ]
     unknown = both & context.spans.any(both & np.array(no_hazards))
     unknown |= np.array([lamps is None for lamps in steps])
+    is_dark = np.array([lamps is not None and not lamps & _INDICATORS for lamps in steps])
+    changes = np.flatnonzero(_changes(context) & is_dark)
+    codes[changes] = codes[changes - 1]
+    dark = changes[codes[changes] == 0]
+    unknown[dark[_jumps_across(context, dark)]] = True
     return SignalColumns(
         {"indicator": codes},
         unknown={"indicator": unknown},
         texts={"indicator": _INDICATIONS},
     )
+
+
+def _jumps_across(context: DriveContext, changes: NDArray[intp]) -> Flags:
+    """Flags of those of these changes of lanes in which ego moves across in no time."""
+    lane, left_of = context.steady_lane, context.ego_extents.left_of[0]
+    marks = np.maximum(lane[changes - 1], lane[changes])
+    moved = np.abs(left_of[changes, marks] - left_of[changes - 1, marks])
+    jumps: Flags = moved > _JUMP_MPS * context.recording.step_s
+    return jumps
 
 
 def _disturbs(context: DriveContext, states: NDArray[intp]) -> Flags:
