@@ -24,6 +24,7 @@ from rulec.cache.keeping import keeping
 from rulec.cache.shipped_bytes import ShippedBytes, shipped, shipped_file, shipped_key, shipped_text
 from rulec.diagnostics import RulecError, Source
 from rulec.resources import rulebooks_folder
+from rulec.rulebook.batch.batch_format import formatted
 from rulec.rulebook.loader import read_rulebook
 from rulec.syntax.caching import tree_cache
 from rulec.syntax.parser import parse
@@ -51,6 +52,8 @@ def trees_text() -> bytes:
         source = Source(path.name, path.read_text(encoding="utf-8"))
         file, mistakes = parse(source)
         assert not mistakes, path
+        data = path.read_bytes()
+        assert formatted(path.name, path, data).after == data, f"{path} is not in form"
         entries[shipped_key(source.text)] = tree_cache.as_bytes(file, source)
     return shipped_text(entries, tree_cache.MAKERS)
 

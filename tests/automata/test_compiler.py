@@ -405,8 +405,10 @@ def test_a_bound_between_two_states_is_an_error_with_the_nearest_ones():
     first, second = caught.value.diagnostics
     assert (first.code, second.code) == ("R0407", "R0407")
     assert first.message == "`3.25 s` is not a multiple of the step, 0.5 s"
-    assert first.help == "the nearest multiples are 3 s and 3.5 s"
-    assert second.help == "the nearest multiple is 0.5 s"
+    assert first.help == (
+        "the nearest multiples are 3 s and 3.5 s; or write `step 0.25 s` in the header"
+    )
+    assert second.help == "the nearest multiple is 0.5 s; or write `step 0.1 s` in the header"
     assert "`A`" in first.notes[0]
 
 

@@ -12,6 +12,7 @@ from rulec.cache.keeping import keeping
 from rulec.cache.shipped_bytes import shipped, shipped_key, shipped_text
 from rulec.diagnostics import Source
 from rulec.resources import rulebooks_folder
+from rulec.rulebook.batch import batch_format
 from rulec.rulebook.loader import read_rulebook
 from rulec.syntax.caching import tree_cache
 from rulec.syntax.parser import parse
@@ -81,6 +82,21 @@ def test_a_shipped_text_is_not_parsed(folder, monkeypatch):
         with pytest.raises(TypeError):
             tree_cache.parsed(Source("a.rules", text + "\n"))
     assert not (folder / "cache").exists()
+
+
+def test_a_shipped_text_is_in_form_and_no_other(folder, monkeypatch):
+    path = rulebooks_folder() / "esterle2019" / "esterle2019.rules"
+    shutil.copy(rulebooks_folder() / "shipped.tree", folder)
+    other = folder / "other.rules"
+    other.write_text("  " + path.read_text())
+    with keeping():
+        monkeypatch.setattr(batch_format, "formatted", lambda *_: 1 / 0)
+        (file,) = batch_format.format_files([str(path)], recalls=True).files
+        assert not file.changed
+        with pytest.raises(ZeroDivisionError):
+            batch_format.format_files([str(path)])
+        with pytest.raises(ZeroDivisionError):
+            batch_format.format_files([str(other)], recalls=True)
 
 
 @pytest.mark.spot

@@ -34,7 +34,10 @@ def test_what_is_good(folder, capsys):
     (folder / "good.rules").write_text(GOOD)
     assert check(capsys, "good.rules") == (
         0,
-        "1 file checked, nothing found; `rulec test` runs the examples\n",
+        (
+            "1 file checked, nothing found; `rulec test` runs the examples\n"
+            "rule `r` cites no provision\nrule `r` has no example\n"
+        ),
         "",
     )
     assert check(capsys, "esterle2019", "paper") == (
@@ -208,7 +211,11 @@ def test_fixes_are_written_and_leave_nothing_to_say(capsys, tmp_path):
     status, out, err = check(capsys, str(path), "--fix")
     assert (status, path.read_text()) == (0, after)
     assert (out, err) == (
-        "1 file checked, nothing found; `rulec test` runs the examples\n",
+        (
+            "1 file checked, nothing found; `rulec test` runs the examples\n"
+            "5 rules cite no provision: `a`, `b`, `c`, `d`, `e`\n"
+            "5 rules have no example: `a`, `b`, `c`, `d`, `e`\n"
+        ),
         f"6 fixes written to {path}\n",
     )
     assert check(capsys, "-", "--fix")[0] == 2

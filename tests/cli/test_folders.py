@@ -65,7 +65,10 @@ def test_what_is_excluded_is_left_alone_in_folders_and_taken_by_name(project, ca
     left = "left alone: 2 excluded (laws/old, laws/new.draft.rules)\n"
     assert run(capsys, "check", "laws") == (
         0,
-        "2 files checked, nothing found; `rulec test` runs the examples\n",
+        (
+            "2 files checked, nothing found; `rulec test` runs the examples\n"
+            "rule `r` cites no provision\n"
+        ),
         left,
     )
     assert run(capsys, "fmt", "--check", "laws")[2].endswith(left)
@@ -76,7 +79,10 @@ def test_what_is_excluded_is_left_alone_in_folders_and_taken_by_name(project, ca
     left = "left alone: 2 excluded (../old, ../new.draft.rules)\n"
     assert run(capsys, "check", "..") == (
         0,
-        "2 files checked, nothing found; `rulec test` runs the examples\n",
+        (
+            "2 files checked, nothing found; `rulec test` runs the examples\n"
+            "rule `r` cites no provision\n"
+        ),
         left,
     )
 

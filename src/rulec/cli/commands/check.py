@@ -19,6 +19,7 @@ from rulec.cli.output import counted, print_findings, print_left_alone
 from rulec.cli.standard_input import standard_input
 from rulec.cli.watching import watch as watch_sources
 from rulec.cli.watching import watch_option
+from rulec.diagnostics import named
 from rulec.files import MAX_SOURCE_BYTES
 from rulec.report.text.console import print_remark
 from rulec.settings import exclusion, search_path
@@ -91,8 +92,7 @@ def command(
         status = print_findings(
             (*done.findings, *not_as_locked()),
             done.unread,
-            nothing=f"{counted(len(done.files), 'file')} checked, nothing found"
-            "; `rulec test` runs the examples",
+            nothing=_nothing_found(done),
             to=to,
             fail_on=fail_on,
         )
@@ -102,6 +102,21 @@ def command(
     if watch:
         watch_sources(run, sources)
     return run()
+
+
+def _nothing_found(done: Checked) -> str:
+    said = [
+        f"{counted(len(done.files), 'file')} checked, nothing found; `rulec test` runs the examples"
+    ]
+    for rules, lack in ((done.uncited, "cites no provision"), (done.untested, "has no example")):
+        if rules:
+            many = lack.replace("cites", "cite").replace("has", "have")
+            said.append(
+                f"rule {named(rules)} {lack}"
+                if len(rules) == 1
+                else f"{len(rules)} rules {many}: {named(rules)}"
+            )
+    return "\n".join(said)
 
 
 def _checked(sources: tuple[str, ...], at: str, *, recalls: bool) -> Checked:

@@ -14,6 +14,7 @@ from typing import Any
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import diagnostic_rows
 from rulec.file_messages import NOTHING_LEFT
+from rulec.rulebook.batch.bare_rules import bare_rules
 from rulec.rulebook.batch.check_cache import CheckQuestion, recall, remember
 from rulec.rulebook.files import search_path as search
 from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
@@ -27,7 +28,10 @@ _STANDARD_INPUT = Path("standard input")
 
 @dataclass(frozen=True, slots=True)
 class Checked(Rows):
-    """Result of a batch check: checked files, findings, unread files, files left alone."""
+    """Result of a batch check: checked files, findings, unread files, files left alone.
+
+    ``uncited`` are rules without a provision, ``untested`` those without an example: no mistakes.
+    """
 
     __repr__ = short_repr
 
@@ -35,6 +39,8 @@ class Checked(Rows):
     findings: tuple[Diagnostic, ...]
     unread: tuple[Diagnostic, ...]
     left_alone: tuple[LeftAlone, ...] = ()
+    uncited: tuple[str, ...] = ()
+    untested: tuple[str, ...] = ()
 
     def rows(self) -> list[dict[str, Any]]:
         """Rows of the findings and of the files that are unreadable."""
@@ -64,6 +70,8 @@ def check(
     findings: dict[tuple[object, ...], Diagnostic] = {}
     meant = FoundSources()
     unread = meant.refused
+    uncited: list[str] = []
+    untested: list[str] = []
     for path in _meant(references, search_path, excluded, meant):
         try:
             data = standard_input() if path is _STANDARD_INPUT else search.read_bytes(path)
@@ -74,10 +82,19 @@ def check(
         if identity in files:
             continue
         files[identity] = str(path)
+        for names, found in zip(
+            (uncited, untested), bare_rules(data.decode(errors="replace")), strict=True
+        ):
+            names += found
         for finding in _findings(path, data, search_path, at, recalls=recalls):
             findings.setdefault(_identity(finding), finding)
     return Checked(
-        tuple(files.values()), tuple(findings.values()), tuple(unread), tuple(meant.left_alone)
+        tuple(files.values()),
+        tuple(findings.values()),
+        tuple(unread),
+        tuple(meant.left_alone),
+        tuple(uncited),
+        tuple(untested),
     )
 
 

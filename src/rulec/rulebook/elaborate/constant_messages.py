@@ -130,13 +130,21 @@ def parameter_of_another_kind(
     item: tree.ParamItem | tree.SetItem, number: NumberByCases, wanted: Dimension, first: tree.Name
 ) -> Diagnostic:
     assert not isinstance(item.value, bool), "only an option is on or off"
-    unit = _usual_unit(wanted) if number.dimension == NUMBER else None
+    usual = _usual_unit(wanted)
+    if wanted == NUMBER:
+        way_out = "leave the unit out"
+    elif number.dimension == NUMBER and usual:
+        way_out = f"write the unit, such as `{short(item.value)} {usual}`"
+    else:
+        way_out = (
+            f"check the unit: a {wanted.name} is in {usual}, say" if usual else "check the unit"
+        )
     return MIXED_DIMENSIONS.at(
         item.value.span,
         f"`{item.name.text}` is a {wanted.name}, and `{short(item.value)}` "
         f"{kind_of(number.dimension)}",
         expected=f"expected a {wanted.name}",
-        help=f"write the unit, such as `{short(item.value)} {unit}`" if unit else "check the unit",
+        help=way_out,
         labels=() if first is item.name else (Label(first.span.place, "its kind is given here"),),
     )
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import perm
+from fractions import Fraction
+from math import gcd, perm
 
 from rulec.diagnostics import Diagnostic, Label, did_you_mean, named
 from rulec.diagnostics.code import Code
@@ -216,11 +217,11 @@ def unfitting_exception(problem: str, item: tree.RuleItem) -> Diagnostic:
         require = () if item.require is None else (item.require.span.place,)
         return UNFITTING_SCOPE.at(
             unless.span,
-            f"{written} speaks of a sequence, and the rule guards none: it does not begin with "
-            "`never` or `always`",
-            expected="expected `initially`",
-            help="write `initially`, which looks at the first state, or say what must `never` "
-            "happen",
+            f"{written} says when the rule is not watching, and it watches no stretch of time: it "
+            "does not begin with `never` or `always`",
+            expected="expected `initially` behind it",
+            help="write `initially` at its end, if the first state decides; or begin the rule with "
+            "`never` or `always`; or say it in the formula, by `or`",
             labels=tuple(Label(place, "this is what the rule requires") for place in require),
         )
     unless = [unless for unless in item.unless if unless.scope in (None, "throughout")][-1]
@@ -243,11 +244,21 @@ def no_multiple(rule: Rule, error: NotAMultipleError) -> Diagnostic:
     """R0407: a bound of the rule falls between two states."""
     below = error.offending // error.step_s * error.step_s
     nearest = [time_in_words(time, "s") for time in (below, below + error.step_s) if time]
+    fitting = time_in_words(_common_step(error.offending, error.step_s), "s")
     are = "multiples are" if len(nearest) > 1 else "multiple is"
     return NOT_A_MULTIPLE.at(
         error.span or rule.span,
         f"`{time_in_words(error.offending, 's')}` is not a multiple of the step, "
         f"{time_in_words(error.step_s, 's')}",
-        help=f"the nearest {are} {' and '.join(nearest)}",
+        help=f"the nearest {are} {' and '.join(nearest)}"
+        + (f"; or write `step {fitting}` in the header" if error.step_s == rule.step_s else ""),
         notes=(f"rule `{rule.name}` would have to know what happens between two states",),
+    )
+
+
+def _common_step(first: Fraction, second: Fraction) -> Fraction:
+    """The greatest time of which both are multiples."""
+    below = first.denominator * second.denominator
+    return Fraction(
+        gcd(first.numerator * second.denominator, second.numerator * first.denominator), below
     )

@@ -23,12 +23,12 @@ MOST_TREES = 200
 
 SHIPPED = "tree"
 MAKERS = (
-    *("grammar", "syntax/building", "syntax/caching"),
+    *("grammar", "syntax/building", "syntax/caching", "syntax/formatting"),
     *(f"syntax/{name}.py" for name in ("assembly", "file_pieces", "grammar", "item_boundaries")),
     *(f"syntax/{name}.py" for name in ("keywords", "parse_nodes", "parser", "parser_tables")),
     *(f"syntax/{name}.py" for name in ("scanner", "split_file", "split_rule", "tree")),
 )
-"""The kind of what ships, and the code that it comes from."""
+"""The kind of what ships, and the code that it comes from; all texts are in form."""
 
 
 def parsed(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
@@ -50,6 +50,11 @@ def parsed(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
         with suppress(ValueError, TypeError, RecursionError):
             kept.keep({key: as_bytes(file, source)})
     return file, mistakes
+
+
+def ships_in_form(text: str) -> bool:
+    """Tell whether a text is one that ships, and so is in form."""
+    return is_keeping() and shipped_key(text) in shipped(SHIPPED, MAKERS).keys
 
 
 def as_bytes(file: tree.File, source: Source) -> bytes:

@@ -1,0 +1,29 @@
+"""Rules that stand in a text without a provision or without an example, found without parsing it.
+
+It is for a remark on what is in order otherwise; `rulec audit` and `rulec test` look into them.
+"""
+
+from __future__ import annotations
+
+import re
+
+_COMMENT_OR_TEXT = re.compile(r'"[^"\n]*"|#[^\n]*')
+_RULE = re.compile(r"(?:^|[\s}])(override\s+)?(?:hard|soft)\s+rule\s+(\w+)|\bconfirm\s+rule\b")
+_CITE = re.compile(r"\bcite\b")
+_EXAMPLE = re.compile(r"\b(?:accept|reject)\b")
+
+
+def bare_rules(text: str) -> tuple[list[str], list[str]]:
+    """The rules that cite nothing, and those that have no example; not what overrides another."""
+    plain = _COMMENT_OR_TEXT.sub(" ", text)
+    heads = [*_RULE.finditer(plain)]
+    ends = [*[head.start() for head in heads], len(plain)][1:]
+    rules = [
+        (head[2], plain[head.end() : end])
+        for head, end in zip(heads, ends, strict=True)
+        if head[2] and not head[1]
+    ]
+    return (
+        [name for name, body in rules if not _CITE.search(body)],
+        [name for name, body in rules if not _EXAMPLE.search(body)],
+    )
