@@ -92,9 +92,9 @@ def check(
         tuple(files.values()),
         tuple(findings.values()),
         tuple(unread),
-        tuple(meant.left_alone),
-        tuple(uncited),
-        tuple(untested),
+        left_alone=tuple(meant.left_alone),
+        uncited=tuple(uncited),
+        untested=tuple(untested),
     )
 
 
