@@ -11,7 +11,14 @@ import numpy as np
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.cell_words.conduct_words import CONDUCT, ConductWords
 from rulec.cell_words.ego_boxes import EgoBoxes, ego_boxes
-from rulec.cell_words.place_words import PlaceWords, SceneWords, Words, settled_by_place
+from rulec.cell_words.place_words import (
+    NEEDS_CROSSING,
+    NEEDS_JUNCTION,
+    PlaceWords,
+    SceneWords,
+    Words,
+    settled_by_place,
+)
 from rulec.cell_words.probe_drives import ProbeDrives, probe_drives
 from rulec.cell_words.relation_words import FLOWS, RELATIONS, Relations
 from rulec.cell_words.road_frame import OthersNow, RoadFrame
@@ -60,7 +67,7 @@ def cell_words(graph: NavigationGraph, rules: CompiledRulebook) -> CellWords | N
         states = tuple((nothing,) * len(layer.cells) for layer in graph.layers)
         types = {name: (own.type, *own.broader) for name, own in graph.objects.items()}
         return CellWords(states, frozenset(), types, graph.present)
-    probes = probe_drives(graph, origin, rules, side)
+    probes = probe_drives(graph, origin, rules, side, NEEDS_JUNCTION | NEEDS_CROSSING)
     try:
         frame = RoadFrame(probes)
     except ValueError:

@@ -35,7 +35,7 @@ Row: TypeAlias = tuple[Floats, Floats, Floats]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LaneProbe:
-    """What extraction says of a drive along the middle of a lane.
+    """What extraction says of a drive along the middle of a lane, and of others what is asked for.
 
     ``s`` (m) are the scene's coordinates of its ``states``, ascending.
     """
@@ -123,9 +123,16 @@ def world_of(origin: SceneOrigin, ego: Participant, side: Side, steps: int) -> C
 
 
 def probe_drives(
-    graph: NavigationGraph, origin: SceneOrigin, rules: CompiledRulebook, side: Side
+    graph: NavigationGraph,
+    origin: SceneOrigin,
+    rules: CompiledRulebook,
+    side: Side,
+    of_others: frozenset[str],
 ) -> ProbeDrives:
-    """Ask extraction for all the words that rules read."""
+    """Ask extraction for all the words that rules read.
+
+    ``of_others`` are those about others that are kept of drives along lanes.
+    """
     step_s = origin.recording.step_s
     reach = [own.s for row in graph.reach for own in row if own is not None]
     low = min((s for s, _ in reach), default=graph.scenario.road.s[0]) - _BEFORE_M
@@ -150,7 +157,10 @@ def probe_drives(
             begins = drive.first_step - origin.start.step
             if number < len(lanes):
                 s = rows[number][1][0][begins : begins + drive.arrays.n_states]
-                lane_probes.append(LaneProbe(lanes[number], s, drive.trace.states))
+                # All that is said of others takes long to write
+                names = drive.arrays.world.keys() | (of_others & drive.arrays.about.keys())
+                of_lane = drive.arrays.part(names, drive.arrays.objects.keys())
+                lane_probes.append(LaneProbe(lanes[number], s, of_lane.trace().states))
             elif len(own) == 1:
                 trace = drive.trace
                 timed.append(TimedProbe(drive.first_step, trace.states, trace.objects))

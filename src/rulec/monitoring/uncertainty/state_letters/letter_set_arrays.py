@@ -64,6 +64,8 @@ class LetterSets:
             more = np.full((2 * n_before - len(table), width), -1, dtype=np.intp)
             table = self._tables[read] = np.concatenate([table, more])
         entry = here * width + column
+        if isinstance(entry, int) and (known := table.item(entry)) >= 0:
+            return known
         result: Numbers = table.take(entry)
         unmet = np.asarray(result) < 0
         if not unmet.any():
@@ -78,4 +80,4 @@ class LetterSets:
                 read, before[number // width], self._meanings[read][number % width]
             )
             table.ravel()[number] = places.setdefault(nodes, len(places))
-        return table.take(entry)
+        return table.item(entry) if isinstance(entry, int) else table.take(entry)

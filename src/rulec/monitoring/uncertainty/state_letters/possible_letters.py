@@ -193,8 +193,9 @@ class PossibleLetters:
         """The digits of a read in each state."""
         objects, binding = about.binding.objects, about.binding
         items = tuple([objects[variable] for variable in read.variables])
-        supposed = [own for own in about.supposed.items() if own[0][0] in read.names]
-        key = (read.kind, items, binding.first, binding.last, *supposed)
+        key: tuple[object, ...] = (read.kind, items, binding.first, binding.last)
+        if about.supposed:
+            key += tuple([own for own in about.supposed.items() if own[0][0] in read.names])
         digits = self._columns.get(key)
         if digits is None:
             if read.subject is None:
