@@ -77,8 +77,12 @@ def busiest(file: Path, rounds: int) -> Result:
         "partition fine and all of de, 0.5 s": partial(count, scene, law, 0.5),
         "partition fine and all of de, 0.25 s": partial(count, scene, finer_law, 0.25),
         "partition paper, extent body, 0.5 s": partial(cut, scene, 0.5, extent="body"),
+        "maneuvers with words, fine, all of de, 0.5 s": partial(
+            rulec.find_maneuvers, scene, law, partition="fine", step_s=0.5
+        ),
     }
     wanted = dict(zip(list(tasks)[1:], (300, 100, 1000, 2000), strict=False))
+    wanted[list(tasks)[-1]] = 1000
     taken = in_turns({name: in_ms(work) for name, work in tasks.items()}, rounds)
     cells = max(len(layer.cells) for layer in graph.layers)
     ways = count(scene, r1, 0.25).traces
