@@ -12,6 +12,7 @@ import pytest
 from rulec.cli.main import VERBS, main, rulec
 from rulec.cli.options.output_options import TABLES, chosen_format, endings_of
 from rulec.resources import scenarios_folder
+from support.builders import sumo_files, track_tables
 
 PICTURES = endings_of("svg", "png")
 FOUND = endings_of("full", "concise", "json", "sarif")
@@ -285,3 +286,34 @@ def test_the_former_name_is_taken_and_not_shown(name, capsys, tmp_path):
     capsys.readouterr()
     assert main(["traces", "--help"]) == 0
     assert "--format " not in capsys.readouterr().out
+
+
+BESIDE = {
+    "rulec.toml": ("", ["check", "esterle2019", "--output-format", "json"]),
+    "road.net.xml": (sumo_files.ROAD_NET, ["verify", "cars.csv", "-r", "esterle2019"]),
+    "road.rou.xml": ("<routes/>", ["verify", "cars.csv", "-r", "esterle2019"]),
+    "log_map_archive_a.json": ("{}", ["verify", "cars.csv", "-r", "esterle2019"]),
+    "lanes.csv": (track_tables.LANES, ["verify", "cars.csv", "-r", "esterle2019"]),
+}
+
+
+@pytest.mark.parametrize("name", BESIDE)
+def test_what_is_read_without_being_named_is_not_overwritten(name, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    content, words = BESIDE[name]
+    Path(name).write_text(content)
+    Path("cars.csv").write_text("track,t,x,y\n1,0,0,0\n1,0.1,1,0\n")
+    assert main([*words, "-o", name]) == 2
+    assert "error[R0735]" in capsys.readouterr().err
+    assert Path(name).read_text() == content
+
+
+@pytest.mark.parametrize("name", ["a.csv", "a.parquet", "a.xml", "a.mcap", "a.json"])
+def test_an_answer_replaces_an_older_one(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("lanes.csv").write_text(track_tables.LANES)
+    rows = [*track_tables.driving("1"), *track_tables.driving("2", speed=8.0, y=3.5)]
+    Path("cars.csv").write_text(track_tables.table("track,t,x,y", *rows))
+    for _ in range(2):
+        words = ["verify", "cars.csv", "--map", "lanes.csv", "-r", "esterle2019", "-o", name]
+        assert main(words) in {0, 1}

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rulec.diagnostics import SourceLocation, did_you_mean, named
+from rulec.diagnostics import RulecError, SourceLocation, did_you_mean, named
 from rulec.files import opened
 from rulec.recordings.encodings.csv_head import PARQUET
 from rulec.recordings.encodings.safe_xml import is_xml
@@ -35,6 +36,25 @@ def is_recording(file: str) -> bool:
     """
     glance = Glance(Path(file))
     return is_xml(glance.path) or any(form.recognises(glance) for form in (*FORMATS, *MAP_FORMATS))
+
+
+_BESIDE_SUMO = ("routes", "additional", "configuration")
+"""What XML that SUMO reads beside a net is of."""
+
+
+def is_beside_recordings(file: str) -> bool:
+    """True for a map, or what is read along with a recording that does not name it.
+
+    False for a file that cannot be looked at.
+    """
+    glance = Glance(Path(file))
+    with suppress(RulecError):
+        is_read_along = any(
+            form.recognises(glance) and form.is_companion(glance) for form in FORMATS
+        )
+        is_map = any(form.recognises(glance) for form in MAP_FORMATS)
+        return is_read_along or is_map or glance.root in _BESIDE_SUMO
+    return False
 
 
 def read_recordings(source: RecordingSource) -> Iterator[Recording]:

@@ -47,10 +47,10 @@ def is_track_head(names: Sequence[str]) -> bool:
 
 
 def is_lane_head(names: Sequence[str]) -> bool:
-    """True if the names of columns are those of lanes."""
+    """True if the names of columns are those of lanes, not of findings that name theirs."""
     given = {*names}
     x, y = ({name, f"{name}_m"} & given for name in "xy")
-    return bool(_LANE & given and x and y) and not (_TIME | {"trace"}) & given
+    return bool(_LANE & given and x and y) and not (_TIME | {"trace", "rule"}) & given
 
 
 def is_highd_head(names: Sequence[str]) -> bool:

@@ -19,6 +19,7 @@ import click
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.file_messages import OVERWRITES_INPUT
+from rulec.work_trees import is_ordinary
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
@@ -271,7 +272,8 @@ def refuse_overwriting(to: Sequence[Output], paths: Iterable[str]) -> None:
     Links and other spellings of a path lead to the same file.
 
     Raises:
-        RulecError: R0735, one of them is among these paths, or a source.
+        RulecError: R0735, one of them is among these paths, or a source, settings, a map, or what
+            is read along with recordings.
     """
     files = {_identity(one.path): one.path for one in to if one.is_file}
     for path in paths if files else ():
@@ -281,6 +283,18 @@ def refuse_overwriting(to: Sequence[Output], paths: Iterable[str]) -> None:
     for path in files.values():
         if path.endswith(".rules") and os.path.lexists(path):
             raise _overwrites(path, f"`{path}` is a source, and would be overwritten")
+        if Path(path).name in _OF_PROJECTS and os.path.lexists(path):
+            raise _overwrites(path, f"`{path}` is a project's own, and would be overwritten")
+        if is_ordinary(Path(path)):
+            # Formats of recordings, 80 ms: only for what would be replaced.
+            from rulec.recordings.recording_files import is_beside_recordings
+
+            if is_beside_recordings(path):
+                message = f"`{path}` is a map, or read along with recordings, and would be"
+                raise _overwrites(path, f"{message} overwritten")
+
+
+_OF_PROJECTS = ("rulec.toml", "rulec.lock")
 
 
 def refuse_standard_output(folder: str) -> None:
