@@ -75,3 +75,34 @@ def test_what_is_wrong_is_said(tmp_path, rows, said):
         recorded(tmp_path, rows=rows)
     assert raised.value.diagnostics[0].code == "R0610"
     assert said in raised.value.diagnostics[0].message
+
+
+STATIC = NET.replace('type="actuated"', 'type="static"')
+OTHER = '<tlLogic id="x" type="static" programID="b"><phase duration="9" state="r"/></tlLogic>'
+ADDED = '<additional-files value="more.xml"/>'
+
+
+@pytest.mark.parametrize(
+    ("more", "colour"),
+    [
+        (f"<additional>{OTHER}</additional>", "red"),
+        (f"<add>{OTHER}</add>", "red"),
+        ("<additional/>", "green"),
+        # What reacts to traffic, or changes between programmes, nobody knows; nor a file elsewhere
+        (f"<additional>{OTHER.replace('static', 'actuated')}</additional>", None),
+        (
+            f'<additional>{OTHER}<wautJunction wautID="w" junctionID="x"/></additional>',
+            None,
+        ),
+        (None, None),
+    ],
+)
+def test_a_programme_of_an_additional_file_replaces_the_nets(tmp_path, more, colour):
+    """SUMO loads it after the net, and what it loads last runs."""
+    path = written(tmp_path, data(*SEEN, head=ADDED), STATIC)
+    if more is not None:
+        (tmp_path / "more.xml").write_text(more, encoding="utf-8")
+    recording = read_sumo(path)
+    lights = recording.lanelets["in_1"].lights
+    assert [light.colour_at(0) for light in lights] == ([colour] if colour else [])
+    assert any("traffic lights" in remark for remark in recording.remarks) == (colour is None)

@@ -83,6 +83,29 @@ def test_speed_and_acceleration(tmp_path):
     assert [x.speed for x in second.states.values()] == [10.0, 11.0]
 
 
+def test_who_stands_keeps_its_heading(tmp_path):
+    """SUMO turns, and slides, who has to stop while it changes lanes; no vehicle does."""
+    rows = [(90, 5), (100, 5), (130, 0), (150, 0), (95, 3)]
+    one = only(
+        read(tmp_path, *(moment(k, body(angle=a, speed=v)) for k, (a, v) in enumerate(rows)))
+    )
+    turned = [np.degrees(one.states[k].heading) for k in range(5)]
+    assert turned == pytest.approx([0, -10, -10, -10, -5])
+
+
+def test_who_comes_into_sight_while_it_stands_has_the_heading_stated(tmp_path):
+    there = [moment(0, body(angle=90)), moment(1), moment(2, body(angle=150, speed=0))]
+    one, again = read(tmp_path, *there).participants
+    assert [one.id, again.id] == ["f.0", "f.0_2"]
+    assert np.degrees(again.states[2].heading) == pytest.approx(-60)
+
+
+def test_who_walks_turns_where_it_stands(tmp_path):
+    walker = {"element": "person", "kind": "DEFAULT_PEDTYPE", "speed": 0}
+    one = only(read(tmp_path, *(moment(k, body(angle=90 + 45 * k, **walker)) for k in range(2))))
+    assert np.degrees(one.states[1].heading) == pytest.approx(-45)
+
+
 def test_time_begins_with_the_simulation(tmp_path):
     recording = read(tmp_path, moment(3600, body()), moment(3600.5, body()))
     assert recording.step_s == 0.5

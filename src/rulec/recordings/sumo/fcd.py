@@ -41,6 +41,7 @@ class FcdHead:
 
     net: str = ""
     demand: tuple[str, ...] = ()
+    additional: tuple[str, ...] = ()
     geographic: bool = False
 
 
@@ -56,14 +57,14 @@ def _unescaped(text: str) -> str:
 def fcd_head(comment: str) -> FcdHead:
     """The configuration in a comment, as far as it matters here."""
     options = {name: _unescaped(value) for name, value in _OPTION.findall(comment)}
-    demand = [
-        name.strip()
+    routes, additional = (
+        tuple(filter(None, map(str.strip, options.get(key, "").split(","))))
         for key in ("route-files", "additional-files")
-        for name in options.get(key, "").split(",")
-    ]
+    )
     return FcdHead(
         options.get("net-file", ""),
-        tuple(filter(None, demand)),
+        (*routes, *additional),
+        additional,
         options.get("fcd-output.geo") in ("true", "1", "yes", "on"),
     )
 

@@ -1,14 +1,18 @@
-"""SUMO's states of traffic lights at every moment, as its output ``SaveTLSStates`` has them."""
+"""SUMO's traffic lights beside the data: what they showed, and programmes of additional files.
+
+States at every moment are those of its output ``SaveTLSStates``.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from rulec.recordings.encodings.safe_xml import root_of, scan
 from rulec.recordings.encodings.xml_element import XmlElement, XmlFormat
 from rulec.recordings.sumo.fcd import FcdHead, demand_beside, named_beside
-from rulec.recordings.sumo.net import SignalProgramme
+from rulec.recordings.sumo.net import ProgrammeReader, SignalProgramme
 
 STATES = XmlFormat(
     "SUMO's states of traffic lights",
@@ -35,6 +39,33 @@ def light_states_beside(path: Path, head: FcdHead) -> tuple[Path, ...]:
         return tuple(sorted(found))
     only = [*path.parent.glob("*.tls.xml"), *path.parent.glob("*.tls.xml.gz")]
     return tuple(only) if len(only) == 1 else ()
+
+
+def programmes_beside(path: Path, head: FcdHead) -> Mapping[str, SignalProgramme | None] | None:
+    """The lights whose programme an additional file replaces; None if such a file is not there.
+
+    SUMO loads these files after the net, and what it loads last runs. A file that changes between
+    programmes leaves its lights unknown.
+    """
+    found: dict[str, SignalProgramme | None] = {}
+    for name in head.additional:
+        file = named_beside(path, name)
+        if file is None:
+            return None
+        lights, switched = ProgrammeReader(), set[str]()
+
+        def begin(
+            element: XmlElement, lights: ProgrammeReader = lights, switched: set[str] = switched
+        ) -> None:
+            lights.begin(element)
+            if element.name == "wautJunction":
+                switched.add(element.get("junctionID"))
+
+        scan(file, replace(_ADDITIONAL, root=root_of(file, _ADDITIONAL)), begin)
+        lights.finish()
+        found.update({name: programmes[-1] for name, programmes in lights.programmes.items()})
+        found.update(dict.fromkeys(switched))
+    return found
 
 
 def read_light_states(path: Path) -> Mapping[str, SignalProgramme]:

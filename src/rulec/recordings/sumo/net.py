@@ -167,28 +167,46 @@ class SumoNet:
         return [name for name, known in self.programmes.items() if len(known) > 1 or None in known]
 
 
+class ProgrammeReader:
+    """Reads programmes of lights, `tlLogic` with its phases, one element after another."""
+
+    def __init__(self) -> None:
+        self.programmes: dict[str, list[SignalProgramme | None]] = {}
+        self._light: tuple[str, float, bool] | None = None
+        self._phases: list[tuple[float, str]] = []
+
+    def begin(self, element: XmlElement) -> None:
+        """An element begins, of whatever name."""
+        if element.name == "phase":
+            if self._light is not None:
+                self._phases.append((element.positive("duration"), element.text("state")))
+            return
+        self.finish()
+        if element.name == "tlLogic":
+            fixed = element.attributes.get("type", "static") == "static"
+            self._light = element.text("id"), element.number("offset", 0.0), fixed
+
+    def finish(self) -> None:
+        """The file ends, or what was read last does."""
+        if self._light is not None:
+            name, offset, fixed = self._light
+            programme = SignalProgramme(offset, tuple(self._phases))
+            known = self.programmes.setdefault(name, [])
+            known.append(programme if fixed and self._phases else None)
+            self._phases.clear()
+            self._light = None
+
+
 def read_net(path: Path) -> SumoNet:
     """The net in a file. Raises RulecError R0610 if it is none, R0701 if it cannot be read."""
-    net = SumoNet()
+    lights = ProgrammeReader()
+    net = SumoNet(programmes=lights.programmes)
     edge: NetEdge | None = None
     junction: NetJunction | None = None
-    light: XmlElement | None = None
-    phases: list[tuple[float, str]] = []
-
-    def finish_light() -> None:
-        nonlocal light
-        if light is not None:
-            fixed = light.attributes.get("type", "static") == "static"
-            programme = SignalProgramme(light.number("offset", 0.0), tuple(phases))
-            known = net.programmes.setdefault(light.text("id"), [])
-            known.append(programme if fixed and phases else None)
-            phases.clear()
-            light = None
 
     def begin(element: XmlElement) -> None:
-        nonlocal edge, junction, light
-        if element.name != "phase":
-            finish_light()
+        nonlocal edge, junction
+        lights.begin(element)
         match element.name:
             case "net":
                 net.side = "left" if element.get("lefthand") in ("true", "1") else "right"
@@ -217,13 +235,9 @@ def read_net(path: Path) -> SumoNet:
                 net.roundabouts.update(element.get("edges").split())
             case "connection":
                 net.connections.append(_connection(element))
-            case "tlLogic":
-                light = element
-            case "phase" if light is not None:
-                phases.append((element.positive("duration"), element.text("state")))
 
     scan(path, NET, begin)
-    finish_light()
+    lights.finish()
     if not net.lanes:
         raise NET.refused(path, "it has no lane")
     return net

@@ -8,7 +8,7 @@ from math import gcd
 from pathlib import Path
 
 import numpy as np
-from numpy import float64, int64
+from numpy import float64, int64, intp
 from numpy.typing import NDArray
 
 from rulec.diagnostics import SourceLocation
@@ -34,7 +34,11 @@ from rulec.recordings.sumo.fcd import (
     read_fcd,
 )
 from rulec.recordings.sumo.lanelets import net_lanelets
-from rulec.recordings.sumo.light_states import light_states_beside, read_light_states
+from rulec.recordings.sumo.light_states import (
+    light_states_beside,
+    programmes_beside,
+    read_light_states,
+)
 from rulec.recordings.sumo.net import SumoNet, read_net
 from rulec.recordings.sumo.vehicle_types import VehicleType, read_vehicle_types, vehicle_type
 from rulec.recordings.track import Track, TrackOutlines, TrackStates
@@ -83,6 +87,10 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
     types = read_vehicle_types(demand_beside(path, data.head))
     unknown: set[str] = set()
     participants = tuple(_participants(data, types, step_s, unknown))
+    replaced = programmes_beside(path, data.head)
+    # What is not there may have programmes for each of them
+    replaced = dict.fromkeys(net.programmes) if replaced is None else replaced
+    net.programmes.update({name: [programme] for name, programme in replaced.items()})
     for file in light_states_beside(path, data.head):
         shown = read_light_states(file).items()
         net.programmes.update({name: [programme] for name, programme in shown})
@@ -226,10 +234,13 @@ def fcd_participants(
     ``steps``: the time step of every moment of the file.
     """
     own = steps[np.array(track_rows.moments, dtype=int64)]
-    rows = _centres(np.array(track_rows.rows, dtype=float).reshape(-1, 4), kind.length)
+    starts = np.flatnonzero(np.diff(own, prepend=own[0] - 2) > 1)
+    rows = np.array(track_rows.rows, dtype=float).reshape(-1, 4)
+    if track_rows.element == "vehicle":
+        rows[:, 2] = _steered(rows, starts)
+    rows = _centres(rows, kind.length)
     rows = np.column_stack((rows, _accelerations(track_rows, rows[:, 3], own, step_s)))
     lamps = {int(steps[moment]): _lit(bits) for moment, bits in track_rows.lamps.items()}
-    starts = np.flatnonzero(np.diff(own, prepend=own[0] - 2) > 1)
     for number, (start, end) in enumerate(zip(starts, [*starts[1:], len(own)], strict=True), 1):
         track = Track(own[start:end], rows[start:end], kind.length, kind.width)
         name = key if number == 1 else f"{key}_{number}"
@@ -243,6 +254,19 @@ def fcd_participants(
             lamps={step: lit for step, lit in lamps.items() if first <= step <= last},
             shows=_SHOWN if lamps else frozenset(),
         )
+
+
+def _steered(rows: NDArray[float64], starts: NDArray[intp]) -> NDArray[float64]:
+    """The angles of a vehicle, which keeps the one that it had while it stands.
+
+    SUMO turns who has to stop on its way to another lane, and slides it there. ``starts`` are the
+    rows in which it comes into sight.
+    """
+    moves = rows[:, 3] != 0.0
+    moves[starts] = True
+    last = np.maximum.accumulate(np.where(moves, np.arange(len(rows)), 0))
+    angles: NDArray[float64] = rows[last, 2]
+    return angles
 
 
 def _centres(rows: NDArray[float64], length: float) -> NDArray[float64]:
