@@ -17,6 +17,16 @@ def of_each(books, rule, violated, states, objects=None):
     return [(book, rule, violated, states, objects or {}) for book in books.split()]
 
 
+WEAVES = {"dense_all_lanes": True, "lane_change": True, "lanes": "two_lanes", "lane": "far_lane"}
+
+
+def turned_after_the_lamp(seconds):
+    """A turn to the far side so long after the lamp went out."""
+    lit = {"indicator": "far_indicator", "turn": "turn_far", "speed": 20}
+    dark = {**lit, "indicator": "no_indicator"}
+    return [lit, *[dark] * (seconds - 1), {**dark, "enters_junction": True}, {"speed": 20}]
+
+
 def stopped_before(fastest):
     """Ego stands, and is as fast as that just before the line of its stop sign."""
     return [
@@ -30,6 +40,12 @@ SITUATIONS = [
     # 3 m/s^2 from 6 m before the line make 6 m/s, 21.6 km/h, on it; from 7 m 23.3 km/h
     *of_each("de fr gb us-ca in", "stop_sign", False, stopped_before(21.6)),
     *of_each("de fr gb us-ca in", "stop_sign", True, stopped_before(23.3)),
+    # The lamp is off again when ego turns, as a stalk springs back early
+    *of_each("de gb us-ca jp", "indicator_when_turning", False, turned_after_the_lamp(2)),
+    *of_each("de gb us-ca jp", "indicator_when_turning", True, turned_after_the_lamp(3)),
+    # Three cars one after the other at 100 km/h are no queue
+    *of_each("fr gb es", "queue_weaving", False, [{"speed": 100}, {**WEAVES, "speed": 100}]),
+    *of_each("fr gb es", "queue_weaving", True, [{"speed": 70}, {**WEAVES, "speed": 70}]),
     # One parked beside a street, of which nobody knows that a system drives it
     *of_each("un-r157 un-r79", "road_of_the_system", False, [{"speed": 0}] * 3),
     *of_each("un-r157 un-r79", "road_of_the_system", True, [{"speed": 0}, {"speed": 20}]),

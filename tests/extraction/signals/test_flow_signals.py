@@ -35,6 +35,21 @@ def test_congestion_takes_three_vehicles_with_a_low_median():
     assert not first(steady(8, 30, 0, speed=8), steady(9, 105, 0, speed=8), ego=slow)["congested"]
 
 
+@pytest.mark.parametrize(("speed", "slow"), [(16.0, True), (17.0, False)])
+def test_who_queues_beside_a_lane_that_flows_is_in_no_jam(speed, slow):
+    """Five stand in ego's lane, and two beside it drive 57.6 km/h or 61.2; 60 are twice 30."""
+    ego = steady(7, 0, 0, speed=0)
+    found = first(*line(0, 4), *line(speed, 2, y=4.0, number=30), ego=ego)
+    assert (found["congested"], found["CONGESTED"]) == (slow, slow)
+    # 20 km/h are twice the pace of who walks
+    assert not found["walking_pace_flow"]
+
+
+def test_a_single_one_that_drives_past_a_jam_is_no_flow():
+    ego = steady(7, 0, 0, speed=0)
+    assert first(*line(0, 4), steady(30, 10, 4.0, speed=17), ego=ego)["walking_pace_flow"]
+
+
 def test_all_lanes_queue_when_each_has_three_close_vehicles():
     both = [*line(10, 2), *line(10, 3, y=4.0, number=30)]
     assert first(*both)["dense_all_lanes"]

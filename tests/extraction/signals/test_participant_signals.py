@@ -98,6 +98,25 @@ def test_ego_has_seen_one_stand_that_it_can_stop_behind(ahead, brakes, word):
     assert ("?" if unknown else bool(signals.about["safe_gap"][0, 1])) == word
 
 
+@pytest.mark.parametrize(
+    ("short_m", "states", "unknown"),
+    [(0.3, 1, True), (0.3, 2, False), (1.5, 1, False)],
+)
+def test_what_is_briefly_and_slightly_too_near_may_be_what_boxes_err(short_m, states, unknown):
+    """Both drive at 10 m/s, so ego needs 10 m; distances are known to 5 cm, speeds to 0.1 m/s.
+
+    By the speeds the safe distance may be off by 2.25 and 1.25 m a m/s, 0.26 m, with places 0.27.
+    States are of 0.5 s: one is less than a second.
+    """
+    near = [k in range(4, 4 + states) for k in range(10)]
+    ahead, longer = (steady(8, 14.5, 0, steps=10, length=4.0 + m) for m in (0, 1 + 2 * short_m))
+    drawn = {k: (longer if near[k] else ahead).outlines[k] for k in range(10)}
+    bodies = [steady(7, 0, 0, steps=10), replace(ahead, outlines=drawn)]
+    signals = participant_signals(context_of(recording(lanes(1), bodies)))
+    assert signals.about["safe_gap"][0].tolist() == [not short for short in near]
+    assert signals.unknown["safe_gap"][0, near].tolist() == [unknown] * states
+
+
 @pytest.mark.parametrize(("leaves_at", "unknown"), [(8, True), (9, False)])
 def test_the_gap_to_one_that_ego_parts_from_soon_is_moot(leaves_at, unknown):
     """Steps are of 0.5 s, and in the state 4 s later it is in the other lane, or not yet."""

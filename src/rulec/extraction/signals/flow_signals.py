@@ -30,6 +30,9 @@ from rulec.trace.plain_arrays import distinct, medians
 _DRIFT_MPS = 0.2
 """Who moves sideways by less keeps its lane."""
 
+_FLOWS = 2.0
+"""A lane on which several are so many times as fast as slow traffic flows."""
+
 _SETS_OFF_MPS2 = 2.0
 """Vehicles gain speed about so hard when they set off."""
 
@@ -40,15 +43,28 @@ def flow_signals(context: DriveContext, names: SignalNames = None) -> SignalColu
 
 
 def _slow_traffic(context: DriveContext) -> SignalColumns:
+    """Whether traffic is slow as a whole, and no lane flows beside the others.
+
+    Who queues to leave, beside lanes on which traffic flows, is in no jam of the road.
+    """
     around, limits = vehicles_around(context), context.thresholds
     speeds, counts = medians(around.state, around.speed, context.states)
     enough, speed_kmh = counts >= limits.fewest, speeds * KMH
-    congested = enough & (speed_kmh < limits.congested_kmh)
+    lanes = context.existing_lanes.shape[1]
+    place = around.state * lanes + around.lane
+    of_lane, on_lane = medians(place, around.speed, context.states * lanes)
+    fast = np.where(on_lane > 1, of_lane, 0.0).reshape(context.states, lanes)
+    fastest_kmh = fast.max(axis=1, initial=0.0) * KMH
+
+    def slow(below_kmh: float) -> Flags:
+        return enough & (speed_kmh < below_kmh) & (fastest_kmh < _FLOWS * below_kmh)
+
+    congested = slow(limits.congested_kmh)
     return SignalColumns(
         {
             "congested": congested,
             "CONGESTED": congested,
-            "walking_pace_flow": enough & (speed_kmh < limits.walking_pace_kmh),
+            "walking_pace_flow": slow(limits.walking_pace_kmh),
         }
     )
 

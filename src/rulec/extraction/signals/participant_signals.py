@@ -38,6 +38,12 @@ _ALONG = 0.5
 
 _TWO_WHEELED = ("motorcycle", "bicycle")
 
+_BRIEF_S = 1.0
+_OUTLIERS = 3.0
+"""So many tolerances off are places now and then, but not for ``_BRIEF_S``."""
+
+_HAIR_S = 1e-6
+
 
 def participant_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
     """The signals of objects, those of the names."""
@@ -126,7 +132,8 @@ def _safe_gap(context: DriveContext) -> SignalColumns:
     """Whether ego keeps its distance from who is, or may be, ahead in its lane.
 
     Unknown of one that stood ``reaction_s`` ago already, if ego can stop behind it: it has seen it
-    stand, and need not react first.
+    stand, and need not react first. And where it is too short for less than ``_BRIEF_S``, and by no
+    more than ``_OUTLIERS`` tolerances: that may be what boxes err.
     """
     _, _, may_follow = relations.ahead_in_lane(context)
     place, cells, limits = context.tolerances.place_m, may_follow.nonzero(), context.thresholds
@@ -145,7 +152,23 @@ def _safe_gap(context: DriveContext) -> SignalColumns:
     safe, unknown = np.ones(may_follow.shape, dtype=bool), np.zeros(may_follow.shape, dtype=bool)
     safe[cells] = ~follows | (short <= 0)
     unknown[cells] = (follows & (np.abs(short) < wrong)) | (moot & (short > -wrong))
+    late, far_too_late = np.zeros((2, *may_follow.shape), dtype=bool)
+    late[cells] = follows & (short >= wrong)
+    far_too_late[cells] = follows & (short > _OUTLIERS * wrong)
+    unknown |= _brief_and_slight(context, late, far_too_late)
     return SignalColumns(about={"safe_gap": safe}, unknown={"safe_gap": unknown})
+
+
+def _brief_and_slight(context: DriveContext, late: Flags, far_too_late: Flags) -> Flags:
+    """Flags of runs of late states that last for less than ``_BRIEF_S`` and are nowhere far too."""
+    if not late.any():
+        return late
+    spans = context.spans
+    since, until = spans.latest(~late) + 1, spans.next_state(~late)
+    brief = (until - since) * context.recording.step_s < _BRIEF_S - _HAIR_S
+    slight = (spans.latest(far_too_late) < since) & (spans.next_state(far_too_late) >= until)
+    found: Flags = late & brief & slight
+    return found
 
 
 def _stood_before(context: DriveContext) -> Flags:
