@@ -268,3 +268,28 @@ def test_a_number_that_passes_one_of_its_limits_has_changed():
     (violation,) = verify(trace, rules).violations
     (gap,) = explain(violation, trace, rules).facts
     assert gap.changed
+
+
+@pytest.mark.parametrize(
+    ("body", "places", "lasts"),
+    [
+        # Near from the third state on, and at its end far: it began when it was far last
+        ("far(x) then near(x) then far(x)", "fffnnnff", (2, 6)),
+        # So did what has to last for two seconds, those of states 3 and 4, though it goes on
+        ("true then near(x) then[>= 2 s] true", "fffnnnnn", (2, 4)),
+        # What has no phases is broken for as long as it holds
+        ("near(x)", "fffnnnff", (3, 5)),
+    ],
+)
+def test_what_takes_its_course_lasts_from_where_it_begins(body, places, lasts):
+    text = (
+        "rulebook b\ntype car\nplace(x: car) is one of near, far default far\n"
+        f"hard rule A (x: car) {{ require never ({body}) }}\n"
+    )
+    rules = compile_rulebook(parse_rulebook(text))
+    states = tuple({"place": {"car1": {"n": "near", "f": "far"}[one]}} for one in places)
+    trace = Trace("t", 1.0, {"car1": "car"}, states)
+    (violation,) = verify(trace, rules).violations
+    explained = explain(violation, trace, rules)
+    assert explained.lasts == lasts
+    assert explained.lasts[0] <= explained.decisive == violation.step

@@ -22,6 +22,7 @@ def rules(tmp_path_factory):
         "rulebook far\nuse v\n"
         "hard rule half (a: car) { require always gap(a) >= 1.8 s * speed }\n"
         "hard rule slow { require always speed <= limit }\n"
+        "hard rule signed { require always speed <= (limit if limit < 1000 km/h else 130 km/h) }\n"
         "hard rule few { require always (count a: car (gap(a) < 30 m)) < 1 }\n"
     )
     return compile_rulebook(source)
@@ -49,7 +50,17 @@ def test_a_comparison_with_a_multiple(rules):
 
 def test_both_sides_have_names_where_both_are_quantities(rules):
     margins, _ = explained(rules, "slow", (40.0, 50.002, 50.0))
-    assert [str(one) for one in margins] == ["limit 50.000 km/h < speed 50.002 km/h"]
+    assert [str(one) for one in margins] == ["speed 50.002 km/h > limit 50.000 km/h"]
+
+
+@pytest.mark.parametrize(
+    ("limit", "said"),
+    [(50.0, "speed 140 km/h > limit 50 km/h"), (1000.0, "speed 140 km/h > 130 km/h")],
+)
+def test_what_chooses_the_limit_is_no_margin(rules, limit, said):
+    """That a sign says less than 1000 km/h, or none does, is not by how much ego is too fast."""
+    margins, _ = explained(rules, "signed", (40.0, 140.0, limit))
+    assert [str(one) for one in margins] == [said]
 
 
 def test_a_count_is_no_measure(rules):

@@ -18,8 +18,9 @@ from rulec.logic.kleene import objects_counted
 from rulec.logic.printing import formula_text, term_text
 from rulec.logic.semantics import extended_values
 from rulec.monitoring.bindings import Binding, binding_of
+from rulec.monitoring.explain.broken_stretch import broken_stretch
 from rulec.monitoring.explain.explained_states import states_to_explain
-from rulec.monitoring.explain.margins import Margin
+from rulec.monitoring.explain.margins import Margin, choosing_comparisons
 from rulec.monitoring.explain.nearest_satisfying import Repair, nearest_satisfying
 from rulec.monitoring.explain.observed_states import ObservedStates, known_value
 from rulec.monitoring.implied_values import with_implied_values
@@ -83,10 +84,11 @@ class Explanation:
     nothing could save the rule any more, or the last one. ``facts`` and ``parts`` have a value for
     each of ``states``; the first part is the formula itself, each stands before what it is made of.
     ``lasts`` are the first and the last state of the stretch in which what always, or never, has to
-    be is broken; of other rules the decisive state. ``repair`` is what states would have had to say
-    for the rule to be kept, their places being their numbers in the trace; None if nothing would
-    have helped, or nobody has looked. ``looked_at`` are the first and the last state of the window
-    that was looked at in a trace that is too long, else None.
+    be is broken, or in which what never must be takes its course; of other rules the decisive
+    state. ``repair`` is what states would have had to say for the rule to be kept, their places
+    being their numbers in the trace; None if nothing would have helped, or nobody has looked.
+    ``looked_at`` are the first and the last state of the window that was looked at in a trace that
+    is too long, else None.
     """
 
     __repr__ = short_repr
@@ -105,7 +107,8 @@ class Explanation:
     def margins(self) -> list[Margin]:
         """By how much: the comparisons of quantities that decide, in the decisive state.
 
-        What only says when the rule asks for anything, such as that ego drives at all, is none.
+        What only says when the rule asks for anything, such as that ego drives at all, is none, nor
+        what chooses what it asks for, such as that a sign tells a limit, where others are left.
         """
         at = self.states.index(self.decisive)
         when = set() if self.rule.trigger is None else set(ltl.atoms_of(self.rule.trigger))
@@ -116,7 +119,10 @@ class Explanation:
             for fact in self.facts
             if fact.decides and fact.margins and fact.text.partition("(")[0] in names
         ]
-        margins += [part.margins[at] for part in asked if part.margins]
+        choosing = choosing_comparisons(self.rule.formula)
+        compared = [part for part in asked if part.margins]
+        asks = [part for part in compared if part.formula not in choosing] or compared
+        margins += [part.margins[at] for part in asks]
         return [margin for margin in dict.fromkeys(margins) if margin is not None]
 
     def __str__(self) -> str:
@@ -196,7 +202,7 @@ def explain(
     values = {part: column[: len(word)] for part, column in known.items()}
     instants = instants_among(known, formula, len(word), rulebook.semantics)
     deciding = {part for part, at in instants.items() if True in at}
-    first, last = _broken_stretch(formula, values, place, numbers)
+    first, last = broken_stretch(formula, values, word[: place + 1], numbers)
     whole = len(numbers) == len(stretch)
     repair = None
     if whole and repaired:
@@ -251,47 +257,6 @@ def _letters(
     for row in set(rows):
         known[row] = frozenset(atom for atom, is_true in zip(truths, row, strict=True) if is_true)
     return [known[row] for row in rows]
-
-
-def _broken_stretch(
-    formula: ltl.Formula,
-    values: Mapping[ltl.Formula, list[bool]],
-    decisive: int,
-    numbers: Sequence[int],
-) -> tuple[int, int]:
-    """The stretch around a state in which the body of an outermost always or never is broken.
-
-    It ends where states, whose ``numbers`` these are, have been left out.
-    """
-    for part, wanted in _bodies(formula):
-        column = values[part]
-        broken = [n for n in range(decisive, -1, -1) if column[n] is not wanted]
-        if broken:
-            first = last = broken[0]
-            while (
-                first > 0
-                and column[first - 1] is not wanted
-                and numbers[first - 1] == numbers[first] - 1
-            ):
-                first -= 1
-            while last + 1 < len(column) and column[last + 1] is not wanted:
-                last += 1
-            return first, max(last, decisive)
-    return decisive, decisive
-
-
-def _bodies(formula: ltl.Formula) -> Iterator[tuple[ltl.Formula, bool]]:
-    """What has to be true, or false, in all states, and which of both."""
-    match formula:
-        case ltl.Unary(ltl.UnaryOperator.ALWAYS, body, None):
-            yield body, True
-        case ltl.Unary(ltl.UnaryOperator.NEVER, body, None):
-            yield body, False
-        case ltl.Binary(ltl.BinaryOperator.AND, left, right):
-            yield from _bodies(left)
-            yield from _bodies(right)
-        case ltl.Binary(ltl.BinaryOperator.IMPLIES | ltl.BinaryOperator.OR, _, right):
-            yield from _bodies(right)
 
 
 def _with_margins(

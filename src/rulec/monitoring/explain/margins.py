@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil, floor, log10
@@ -23,6 +23,16 @@ _OTHERWISE: Mapping[ltl.Relation, ltl.Relation] = {
     "!=": "=",
     ">=": "<",
     ">": "<=",
+}
+
+
+_TURNED: Mapping[ltl.Relation, ltl.Relation] = {
+    "<": ">",
+    "<=": ">=",
+    "=": "=",
+    "!=": "!=",
+    ">=": "<=",
+    ">": "<",
 }
 
 
@@ -137,7 +147,10 @@ def _in_nine(number: float) -> float:
 def margin_in(
     comparison: ltl.Comparison, bound: Mapping[str, str], view: StateView
 ) -> Margin | Unknown:
-    """The margin of a comparison: what has a positive coefficient stands on the left."""
+    """The margin of a comparison: what has a positive coefficient stands on the left.
+
+    Of two quantities the one that is written there, as in ``speed <= limit``.
+    """
     left = tuple(term for term in comparison.terms if term[0] > 0)
     right = tuple((-coefficient, term) for coefficient, term in comparison.terms if coefficient < 0)
     value, rest = weighted_sum(left, bound, view), weighted_sum(right, bound, view)
@@ -156,7 +169,7 @@ def margin_in(
     if len(right) == 1 and right[0][0] == 1 and not comparison.limit:
         against = _named(right[0][1], bound)
     text = _named(lead, bound) + (" + …" if more else "")
-    return Margin(
+    margin = Margin(
         text,
         value=float(value),
         relation=relation,
@@ -166,6 +179,43 @@ def margin_in(
         value_error=float(value_error),
         limit_error=float(limit_error),
         error=float(value_error + limit_error),
+    )
+    two = len(left) == 1 and left[0][0] == 1 and against
+    return _turned(margin) if two and comparison.text.startswith(term_text(right[0][1])) else margin
+
+
+def choosing_comparisons(formula: ltl.Formula) -> Set[ltl.Formula]:
+    """The comparisons that a formula has both as they are and negated: `a if c else b`."""
+    plain: set[ltl.Formula] = set()
+    negated: set[ltl.Formula] = set()
+
+    def look(part: ltl.Formula, into: set[ltl.Formula]) -> None:
+        match part:
+            case ltl.Comparison():
+                into.add(part)
+            case ltl.Unary(ltl.UnaryOperator.NOT, ltl.Comparison() as inner):
+                look(inner, negated)
+            case ltl.Unary(_, inner):
+                look(inner, plain)
+            case ltl.Binary(_, left, right):
+                look(left, plain)
+                look(right, plain)
+
+    look(formula, plain)
+    return plain & negated
+
+
+def _turned(margin: Margin) -> Margin:
+    """A margin of two quantities with the other one on the left."""
+    return replace(
+        margin,
+        text=margin.against,
+        value=margin.limit,
+        relation=_TURNED[margin.relation],
+        limit=margin.value,
+        against=margin.text,
+        value_error=margin.limit_error,
+        limit_error=margin.value_error,
     )
 
 

@@ -1,0 +1,70 @@
+"""Over which states what always, or never, has to be is broken."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from rulec.logic import formula as ltl
+from rulec.logic.semantics import Letter, extended_values
+
+
+def broken_stretch(
+    formula: ltl.Formula,
+    values: Mapping[ltl.Formula, list[bool]],
+    until: Sequence[Letter],
+    numbers: Sequence[int],
+) -> tuple[int, int]:
+    """The stretch around a state in which the body of an outermost always or never is broken.
+
+    That state is the last one of ``until``. What never must be and is done in phases, such as
+    passing somebody, lasts from where it begins at the latest up to there. The stretch ends where
+    states, whose ``numbers`` these are, have been left out.
+    """
+    decisive = len(until) - 1
+    for part, wanted in _bodies(formula):
+        if not wanted and _has_phases(part):
+            # The last phase may be no more than that it goes on
+            for word in (until, [*until, frozenset()]):
+                done = extended_values(part, word, "finite")[part]
+                begins = [n for n in range(decisive, -1, -1) if done[n]]
+                if begins:
+                    return begins[0], decisive
+        column = values[part]
+        broken = [n for n in range(decisive, -1, -1) if column[n] is not wanted]
+        if broken:
+            first = last = broken[0]
+            while (
+                first > 0
+                and column[first - 1] is not wanted
+                and numbers[first - 1] == numbers[first] - 1
+            ):
+                first -= 1
+            while last + 1 < len(column) and column[last + 1] is not wanted:
+                last += 1
+            return first, max(last, decisive)
+    return decisive, decisive
+
+
+def _bodies(formula: ltl.Formula) -> Iterator[tuple[ltl.Formula, bool]]:
+    """What has to be true, or false, in all states, and which of both."""
+    match formula:
+        case ltl.Unary(ltl.UnaryOperator.ALWAYS, body, None):
+            yield body, True
+        case ltl.Unary(ltl.UnaryOperator.NEVER, body, None):
+            yield body, False
+        case ltl.Binary(ltl.BinaryOperator.AND, left, right):
+            yield from _bodies(left)
+            yield from _bodies(right)
+        case ltl.Binary(ltl.BinaryOperator.IMPLIES | ltl.BinaryOperator.OR, _, right):
+            yield from _bodies(right)
+
+
+def _has_phases(formula: ltl.Formula) -> bool:
+    match formula:
+        case ltl.Unary(_, operand):
+            return _has_phases(operand)
+        case ltl.Binary(operator, left, right):
+            phases = operator is ltl.BinaryOperator.THEN
+            return phases or _has_phases(left) or _has_phases(right)
+        case _:
+            return False
