@@ -1,10 +1,16 @@
 """Recordings made by hand, judged by books of law, with verdicts thought through."""
 
+import json
 from math import pi
 
 import pytest
 
 from rulec.api.rulebook_compilation import machines
+from rulec.extraction.recording_verdicts import RecordingVerdicts
+from rulec.extraction.selection import RequestedDrives
+from rulec.extraction.violation_evidence import evidence_of
+from rulec.report.verdict_findings.found_in_drives import DriveFindings
+from rulec.report.verdicts import recording_json
 from support.builders.drive_verdicts import violated
 from support.builders.recordings import recording, straight, vehicle
 
@@ -46,6 +52,24 @@ def test_a_queue_on_the_other_side_of_the_road_is_not_overtaken(y, heading, pass
     cars = [going(7, 20, 0.0, 20.0), going(8, 100, y, 0.0, heading=heading)]
     found = violated(recording(lanes, cars), GERMAN, egos=("7",))
     assert found["7"].get("near_side_passing") == (4.5 if passed else None)
+
+
+def test_who_is_overtaken_and_speeds_up_is_told_by_whom():
+    """7 gains 2 m/s each second from 20 m/s on, 8 comes past it at 40 m/s; 9 is far ahead."""
+    places = {k: (200 + 20 * k * STEP_S + (k * STEP_S) ** 2, 0.0) for k in range(20)}
+    cars = [vehicle(7, places), going(8, 160, 4.0, 40.0), going(9, 500, 4.0, 40.0)]
+    found = recording(two_lanes(**MOTORWAY), cars)
+    judged = RecordingVerdicts(found, GERMAN, RequestedDrives(egos=("7",)), "by hand")
+    (one,) = judged.answers()
+    (violation,) = [x for x in one.answer.violations if x.rule == "being_overtaken"]
+    evidence = evidence_of(violation, one.drive, GERMAN, {})
+    assert evidence.whom == ("8",)
+    findings = DriveFindings(judged, "by hand.xml")
+    finding = next(x for x in findings.add(one) if x.rule == "being_overtaken")
+    assert finding.other == ("8",)
+    assert "towards 8" in finding.says
+    said = json.loads(recording_json.as_json(one, judged, ()))["violations"]
+    assert [x["evidence"]["whom"] for x in said if x["rule"] == "being_overtaken"] == [["8"]]
 
 
 def test_overtaking_on_the_left():

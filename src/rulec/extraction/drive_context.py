@@ -71,6 +71,11 @@ class DriveContext:
         return self.surroundings.tolerances
 
     @cached_property
+    def ids(self) -> tuple[str, ...]:
+        """The participants' ids, by row."""
+        return tuple(body.id for body in self.tracks.participants)
+
+    @cached_property
     def states(self) -> int:
         """The number of states."""
         return self.spans.n_states

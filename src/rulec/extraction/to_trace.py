@@ -219,7 +219,7 @@ class Drive:
     Its states are made of ``arrays`` when they are first asked for. ``kinds`` are the Python types
     of the signals that the recording supplies, whether or not any object is there to have them;
     ``decided_by`` has the numbers behind Boolean ones. ``places`` are where ego's middle is in each
-    state.
+    state, ``whom`` has the ids of those because of whom a signal of the world is as it is there.
     """
 
     __repr__ = short_repr
@@ -230,6 +230,7 @@ class Drive:
     kinds: Mapping[str, type]
     decided_by: Mapping[str, DecidedBy] = field(default_factory=dict, compare=False)
     places: Sequence[Place] = field(default=(), compare=False)
+    whom: Mapping[str, Sequence[tuple[str, ...]]] = field(default_factory=dict, compare=False)
 
     @cached_property
     def trace(self) -> Trace:
@@ -313,6 +314,7 @@ def to_traces(
             kinds,
             decided_by=decided,
             places=places.part(columns),
+            whom={name: ids[columns] for name, ids in signals.whom.items()},
         )
         for ego, start, own, decided, columns in zip(
             egos, starts, arrays, decided_by, spans.slices, strict=True

@@ -25,7 +25,9 @@ class ViolationEvidence:
     The names that its rule reads were ``measured`` in all states, be it to a tolerance, ``assumed``
     by the user, presumed (or taken by default, if that was asked for), or ``unknown`` in some state
     without making a difference. It lasts from ``from_s`` to ``to_s`` (s of the recording), and is
-    decided ``at_s``; ``margins`` say by how much, ``place`` where ego is then.
+    decided ``at_s``; ``margins`` say by how much, ``place`` where ego is then. ``whom`` are those
+    because of whom a word that decides is then as it is, such as who overtakes ego, where the rule
+    itself names nobody.
     """
 
     measured: tuple[str, ...]
@@ -37,6 +39,7 @@ class ViolationEvidence:
     at_s: float
     margins: tuple[Margin, ...]
     place: Place | None
+    whom: tuple[str, ...] = ()
 
 
 def evidence_of(
@@ -68,7 +71,23 @@ def evidence_of(
         at_s=drive.time_s(explained.decisive),
         margins=tuple(explained.margins()),
         place=drive.places[explained.decisive] if drive.places else None,
+        whom=_whom(explained, drive),
     )
+
+
+def _whom(explained: Explanation, drive: Drive) -> tuple[str, ...]:
+    """Those because of whom words that decide are as they are, when it is decided or just before.
+
+    A duty that has come to its end may be lost in a state in which nobody is there any more.
+    """
+    decide = [fact.text for fact in explained.facts if fact.decides and fact.text in drive.whom]
+    first, _ = explained.lasts
+    for state in range(explained.decisive, first - 1, -1):
+        found = [one for name in decide for one in drive.whom[name][state]]
+        if found:
+            named = explained.violation.binding.values()
+            return tuple([one for one in dict.fromkeys(found) if one not in named])
+    return ()
 
 
 def _trace_for(violation: Violation, drive: Drive, rules: CompiledRulebook) -> Trace:

@@ -92,6 +92,7 @@ def test_who_sets_off_beside_others_is_not_told_to_be_overtaken(stood_s, known):
     other = vehicle(8, {k: (place + (k - last) * 7.5, 4.0) for k in range(last - 4, last + 6)})
     found = flow_signals(context_of(recording(lanes(2), [ego, other])))
     assert found.world["being_overtaken"][last]
+    assert found.whom["being_overtaken"][last] == ("8",)
     assert found.unknown["being_overtaken"][last] == (not known)
 
 

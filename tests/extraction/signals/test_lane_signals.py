@@ -111,6 +111,7 @@ def test_comfort_and_reaction_are_thresholds():
 def test_the_lane_is_clear_while_ego_does_not_change():
     other = steady(8, 0, 4)
     assert changes(other).world["lane_is_clear"].tolist() == [True, True, False, True]
+    assert changes(other).whom["lane_is_clear"].tolist() == [(), (), ("8",), ()]
 
 
 def test_indicators_by_side_and_where_lamps_are_unknown():

@@ -59,6 +59,7 @@ def test_who_is_in_conflict(road, side, sign, comes_s, conflict):
     found = signals(road, lambda t: sign * (-3 + 10 * (t - comes_s)), sign * np.pi / 2)
     other = ({"conflict_from_left", "conflict_from_right"} - {side}).pop()
     assert found.world[side][3] == conflict
+    assert found.whom[side][3] == (("8",) if conflict else ())
     assert not found.world[other].any()
     assert not found.unknown[side].any()
 

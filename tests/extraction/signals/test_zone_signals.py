@@ -67,6 +67,10 @@ def test_ego_stands_behind_one_that_leaves_no_room():
     # Its rear is at 123, 3 m behind the junction
     queue = going(8, (125, 125, 125, 125, 125, 140, 160))
     assert exit_clear(road(), STOPS, queue) == [False] * 4 + [True] * 3
+    # The one farther ahead is not whom ego waits for
+    beyond = going(9, [140] * 5 + [155, 170])
+    found = told(road(), going(7, STOPS), beyond, queue)
+    assert found.whom["exit_clear"].tolist() == [("8",)] * 4 + [()] * 3
 
 
 def test_one_that_moves_on_in_time_leaves_room():

@@ -22,7 +22,7 @@ from rulec.extraction.signals.queues import (
     queues_by_lane,
     vehicles_around,
 )
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, ids_by_state
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.plain_arrays import distinct, medians
@@ -115,7 +115,8 @@ def _begins_to_overtake(context: DriveContext) -> SignalColumns:
 
 
 def _being_overtaken(context: DriveContext) -> SignalColumns:
-    overtaken, open_end = _overtaken(context)
+    by, open_end = _overtaken(context)
+    overtaken = by.any(axis=0)
     dense, surely, not_told = _dense_lines(context)
     # Lanes that move off beside each other do not overtake
     moot = _sets_off(context) | not_told
@@ -123,6 +124,7 @@ def _being_overtaken(context: DriveContext) -> SignalColumns:
     return SignalColumns(
         {"being_overtaken": ~dense & overtaken},
         unknown={"being_overtaken": ~surely & np.where(overtaken, moot, open_end)},
+        whom={"being_overtaken": ids_by_state(by, context.ids)},
     )
 
 
@@ -215,7 +217,7 @@ def _overtakes(context: DriveContext) -> tuple[Flags, Flags]:
 
 
 def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
-    """Flags of ego being overtaken, and of states after which nobody knows whether it was.
+    """Flags of those who overtake ego, and of states after which nobody knows whether one does.
 
     Who overtakes ego is with its middle on the next lane at the far side, clearly faster, and gets
     past within ``catching_up_s``. Nobody knows of one that is lost from sight before, or that only
@@ -233,8 +235,9 @@ def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
     there = (next_lane >= 0) & (next_lane < lanes)
     reaches = there & context.touched[rows, states, np.clip(next_lane, 0, lanes - 1)]
     inside = reaches & (context.extents.lane[rows, states] == next_lane)
-    overtaken, open_end = np.zeros((2, context.states), dtype=bool)
-    overtaken[states[inside & gets_past]] = True
+    overtaken, open_end = np.zeros_like(comes), np.zeros(context.states, dtype=bool)
+    past = inside & gets_past
+    overtaken[rows[past], states[past]] = True
     open_end[states[reaches & (lost | (~inside & gets_past))]] = True
     return overtaken, open_end
 

@@ -15,7 +15,7 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.measured_numbers import own_widths
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, ids_by_state
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Lanelet, LaneMark, is_lane
@@ -61,10 +61,13 @@ def _lane_change(context: DriveContext) -> SignalColumns:
 
 
 def _lane_is_clear(context: DriveContext) -> SignalColumns:
-    clear = np.ones(context.states, dtype=bool)
+    disturbed = np.zeros(context.relevant.shape, dtype=bool)
     changes = np.flatnonzero(_changes(context))
-    clear[changes] = ~_disturbs(context, changes)
-    return SignalColumns({"lane_is_clear": clear})
+    disturbed[:, changes] = _disturbed(context, changes)
+    return SignalColumns(
+        {"lane_is_clear": ~disturbed.any(axis=0)},
+        whom={"lane_is_clear": ids_by_state(disturbed, context.ids)},
+    )
 
 
 def _changes(context: DriveContext) -> Flags:
@@ -135,8 +138,8 @@ def _jumps_across(context: DriveContext, changes: NDArray[intp]) -> Flags:
     return jumps
 
 
-def _disturbs(context: DriveContext, states: NDArray[intp]) -> Flags:
-    """Flags of those of these states in which a vehicle in ego's lane must brake for ego.
+def _disturbed(context: DriveContext, states: NDArray[intp]) -> Flags:
+    """Flags of the vehicles in ego's lane that must brake for ego, in these states.
 
     One beside ego has to, and one behind it that would have to brake harder than
     ``disturbing_mps2`` after its reaction time not to run into it.
@@ -149,8 +152,8 @@ def _disturbs(context: DriveContext, states: NDArray[intp]) -> Flags:
     braking_distance = gap - faster * limits.reaction_s
     brakes = faster**2 > 2 * limits.disturbing_mps2 * np.maximum(braking_distance, 0.0)
     behind = (station == relations.IN_FRONT_OF) & brakes
-    disturbs: Flags = (same & (behind | (station == relations.BESIDE))).any(axis=0)
-    return disturbs
+    disturbed: Flags = same & (behind | (station == relations.BESIDE))
+    return disturbed
 
 
 def lane_mark_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:

@@ -26,6 +26,7 @@ class SignalColumns:
     ``unknown``: where a signal has no value, in the shape of its own array. ``only``: the
     participants that a signal about objects applies to. ``bounds``: the least and the greatest that
     a measured number may be, by the tolerances of its source, in the shape of its own array.
+    ``whom``: the ids of those because of whom a signal of the world is as it is, a tuple by state.
     """
 
     world: Mapping[str, SignalColumn] = field(default_factory=dict)
@@ -34,6 +35,7 @@ class SignalColumns:
     only: Mapping[str, Flags] = field(default_factory=dict)
     bounds: Mapping[str, Bounds] = field(default_factory=dict)
     texts: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    whom: Mapping[str, SignalColumn] = field(default_factory=dict)
 
     def values(self, name: str) -> SignalColumn:
         """The values of a signal, as texts if they stand for such."""
@@ -53,7 +55,8 @@ def together(parts: Sequence[SignalColumns], names: SignalNames = None) -> Signa
             found |= getattr(part, kind)
         return found if names is None else {x: found[x] for x in found if x in names}
 
-    return SignalColumns(*map(columns, ("world", "about", "unknown", "only", "bounds", "texts")))
+    kinds = ("world", "about", "unknown", "only", "bounds", "texts", "whom")
+    return SignalColumns(*map(columns, kinds))
 
 
 def end_to_end(parts: Sequence[SignalColumns]) -> SignalColumns:
@@ -74,9 +77,24 @@ def end_to_end(parts: Sequence[SignalColumns]) -> SignalColumns:
             ]
         ]
     }
-    world, about, unknown = map(joined, ("world", "about", "unknown"))
+    world, about, unknown, whom = map(joined, ("world", "about", "unknown", "whom"))
     only, texts = parts[0].only, parts[0].texts
-    return SignalColumns(world, about, unknown, only=only, bounds=bounds, texts=texts)
+    return SignalColumns(world, about, unknown, only=only, bounds=bounds, texts=texts, whom=whom)
+
+
+def ids_by_state(flags: Flags, ids: Sequence[str]) -> SignalColumn:
+    """The ids of the rows that are flagged, a tuple for each state."""
+    found = nobody(flags.shape[-1])
+    for state in np.flatnonzero(flags.any(axis=0)).tolist():
+        found[state] = tuple(ids[row] for row in np.flatnonzero(flags[:, state]).tolist())
+    return found
+
+
+def nobody(states: int) -> SignalColumn:
+    """No ids in any state."""
+    none = np.empty(states, dtype=object)
+    none[:] = [()] * states
+    return none
 
 
 def rounded(values: SignalColumn) -> SignalColumn:

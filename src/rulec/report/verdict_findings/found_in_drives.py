@@ -131,7 +131,7 @@ class DriveFindings:
         return VerdictFinding(
             outcome="violated",
             vehicle=drive.arrays.id,
-            other=tuple(violation.binding.values()),
+            other=(*violation.binding.values(), *evidence.whom),
             from_s=evidence.from_s,
             to_s=evidence.to_s,
             at_s=evidence.at_s,

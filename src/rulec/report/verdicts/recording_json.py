@@ -76,6 +76,7 @@ def _evidence_data(evidence: ViolationEvidence) -> verdict_json.EvidenceData:
         evidence,
         margins=[_margin_data(margin.rounded()) for margin in evidence.margins],
         place=None if place is None else filled(verdict_json.DrivePlaceData, place),
+        whom=evidence.whom or UNSET,
     )
 
 

@@ -118,6 +118,8 @@ class EvidenceData(JsonPart, frozen=True, kw_only=True):
     The names that the rule reads were ``measured``, ``assumed`` by the user, taken ``by_default``,
     or ``unknown`` in some state without making a difference. ``from_s`` and ``to_s`` are times of
     the recording; ``place`` is ego's when the rule is lost, at ``time_s`` of the violation.
+    ``whom`` are those because of whom a word is as it is, as who overtakes ego, where the rule
+    itself names nobody.
     """
 
     measured: Sequence[str]
@@ -128,6 +130,7 @@ class EvidenceData(JsonPart, frozen=True, kw_only=True):
     to_s: float
     margins: Sequence[MarginData]
     place: DrivePlaceData | None
+    whom: Sequence[str] | UnsetType = UNSET
 
 
 class ViolationData(JsonPart, frozen=True, kw_only=True):

@@ -24,6 +24,7 @@ from rulec.extraction.signals.signal_columns import (
     SignalColumns,
     SignalNames,
     end_to_end,
+    nobody,
 )
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.junction_passages import Passage
@@ -84,12 +85,17 @@ def _conflicts(context: DriveContext) -> SignalColumns:
     conflicts = {name: np.zeros(context.states, dtype=bool) for name in _CONFLICTS}
     unknown = {name: np.zeros(context.states, dtype=bool) for name in _CONFLICTS}
     together, other_inside, other_first = np.zeros((3, context.states), dtype=bool)
+    whom = {name: nobody(context.states) for name in _CONFLICTS}
     for passage in passages:
         for met in _encounters(context, passage):
             span = slice(met.first, met.last + 1)
             for kind in met.kinds:
                 from_then = slice(met.enters, met.last + 1) if kind == _ONCOMING else span
                 (conflicts if met.known else unknown)[kind][from_then] = True
+                if met.known:
+                    other = context.surroundings.tracks.participants[met.other.row].id
+                    for state in range(from_then.start, from_then.stop):
+                        whom[kind][state] = (*whom[kind][state], other)
             together[span] |= met.together
             other_first[span] |= met.comes_first
             entered = met.other.first - first_column(context)
@@ -107,7 +113,7 @@ def _conflicts(context: DriveContext) -> SignalColumns:
     either: Flags = np.any([unknown[name] & ~conflicts[name] for name in _SIDES], axis=0)
     not_told = {name: unknown[name] & ~conflicts[name] for name in _CONFLICTS}
     not_told |= dict.fromkeys(_ARRIVALS, either)
-    return SignalColumns(world, unknown=not_told)
+    return SignalColumns(world, unknown=not_told, whom=whom)
 
 
 @once

@@ -16,7 +16,7 @@ from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.ego_signals import room_beside
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.measured_numbers import corner_ahead
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, ids_by_state
 from rulec.extraction.signals.signal_passes import (
     Passes,
     once_a_map,
@@ -244,7 +244,7 @@ def _exit_clear(context: DriveContext) -> SignalColumns:
     error = context.tolerances.place_m
     beyond = corner_ahead(context) + error
     ahead = _ahead_on_lane(context)
-    still = _standing_rows(context, ahead)
+    still, nearest = _standing_rows(context, ahead), np.zeros_like(ahead)
     holds_up = context.tracks.speed * KMH < context.thresholds.walking_pace_kmh
     for number, (start, end) in enumerate(places):
         nears, passed = entered == number, context.spans.any(rear >= end)
@@ -259,9 +259,16 @@ def _exit_clear(context: DriveContext) -> SignalColumns:
         )
         blocked = nears & short & _until(context, stuck & stops)
         clear &= ~blocked
+        nearest |= blocked & (ahead & ~still)
         may_be = _until(context, perhaps & may_stop) | ~passed
         unknown |= nears & may_be_short & ~blocked & may_be
-    return SignalColumns({"exit_clear": clear}, unknown={"exit_clear": unknown & clear})
+    where = np.where(nearest, context.extents.s_min, np.inf)
+    nearest &= where == where.min(axis=0, initial=np.inf)
+    return SignalColumns(
+        {"exit_clear": clear},
+        unknown={"exit_clear": unknown & clear},
+        whom={"exit_clear": ids_by_state(nearest, context.ids)},
+    )
 
 
 def _until(context: DriveContext, flags: Flags) -> Flags:
