@@ -15,6 +15,7 @@ import numpy as np
 from rulec.cell_words.ego_boxes import Bounds, EgoBoxes, Floats, column
 from rulec.cell_words.road_frame import Flags, OthersNow, RoadFrame
 from rulec.extraction.drive_context import KMH
+from rulec.extraction.signals.flow_signals import TIMES_AS_FAST
 from rulec.extraction.signals.measured_numbers import LONGEST_S
 from rulec.extraction.traffic_thresholds import USUAL
 from rulec.scenario.paper_words import LATERALS, STATIONS
@@ -160,7 +161,10 @@ class Relations:
         return found
 
     def flow(self, below_kmh: float) -> list[Any]:
-        """Whether traffic around ego is slower than this in the median, by cell."""
+        """Whether traffic around ego is slower than this in the median, by cell.
+
+        Where one may be much faster its lane may flow.
+        """
         others, limit = self._others, below_kmh / KMH
         near, far = self.gaps
         may = others.may_go_along & (near <= USUAL.near_m)
@@ -173,6 +177,8 @@ class Relations:
         is_fast = (must & (low >= limit)).sum(axis=1) + (slow >= limit)
         no = (may.sum(axis=1) + 1 < USUAL.fewest) | (is_fast > may_be_slow)
         yes = (must.sum(axis=1) + 1 >= USUAL.fewest) & (is_slow > may_be_fast)
+        flows = TIMES_AS_FAST * limit
+        yes &= ~(may & (high >= flows)).any(axis=1) & (fast < flows)
         return [
             True if one else False if other else UNKNOWN
             for one, other in zip(yes.tolist(), no.tolist(), strict=True)

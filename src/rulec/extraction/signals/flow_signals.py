@@ -30,7 +30,7 @@ from rulec.trace.plain_arrays import distinct, medians
 _DRIFT_MPS = 0.2
 """Who moves sideways by less keeps its lane."""
 
-_FLOWS = 2.0
+TIMES_AS_FAST = 2.0
 """A lane on which several are so many times as fast as slow traffic flows."""
 
 _SETS_OFF_MPS2 = 2.0
@@ -57,7 +57,7 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     fastest_kmh = fast.max(axis=1, initial=0.0) * KMH
 
     def slow(below_kmh: float) -> Flags:
-        return enough & (speed_kmh < below_kmh) & (fastest_kmh < _FLOWS * below_kmh)
+        return enough & (speed_kmh < below_kmh) & (fastest_kmh < TIMES_AS_FAST * below_kmh)
 
     congested = slow(limits.congested_kmh)
     return SignalColumns(
