@@ -78,6 +78,24 @@ def test_a_track_that_slips_off_its_vehicle_tells_its_speed_no_better(slip):
     assert motion(x, 0.0, known=OTHERS, steers=False).speed_error[0, 30] == pytest.approx(0.1)
 
 
+@pytest.mark.parametrize(("stretched", "seam"), [(3.0, True), (1.0, False)])
+@pytest.mark.parametrize("way", [1, -1])
+def test_a_track_that_is_stretched_at_a_seam_tells_its_speed_no_better(stretched, seam, way):
+    """At 15 m/s, and within a second by 3 m farther, or less far: half of it within 0.5 s.
+
+    That is 6 m/s faster in the middle, and 1.5 m and 6 m/s² over half a second, or a third of it.
+    """
+    t = np.arange(60) * 0.1
+    hump = np.clip(t - 2.5, 0.0, 1.0)
+    x = 15 * t + way * stretched * (3 * hump**2 - 2 * hump**3)
+    found = motion(x, 0.0, known=OTHERS)
+    wrong = np.abs(found.speed[0] - 15.0)
+    assert wrong[30] == pytest.approx(stretched, abs=0.01)
+    assert (wrong[10:50] <= 1.05 * found.speed_error[0, 10:50]).all() == seam
+    far = abs(t - 3.0) > 2.0
+    assert found.speed_error[0, far].max() == pytest.approx(0.2)
+
+
 def test_who_brakes_as_hard_as_tyres_hold_has_not_slipped():
     t = np.arange(30) * 0.1
     error = motion(30 * t - 4.5 * t * t, 0.0, known=OTHERS).speed_error[0]

@@ -27,6 +27,11 @@ _SLIP_S, _GRIP_MPS2, _HAIR = 0.3, 10.0, 1e-6
 Tyres hold about 1 g on a dry road.
 """
 
+_SEAM_S, _GAINS_MPS2, _SEAM_LASTS_S = 0.5, 4.0, 1.5
+"""What gains speed so hard for so long and loses it again as hard soon after, or the other way
+round, is where one camera's picture meets the next: tracks are stretched or pressed there.
+"""
+
 
 @dataclass(frozen=True, eq=False, slots=True, kw_only=True)
 class Motion:
@@ -99,7 +104,7 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     error += contradicts[:, None]
     # A slip is anywhere in the time over which it shows
     steps = ceil(_SLIP_S / step_s - _HAIR)
-    slips = poses.steers[:, None] * _slips(poses, steps, step_s)
+    slips = poses.steers[:, None] * np.maximum(_slips(poses, steps, step_s), _seams(poses, step_s))
     off = slips.any(axis=1)
     error[off] += np.where(single[off], 0.0, _most_around(slips[off], reach + steps) / seconds[off])
     error = np.where(own[:, None], known.stated_mps or 0.0, error)
@@ -119,7 +124,39 @@ def _slips(poses: Poses, steps: int, step_s: float) -> NDArray[float64]:
 
     By the second difference of places over ``_SLIP_S``, where tyres would not hold.
     """
-    jumps = np.zeros(poses.x.shape)
+    jumps = np.abs(_bends(poses, steps))
+    return np.where(jumps > _GRIP_MPS2 * (steps * step_s) ** 2, jumps, 0.0)
+
+
+def _seams(poses: Poses, step_s: float) -> NDArray[float64]:
+    """How far (m) tracks are stretched or pressed at seams, between where that begins and ends."""
+    steps = ceil(_SEAM_S / step_s - _HAIR)
+    bends, longest = _bends(poses, steps), round(_SEAM_LASTS_S / step_s)
+    least = _GAINS_MPS2 * (steps * step_s) ** 2
+    found = np.zeros(bends.shape)
+    for row in np.flatnonzero((bends > least).any(axis=1) & (bends < -least).any(axis=1)).tolist():
+        own = bends[row]
+        for sign in (1.0, -1.0):
+            begins, ends = (np.flatnonzero(way * own > least) for way in (sign, -sign))
+            while len(begins):
+                pairs = [
+                    (min(abs(own[begin]), abs(own[end])), begin - end, begin, end)
+                    for begin in begins.tolist()
+                    for end in ends[(ends > begin) & (ends <= begin + longest)].tolist()
+                ]
+                if not pairs:
+                    break
+                bend, _, begin, end = max(pairs)
+                # So much farther within the time over which it shows, or as long as it lasts
+                stretched = bend * max(end - begin, steps) / steps
+                found[row, begin : end + 1] = np.maximum(found[row, begin : end + 1], stretched)
+                begins = begins[abs(begins - begin) > longest]
+    return found
+
+
+def _bends(poses: Poses, steps: int) -> NDArray[float64]:
+    """The second difference (m) of places along the heading, over so many steps each way."""
+    bends = np.zeros(poses.x.shape)
     if poses.x.shape[1] > 2 * steps:
         (x, y), inner = (
             (
@@ -128,8 +165,8 @@ def _slips(poses: Poses, steps: int, step_s: float) -> NDArray[float64]:
             ),
             poses.heading[:, steps:-steps],
         )
-        jumps[:, steps:-steps] = np.nan_to_num(np.abs(x * np.cos(inner) + y * np.sin(inner)))
-    return np.where(jumps > _GRIP_MPS2 * (steps * step_s) ** 2, jumps, 0.0)
+        bends[:, steps:-steps] = np.nan_to_num(x * np.cos(inner) + y * np.sin(inner))
+    return bends
 
 
 def _most_around(values: NDArray[float64], reach: int) -> NDArray[float64]:
