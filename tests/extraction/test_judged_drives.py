@@ -1,6 +1,7 @@
 """Recordings made by hand, judged by books of law, with verdicts thought through."""
 
 import json
+from dataclasses import replace
 from math import pi
 
 import pytest
@@ -10,7 +11,7 @@ from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.violation_evidence import evidence_of
 from rulec.report.verdict_findings.found_in_drives import DriveFindings
-from rulec.report.verdicts import recording_json
+from rulec.report.verdicts import recording_json, verdict_report
 from support.builders.drive_verdicts import violated
 from support.builders.recordings import recording, straight, vehicle
 
@@ -64,6 +65,11 @@ def test_who_is_overtaken_and_speeds_up_is_told_by_whom():
     (violation,) = [x for x in one.answer.violations if x.rule == "being_overtaken"]
     evidence = evidence_of(violation, one.drive, GERMAN, {})
     assert evidence.whom == ("8",)
+    text = verdict_report.as_text(
+        replace(one.answer, violations=(violation,)), GERMAN, whom=[("8",)]
+    )
+    assert "being_overtaken in right_of_way [§ 5(6) s. 1]: cannot be kept" in text
+    assert "because of 8" in text
     findings = DriveFindings(judged, "by hand.xml")
     finding = next(x for x in findings.add(one) if x.rule == "being_overtaken")
     assert finding.other == ("8",)

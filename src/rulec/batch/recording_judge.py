@@ -265,6 +265,7 @@ class _RecordingJudge:
         if not chosen:
             return []
         # Explanations, 20 ms: only where something is violated.
+        from rulec.extraction.violation_evidence import whom_of
         from rulec.monitoring.explain.explanation import explain
 
         self.left -= len(chosen)
@@ -280,6 +281,7 @@ class _RecordingJudge:
                 every_part=self._settings.every_part,
                 width=self._settings.width,
                 doubts=False,
+                whom=[whom_of(one, drive) for one in explained],
             )
             self._judged.blocks.append(f"\n{details}")
         return explained

@@ -71,11 +71,11 @@ def evidence_of(
         at_s=drive.time_s(explained.decisive),
         margins=tuple(explained.margins()),
         place=drive.places[explained.decisive] if drive.places else None,
-        whom=_whom(explained, drive),
+        whom=whom_of(explained, drive),
     )
 
 
-def _whom(explained: Explanation, drive: Drive) -> tuple[str, ...]:
+def whom_of(explained: Explanation, drive: Drive) -> tuple[str, ...]:
     """Those because of whom words that decide are as they are, when it is decided or just before.
 
     A duty that has come to its end may be lost in a state in which nobody is there any more.

@@ -32,11 +32,13 @@ def as_text(
     every_part: bool = False,
     width: int = PAGE_WIDTH,
     doubts: bool = True,
+    whom: Sequence[Sequence[str]] = (),
 ) -> str:
     """Write a trace's violations, a line each, below its name; with what is open and not judged.
 
     ``explained`` are explanations of the first violations; each follows its line, folded to a
-    ``width`` unless ``every_part`` of it is asked for.
+    ``width`` unless ``every_part`` of it is asked for. ``whom`` are those because of whom the first
+    ones are, where their rules name nobody.
     """
     doubtful = [*_open_lines(verdict, rulebook), *_not_judged_lines(verdict)] if doubts else []
     if not verdict.violations and not doubtful:
@@ -49,7 +51,8 @@ def as_text(
     phrases: Mapping[str, str] | None = None
     for number, violation in enumerate(shown):
         line = in_a_line(violation, rules[violation.rule], rulebook.name)
-        lines.append(f"  {visible(line)}")
+        because = ", ".join(whom[number]) if number < len(whom) else ""
+        lines.append(visible(f"  {line}, because of {because}" if because else f"  {line}"))
         if number < len(explained):
             # Explanations, 20 ms: only where there are some.
             from rulec.report.verdicts import violation_table
