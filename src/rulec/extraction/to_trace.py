@@ -314,7 +314,7 @@ def to_traces(
             kinds,
             decided_by=decided,
             places=places.part(columns),
-            whom={name: ids[columns] for name, ids in signals.whom.items()},
+            whom={name: ids[columns].tolist() for name, ids in signals.whom.items()},
         )
         for ego, start, own, decided, columns in zip(
             egos, starts, arrays, decided_by, spans.slices, strict=True

@@ -57,7 +57,9 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     fastest_kmh = fast.max(axis=1, initial=0.0) * KMH
 
     def slow(below_kmh: float) -> Flags:
-        return enough & (speed_kmh < below_kmh) & (fastest_kmh < TIMES_AS_FAST * below_kmh)
+        called: Flags = (speed_kmh < below_kmh) & (fastest_kmh < TIMES_AS_FAST * below_kmh)
+        called &= enough
+        return called
 
     congested = slow(limits.congested_kmh)
     return SignalColumns(

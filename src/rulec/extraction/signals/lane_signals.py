@@ -64,8 +64,9 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
     disturbed = np.zeros(context.relevant.shape, dtype=bool)
     changes = np.flatnonzero(_changes(context))
     disturbed[:, changes] = _disturbed(context, changes)
+    clear: Flags = ~np.any(disturbed, axis=0)
     return SignalColumns(
-        {"lane_is_clear": ~disturbed.any(axis=0)},
+        {"lane_is_clear": clear},
         whom={"lane_is_clear": ids_by_state(disturbed, context.ids)},
     )
 

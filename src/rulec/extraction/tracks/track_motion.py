@@ -104,7 +104,8 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     error += contradicts[:, None]
     # A slip is anywhere in the time over which it shows
     steps = ceil(_SLIP_S / step_s - _HAIR)
-    slips = poses.steers[:, None] * np.maximum(_slips(poses, steps, step_s), _seams(poses, step_s))
+    slips = np.maximum(_slips(poses, steps, step_s), _seams(poses, step_s))
+    slips = np.where(poses.steers[:, None], slips, 0.0)
     off = slips.any(axis=1)
     error[off] += np.where(single[off], 0.0, _most_around(slips[off], reach + steps) / seconds[off])
     error = np.where(own[:, None], known.stated_mps or 0.0, error)
