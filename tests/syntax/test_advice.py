@@ -74,6 +74,13 @@ FORMULAS = [
     ("always[1-3 s] p", "1-3", BOTH_UNITS.format("[1 s .. 3 s]")),
     ("always[<= 0,5 s] p", ",", "write a point: `0.5`"),
     ("always[<= three seconds] p", "seconds", "write the number in digits: `3 seconds`"),
+    ("speed < seven km/h", "km", "write the number in digits: `7` for `seven`"),
+    ("not p always", "always", "it stands before what it is about: `always p`"),
+    (
+        "always (v: car) near(v)",
+        ":",
+        "write `every v: car (…)` or `some v: car (…)`, or declare it behind the rule's name",
+    ),
     ("always[3 s <=] p", "<=", "the sign stands before the time: `[<= 3 s]`"),
     ("p and eventualy[<= 3 s] q", "[", "did you mean `eventually`?"),
     ("speed is less than 50 km/h", "is", "for `is less than` write `<`"),

@@ -15,7 +15,11 @@ from rulec.syntax.keywords import (
     RESERVED,
     UNARY_OPERATORS,
 )
-from rulec.syntax.messages.in_formulas import advise_on_aggregate, advise_on_formula
+from rulec.syntax.messages.in_formulas import (
+    IN_DIGITS,
+    advise_on_aggregate,
+    advise_on_formula,
+)
 from rulec.syntax.messages.in_items import (
     FORMS,
     advise_on_clause,
@@ -34,12 +38,6 @@ _OPENINGS: Final = ("<=", ">=", "<", ">", "=", "{", "in", "within")
 _FORMS: Final = "a bound is written `[<= 3 s]`, `[>= 1 s]`, `[1 s .. 4 s]` or `[2 steps]`"
 _NUMBER: Final = re.compile(r"\d+(?:\.\d+)?")
 _RANGE: Final = re.compile(r"(\d+)[-–](\d+)")
-_IN_DIGITS: Final = {
-    name: number
-    for number, name in enumerate(
-        ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"), start=1
-    )
-}
 _WITHIN: Final = {"within": "eventually", "for": "always", "during": "always", "after": "next"}
 
 
@@ -74,8 +72,8 @@ def _inside(scene: ParseContext) -> str:
         if text == "..":
             return _both_ends(before, scene.text_behind, scene.text_at(scene.at + 2))
         return f"say what it counts: `{before} s` or `{before} steps`"
-    if before.casefold() in _IN_DIGITS and scene.is_word():
-        return f"write the number in digits: `{_IN_DIGITS[before.casefold()]} {text}`"
+    if before.casefold() in IN_DIGITS and scene.is_word():
+        return f"write the number in digits: `{IN_DIGITS[before.casefold()]} {text}`"
     if text in ("<=", ">=") and scene.is_number(scene.at - 2):
         return f"the sign stands before the time: `[{text} {scene.text_at(scene.at - 2)} {before}]`"
     if before == "[" and text in ("<", "=<", ">", "=>"):
@@ -167,6 +165,8 @@ def _misspelt(scene: ParseContext) -> str:
         return near
     if before.text in _EARLIER:
         return "numbers of earlier states cannot be read; formulas can: `previously (speed > 0)`"
+    if number := IN_DIGITS.get(before.text.casefold()):
+        return f"write the number in digits: `{number}` for `{before.text}`"
     return did_you_mean(before.text, UNARY_OPERATORS)
 
 

@@ -47,6 +47,12 @@ _IN_WORDS: Final[dict[tuple[str, ...], str]] = {
     ("below",): "<",
     ("above",): ">",
 }
+IN_DIGITS: Final = {
+    name: number
+    for number, name in enumerate(
+        ("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"), start=1
+    )
+}
 RELATIONS: Final = ("<", "<=", "=", "!=", ">=", ">")
 _AGGREGATES: Final = ("some", "every", "count")
 
@@ -75,6 +81,12 @@ def advise_on_aggregate(scene: ParseContext) -> str:
         return f"write `{word} {variable} (…)`"
     if before in _AGGREGATES and scene.accepted == {"NAME"}:
         return f"it is written `{before} x: vehicle (…)`"
+    heading = scene.text_at(scene.at - 2) == "(" and scene.text_at(scene.at - 3) != "fact"
+    if text == ":" and scene.operator and heading:
+        own = f"{before}: {scene.text_at(scene.at + 1)}"
+        return f"write `every {own} (…)` or `some {own} (…)`, or declare it behind the rule's name"
+    if text in keywords.UNARY_OPERATORS and scene.operator and scene.text_behind in ("", "}"):
+        return f"it stands before what it is about: `{text} p`"
     heads = [index for index in range(scene.at) if scene.text_at(index) in _AGGREGATES]
     if not heads or scene.at - heads[-1] > 4:
         return ""
