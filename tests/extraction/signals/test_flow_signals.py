@@ -105,6 +105,16 @@ def test_who_may_have_stood_before_anybody_saw_it_may_set_off(speed, known):
     assert found.unknown["being_overtaken"][0] == (not known)
 
 
+@pytest.mark.parametrize(("speed", "known"), [(4, False), (9, True)])
+def test_who_is_put_into_all_traffic_slowly_sets_off(speed, known):
+    """Simulators begin drives amid the road, at any speed: who is slow then gets going."""
+    ego, other = steady(7, 0, 0, speed, steps=12), steady(8, 0, 4.0, speed + 5, steps=12)
+    whole = replace(recording(lanes(2), [ego, other]), complete=frozenset({"light"}))
+    found = flow_signals(context_of(whole))
+    assert found.world["being_overtaken"][0]
+    assert found.unknown["being_overtaken"][0] == (not known)
+
+
 @pytest.mark.parametrize(("side", "y", "route"), [("right", 4.0, ("1",)), ("left", 0.0, ("2",))])
 def test_a_queue_on_the_far_side_is_slow(side, y, route):
     ego = steady(7, 0, 4.0 - y)

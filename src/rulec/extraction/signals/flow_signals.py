@@ -36,6 +36,9 @@ TIMES_AS_FAST = 2.0
 _SETS_OFF_MPS2 = 2.0
 """Vehicles gain speed about so hard when they set off."""
 
+_PUT_IN_MPS = 5.0
+"""Simulators put vehicles into traffic: who is as slow then sets off, faster ones drive on."""
+
 
 def flow_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
     """The signals of traffic as a whole, those of the names."""
@@ -170,8 +173,8 @@ def _gap_in_lane(context: DriveContext, station: int) -> Floats:
 def _sets_off(context: DriveContext) -> Flags:
     """Flags of states in which ego has, or may have, stood up to ``setting_off_s`` ago.
 
-    Before its drive began it may have, if ``_SETS_OFF_MPS2`` has made it as fast as it is then, and
-    not all traffic is recorded.
+    Before its drive began it may have, if ``_SETS_OFF_MPS2`` has made it as fast as it is then;
+    where all traffic is recorded, if that is slow.
     """
     limits, speed, step_s = context.thresholds, context.ego.speed[0], context.recording.step_s
     stands = speed * KMH < limits.standing_kmh
@@ -179,7 +182,7 @@ def _sets_off(context: DriveContext) -> Flags:
     at_first = speed[spans.first]
     before = spans.first - np.ceil(at_first / _SETS_OFF_MPS2 / step_s)
     if "light" in context.recording.complete:
-        before = np.full(context.states, -np.inf)
+        before = np.where(at_first <= _PUT_IN_MPS, before, -np.inf)
     stood = np.where(stood < spans.first, before, stood)
     sets_off: Flags = (spans.columns - stood) * step_s < limits.setting_off_s
     return sets_off
