@@ -81,10 +81,12 @@ def advise_on_aggregate(scene: ParseContext) -> str:
         return f"write `{word} {variable} (…)`"
     if before in _AGGREGATES and scene.accepted == {"NAME"}:
         return f"it is written `{before} x: vehicle (…)`"
-    heading = scene.text_at(scene.at - 2) == "(" and scene.text_at(scene.at - 3) != "fact"
-    if text == ":" and scene.operator and heading:
-        own = f"{before}: {scene.text_at(scene.at + 1)}"
-        return f"write `every {own} (…)` or `some {own} (…)`, or declare it behind the rule's name"
+    is_head = scene.text_at(scene.at - 2) == "(" and scene.text_at(scene.at - 3) != "fact"
+    if text == ":" and scene.operator and is_head:
+        said = f"{before}: {scene.text_at(scene.at + 1)}"
+        return (
+            f"write `every {said} (…)` or `some {said} (…)`, or declare it behind the rule's name"
+        )
     if text in keywords.UNARY_OPERATORS and scene.operator and scene.text_behind in ("", "}"):
         return f"it stands before what it is about: `{text} p`"
     heads = [index for index in range(scene.at) if scene.text_at(index) in _AGGREGATES]
