@@ -166,18 +166,27 @@ def _without_others_lines(diagnostic: Diagnostic) -> Diagnostic:
 
     Whoever made the tree may not read that file; who does may print it where they can.
     """
+    places = [one.place for one in diagnostic.labels]
+    if diagnostic.place is not None:
+        places.append(diagnostic.place)
+    # One look at each file; a message may have a label for each line of it.
+    if not any(map(_is_behind_link, {place.file for place in places if place.excerpt})):
+        return diagnostic
     labels = tuple([replace(one, place=_unquoted(one.place)) for one in diagnostic.labels])
     place = None if diagnostic.place is None else _unquoted(diagnostic.place)
     return replace(diagnostic, place=place, labels=labels)
 
 
 def _unquoted(place: SourceLocation) -> SourceLocation:
-    if not place.excerpt:
+    if not place.excerpt or not _is_behind_link(place.file):
         return place
-    with suppress(OSError, ValueError):  # a name that nothing can have
-        if not leads_out(Path(place.file)):
-            return place
     return replace(place, column=None, end_column=None, excerpt="")
+
+
+def _is_behind_link(file: str) -> bool:
+    with suppress(OSError, ValueError):  # a name that nothing can have
+        return leads_out(Path(file))
+    return True
 
 
 def _block(diagnostic: Diagnostic, paint: _Paint, columns: int) -> Iterator[str]:
