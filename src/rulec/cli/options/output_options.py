@@ -290,7 +290,9 @@ def refuse_overwriting(to: Sequence[Output], paths: Iterable[str]) -> None:
             from rulec.recordings.recording_files import is_beside_recordings
 
             if is_beside_recordings(path):
-                message = f"`{path}` is a map, or read along with recordings, and would be"
+                message = (
+                    f"`{path}` is recorded traffic, a map, or read along with these, and would be"
+                )
                 raise _overwrites(path, f"{message} overwritten")
 
 
