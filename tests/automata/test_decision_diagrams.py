@@ -6,12 +6,15 @@ from pathlib import Path
 
 import pytest
 from hypothesis import assume, given
+from hypothesis import strategies as st
 
 from rulec.automata import compiler
 from rulec.automata.alphabet import propositions_of, reads_of
 from rulec.automata.axiom_instances import AxiomInstance, axiom_groups
 from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.decision_diagrams.diagram_compiler import COMPILER
+from rulec.automata.decision_diagrams.diagrams import TRUE, Diagrams
+from rulec.automata.decision_diagrams.symbolic_automaton import SymbolicAutomaton, merged
 from rulec.automata.mealy_monitor import IMPOSSIBLE, Read
 from rulec.automata.worker.job_answers import answer_to
 from rulec.diagnostics import RulecError
@@ -154,3 +157,37 @@ def test_a_compiler_that_there_is_not_is_refused(monkeypatch):
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "R0416"
     assert "spot" in diagnostic.help
+
+
+def steps_of(size):
+    """Of each state where it leads, with which mark, on each of two letters."""
+    step = st.tuples(st.integers(0, size - 1), st.integers(0, 1))
+    return st.lists(st.tuples(step, step), min_size=size, max_size=size)
+
+
+@given(st.integers(1, 12).flatmap(steps_of), st.lists(st.integers(0, 1), max_size=20))
+def test_states_are_merged_that_no_word_tells_apart(steps, word):
+    diagrams = Diagrams()
+    diagrams.declare("p")
+    p = diagrams.variable("p")
+    rows = []
+    for yes, no in steps:
+        rows.append({yes: TRUE} if yes == no else {yes: p, no: -p})
+    small = merged(SymbolicAutomaton(tuple(rows)), diagrams).edges
+
+    blocks = [0] * len(steps)
+    for _ in steps:  # so many rounds suffice
+        keys = [
+            (block, *((blocks[target], mark) for target, mark in row))
+            for block, row in zip(blocks, steps, strict=True)
+        ]
+        numbers = {key: number for number, key in enumerate(dict.fromkeys(keys))}
+        blocks = [numbers[key] for key in keys]
+    assert len(small) == len(set(blocks))
+
+    one = another = 0
+    for letter in word:
+        one, mark = steps[one][letter]
+        taken = [edge for edge, way in small[another].items() if way in (TRUE, (p, -p)[letter])]
+        assert [mark] == [taken_mark for _, taken_mark in taken]
+        ((another, _),) = taken

@@ -31,6 +31,7 @@ OWN = "rulebook own\nsignal p, q default false\n" + "".join(
 )
 FILES = {
     "small.rules": BOOK,
+    "like.rules": BOOK.replace("rulebook small", "rulebook like"),
     "own.rules": OWN,
     "t.jsonl": TRACES,
     "refused.jsonl": "{}\n" * 3,
@@ -46,6 +47,7 @@ ASKED = {
     "objects": (1, ["verify", "t.jsonl", "-r", "./small.rules"], "t.jsonl:1"),
     "places": (3, ["maneuvers", "s1", "-r", "esterle2019"], "s1"),
     "cubes": (1, ["show", "./small.rules", "odd"], "small.rules:11"),
+    "comparisons": (0, ["diff", "--all", "./small.rules", "./like.rules"], OF_A_RULE),
     "pairs": (0, ["analyze", "./small.rules"], OF_A_RULE),
     "type_depth": (1, ["check", "./small.rules"], "small.rules:3"),
     "cites": (0, ["audit", "./small.rules", "--law", "law.md"], OF_A_RULE),

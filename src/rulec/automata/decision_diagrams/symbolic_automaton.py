@@ -124,28 +124,58 @@ def joined(
 
 def merged(automaton: SymbolicAutomaton, diagrams: Diagrams) -> SymbolicAutomaton:
     """The automaton with states merged that no word tells apart by its marks or its end."""
-    size = len(automaton.edges)
-    blocks = [0] * size if automaton.ends_well is None else list(map(int, automaton.ends_well))
-    n_blocks = len(set(blocks))
-    while True:
-        numbers: dict[object, int] = {}
-        refined = []
-        for state, row in enumerate(automaton.edges):
-            key = blocks[state], frozenset(_regrouped(row, blocks, diagrams).items())
-            refined.append(numbers.setdefault(key, len(numbers)))
-        if len(numbers) == n_blocks:
-            break
-        blocks, n_blocks = refined, len(numbers)
-    if n_blocks == size:
+    blocks = _blocks(automaton, diagrams)
+    # Numbered by first appearance, so the first state's is 0.
+    numbers = {block: number for number, block in enumerate(dict.fromkeys(blocks))}
+    if len(numbers) == len(blocks):
         return automaton
-    # Those of the last round are numbered by first appearance, so the first state's is 0.
-    kept = [refined.index(block) for block in range(n_blocks)]
+    kept = [blocks.index(block) for block in numbers]
+    of = [numbers[block] for block in blocks]
     ends = automaton.ends_well
     return replace(
         automaton,
-        edges=tuple([_regrouped(automaton.edges[state], refined, diagrams) for state in kept]),
+        edges=tuple([_regrouped(automaton.edges[state], of, diagrams) for state in kept]),
         ends_well=None if ends is None else tuple([ends[state] for state in kept]),
     )
+
+
+def _blocks(automaton: SymbolicAutomaton, diagrams: Diagrams) -> list[int]:
+    """Of each state a number, the same for those that no word tells apart.
+
+    Of what a block is split into the largest part keeps its number, and only who leads to a state
+    with a new one is looked at again: each state about as often as the logarithm of their count
+    (Hopcroft, *An n log n algorithm for minimizing states in a finite automaton*, 1971). A count
+    of steps, all of whose states differ in how far they are, would take its square otherwise.
+    """
+    size = len(automaton.edges)
+    blocks = [0] * size if automaton.ends_well is None else list(map(int, automaton.ends_well))
+    members: list[set[int]] = [set(), set()]
+    sources: list[set[int]] = [set() for _ in range(size)]
+    for state, row in enumerate(automaton.edges):
+        members[blocks[state]].add(state)
+        for target, _ in row:
+            sources[target].add(state)
+    pending = set(range(size))
+    while pending:
+        parts_of: dict[int, dict[object, set[int]]] = {}
+        for state in pending:
+            key = frozenset(_regrouped(automaton.edges[state], blocks, diagrams).items())
+            parts_of.setdefault(blocks[state], {}).setdefault(key, set()).add(state)
+        changed: list[int] = []
+        for block, by_key in parts_of.items():
+            # None of the others leads where numbers are new, so they are alike as they were.
+            parts = sorted(by_key.values(), key=len)
+            if len(parts[-1]) > len(members[block]) - sum(map(len, parts)):
+                others = members[block].difference(*parts)
+                parts = [*parts[:-1], others] if others else parts[:-1]
+            for part in parts:
+                members[block] -= part
+                for state in part:
+                    blocks[state] = len(members)
+                members.append(part)
+                changed += part
+        pending = {source for state in changed for source in sources[state]}
+    return blocks
 
 
 def _regrouped(row: Edges, blocks: Sequence[int], diagrams: Diagrams) -> dict[tuple[int, int], int]:
