@@ -330,3 +330,12 @@ def test_what_was_found_is_kept_until_a_source_changes(tmp_path, monkeypatch, ca
     assert json.loads(said("--json")[1])["version"] == 1
     (tmp_path / "a.rules").write_text(f"rulebook a\n{rule.format('p')}")
     assert said()[0] == 0
+
+
+def test_what_a_rulebook_leaves_unsaid_as_its_parent_does_is_said_so(tmp_path, capsys):
+    (tmp_path / "newer.rules").write_text("rulebook newer\nextends new\n")
+    assert main(["diff", "./newer.rules", "./old.rules"]) == 1
+    assert (
+        '  soft rule no_horn; newer is silent on it, as new is: "in the act on noise"\n'
+        in capsys.readouterr().out
+    )

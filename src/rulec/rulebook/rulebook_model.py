@@ -147,11 +147,12 @@ class Axiom:
 
 @dataclass(frozen=True, slots=True)
 class Remark:
-    """Remark, with its reason, on a changed rule or silent topic."""
+    """Remark, with its reason, on a changed rule or silent topic; ``book`` makes it."""
 
     name: str
     because: str
     kind: Literal["dropped", "silent", "softened"]
+    book: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -170,7 +170,9 @@ def only_why(one_sided: OneSided, lacks: str) -> str:
         return ""
     verb = "is silent on it" if one_sided.remark.kind == "silent" else "dropped it"
     because = f': "{one_sided.remark.because}"' if one_sided.remark.because else ""
-    return f"; {lacks} {verb}{because}"
+    source = one_sided.remark.book
+    inherited = "" if source == lacks else f", as {source} {'is' if 'is' in verb else 'has'}"
+    return f"; {lacks} {verb}{inherited}{because}"
 
 
 def offered(one_sided: OneSided) -> str:

@@ -123,16 +123,16 @@ class Overlay:
                 if self._is_inherited_rule(name, "drop", file):
                     del self.rules[name.text]
                     self.gone[name.text] = name
-                    self.remarks.append(Remark(name.text, because.value, "dropped"))
+                    self.remarks.append(Remark(name.text, because.value, "dropped", _name(file)))
             case tree.SoftenItem(name):
                 if self._is_inherited_rule(name, "soften", file):
-                    self._soften(item)
+                    self._soften(item, file)
             case tree.SilentItem(name, because):
                 unknown = name.text not in self.rules
                 if unknown or self._is_inherited_rule(name, "be silent on", file):
                     self.rules.pop(name.text, None)
                     self.gone[name.text] = name
-                self.remarks.append(Remark(name.text, because.value, "silent"))
+                self.remarks.append(Remark(name.text, because.value, "silent", _name(file)))
             case tree.TopicsItem(entries):
                 for entry in entries:
                     self._add_topic(entry)
@@ -251,7 +251,7 @@ class Overlay:
         law = file if item.cite else base.law
         self.rules[item.name.text] = RuleEntry(after, file, examples_from, law, item.name)
 
-    def _soften(self, item: tree.SoftenItem) -> None:
+    def _soften(self, item: tree.SoftenItem, file: tree.File) -> None:
         entry = self.rules[item.name.text]
         if entry.item.strength == "soft" and item.level is None and item.weight is None:
             self.mistakes.append(say.soft_already(item, entry.item))
@@ -263,7 +263,7 @@ class Overlay:
         )
         self.rules[item.name.text] = replace(entry, item=softer, changed=item.name)
         because = item.because.value if item.because else ""
-        self.remarks.append(Remark(item.name.text, because, "softened"))
+        self.remarks.append(Remark(item.name.text, because, "softened", _name(file)))
 
     def _is_inherited_rule(self, name: tree.Name, verb: str, file: tree.File) -> bool:
         """Tell whether a name is an inherited rule; report anything else."""
@@ -391,3 +391,7 @@ def merged(base: tree.RuleItem, over: tree.RuleItem) -> tree.RuleItem:
         given["unless"] = (*base.unless, *over.unless)
     complete = over.complete and base.complete
     return replace(base, name=over.name, span=over.span, complete=complete, **given)
+
+
+def _name(file: tree.File) -> str:
+    return "" if file.name is None else file.name.text
