@@ -106,6 +106,45 @@ def test_lamps_in_any_spelling_of_truth_and_for_an_interval(read):
     assert found.shows == {"left_indicator", "horn"}
 
 
+def three_cars(*lit):
+    """Cars with these right indicators at steps 1 and 2, and left ones that are off."""
+    state = "<signalState><time><exact>{}</exact></time>{}</signalState>"
+    cars = []
+    for number, own in enumerate(lit, 21):
+        states = "".join(
+            state.format(
+                step, f"<indicatorLeft>0</indicatorLeft><indicatorRight>{one}</indicatorRight>"
+            )
+            for step, one in enumerate(own, 1)
+        )
+        cars.append(
+            f'<dynamicObstacle id="{number}"><type>car</type><shape>{BOX}</shape>'
+            f"<initialState>{PLACE}{EXACT}<exact>0</exact></time></initialState><signalSeries>{states}</signalSeries>"
+            "</dynamicObstacle>"
+        )
+    return "</commonRoad>", "".join([*cars, "</commonRoad>"])
+
+
+def test_an_indicator_that_is_on_all_the_time_of_all_is_none(read):
+    found = read(three_cars((1, 1), (1, 1), (1, 1)))
+    (remark,) = found.remarks
+    assert remark == "the right indicator of every vehicle is on all the time, so it tells nothing"
+    cars = [body for body in found.participants if body.lamps]
+    assert len(cars) == 3
+    for car in cars:
+        assert car.shows == {"left_indicator"}
+        assert car.lamps == {1: frozenset(), 2: frozenset()}
+
+
+@pytest.mark.parametrize("lit", [((1, 1), (1, 1)), ((1, 1), (1, 1), (1, 0))])
+def test_an_indicator_of_two_or_one_that_goes_off_is_one(read, lit):
+    found = read(three_cars(*lit))
+    assert found.remarks == ()
+    for car, own in zip([body for body in found.participants if body.lamps], lit, strict=True):
+        assert car.shows == {"left_indicator", "right_indicator"}
+        assert [bool(on) for on in car.lamps.values()] == [bool(on) for on in own]
+
+
 @pytest.mark.parametrize(
     ("light", "lights"),
     [

@@ -7,6 +7,7 @@ it may occupy; where only one number can be used it is the middle.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from operator import itemgetter
 
 import numpy as np
@@ -160,3 +161,36 @@ def _lamps(
         lamps.update(dict.fromkeys(read_steps(state.child("time"), extent), lit))
         shows = frozenset(said) if shows is None else shows & frozenset(said)
     return lamps, shows or frozenset()
+
+
+_INDICATORS: tuple[recorded.Lamp, ...] = ("left_indicator", "right_indicator")
+_FEWEST = 3
+"""So many vehicles never all indicate to one side all the time."""
+
+
+def without_constant_indicators(
+    bodies: Sequence[recorded.Participant],
+) -> tuple[tuple[recorded.Participant, ...], tuple[str, ...]]:
+    """Participants without indicators that are lit in all states of all, and remarks on these.
+
+    Such an indicator is a constant of the file, as of one that was converted, and no lamp.
+    """
+    constant = []
+    for lamp in _INDICATORS:
+        telling = [body for body in bodies if body.lamps and lamp in body.shows]
+        if len(telling) >= _FEWEST and all(
+            lamp in lit for body in telling for lit in body.lamps.values()
+        ):
+            constant.append(lamp)
+    if not constant:
+        return tuple(bodies), ()
+    remarks = [
+        f"the {lamp.replace('_', ' ')} of every vehicle is on all the time, so it tells nothing"
+        for lamp in constant
+    ]
+    return tuple([_without(body, frozenset(constant)) for body in bodies]), tuple(remarks)
+
+
+def _without(body: recorded.Participant, gone: frozenset[recorded.Lamp]) -> recorded.Participant:
+    lamps = {step: lit - gone for step, lit in body.lamps.items()}
+    return replace(body, lamps=lamps, shows=body.shows - gone)

@@ -10,7 +10,12 @@ from typing import TypeVar
 from rulec.recordings import recording
 from rulec.recordings.adjacency import with_neighbours
 from rulec.recordings.commonroad.commonroad_lanelets import LaneletEntry, complete, read_lanelet
-from rulec.recordings.commonroad.commonroad_participants import read_body, read_phantom, read_thing
+from rulec.recordings.commonroad.commonroad_participants import (
+    read_body,
+    read_phantom,
+    read_thing,
+    without_constant_indicators,
+)
 from rulec.recordings.commonroad.commonroad_surroundings import (
     Intersection,
     junctions,
@@ -54,8 +59,9 @@ def to_recording(content: Content, path: Path, form: FileFormat) -> recording.Re
 
     Raises RulecError R0610 for time steps that are too far apart.
     """
-    participants = tuple(body for kind in _KINDS for body in content.bodies.get(kind, {}).values())
-    content.extent.check(path, form, len(participants))
+    bodies = [body for kind in _KINDS for body in content.bodies.get(kind, {}).values()]
+    content.extent.check(path, form, len(bodies))
+    participants, remarks = without_constant_indicators(bodies)
     lanelets = _lanelets(content)
     name = Path(path.name.removesuffix(".gz")).stem
     problems = sorted(content.problems.values(), key=lambda problem: int(problem.id))
@@ -69,6 +75,7 @@ def to_recording(content: Content, path: Path, form: FileFormat) -> recording.Re
             side=side_in(name),
             country=country_in(name),
             weather=content.weather,
+            remarks=remarks,
         )
     )
 
