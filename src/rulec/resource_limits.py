@@ -72,7 +72,7 @@ CHOICES: Final = ResourceLimit(
 )
 STEPS: Final = ResourceLimit(
     "steps",
-    100,
+    50,
     "steps of traces that its rules would be compiled for, beside the first",
     "bring the traces to one step, take those of a jittering clock for one with `rulec verify "
     "--step`, or compile the rulebook for the steps that count, with `rulec compile --step`",

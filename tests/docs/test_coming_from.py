@@ -26,8 +26,8 @@ def test_their_commands_are_answered(tmp_path, monkeypatch, capsys):
     for name in ("rulebooks", "docs"):
         (tmp_path / name).symlink_to(ROOT / name)
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO()))
     for command in COMPLETE:
+        monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b'{"state": {}}\n')))
         status = main(shlex.split(command))
         out, err = capsys.readouterr()
         assert status in (0, 1), (command, err)
