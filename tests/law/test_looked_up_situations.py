@@ -27,11 +27,11 @@ def turned_after_the_lamp(seconds):
     return [lit, *[dark] * (seconds - 1), {**dark, "enters_junction": True}, {"speed": 20}]
 
 
-def stopped_before(fastest):
+def stopped_before(fastest, *before):
     """Ego stands, and is as fast as that just before the line of its stop sign."""
     return [
         {**STOP, "speed": 0},
-        {**STOP, "speed": fastest},
+        *({**STOP, "speed": speed} for speed in (*before, fastest)),
         {**STOP, "speed": fastest, "crosses_stop_line": True},
     ]
 
@@ -40,6 +40,9 @@ SITUATIONS = [
     # 3 m/s^2 from 6 m before the line make 6 m/s, 21.6 km/h, on it; from 7 m 23.3 km/h
     *of_each("de fr gb us-ca in", "stop_sign", False, stopped_before(21.6)),
     *of_each("de fr gb us-ca in", "stop_sign", True, stopped_before(23.3)),
+    # A simulated car stood 16 m before the line, and rolled up to it for longer
+    *of_each("de fr gb us-ca in", "stop_sign", True, stopped_before(21.3, 5, 3, 6, 12)),
+    *of_each("de fr gb us-ca in", "stop_sign", False, stopped_before(17.6, 5, 3, 6, 12)),
     # The lamp is off again when ego turns, as a stalk springs back early
     *of_each("de gb us-ca jp", "indicator_when_turning", False, turned_after_the_lamp(2)),
     *of_each("de gb us-ca jp", "indicator_when_turning", True, turned_after_the_lamp(3)),

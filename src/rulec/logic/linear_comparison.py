@@ -10,7 +10,7 @@ from typing import get_args
 from rulec.logic.formula import Comparison, Constant, Relation, Term
 from rulec.logic.printing import term_text
 
-_MIRRORED: dict[Relation, Relation] = {
+MIRRORED: Mapping[Relation, Relation] = {
     "<": ">",
     "<=": ">=",
     "=": "=",
@@ -33,7 +33,7 @@ def comparison(
     _, lead = terms[0]
     return Comparison(
         tuple((coefficient / lead, term) for term, coefficient in terms),
-        relation if lead > 0 else _MIRRORED[relation],
+        relation if lead > 0 else MIRRORED[relation],
         limit / lead,
         text,
     )

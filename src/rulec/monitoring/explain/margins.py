@@ -9,7 +9,7 @@ from math import ceil, floor, log10
 
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import Between, Unknown, weighted_sum
-from rulec.logic.linear_comparison import stands
+from rulec.logic.linear_comparison import MIRRORED, stands
 from rulec.logic.printing import term_text
 from rulec.monitoring.state_view import StateView
 from rulec.vocabulary import Quantity
@@ -23,16 +23,6 @@ _OTHERWISE: Mapping[ltl.Relation, ltl.Relation] = {
     "!=": "=",
     ">=": "<",
     ">": "<=",
-}
-
-
-_TURNED: Mapping[ltl.Relation, ltl.Relation] = {
-    "<": ">",
-    "<=": ">=",
-    "=": "=",
-    "!=": "!=",
-    ">=": "<=",
-    ">": "<",
 }
 
 
@@ -181,7 +171,11 @@ def margin_in(
         error=float(value_error + limit_error),
     )
     two = len(left) == 1 and left[0][0] == 1 and against
-    return _turned(margin) if two and comparison.text.startswith(term_text(right[0][1])) else margin
+    return (
+        _turned(margin)
+        if two and comparison.text.startswith(f"{term_text(right[0][1])} ")
+        else margin
+    )
 
 
 def choosing_comparisons(formula: ltl.Formula) -> Set[ltl.Formula]:
@@ -211,7 +205,7 @@ def _turned(margin: Margin) -> Margin:
         margin,
         text=margin.against,
         value=margin.limit,
-        relation=_TURNED[margin.relation],
+        relation=MIRRORED[margin.relation],
         limit=margin.value,
         against=margin.text,
         value_error=margin.limit_error,
