@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from rulec.cli.commands.lsp import command
-from rulec.language_server.editor_settings import editor_settings
+from rulec.language_server.editor_settings import EDITORS, editor_settings
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "editors.md").read_text(encoding="utf-8")
@@ -55,7 +55,6 @@ EDITOR = {"lua": "neovim", "elisp": "emacs"}
 
 def settings(editor):
     """What `rulec lsp --settings` prints for an editor."""
-    pytest.importorskip("pygls", reason="the server needs pygls")
     printed = CliRunner().invoke(command, ["--settings", editor])
     assert printed.exit_code == 0, printed.output
     return printed.output
@@ -69,6 +68,14 @@ def test_an_editor_takes_three_lines_which_the_page_shows(language, monkeypatch)
     home = shown.replace(f"{PLACE}/.venv/bin", str(python.parent)).replace(PLACE, str(ROOT))
     assert settings(EDITOR[language]) == home
     assert len(home.splitlines()) == 3
+
+
+@pytest.mark.parametrize("editor", EDITORS)
+def test_settings_are_printed_before_what_the_server_takes_is_installed(editor, monkeypatch):
+    for name in ("pygls", "lsprotocol", "lsprotocol.types", "pygls.lsp.server"):
+        monkeypatch.setitem(sys.modules, name, None)
+    monkeypatch.delitem(sys.modules, "rulec.language_server.server", raising=False)
+    assert settings(editor) == editor_settings(editor)
 
 
 def test_where_there_is_no_script_python_starts_it(monkeypatch, tmp_path):

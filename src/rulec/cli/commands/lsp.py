@@ -20,9 +20,12 @@ def command(*, editor: str | None, stdio: bool) -> None:  # noqa: ARG001 - it do
     """Answer an editor: diagnostics, completion, renaming and the like.
 
     Editors start it themselves and speak the Language Server Protocol with it, over standard input
-    and output; `--settings` prints how each is told. Takes the extra
+    and output; `--settings` prints how each is told. To answer, not to print, it takes the extra
     `lsp`: in a checkout `.venv/bin/python -m pip install -e '.[lsp]'`.
     """
+    if editor is not None:
+        click.echo(editor_settings(editor), nl=False)
+        return
     # The message, 5 ms: not for --help.
     from rulec.language_server.language_server_messages import no_pygls
 
@@ -33,7 +36,4 @@ def command(*, editor: str | None, stdio: bool) -> None:  # noqa: ARG001 - it do
         if (problem.name or "").partition(".")[0] not in ("pygls", "lsprotocol", "cattrs"):
             raise
         raise no_pygls() from None
-    if editor is None:
-        serve()
-    else:
-        click.echo(editor_settings(editor), nl=False)
+    serve()
