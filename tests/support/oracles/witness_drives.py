@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from itertools import islice, pairwise
 from math import ceil, floor
-from types import SimpleNamespace
 
 import numpy as np
 
-from rulec import verify
 from rulec.cell_words.probe_drives import body_along, world_of
 from rulec.extraction.recording_verdicts import names_read
 from rulec.extraction.to_trace import Drive, TraceWriter
@@ -141,12 +139,11 @@ def on_an_edge(found, nodes, motion):
     )
 
 
-def disagreeing(found, nodes, trace):
-    """What a maneuver and a drive through it judge for sure, and the other one does otherwise.
+def disagreeing(of_drive, mine):
+    """What the verdicts on a drive and on its maneuver say for sure, and the other one otherwise.
 
     A drive violates nothing that the maneuver keeps, and keeps nothing that it violates.
     """
-    of_drive, mine = verify(trace, found.rules), found.verdict(SimpleNamespace(nodes=nodes))
     own, own_doubtful = _keys(of_drive.violations), _keys(of_drive.open)
     violated, doubtful = _keys(mine.violations), _keys(mine.open)
     dark = {rule.rule for rule in mine.not_judged}
