@@ -290,6 +290,52 @@ def test_everything_can_be_done_from_the_keyboard(chromium, address):
         page.expect("#compare .summary").to_contain_text("shared rule")
 
 
+def many_rules(number):
+    """A rulebook of many rules, of whose examples each leaves an edge untried."""
+    rules = "".join(
+        f"hard rule keep_{n:02} {{\n  require never (busy and speed > {n + 1} km/h)\n"
+        f"  accept {{ speed = {n} km/h }}\n}}\n"
+        for n in range(number)
+    )
+    return f"rulebook many\nuse road\nsignal busy default false\n{rules}"
+
+
+def test_what_is_long_is_folded_and_opened_from_the_keyboard(page):
+    page.ask("Examples")
+    page.write(many_rules(30))
+    page.expect("#test .summary").to_have_text("30 examples: 30 passed, 0 failed")
+    page.expect("#test .pass >> visible=true").to_have_count(10)
+    rest = page.page.locator("#test summary", has_text="and 20 more that pass")
+    rest.focus()
+    page.page.keyboard.press("Enter")
+    page.expect("#test .pass >> visible=true").to_have_count(30)
+    page.write(many_rules(31))
+    page.expect("#test .pass >> visible=true").to_have_count(31)
+    missing = page.page.locator("#test summary", has_text="that no example tries")
+    missing.focus()
+    page.page.keyboard.press("Enter")
+    page.page.get_by_role("button", name="Insert it").last.click()
+    page.expect("#test .summary").to_have_text("32 examples: 32 passed, 0 failed")
+    page.write(many_rules(12).replace("busy and", "bussy and"))
+    page.expect("#count").to_have_text("12 errors")
+    page.expect("#found > li").to_have_count(12)
+    page.write(many_rules(30).replace("busy and", "bussy and"))
+    page.expect("#count").to_have_text("30 errors")
+    page.expect("#found > li:not(.more) >> visible=true").to_have_count(10)
+    page.page.get_by_text("and 20 more messages").click()
+    page.expect("#found .error >> visible=true").to_have_count(30)
+    page.write(many_rules(30))
+    page.judge(json.dumps({"objects": {}, "states": [{"busy": True, "speed": None}]}))
+    page.expect("#judge .open >> visible=true").to_have_count(5)
+    page.page.get_by_text("and 25 more that are open").click()
+    page.expect("#judge .open >> visible=true").to_have_count(30)
+    page.judge(json.dumps({"objects": {}, "states": [{"busy": True, "speed": 40}]}))
+    page.expect("#judge .violation >> visible=true").to_have_count(5)
+    page.page.get_by_text("and 25 more violations").click()
+    page.expect("#judge .violation >> visible=true").to_have_count(30)
+    page.ask("Examples")
+
+
 SCREENS = {"desktop": {"width": 1280, "height": 800}, "phone": {"width": 375, "height": 740}}
 
 
@@ -330,6 +376,12 @@ def test_the_page_is_accessible_and_fits(chromium, address, axe, screen, theme):
         page.judge('{"objects": {}, "states": [{"speed": null}, {"reversing": true}]}')
         page.expect("#judge .open").to_contain_text("depends on speed")
         check(page, axe, f"{screen}-{theme}-files")
+        page.ask("Examples")
+        page.write(many_rules(30))
+        page.expect("#test .result").to_contain_text("and 20 more that pass")
+        check(page, axe, f"{screen}-{theme}-folded")
+        page.page.get_by_text("that no example tries").last.click()
+        check(page, axe, f"{screen}-{theme}-opened")
 
 
 def check(page, axe, name):

@@ -1,6 +1,12 @@
 // What rulec answers, as elements.
 
-import { counted, element } from "./dom.js";
+import { counted, element, folded } from "./dom.js";
+
+// So many of a list are shown at first.
+const MOST_LINES = 10;
+const MOST_TOLD = 5;
+
+const plain = (items) => element("ul", { class: "plain" }, items);
 
 const lines = (...texts) => texts.filter(Boolean).map((text) => element("p", {}, text));
 
@@ -31,6 +37,14 @@ const quoted = (text) => (text.trim().length > 40 ? `“${text.trim().slice(0, 4
 /** A message, in which rulec puts what is written in a source between backticks. */
 const said = (text) =>
   text.split("`").map((part, n) => (n % 2 ? element("code", {}, part) : part));
+
+/** What is found below the editor, whose list has it as its items. */
+export function messages(found, onShow, onFix) {
+  const items = found.map((one) => finding(one, onShow, onFix));
+  const rest = (part) => element("ol", { class: "findings" }, part);
+  const [first, more] = folded(items, MOST_LINES, "messages", "messages", rest);
+  return [...(first?.children ?? []), ...(more ? [element("li", { class: "more" }, more)] : [])];
+}
 
 /** What is wrong with a question: findings, or a failure. */
 export function trouble(answer) {
@@ -72,25 +86,27 @@ export function examples(run, isOwn, onShow, onInsert) {
       ),
     ),
   );
-  const failed = others.filter((item) => item.className === "fail");
+  const isFailing = (item) => item.className === "fail";
+  const passed = owned.filter((item) => !isFailing(item));
   return [
-    element("ul", { class: "plain" }, [...owned, ...failed]),
-    missing.length ? element("h3", {}, "Not tried by any example") : null,
-    missing.length ? element("ul", { class: "plain" }, missing) : null,
+    ...folded([...owned, ...others].filter(isFailing), 2 * MOST_LINES, "failed", "that fail", plain),
+    ...folded(passed, MOST_LINES, "passed", "that pass", plain),
+    missing.length ? element("h3", {}, `Not tried by any example: ${missing.length}`) : null,
+    ...folded(missing, MOST_LINES, "missing", "that no example tries", plain),
     others.length
       ? element(
           "details",
           {},
           element("summary", {}, `${counted(others.length, "example")} that the rulebook inherits`),
-          element("ul", { class: "plain" }, others.filter((item) => item.className === "pass")),
+          plain(others.filter((item) => !isFailing(item))),
         )
       : null,
   ];
 }
 
-/** The rules in plain language. */
-export const rules = ({ rules: listed, rulebook }) =>
-  listed
+/** The rules in plain language, those of the rulebook itself first. */
+export function rules({ rules: listed, rulebook }) {
+  const articles = listed
     .toSorted((a, b) => (b.book === rulebook) - (a.book === rulebook))
     .map((rule) =>
       element(
@@ -101,9 +117,15 @@ export const rules = ({ rules: listed, rulebook }) =>
         rule.says ? element("p", { class: "says" }, rule.says) : null,
       ),
     );
+  return folded(articles, 4 * MOST_LINES, "rules", "rules");
+}
+
+/** What is said of each trace. */
+export const verdicts = (listed) =>
+  folded(listed.map(verdict), 2 * MOST_LINES, "traces", "traces");
 
 /** A verdict on a trace, what is open and what cannot be judged. */
-export function verdict(one) {
+function verdict(one) {
   if (one.findings) return trouble(one);
   const kept = one.violations.length ? "satisfied, but for soft rules" : "satisfied";
   const word = { true: kept, false: "violated", null: "open" }[one.satisfied];
@@ -111,8 +133,8 @@ export function verdict(one) {
     "article",
     { class: { true: "kept", false: "lost", null: "undecided" }[one.satisfied] },
     element("h3", {}, `${one.trace}: `, element("b", {}, word)),
-    ...one.violations.map(violation),
-    ...one.open.map(doubt),
+    ...folded(one.violations.map(violation), MOST_TOLD, `violated ${one.trace}`, "violations"),
+    ...folded(one.open.map(doubt), MOST_TOLD, `open ${one.trace}`, "that are open"),
     ...unjudged(one.not_judged),
   );
 }
@@ -129,7 +151,7 @@ function unjudged(listed) {
   }
   if (!reasons.size) return [];
   const items = [...reasons].map(([reason, names]) => element("li", {}, `${names.join(", ")}: ${reason}`));
-  return [element("details", {}, element("summary", {}, `${counted(listed.length, "rule")} not judged`), element("ul", { class: "plain" }, items))];
+  return [element("details", {}, element("summary", {}, `${counted(listed.length, "rule")} not judged`), plain(items))];
 }
 
 const bound = (binding) =>
@@ -233,18 +255,19 @@ export function comparison(diff, onTry) {
     );
   const alone = (title, listed) =>
     listed.length ? element("p", {}, `${title}: ${listed.map((one) => one.rule).join(", ")}`) : null;
-  return [
-    ...differing.map((pair) =>
-      element(
-        "article",
-        {},
-        element("h3", {}, `${pair.rule}: `, element("b", {}, filled(RELATIONS[pair.relation]))),
-        element("p", { class: "says" }, `${names.first}: ${[pair.first.cite, pair.first.says].filter(Boolean).join(", ")}`),
-        element("p", { class: "says" }, `${names.second}: ${[pair.second.cite, pair.second.says].filter(Boolean).join(", ")}`),
-        pair.undecided ? element("p", {}, pair.undecided) : null,
-        ...traces(pair).flat(),
-      ),
+  const articles = differing.map((pair) =>
+    element(
+      "article",
+      {},
+      element("h3", {}, `${pair.rule}: `, element("b", {}, filled(RELATIONS[pair.relation]))),
+      element("p", { class: "says" }, `${names.first}: ${[pair.first.cite, pair.first.says].filter(Boolean).join(", ")}`),
+      element("p", { class: "says" }, `${names.second}: ${[pair.second.cite, pair.second.says].filter(Boolean).join(", ")}`),
+      pair.undecided ? element("p", {}, pair.undecided) : null,
+      ...traces(pair).flat(),
     ),
+  );
+  return [
+    ...folded(articles, MOST_LINES, "differing", "that differ"),
     same.length ? element("p", {}, `The same in both: ${same.join(", ")}`) : null,
     alone(`Only in ${names.first}`, diff.only_first),
     alone(`Only in ${names.second}`, diff.only_second),

@@ -16,3 +16,27 @@ export const byId = (id) => document.getElementById(id);
 
 /** "1 trace", "2 traces" */
 export const counted = (n, noun) => `${n} ${noun}${n === 1 ? "" : "s"}`;
+
+const unfolded = new Set();
+
+/**
+ * The first of many nodes, and the rest behind "and 12 more …", each part in what `wrap` makes.
+ *
+ * What was opened stays open when the list is made anew: lists are known by `key`.
+ */
+export function folded(nodes, most, key, noun, wrap = (part) => part) {
+  if (!nodes.length) return [];
+  // One or two more are hardly longer than the line that would hide them.
+  if (nodes.length <= most + 2) return [wrap(nodes)].flat();
+  const rest = element(
+    "details",
+    {
+      class: "rest",
+      open: unfolded.has(key),
+      ontoggle: () => (rest.open ? unfolded.add(key) : unfolded.delete(key)),
+    },
+    element("summary", {}, `and ${nodes.length - most} more ${noun}`),
+    wrap(nodes.slice(most)),
+  );
+  return [wrap(nodes.slice(0, most)), rest].flat();
+}

@@ -1,6 +1,6 @@
 // The page: what is typed, chosen and asked, and where answers are put.
 
-import { comparison, examples, finding, rules, trouble, verdict } from "./answers.js";
+import { comparison, examples, messages, rules, trouble, verdicts } from "./answers.js";
 import { Asker } from "./asker.js";
 import { byId, counted, element } from "./dom.js";
 import { Editor, colouring } from "./editor.js";
@@ -77,7 +77,7 @@ async function look() {
   const counts = [errors && counted(errors, "error"), warnings && counted(warnings, "warning")];
   byId("count").textContent = counts.filter(Boolean).join(", ") || "nothing found";
   byId("found").replaceChildren(
-    ...(answer.failure ? [trouble(answer)] : findings.map((one) => finding(one, (place) => files.show(place), mend))),
+    ...(answer.failure ? [trouble(answer)] : messages(findings, (place) => files.show(place), mend)),
   );
   if (isSound) askTab();
   else outdated();
@@ -146,11 +146,11 @@ const ANSWERS = {
     examples(run, isOwn, (place) => files.show(place), insertion),
   ],
   rules: (document) => [counted(document.rules.length, "rule"), rules(document)],
-  judge: (verdicts) => {
-    const n = (satisfied) => verdicts.filter((one) => one.satisfied === satisfied).length;
-    const wrong = verdicts.filter((one) => one.findings).length;
+  judge: (judged) => {
+    const n = (satisfied) => judged.filter((one) => one.satisfied === satisfied).length;
+    const wrong = judged.filter((one) => one.findings).length;
     const rest = [n(null) && `, ${n(null)} open`, wrong && `, ${wrong} not judged`].filter(Boolean).join("");
-    return [`${counted(verdicts.length, "trace")}: ${n(true)} satisfied, ${n(false)} violated${rest}`, verdicts.map(verdict)];
+    return [`${counted(judged.length, "trace")}: ${n(true)} satisfied, ${n(false)} violated${rest}`, verdicts(judged)];
   },
   compare: (diff) => {
     const n = (relation) => diff.rules.filter((pair) => pair.relation === relation).length;
