@@ -1,9 +1,11 @@
 """Tables and colours of texts for terminals."""
 
+import itertools
+
 import pytest
 from click import unstyle
 
-from rulec.report.text.terminal_text import cell_width, fact_lines, styled, table_lines
+from rulec.report.text.terminal_text import broken, cell_width, fact_lines, styled, table_lines
 
 
 @pytest.mark.parametrize(
@@ -39,6 +41,18 @@ def test_no_rows_are_no_lines():
 def test_long_texts_go_on_below_themselves():
     lines = fact_lines([("name", "one two three four five six"), ("n", " ")], 28)
     assert lines == ["  name  one two three four", "        five six", "  n"]
+
+
+def test_a_number_stays_with_what_it_counts():
+    text = "see StVO § 5 Abs. 3: at least 30 km/h in § 12 and 3 s at state 7"
+    for width in range(16, 60):
+        lines = broken(text, width, "  ", "    ")
+        assert " ".join(map(str.strip, lines)) == text
+        for before, after in itertools.pairwise(lines):
+            assert not before.endswith(("§", "Abs.", "state")) or not after.strip()[:1].isdigit()
+            assert not (before[-1].isdigit() and after.strip().startswith(("km/h", "s ")))
+        assert lines[0].startswith("  see")
+        assert all(line.startswith("    ") for line in lines[1:])
 
 
 def test_colour_is_there_only_if_wanted():

@@ -1,5 +1,6 @@
 """Phrases: every word of a vocabulary that ships has one in each language, of its own."""
 
+import re
 from fractions import Fraction
 
 import pytest
@@ -31,6 +32,29 @@ def test_every_word_has_a_phrase_of_its_own(language):
             assert not set("[]|") & set(form), name
             assert form == " ".join(form.split()), name
     assert len(said) == len(set(said))
+
+
+@pytest.mark.parametrize(
+    ("language", "somebody"),
+    [
+        ("en", r"(an?|another|some\w*|one) .* (do|does|is|are|did) not\b"),
+        ("en", r"there is(?! (a|an|no)? )"),
+        ("de", r"(ein|eine|jemand) .*\bnicht\b"),
+        ("fr", r"(une?|quelqu'un) .*\b(ne|n')"),
+    ],
+)
+def test_what_is_denied_of_anybody_is_denied_of_all(language, somebody):
+    # "A sign does not forbid it" leaves open whether another one does.
+    for name, phrase in {**phrases_in("road", language), **phrases_in("schemas", language)}.items():
+        _, denied = forms(phrase)
+        assert not re.match(somebody, denied), name
+
+
+def test_what_is_said_in_french_is_not_half_denied():
+    for name, phrase in {**phrases_in("road", "fr"), **phrases_in("schemas", "fr")}.items():
+        affirmed, _ = forms(phrase)
+        denying = re.search(r"\bne\b|\bn'|\b(a|tracte) de\b| ou n'", affirmed)
+        assert not denying or "n'a rien" in affirmed or "n'a aucun" in affirmed, name
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

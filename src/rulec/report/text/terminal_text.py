@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import unicodedata
 from collections.abc import Iterator, Sequence
@@ -15,6 +16,14 @@ from click import unstyle
 MOST_DIGITS = 30
 
 _PLAIN, _COLORED = "NO_COLOR", "FORCE_COLOR"
+
+_JOINT = "\0"
+"""Stands for a space at which no line ends, in texts that have no control characters."""
+
+_KEPT_TOGETHER = re.compile(
+    r"(?:§|\b(?:Abs|Art|No|Nr|Reg|Sec)\.|\b(?:Rule|state)) (?=\d)"
+    r"|\d (?=(?:km/h|m/s²?|ms|s|min|h|m|km|t|kg|%)(?![\w/]))"
+)
 
 _REORDERING = frozenset("\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\u061c")
 
@@ -120,6 +129,20 @@ def table_lines(
     return lines
 
 
+def broken(text: str, width: int, first: str = "", later: str = "") -> list[str]:
+    """A text broken to lines of a width, never between "§" and its number, or "30" and "km/h".
+
+    Args:
+        text: what is broken.
+        width: how many characters a line may have, but for words that are longer.
+        first: what the first line begins with.
+        later: what the others begin with.
+    """
+    joined = _KEPT_TOGETHER.sub(lambda found: found[0][:-1] + _JOINT, text)
+    lines = wrap(joined, width, initial_indent=first, subsequent_indent=later)
+    return [line.replace(_JOINT, " ") for line in lines]
+
+
 def fact_lines(facts: Sequence[tuple[str, str]], width: int) -> list[str]:
     """Names with texts beside them, which are broken to lines of a width."""
     text_width = max(
@@ -127,7 +150,7 @@ def fact_lines(facts: Sequence[tuple[str, str]], width: int) -> list[str]:
     )
     rows = []
     for name, text in facts:
-        first, *rest = wrap(visible(text), text_width) or [""]
+        first, *rest = broken(visible(text), text_width) or [""]
         rows += [(visible(name), first), *(("", line) for line in rest)]
     return table_lines(rows, indent="  ")
 

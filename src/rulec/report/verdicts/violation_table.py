@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from operator import itemgetter
-from textwrap import wrap
 
 from rulec.automata.thresholds import exact
 from rulec.logic.printing import number_in_words
@@ -16,7 +15,7 @@ from rulec.monitoring.explain.explanation import Explanation, Observation
 from rulec.monitoring.explain.margins import Margin, number_with_error
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.guard_text import GuardWording, runs
-from rulec.report.text.terminal_text import styled, table_lines, visible
+from rulec.report.text.terminal_text import broken, styled, table_lines, visible
 from rulec.report.verdicts.table_folding import MOST_PARTS, cut, fitting, folded, head, titled
 from rulec.trace import Value
 from rulec.vocabulary.partial_values import Interval
@@ -72,7 +71,7 @@ def as_text(explanation: Explanation, options: TableOptions = DEFAULT_OPTIONS) -
         ]
         for places in table.columns
     ]
-    lines = [INDENT + line for line in wrap(visible(explanation.rule.says), width - len(INDENT))]
+    lines = broken(visible(explanation.rule.says), width, INDENT, INDENT)
     rows = [[f"{title} " for title in ("state", *table.titles)], *columns]
     lines += table_lines(list(zip(*rows, strict=True)), indent=INDENT, ruled=(0, table.n_facts))
     lines += [*_left_out(explanation, table), *_in_words(explanation, options)]
@@ -82,7 +81,7 @@ def as_text(explanation: Explanation, options: TableOptions = DEFAULT_OPTIONS) -
 def _in_words(explanation: Explanation, options: TableOptions) -> Iterator[str]:
     line = decisive_state_in_words(explanation, options.phrases)
     if line:
-        yield from wrap(line, options.width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
+        yield from broken(line, options.width, INDENT, 2 * INDENT)
 
 
 def decisive_state_in_words(explanation: Explanation, phrases: Mapping[str, str]) -> str:
@@ -105,7 +104,7 @@ def _repair(explanation: Explanation, width: int) -> Iterator[str]:
         return
     changes = kept_if(explanation)
     for line in changes[:MOST_CHANGES]:
-        yield from wrap(line, width, initial_indent=INDENT, subsequent_indent=2 * INDENT)
+        yield from broken(line, width, INDENT, 2 * INDENT)
     if len(changes) > MOST_CHANGES:
         yield f"{INDENT}… and {len(changes) - MOST_CHANGES:,} more; --json has them all"
 

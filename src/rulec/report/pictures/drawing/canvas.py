@@ -9,8 +9,9 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from textwrap import wrap
 from typing import Literal
+
+from rulec.report.text.terminal_text import broken
 
 Point = tuple[float, float]
 
@@ -96,7 +97,7 @@ def text_width(lines: Iterable[str]) -> float:
 
 def paragraph(text: str, at: Point, width: float, style: str) -> list[LabelText]:
     """A text broken to a width, with the middle of its first line at ``at``."""
-    lines = wrap(text, int(width / CHARACTER))
+    lines = broken(text, int(width / CHARACTER))
     x, y = at
     return [LabelText(line, (x, y + n * LINE_HEIGHT), style=style) for n, line in enumerate(lines)]
 
