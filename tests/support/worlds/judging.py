@@ -1,6 +1,7 @@
 """Worlds simulated, judged and scored; the same on recordings that are disturbed."""
 
 import json
+import xml.etree.ElementTree as ElementTree
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -37,7 +38,20 @@ def judged(sumo, name, seed, folder, disturbance=None):
     seen = DISTURBANCES[disturbance or USUAL]
     files = seen(files, folder / (disturbance or USUAL))
     found = answers(files.data, kind.book, files.net)
-    return scores(facts, found, kind.book, f"{name} {seed}")
+    ends_s = last_moment_s(files.data)
+    return scores(
+        [fact for fact in facts if fact.begin <= ends_s], found, kind.book, f"{name} {seed}"
+    )
+
+
+def last_moment_s(data):
+    """When a recording ends (s): what comes later in its world, nobody can find in it."""
+    last = 0.0
+    for _, one in ElementTree.iterparse(data):
+        if one.tag == "timestep":
+            last = float(one.get("time"))
+        one.clear()
+    return last
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -63,7 +63,7 @@ def _on_crossing(world, walker, walk, where):
     grades = set()
     for step in steps:
         row = walker.at(step)
-        if row is not None and walk in walker.lane and _drawn_on_road(walker, row, walk, beside):
+        if row is not None and _drawn_on_road(world, walker, row, walk):
             grades.add(False)
         if row is None or walker.lane[row] != walk:
             continue
@@ -75,13 +75,17 @@ def _on_crossing(world, walker, walk, where):
     return True if True in grades else (False if False in grades else None)
 
 
-def _drawn_on_road(walker, row, walk, lanes):
-    """True if it is on the pavement, but drawn on a lane: SUMO rounds its corners in jumps."""
+def _drawn_on_road(world, walker, row, walk):
+    """True if it is on the pavement, but drawn on a lane: SUMO rounds its corners in jumps.
+
+    Whether it walks over the crossing afterwards the world's end may hide.
+    """
     if not walker.lane[row].startswith(walk.rpartition("_")[0] + "_w"):
         return False
+    start, *_, end = world.net.lanes[f"{walk}_0"].shape
     x, y = (walker.column(name)[row] for name in ("x", "y"))
-    ahead = _across(walker, walk)
-    return any(abs((one.shape.mean(axis=0) - (x, y)) @ ahead) < one.width / 2 for one in lanes)
+    ahead = (end - start) / np.hypot(*(end - start))
+    return 0 < ((x, y) - start) @ ahead < np.hypot(*(end - start))
 
 
 def _across(walker, walk):

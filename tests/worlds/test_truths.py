@@ -1,0 +1,63 @@
+"""What counts as true in a simulated world, and what its recording can show at all."""
+
+from pathlib import Path
+
+import pytest
+
+from support.worlds.judging import last_moment_s
+from support.worlds.simulate import WorldFiles
+from support.worlds.stored import FOLDER
+from support.worlds.truths.crossing_truths import pedestrian_facts
+from support.worlds.world_state import WorldState
+
+
+def _zebra(folder, walker):
+    """A world on the stored zebra's roads: one drives over its crossing while somebody walks.
+
+    ``walker``: time (s) -> its edge, x and y (m); it is seen at these times alone.
+    """
+    files = WorldFiles(Path(folder))
+    files.net.write_bytes((FOLDER / "zebra.net.xml").read_bytes())
+    moments = []
+    for step in range(80):
+        time, x = step / 10, 150 - step
+        lane, pos = _lane(x)
+        place = f'x="{x}" y="1.6" angle="270" pos="{pos}" lane="{lane}"'
+        bodies = [f'<vehicle id="car" {place} type="lawful" speed="10"/>']
+        if time in walker:
+            edge, x, y = walker[time]
+            place = f'x="{x}" y="{y}" angle="107" pos="0" edge="{edge}"'
+            bodies.append(f'<person id="walker" {place} type="walker" speed="1.3"/>')
+        moments.append(f'<timestep time="{time}">{"".join(bodies)}</timestep>')
+    files.data.write_text(f"<fcd-export>{''.join(moments)}</fcd-export>", encoding="utf-8")
+    return files
+
+
+def _lane(x):
+    if x > 115:
+        return "n2_n1_1", 224 - x
+    return (":n1_0_0", 115 - x) if x > 111 else ("n1_n0_1", 111 - x)
+
+
+def _pavement(y):
+    return {step / 10: (":n1_w0", 112.0, y) for step in range(20, 45)}
+
+
+@pytest.mark.parametrize(
+    ("walker", "sure"),
+    [
+        # The simulator draws it on the road as it rounds the corner, and the world ends
+        (_pavement(3.1), [False]),
+        (_pavement(3.3), []),
+        ({step / 10: (":n1_c0", 113.0, 3.0) for step in range(10, 45)}, [True]),
+    ],
+    ids=["drawn on the road", "on the pavement", "on the crossing"],
+)
+def test_who_is_drawn_on_a_crossing_is_not_sure_to_be_on_it(walker, sure, tmp_path):
+    world = WorldState(_zebra(tmp_path, walker), 0.1)
+    assert [fact.sure for fact in pedestrian_facts(world)] == sure
+
+
+def test_a_recording_ends_with_its_last_state(tmp_path):
+    """In every second state alone nobody finds what happens in the last one between."""
+    assert last_moment_s(_zebra(tmp_path, {}).data) == 7.9
