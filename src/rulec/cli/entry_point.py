@@ -37,6 +37,9 @@ def run() -> int:
         if sys.argv[1:] == ["--version"] and _said_version():
             return 0
         # click and the diagnostics, 30 ms: not for `rulec --version`, and after signals are set.
+        from rulec.cli.dataclass_methods import write_when_called
+
+        write_when_called()  # before any module that has dataclasses
         from rulec.cli.main import main
 
         return main()
