@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from rulec.automata.mealy_monitor import MealyMonitor as MealyMonitor
     from rulec.book_tests.example_coverage import RuleCoverage as RuleCoverage
     from rulec.book_tests.example_coverage import UncoveredEdge as UncoveredEdge
+    from rulec.book_tests.example_coverage import UntouchedLimit as UntouchedLimit
     from rulec.book_tests.example_runs import ExampleOutcome as ExampleOutcome
     from rulec.book_tests.example_runs import ExampleRun as ExampleRun
     from rulec.diagnostics import Diagnostic as Diagnostic
@@ -148,7 +149,7 @@ _HOME = {
     "write_monitor write_traces",
     "rulec.automata.bundle.compiled_rulebook": "CompiledRule CompiledRulebook",
     "rulec.automata.mealy_monitor": "MealyMonitor",
-    "rulec.book_tests.example_coverage": "RuleCoverage UncoveredEdge",
+    "rulec.book_tests.example_coverage": "RuleCoverage UncoveredEdge UntouchedLimit",
     "rulec.book_tests.example_runs": "ExampleOutcome ExampleRun",
     "rulec.diagnostics": "Diagnostic Fix Label RulecError SourceLocation",
     "rulec.diagnostics.code": "Code",

@@ -8,6 +8,7 @@ import re
 from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import fields, is_dataclass, replace
+from fractions import Fraction
 from functools import cache, partial
 from multiprocessing import get_context
 from pathlib import Path
@@ -17,6 +18,7 @@ import numpy as np
 import pytest
 
 import rulec
+from rulec.logic.formula import Comparison
 from rulec.version import install_command
 
 TRACES = "docs/samples/traces.jsonl"
@@ -117,6 +119,11 @@ def values():
         *(rulec.Assumptions("cut", {"p": True}), rulec.RuleNotJudged("r", "hard", ("p",))),
         *(rulec.ConditionalOutcome({"p": True}, "kept"), undecided),
         rulec.UncoveredEdge(0, 1, (), True),
+        rulec.UntouchedLimit(
+            Comparison((), ">", Fraction(5), "speed > 5 km/h"),
+            True,
+            rulec.UncoveredEdge(0, 1, (), True),
+        ),
         *(rulec.formats()[0], rulec.Light(0, (("red", 3),)), rulec.ObservedLight({0: "red"})),
         *(rulec.Weather(wet=True), rulec.read_map(NET, recording.step_s)),
         rulec.SettingPair("option", "limit", "1", "2"),

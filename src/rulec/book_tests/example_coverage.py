@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+import itertools
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rulec.automata.axiom_instances import axiom_instances
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.book_tests.book_test_messages import unexercised
 from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun, example_trace, own_names
+from rulec.book_tests.limit_coverage import (
+    LimitSide,
+    close_state,
+    deciding_edges,
+    sides_of,
+    touched,
+)
 from rulec.diagnostics import Diagnostic
-from rulec.logic.formula import Formula, Proposition, atoms_of
+from rulec.logic.formula import Comparison, Formula, Proposition, atoms_of
 from rulec.logic.kleene import holds
 from rulec.monitoring.verify import letter_reader_of
 from rulec.rulebook.rulebook_model import Rule
@@ -23,6 +31,9 @@ from rulec.witnesses.coverage_witness import (
     possible_letters,
     truth_values,
 )
+
+_MOST_TRIED = 16
+"""Letters that are tried for a state close to a limit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,12 +51,26 @@ class UncoveredEdge:
 
 
 @dataclass(frozen=True, slots=True)
+class UntouchedLimit:
+    """A limit that no example comes close to where its comparison has this value.
+
+    ``example`` would.
+    """
+
+    comparison: Comparison
+    value: bool
+    example: UncoveredEdge
+
+
+@dataclass(frozen=True, slots=True)
 class RuleCoverage:
-    """Edges and truth values of a rule that its examples cover.
+    """Edges, truth values and limits of a rule that its examples cover.
 
     An edge is a state of its machine and a class of letters; the edges of the two states in which
     the verdict is settled for good do not count, nor does what no state of the world can be. The
-    values of an atom or a comparison are true and false, as far as it can have them.
+    values of an atom or a comparison are true and false, as far as it can have them, and those of
+    a limit that examples are close to it on both sides, where that makes a difference. A rule is
+    ``inherited`` if the rulebook that was run has it as another one wrote it.
     """
 
     __repr__ = short_repr
@@ -55,23 +80,35 @@ class RuleCoverage:
     missing_edges: tuple[UncoveredEdge, ...]
     n_values: int
     missing_values: tuple[tuple[Proposition, bool], ...]
+    n_limits: int = 0
+    missing_limits: tuple[UntouchedLimit, ...] = ()
+    inherited: bool = False
 
     @property
     def total(self) -> int:
-        """Edges and values of atoms, together."""
-        return self.n_edges + self.n_values
+        """Edges, values of atoms, and sides of limits, together."""
+        return self.n_edges + self.n_values + self.n_limits
 
     @property
     def covered(self) -> int:
         """Those of them that are taken or seen."""
-        return self.total - len(self.missing_edges) - len(self.missing_values)
+        missing = (self.missing_edges, self.missing_values, self.missing_limits)
+        return self.total - sum(map(len, missing))
 
 
 def percent(rules: Iterable[RuleCoverage]) -> float:
-    """Percentage of edges and values covered; 100 if there are none."""
+    """Percentage of edges, values and limits covered; 100 if there are none."""
     rules = list(rules)
     total = sum(rule.total for rule in rules)
     return 100.0 * sum(rule.covered for rule in rules) / total if total else 100.0
+
+
+def asked_of(rules: Iterable[RuleCoverage], patterns: Sequence[str]) -> list[RuleCoverage]:
+    """The rules that a rulebook has to cover: its own, or all that patterns have chosen.
+
+    What it inherits is for the examples of who wrote it.
+    """
+    return [rule for rule in rules if patterns or not rule.inherited]
 
 
 def coverage(run: ExampleRun) -> tuple[RuleCoverage, ...]:
@@ -85,7 +122,8 @@ def coverage(run: ExampleRun) -> tuple[RuleCoverage, ...]:
         if outcomes or run.names(rule):
             known = axiom_instances(rule.variables, run.rulebook.axioms, run.rulebook.vocabulary)
             axioms = [outcome.formula for outcome in known]
-            covered.append(_coverage(rule, compiled, outcomes, run.compiled, axioms))
+            one = _coverage(rule, compiled, outcomes, run.compiled, axioms)
+            covered.append(replace(one, inherited=rule.book not in ("", run.rulebook.name)))
     return tuple(covered)
 
 
@@ -136,15 +174,50 @@ def _coverage(
         ).items()
         for value in possible
     ]
-    seen = set()
+    sides = sides_of(rule.formula)
+    seen: set[tuple[Proposition, object]] = set()
+    near: set[LimitSide] = set()
     for outcome in outcomes:
         trace = example_trace(rule, outcome.example)
         reader = letter_reader_of(trace, rulebook)
         for number in range(len(trace.states)):
             state = reader.view(number)
             seen |= {(atom, holds(atom, own_names(rule), state)) for atom, _ in values}
+            near.update(touched(sides, own_names(rule), state))
     missing_values = tuple(value for value in values if value not in seen)
-    return RuleCoverage(rule.name, len(edges), missing_edges, len(values), missing_values)
+    unsettled = [state for state in sorted(paths) if state not in sinks]
+
+    def untouched(side: LimitSide) -> UntouchedLimit | None:
+        found = deciding_edges(side, machine, unsettled)
+        for source, letter in itertools.islice(found, _MOST_TRIED):
+            last = coverage_witness(letter, machine, rule.formula, rulebook.vocabulary, axioms)
+            says = close_state(last.says, side, machine, rulebook.vocabulary)
+            if says is not None:
+                symbol = machine.letters[letter]
+                edge = UncoveredEdge(
+                    source,
+                    machine.successors[source][symbol],
+                    (
+                        *(states[letter_class] for letter_class in paths[source]),
+                        replace(last, says=says),
+                    ),
+                    machine.outputs[source][symbol],
+                )
+                return UntouchedLimit(side.comparison, side.holds, edge)
+        return None
+
+    missing_limits = tuple(
+        limit for side in sides if side not in near and (limit := untouched(side)) is not None
+    )
+    return RuleCoverage(
+        rule=rule.name,
+        n_edges=len(edges),
+        missing_edges=missing_edges,
+        n_values=len(values),
+        missing_values=missing_values,
+        n_limits=len(near) + len(missing_limits),
+        missing_limits=missing_limits,
+    )
 
 
 def _taken(machine: MealyMonitor, word: Sequence[int]) -> Iterator[tuple[int, int]]:

@@ -36,6 +36,16 @@ def is_possible(read: Read | NumberRead, digit: int) -> bool:
     return bounds[digit] < bounds[digit + 1]
 
 
+def can_be(monitor: MealyMonitor, letter: int, *, below_zero: bool = False) -> bool:
+    """Tell whether some state has a letter; with numbers below zero only if they are wanted."""
+    digits = digits_of(letter, monitor.reads)
+    return (
+        monitor.letters[letter] != IMPOSSIBLE
+        and all(map(is_possible, monitor.reads, digits))
+        and (below_zero or all(map(is_natural, monitor.reads, digits)))
+    )
+
+
 def possible_letters(monitor: MealyMonitor) -> Mapping[int, int]:
     """First letter of every letter class that some state has, without numbers below zero if any."""
     first: dict[int, int] = {}

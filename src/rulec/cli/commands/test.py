@@ -60,7 +60,7 @@ def _number(
     type=click.FloatRange(0, 100),
     callback=_number,
     metavar="PERCENT",
-    help="Fail if the examples cover less; implies --coverage.",
+    help="Fail if the examples cover less of own rules; implies --coverage.",
 )
 @shared.jobs_option("Test so many rulebooks at a time")
 @watch_option

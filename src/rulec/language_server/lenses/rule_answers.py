@@ -61,7 +61,7 @@ def example_answer(book: Rulebook, rule: Rule) -> ExampleAnswer:
     from rulec.book_tests.example_coverage import coverage
     from rulec.book_tests.example_runs import run_rulebook_examples
     from rulec.extraction.tellable_words import TELLABLE_WORDS
-    from rulec.report.tests.example_text import missing_example
+    from rulec.report.tests.example_text import missing_examples
 
     compiled = _compiled(book, rule)
     run = run_rulebook_examples(replace(book, rules=(rule,)), compiled)
@@ -70,9 +70,7 @@ def example_answer(book: Rulebook, rule: Rule) -> ExampleAnswer:
     return ExampleAnswer(
         sum(outcome.passed for outcome in run.outcomes),
         tuple(outcome.name for outcome in run.outcomes if not outcome.passed),
-        tuple(
-            missing_example(edge, compiled.vocabulary) for one in seen for edge in one.missing_edges
-        ),
+        tuple(example for one in seen for example in missing_examples(one, compiled.vocabulary)),
         audited.rules[0].lacking,
     )
 

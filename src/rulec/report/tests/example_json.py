@@ -11,7 +11,7 @@ from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import formula_text
 from rulec.report.findings.diagnostics_json import PlaceData, place_data
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
-from rulec.report.tests.example_text import missing_example
+from rulec.report.tests.example_text import asked_rules, missing_example
 from rulec.rulebook.rulebook_model import Rulebook
 
 ExampleVerdict = Literal["accept", "reject"]
@@ -46,22 +46,34 @@ class MissingValueData(JsonPart, frozen=True, kw_only=True):
     value: bool
 
 
+class MissingLimitData(JsonPart, frozen=True, kw_only=True):
+    """A limit that no example is close to where it has this value, and one that would be."""
+
+    limit: str
+    value: bool
+    example: str
+
+
 class RuleCoverageData(JsonPart, frozen=True, kw_only=True):
     """Coverage of a rule's automaton and its atoms' values by examples."""
 
     rulebook: str
     rule: str
+    inherited: bool
     percent: float
     edges: int
     missing_edges: Sequence[MissingEdgeData]
     values: int
     missing_values: Sequence[MissingValueData]
+    limits: int
+    missing_limits: Sequence[MissingLimitData]
 
 
 class CoverageData(JsonPart, frozen=True, kw_only=True):
-    """The coverage of all rules together, and of each."""
+    """The coverage of a rulebook's own rules together, with inherited ones, and of each."""
 
     percent: float
+    percent_with_inherited: float
     rules: Sequence[RuleCoverageData]
 
 
@@ -105,7 +117,8 @@ def _coverage(
     runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]]
 ) -> CoverageData:
     return CoverageData(
-        percent=round(percent(rule for rules in covered for rule in rules), 3),
+        percent=round(percent(asked_rules(runs, covered)), 3),
+        percent_with_inherited=round(percent(rule for rules in covered for rule in rules), 3),
         rules=[
             _rule(run.rulebook, rule)
             for run, rules in zip(runs, covered, strict=True)
@@ -120,6 +133,7 @@ def _rule(rulebook: Rulebook, rule: RuleCoverage) -> RuleCoverageData:
     return RuleCoverageData(
         rulebook=rulebook.name,
         rule=rule.rule,
+        inherited=rule.inherited,
         percent=round(percent([rule]), 3),
         edges=rule.n_edges,
         missing_edges=[
@@ -129,5 +143,14 @@ def _rule(rulebook: Rulebook, rule: RuleCoverage) -> RuleCoverageData:
         values=rule.n_values,
         missing_values=[
             MissingValueData(atom=formula_text(atom), value=value) for atom, value in values
+        ],
+        limits=rule.n_limits,
+        missing_limits=[
+            MissingLimitData(
+                limit=formula_text(one.comparison),
+                value=one.value,
+                example=missing_example(one.example, rulebook.vocabulary),
+            )
+            for one in rule.missing_limits
         ],
     )

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from rulec.automata.thresholds import exact
-from rulec.book_tests.example_coverage import RuleCoverage, UncoveredEdge, percent
+from rulec.book_tests.example_coverage import RuleCoverage, UncoveredEdge, asked_of, percent
 from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun, example_warning
 from rulec.diagnostics import Diagnostic
 from rulec.logic.fold import fold_constants
@@ -59,13 +59,31 @@ def as_text(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]
                 f"{run.rulebook.name} {line}"
                 for line in coverage_lines(rules, run.rulebook.vocabulary)
             ]
-        together = percent(rule for rules in covered for rule in rules)
-        lines.append(f"coverage {as_percent(together)}")
+        lines.append(coverage_in_words(runs, covered))
     outcomes = [outcome for run in runs for outcome in run.outcomes]
     passed = sum(outcome.passed for outcome in outcomes)
     word = "example" if len(outcomes) == 1 else "examples"
     counts = f"{passed:,} passed, {len(outcomes) - passed:,} failed"
     return "\n".join([*lines, f"{len(outcomes):,} {word}: {counts}"])
+
+
+def asked_rules(
+    runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]]
+) -> list[RuleCoverage]:
+    """The rules of all runs that their rulebooks have to cover."""
+    pairs = zip(runs, covered, strict=True)
+    return [rule for run, rules in pairs for rule in asked_of(rules, run.patterns)]
+
+
+def coverage_in_words(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]]) -> str:
+    """The coverage of a rulebook's own rules, and that of all where it inherits some."""
+    everything = [rule for rules in covered for rule in rules]
+    asked = asked_rules(runs, covered)
+    if len(asked) == len(everything):
+        return f"coverage {as_percent(percent(asked))}"
+    with_others = as_percent(percent(everything))
+    own = f" {as_percent(percent(asked))} of own rules" if asked else ": no rule is its own"
+    return f"coverage{own}, {with_others} with those that are inherited"
 
 
 def failure(example_outcome: ExampleOutcome, rulebook: str) -> Diagnostic:
@@ -105,10 +123,12 @@ def shortcomings(
     if fail_on_empty and not any(run.outcomes for run in runs):
         short["examples"] = "there is no example to run"
     if covered is not None and threshold is not None:
-        part = percent(rule for rules in covered for rule in rules)
+        asked = asked_rules(runs, covered)
+        part = percent(asked)
         if part < threshold:
+            own = " of own rules" if len(asked) < sum(map(len, covered)) else ""
             short["coverage"] = (
-                f"coverage is {as_percent(part)}, below the {threshold:g} % asked for"
+                f"coverage{own} is {as_percent(part)}, below the {threshold:g} % asked for"
             )
     return short
 
@@ -120,15 +140,23 @@ def coverage_lines(rules: Sequence[RuleCoverage], vocabulary: Vocabulary) -> Ite
         values = (
             f"{rule.n_values - len(rule.missing_values):,} of {rule.n_values:,} values of atoms"
         )
-        lines = [f"{rule.rule}: {edges}, {values} ({as_percent(percent([rule]))})"]
+        whose = " (inherited)" if rule.inherited else ""
+        limits = (
+            f", {rule.n_limits - len(rule.missing_limits):,} of {rule.n_limits:,} sides of limits"
+            if rule.n_limits
+            else ""
+        )
+        lines = [f"{rule.rule}{whose}: {edges}, {values}{limits} ({as_percent(percent([rule]))})"]
         for atom, value in rule.missing_values:
             lines.append(f"`{formula_text(atom)}` is never {'true' if value else 'false'}")
-        lines += [
-            f"missing: {missing_example(edge, vocabulary)}"
-            for edge in rule.missing_edges[:MOST_MISSING]
-        ]
-        if len(rule.missing_edges) > MOST_MISSING:
-            more = len(rule.missing_edges) - MOST_MISSING
+        for limit in rule.missing_limits:
+            if (limit.comparison, limit.value) not in rule.missing_values:
+                how = "true" if limit.value else "false"
+                lines.append(f"`{formula_text(limit.comparison)}` is never narrowly {how}")
+        missing = missing_examples(rule, vocabulary)
+        lines += [f"missing: {example}" for example in missing[:MOST_MISSING]]
+        if len(missing) > MOST_MISSING:
+            more = len(missing) - MOST_MISSING
             lines.append(f"and {more:,} more; --output-format json has them all")
         yield "\n  ".join(lines)
 
@@ -136,6 +164,12 @@ def coverage_lines(rules: Sequence[RuleCoverage], vocabulary: Vocabulary) -> Ite
 def as_percent(number: float) -> str:
     """A percentage that is 100 only if nothing is missing."""
     return f"{min(number, 99.9) if number < 100 else 100:.1f} %"
+
+
+def missing_examples(rule: RuleCoverage, vocabulary: Vocabulary) -> list[str]:
+    """Examples that would take each missing edge and come close to each limit, each once."""
+    edges = [*rule.missing_edges, *(limit.example for limit in rule.missing_limits)]
+    return list(dict.fromkeys(missing_example(edge, vocabulary) for edge in edges))
 
 
 def missing_example(edge: UncoveredEdge, vocabulary: Vocabulary) -> str:

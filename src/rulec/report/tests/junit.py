@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from xml.etree import ElementTree
 
-from rulec.book_tests.example_coverage import RuleCoverage, percent
+from rulec.book_tests.example_coverage import RuleCoverage, asked_of, percent
 from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun
 from rulec.diagnostics.diagnostic import at
 from rulec.files import from_here
@@ -32,7 +32,7 @@ def as_junit(
         )
         if covered is not None:
             properties = ElementTree.SubElement(suite, "properties")
-            part = f"{percent(covered[number]):.3f}"
+            part = f"{percent(asked_of(covered[number], run.patterns)):.3f}"
             ElementTree.SubElement(properties, "property", {"name": "coverage", "value": part})
         for outcome in run.outcomes:
             _case(suite, run.rulebook.name, outcome)

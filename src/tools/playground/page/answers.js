@@ -75,15 +75,8 @@ export function examples(run, isOwn, onShow, onInsert) {
   const others = passes.filter(([own]) => !own).map(([, item]) => item);
   const names = new Set(run.examples.filter((one) => one.place && isOwn(one.place)).map((one) => one.rule));
   const missing = run.coverage.rules.filter((rule) => names.has(rule.rule)).flatMap((rule) =>
-    rule.missing_edges.map((edge) =>
-      element(
-        "li",
-        {},
-        `No example of ${rule.rule} has this: `,
-        element("code", {}, edge.example),
-        " ",
-        onInsert(rule.rule, edge.example),
-      ),
+    [...new Set([...rule.missing_edges, ...rule.missing_limits].map((one) => one.example))].map((example) =>
+      element("li", {}, `No example of ${rule.rule} has this: `, element("code", {}, example), " ", onInsert(rule.rule, example)),
     ),
   );
   const isFailing = (item) => item.className === "fail";
