@@ -100,11 +100,12 @@ class _Batch:
             prepared=(among.map, self.matching, self.surroundings),
         )
         self.stretches = [self._drives.stretches(row) for row in range(len(candidates))]
-        self._rows: dict[DrivenRoad, list[int]] = defaultdict(list)
+        self._rows: dict[DrivenRoad, dict[int, int]] = defaultdict(dict)
         for row, stretches in enumerate(self.stretches):
             for road in {self._road(stretch) for stretch in stretches}:
                 if road is not None:
-                    self._rows[road].append(row)
+                    own = self._rows[road]
+                    own[row] = len(own)
         self._places: dict[DrivenRoad, RoadPlaces] = {}
 
     def _road(self, stretch: RouteStretch) -> DrivenRoad | None:
@@ -115,8 +116,9 @@ class _Batch:
         """The places on a road of all that drive there, and a candidate's row among them."""
         rows = self._rows[road]
         if road not in self._places:
-            self._places[road] = self._drives.places_of(road, np.array(rows, dtype=intp))
-        return self._places[road], int(np.searchsorted(rows, row))
+            members = np.fromiter(rows, dtype=intp, count=len(rows))
+            self._places[road] = self._drives.places_of(road, members)
+        return self._places[road], rows[row]
 
     def drives(self) -> list[tuple[Drive | NoDrive, ...]]:
         """The drives of each candidate."""

@@ -145,12 +145,25 @@ class DriveContext:
     @cached_property
     def limit_mps(self) -> Floats:
         """The limit of the lane of ego's middle by state, infinity if the map tells none there."""
-        pieces = self.road.piece(self.ego_extents.s[0]).tolist()
-        places = list(zip(pieces, self.ego_lane.tolist(), strict=True))
         turned = np.radians(self.thresholds.turned_deg)
-        limits = {place: self.road.limit_mps(*place, turned) for place in set(places)}
-        known = {place: np.inf if limit is None else limit for place, limit in limits.items()}
-        return np.array([known[place] for place in places])
+        places, number = self.ego_places
+        limits = [self.road.limit_mps(*place, turned) for place in places]
+        return np.array([np.inf if limit is None else limit for limit in limits])[number]
+
+    @cached_property
+    def ego_places(self) -> tuple[tuple[tuple[int, int], ...], NDArray[intp]]:
+        """The pieces and lanes of ego's middle, each once, and by state which of them it is."""
+        return self.places_at(self.ego_extents.s[0], self.ego_lane)
+
+    def places_at(
+        self, middle: Floats, lanes: NDArray[intp]
+    ) -> tuple[tuple[tuple[int, int], ...], NDArray[intp]]:
+        """The pieces and lanes so far along the road, in a lane, each once, and by state which."""
+        width = self.existing_lanes.shape[1]
+        codes = self.road.piece(middle) * width + lanes
+        different = distinct(codes)
+        places = tuple([divmod(code, width) for code in different.tolist()])
+        return places, np.searchsorted(different, codes)
 
     @cached_property
     def existing_lanes(self) -> Flags:

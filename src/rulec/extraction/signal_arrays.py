@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy import intp
@@ -24,8 +24,7 @@ from rulec.vocabulary import Declaration, Enumeration, Vocabulary
 _KINDS: Mapping[str, type] = {"b": bool, "f": float, "i": float, "u": float}
 
 
-@dataclass(frozen=True, slots=True)
-class Presence:
+class Presence(NamedTuple):
     """An object of a trace: a participant's row, first and last column of its presence."""
 
     name: str
@@ -201,7 +200,11 @@ def with_signals(
     With ``defaults`` what is unknown is left out, and numbers are as measured.
     """
     columns = signals.columns
-    cells, bounds = _cells(present, spans)
+    counts = [0, *np.cumsum([len(own) for own in present]).tolist()]
+    rows = np.array([presence.row for own in present for presence in own], dtype=intp)
+    told = [(x.first, x.last) for own in present for x in own]
+    every = np.array(told, dtype=intp).reshape(-1, 2)
+    cells, bounds = _cells(rows, every, counts, spans)
 
     def gathered(name: str, column: SignalColumn) -> SignalColumn:
         """A signal's values end to end: of the world, or of who is present."""
@@ -216,10 +219,6 @@ def with_signals(
         for x, (low, high) in columns.bounds.items()
         if x in names
     }
-    counts = [0, *np.cumsum([len(own) for own in present]).tolist()]
-    rows = np.array([presence.row for own in present for presence in own], dtype=intp)
-    told = [(x.first, x.last) for own in present for x in own]
-    every = np.array(told, dtype=intp).reshape(-1, 2)
     only = {name: flags[rows] for name, flags in columns.only.items() if name in about}
     about_names = frozenset(name for name in names if name not in columns.world)
     nothing: dict[str, SignalColumn] = {}
@@ -248,16 +247,16 @@ def with_signals(
 
 
 def _cells(
-    present: Sequence[Sequence[Presence]], spans: EndToEnd
+    rows: NDArray[intp], told: NDArray[intp], counts: Sequence[int], spans: EndToEnd
 ) -> tuple[NDArray[intp], list[int]]:
     """Where the values of each presence stand in rows of all states, one after the other.
 
-    With where those of each drive begin among them, and those of the last one end.
+    Presences are ``rows`` with their first and last states; those of each drive begin at
+    ``counts``. With where the values of each drive begin, and those of the last one end.
     """
-    parts, bounds = [np.empty(0, dtype=intp)], [0]
-    for own, begin in zip(present, spans.bounds[:-1], strict=True):
-        for each in own:
-            at = each.row * spans.n_states + begin
-            parts.append(np.arange(at + each.first, at + each.last + 1))
-        bounds.append(bounds[-1] + sum(each.last - each.first + 1 for each in own))
-    return np.concatenate(parts), bounds
+    first, last = told.T
+    ends = np.append(0, np.cumsum(last - first + 1))
+    lengths = np.diff(ends)
+    at = rows * spans.n_states + np.repeat(spans.begins, np.diff(counts)) + first
+    cells = np.arange(ends[-1]) + np.repeat(at - ends[:-1], lengths)
+    return cells, ends[counts].tolist()

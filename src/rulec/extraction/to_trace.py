@@ -54,7 +54,7 @@ from rulec.logic.formula import Relation
 from rulec.monitoring.explain.margins import Margin
 from rulec.trace import Trace, Value
 from rulec.trace.trace_arrays import TraceArrays
-from rulec.trace.vocabulary_projection import known_types
+from rulec.trace.vocabulary_projection import known_type
 from rulec.value_display import short_repr
 from rulec.vocabulary import Vocabulary
 
@@ -66,14 +66,13 @@ def presences(context: DriveContext) -> list[list[Presence]]:
     extents are not known then.
     """
     found: list[list[Presence]] = [[] for _ in context.spans.slices]
-    numbers: dict[tuple[int, str], int] = {}
+    ids, before = context.ids, (-1, -1)
     for drive, row, first, last in _presences(context):
-        own = context.tracks.participants[row].id
-        numbers[drive, own] = number = numbers.get((drive, own), 0) + 1
-        name = own
-        if number > 1:
+        name = ids[row]
+        if before == (drive, row):
             taken = _ids_in(context, drive).union(one.name for one in found[drive])
-            name = next(free for k in count(2) if (free := f"{own}_{k}") not in taken)
+            name = next(free for k in count(2) if (free := f"{ids[row]}_{k}") not in taken)
+        before = drive, row
         found[drive].append(Presence(name, row, first, last))
     return found
 
@@ -287,13 +286,12 @@ def to_traces(
         chosen = with_likeliest(chosen, writer.vocabulary)
     kinds = chosen.kinds()
     traces, present = [], []
+    vocabulary = writer.vocabulary
+    kind_of = [kind[0] if vocabulary is None else known_type(kind, vocabulary) for kind in types]
     for name, columns, own in zip(names, spans.slices, presences(context), strict=True):
-        own_types = {presence.name: types[presence.row] for presence in own}
-        if writer.vocabulary is None:
-            objects = {object_name: kind[0] for object_name, kind in own_types.items()}
-        else:
-            objects = known_types(own_types, writer.vocabulary)
-        present.append([presence for presence in own if presence.name in objects])
+        known = [(x, kind) for x in own if (kind := kind_of[x.row]) is not None]
+        objects = {presence.name: kind for presence, kind in known}
+        present.append([presence for presence, _ in known])
         empty = TraceArrays(
             name,
             context.recording.step_s,

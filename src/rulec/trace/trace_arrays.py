@@ -104,7 +104,7 @@ class TraceArrays:
 
     def says(self, name: str) -> bool:
         """Whether some state says a name."""
-        return name in self.world.keys() | self.about.keys() and bool(self._said(name).any())
+        return (name in self.world or name in self.about) and bool(self._said(name).any())
 
     def _said(self, name: str) -> Flags:
         """Where a name is said."""

@@ -100,13 +100,8 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     """
     limits = context.thresholds
     own_lanes = (context.existing_lanes.sum(axis=1) > 1) & ~_beyond_own_lanes(context)
-    pieces = context.road.piece(context.ego_extents.s[0]).tolist()
-    places = list(zip(pieces, context.ego_lane.tolist(), strict=True))
-    one_way = {
-        place: context.surroundings.directions(context.road.lanelet(*place))[0] is True
-        for place in set(places)
-    }
-    alone = own_lanes | np.array([one_way[place] for place in places])
+    one_way = own_lanelets(context).flags(lambda at: context.surroundings.directions(at)[0] is True)
+    alone = own_lanes | one_way
     own = np.maximum(context.ego_extents.along[0], 0.0)
     against = (context.extents.along * KMH < -limits.standing_kmh) & context.relevant
     against &= np.cos(context.extents.turned) < 0

@@ -35,6 +35,13 @@ class OwnLanelets:
         of_each = [value(lanelet) for lanelet in self.lanelets]
         return [of_each[number] for number in self.number.tolist()]
 
+    def told(self, value: Callable[[Lanelet], bool | None]) -> tuple[Flags, Flags]:
+        """Flags of the states in which a function says yes of the lanelet, and None."""
+        of_each = [value(lanelet) for lanelet in self.lanelets]
+        true = np.array([x is True for x in of_each], dtype=bool)
+        unknown = np.array([x is None for x in of_each], dtype=bool)
+        return true[self.number], unknown[self.number]
+
     def flags(self, holds: Callable[[Lanelet], bool]) -> Flags:
         """Flags of the states in which something holds of the lanelet."""
         of_each = np.array([holds(lanelet) for lanelet in self.lanelets], dtype=bool)
@@ -45,15 +52,17 @@ class OwnLanelets:
 @once
 def own_lanelets(context: DriveContext) -> OwnLanelets:
     """The lanelets of ego's lane."""
-    return lanelets_at(context, context.ego_extents.s[0], context.ego_lane)
+    return _of_places(context, *context.ego_places)
 
 
 def lanelets_at(context: DriveContext, middle: Floats, lanes: NDArray[intp]) -> OwnLanelets:
     """The lanelets at so far along the road, in a lane, by state."""
-    pieces = context.road.piece(middle)
-    width = context.existing_lanes.shape[1]
-    codes, number = np.unique(pieces * width + lanes, return_inverse=True)
-    places = tuple(divmod(code, width) for code in codes.tolist())
+    return _of_places(context, *context.places_at(middle, lanes))
+
+
+def _of_places(
+    context: DriveContext, places: tuple[tuple[int, int], ...], number: NDArray[intp]
+) -> OwnLanelets:
     lanelets = tuple(context.road.lanelet(*place) for place in places)
     return OwnLanelets(places, lanelets, number)
 

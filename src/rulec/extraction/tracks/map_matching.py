@@ -214,7 +214,8 @@ def _transitions(
     found: LaneCandidates, places: Floats, states: NDArray[intp], graph: LaneletGraph
 ) -> _Transitions:
     # The other way of hypot, numpy's, rounds otherwise
-    moved = np.array([hypot(*step) for step in (places[states] - places[states - 1]).tolist()])
+    steps = (places[states] - places[states - 1]).T.tolist()
+    moved = np.array(list(map(hypot, *steps)))
     weight = np.zeros(len(found.rows))
     weight[states] = np.minimum(1.0, moved / (2 * SIGMA_M))
     own = _padded(found, states, np.repeat(weight, found.counts) * found.costs)

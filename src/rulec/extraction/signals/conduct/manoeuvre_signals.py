@@ -98,9 +98,8 @@ def _driving_side(context: DriveContext) -> SignalColumns:
     """
     beyond, loose = _beyond_far_edge(context), _loose(context)
     directions = context.surroundings.directions
-    one_way = own_lanelets(context).values(lambda lanelet: directions(lanelet)[0])
-    two_way = np.array([way is False for way in one_way], dtype=bool)
-    not_told = np.array([way is None for way in one_way], dtype=bool)
+    one_way, not_told = own_lanelets(context).told(lambda lanelet: directions(lanelet)[0])
+    two_way = ~one_way & ~not_told
     drives = _along_road(context) & ~_at_junctions(context) & _on_map(context)
     there = drives & two_way & (beyond > loose)
     perhaps = drives & (beyond > 0) & ((two_way & (beyond <= loose)) | not_told)

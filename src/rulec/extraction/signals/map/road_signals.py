@@ -5,7 +5,7 @@ What a map leaves out is unknown unless its format would have it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import numpy as np
 
@@ -44,7 +44,7 @@ def road_signals(context: DriveContext, names: SignalNames = None) -> SignalColu
 def _built_up(context: DriveContext) -> SignalColumns:
     if not _SETTINGS & map_contents(context).types:
         return SignalColumns()
-    town, unknown = _told(own_lanelets(context).values(_town(context)))
+    town, unknown = own_lanelets(context).told(_town(context))
     return SignalColumns({"built_up": town}, unknown={"built_up": unknown})
 
 
@@ -61,19 +61,17 @@ def _where_told(name: str, values: list[str]) -> SignalColumns:
 
 
 def _ways(context: DriveContext) -> SignalColumns:
-    both = own_lanelets(context).values(_directions(context))
+    directions, spans = _directions(context), context.spans
     world: dict[str, SignalColumn] = {}
     unknown: dict[str, Flags] = {}
-    for name, told in zip(("one_way", "divided"), zip(*both, strict=True), strict=True):
-        slices = context.spans.slices
-        known = [any(value is not None for value in told[columns]) for columns in slices]
-        if context.spans.agreed(known):
-            world[name], unknown[name] = _told(told)
+    told = {
+        "one_way": own_lanelets(context).told(lambda at: directions(at)[0]),
+        "divided": own_lanelets(context).told(lambda at: directions(at)[1]),
+    }
+    for name, (holds, dark) in told.items():
+        if spans.agreed((~spans.all(dark))[spans.begins].tolist()):
+            world[name], unknown[name] = holds, dark
     return SignalColumns(world, unknown=unknown)
-
-
-def _told(values: Sequence[bool | None]) -> tuple[Flags, Flags]:
-    return np.array([bool(x) for x in values]), np.array([x is None for x in values])
 
 
 def _lane_kind(context: DriveContext) -> SignalColumns:

@@ -22,6 +22,8 @@ from rulec.trace.plain_arrays import distinct
 _MOST_TOGETHER = 1 << 20
 """So many states of pairs are looked at together."""
 
+_NONE = np.empty(0, dtype=np.intp)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Instances:
@@ -70,6 +72,8 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
     """All choices that may not be kept, and perhaps others that are."""
     stack = reader.stack
     busy = ~_are_idle(rule, numbers_at(rule, reader, None), stack.n_states)
+    if not busy.any():
+        return Instances(_NONE, (_NONE,) * len(rule.variables), _NONE, _NONE)
     if not rule.variables:
         traces = distinct(np.searchsorted(stack.begins, np.flatnonzero(busy), side="right") - 1)
         return Instances(traces, (), stack.begins[traces], stack.begins[traces + 1] - 1)
@@ -92,7 +96,9 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
 def _are_idle(rule: StackedRule, numbers: Sequence[Numbers], n_spots: int) -> NDArray[np.bool_]:
     letters = rule.letters.numbers(numbers)
     flags = rule.idle_flags()
-    return flags.take(np.broadcast_to(np.asarray(letters), (n_spots,)))
+    if isinstance(letters, np.ndarray):
+        return flags.take(letters)
+    return np.full(n_spots, flags[letters])
 
 
 def _busy_cells(
@@ -103,12 +109,14 @@ def _busy_cells(
 ) -> Places:
     """The cells of objects for a variable in which a letter might do something."""
     (variable, kind), stack = about, reader.stack
-    cells = stack.cells_of_type(kind)
-    if not busy.all():
-        cells = cells[busy[stack.state_of[cells]]]
+    cells, states = stack.cells_of_type(kind), stack.states_of_type(kind)
+    is_every = bool(busy.all())
+    if not is_every:
+        there = busy[states]
+        cells, states = cells[there], states[there]
     if not len(cells):
         return cells
-    spots = Spots(stack.state_of[cells], {variable: cells})
+    spots = Spots(states, {variable: cells}, kind=kind if is_every else None)
     numbers = numbers_at(rule, reader, spots, (variable,))
     return cells[~_are_idle(rule, numbers, len(cells))]
 

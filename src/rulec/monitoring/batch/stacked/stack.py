@@ -76,6 +76,7 @@ class Stack:
         self._columns: dict[str, StackColumn | None] = {}
         self._of_type: dict[str, Flags] = {}
         self._cells_of_type: dict[str, Places] = {}
+        self._states_of_type: dict[str, Places] = {}
 
     @cached_property
     def object_of(self) -> Places:
@@ -102,6 +103,14 @@ class Stack:
             every = np.arange(self.starts[-1])
             self._cells_of_type[kind] = every if suits.all() else every[suits[self.object_of]]
         return self._cells_of_type[kind]
+
+    def states_of_type(self, kind: str) -> Places:
+        """The states of the cells of the objects of a type."""
+        if kind not in self._states_of_type:
+            cells = self.cells_of_type(kind)
+            is_every = len(cells) == self.starts[-1]
+            self._states_of_type[kind] = self.state_of if is_every else self.state_of[cells]
+        return self._states_of_type[kind]
 
     def says(self, name: str) -> bool:
         """Whether some state may say a name."""

@@ -37,12 +37,14 @@ from rulec.vocabulary.partial_values import Interval, PartialValue
 class Spots:
     """States of the stack, and the cells of the variables' objects in each.
 
-    ``whole`` are all states, or all cells, in their order.
+    ``whole`` are all states, or all cells, in their order; of a ``kind`` are the cells of all
+    objects of that type.
     """
 
     states: Places
     cells: Mapping[str, Places]
     whole: bool = False
+    kind: str | None = None
 
     def part(self, chosen: Places | slice) -> Spots:
         """Some of them."""
@@ -56,6 +58,7 @@ class StackReader:
     def __init__(self, stack: Stack) -> None:
         self.stack = stack
         self._numbers: dict[object, Array | int] = {}
+        self._of_kind: dict[tuple[object, str], Array] = {}
         self._every_state = np.arange(stack.n_states)
 
     def numbers(self, read: StackedRead, spots: Spots | None) -> Numbers:
@@ -71,7 +74,14 @@ class StackReader:
         found = self._numbers[read.key]
         if spots is None or not isinstance(found, np.ndarray):
             return found
-        return found.take(spots.cells[read.variables[0]] if read.variables else spots.states)
+        if spots.kind is None:
+            return found.take(spots.cells[read.variables[0]] if read.variables else spots.states)
+        key = read.key, spots.kind
+        if key not in self._of_kind:
+            own = spots.cells[read.variables[0]] if read.variables else spots.states
+            is_every = bool(read.variables) and len(own) == len(found)
+            self._of_kind[key] = found if is_every else found.take(own)
+        return self._of_kind[key]
 
     def _everywhere(self, read: StackedRead) -> Array | int:
         """The numbers in all states, or cells."""
