@@ -15,8 +15,8 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic.formula import Count, Formula
 from rulec.logic.free_names import variables_of
 from rulec.witnesses import letter_functions
-from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, counts_in
-from rulec.witnesses.relevant_axioms import relevant_axioms
+from rulec.witnesses.object_universe import EXTRA, ObjectUniverse
+from rulec.witnesses.relevant_axioms import relevant_axioms, said_axioms
 from rulec.witnesses.state_synthesis import JointState, Subject, Value, synthesize_state
 from rulec.witnesses.undecided import UndecidedError
 
@@ -222,21 +222,12 @@ def _axioms_about(kind: str, universe: ObjectUniverse, bodies: Sequence[Formula]
 
     Others would multiply the states to go through, and its words in them have their defaults.
     """
-    vocabulary = universe.vocabulary
     with_it = replace(universe, objects={**universe.objects, EXTRA: kind})
-    formulas = [
-        formula
-        for formula in with_it.axiom_formulas()
-        if not any(True for _ in counts_in(formula)) and EXTRA in variables_of(formula)
+    axioms = [
+        axiom for axiom in said_axioms(with_it) if not axiom.is_counting and EXTRA in axiom.objects
     ]
-    functions = [letter_functions.axiom_function(formula, vocabulary) for formula in formulas]
-    read = [letter_functions.axiom_function(body, vocabulary) for body in bodies]
-    relevant = set(map(id, relevant_axioms(functions, read, vocabulary)))
-    return [
-        formula
-        for formula, function in zip(formulas, functions, strict=True)
-        if id(function) in relevant
-    ]
+    read = [letter_functions.axiom_function(body, universe.vocabulary) for body in bodies]
+    return [axiom.formula for axiom in relevant_axioms(axioms, read)]
 
 
 def _digit(read: Read | NumberRead, state: JointState, universe: ObjectUniverse) -> int:

@@ -50,10 +50,12 @@ class _OwnDiagram(_Nodes):
     def __init__(self, letters: Sequence[int], sizes: Sequence[int]) -> None:
         super().__init__()
         self._after: dict[tuple[int, int, int], int] = {}
-        nodes = [self.add(inf, symbol) for symbol in letters]
+        leaves = {symbol: self.add(inf, symbol) for symbol in dict.fromkeys(letters)}
+        nodes = [leaves[symbol] for symbol in letters]
         for place, size in enumerate(sizes):
-            firsts = range(0, len(nodes), size)
-            nodes = [self.add(place, *nodes[first : first + size]) for first in firsts]
+            groups = list(zip(*[iter(nodes)] * size, strict=True))
+            added = {group: self.add(place, *group) for group in dict.fromkeys(groups)}
+            nodes = [added[group] for group in groups]
         (self.root,) = nodes
 
     def after(self, node: int, place: int, digit: int) -> int:

@@ -17,7 +17,7 @@ from rulec.witnesses.counted_objects import CountedObjectKinds, fewest_counted_o
 from rulec.witnesses.decision_diagrams import DecisionDiagrams
 from rulec.witnesses.joint_reads import joint_reads
 from rulec.witnesses.object_universe import ObjectUniverse
-from rulec.witnesses.relevant_axioms import relevant_axioms
+from rulec.witnesses.relevant_axioms import relevant_axioms, said_axioms
 from rulec.witnesses.undecided import UndecidedError
 
 JointLetter = tuple[int, ...]
@@ -51,17 +51,16 @@ class JointAlphabet:
         self._object_kinds = CountedObjectKinds(universe)
         self._steps_left = self._most_steps = SEARCH.value()
         vocabulary = universe.vocabulary
-        axioms = [
-            letter_functions.axiom_function(formula, vocabulary)
-            for formula in universe.axiom_formulas()
-        ]
-        reads = (read for function in (*monitors, *axioms) for read in function.reads)
+        axioms = list(said_axioms(universe))
+        facts = [axiom.function for axiom in axioms]
+        reads = (read for function in (*monitors, *facts) for read in function.reads)
         self._counts = [
             letter_functions.count_function(count, universe)
             for count in letter_functions.counts_read(reads)
         ]
         read = [*monitors, *(count.function for count in self._counts)]
-        functions = [*read, *relevant_axioms(axioms, read, vocabulary)]
+        relevant = relevant_axioms(axioms, read)
+        functions = [*read, *(axiom.function for axiom in relevant)]
         self._joint = joint_reads(functions, vocabulary)
         self._n_keys = len(monitors) + len(self._counts)
         self._n_numbers = sum(isinstance(read, NumberRead) for read in self._joint.reads)

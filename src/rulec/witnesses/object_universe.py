@@ -39,9 +39,24 @@ class ObjectUniverse:
 
     def axiom_formulas(self) -> Iterator[ltl.Formula]:
         """The axioms, said of the objects."""
+        for axiom, names in self.axiom_bindings():
+            yield said_of(axiom, names)
+
+    def axiom_bindings(self) -> Iterator[tuple[Axiom, dict[str, str]]]:
+        """Each axiom with each way to bind its variables."""
+        of_types: dict[tuple[str, ...], list[tuple[str, ...]]] = {}
         for axiom in self.axioms:
-            for names in self.bindings(axiom.variables):
-                yield rename_variables(_canonical(axiom.formula), names)
+            types = tuple([variable.type for variable in axiom.variables])
+            if types not in of_types:
+                of_types[types] = list(choices(types, self.objects, self.vocabulary))
+            names = [variable.name for variable in axiom.variables]
+            for chosen in of_types[types]:
+                yield axiom, dict(zip(names, chosen, strict=True))
+
+
+def said_of(axiom: Axiom, names: Mapping[str, str]) -> ltl.Formula:
+    """An axiom, said of objects."""
+    return rename_variables(_canonical(axiom.formula), names)
 
 
 def _canonical(formula: ltl.Formula) -> ltl.Formula:

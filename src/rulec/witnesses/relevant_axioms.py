@@ -6,32 +6,101 @@ read; so in any state their part can be as by default, and they decide nothing.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 from rulec.automata.mealy_monitor import Read
-from rulec.logic.formula import QuantityTerm
+from rulec.logic.formula import Formula, QuantityTerm
+from rulec.logic.free_names import variables_of
+from rulec.rulebook.rulebook_model import Axiom
 from rulec.vocabulary import Vocabulary
-from rulec.witnesses.letter_functions import LetterFunction, Reads, counts_read
+from rulec.witnesses.letter_functions import LetterFunction, Reads, axiom_function
+from rulec.witnesses.object_universe import ObjectUniverse, counts_in, said_of
 from rulec.witnesses.state_synthesis import Subject, default_digit
 
+MOST_KEPT = 20_000
+"""So many axioms, said of some objects, are kept for the next question about them."""
 
-def relevant_axioms(
-    axioms: Sequence[LetterFunction], read: Iterable[LetterFunction], vocabulary: Vocabulary
-) -> list[LetterFunction]:
+
+@dataclass(frozen=True, eq=False)
+class SaidAxiom:
+    """An axiom that is said of objects: its formula, and what is asked of it again and again."""
+
+    formula: Formula
+    vocabulary: Vocabulary
+
+    @cached_property
+    def function(self) -> LetterFunction:
+        """Its letter function. Raises UndecidedError."""
+        return axiom_function(self.formula, self.vocabulary)
+
+    @cached_property
+    def is_counting(self) -> bool:
+        """True if it compares a count."""
+        return any(True for _ in counts_in(self.formula))
+
+    @cached_property
+    def objects(self) -> frozenset[str]:
+        """The objects that it speaks of."""
+        return frozenset(variables_of(self.formula))
+
+    @cached_property
+    def subjects(self) -> frozenset[Subject]:
+        """What it is about; what its counts read are functions of their own."""
+        return _subjects(self.function.reads)
+
+    @cached_property
+    def holds_by_default(self) -> bool:
+        """True if it holds where everything that it reads has its default."""
+        return _holds_by_default(self.function, self.vocabulary)
+
+
+def said_axioms(universe: ObjectUniverse) -> Iterator[SaidAxiom]:
+    """The axioms, said of the universe's objects; those of one vocabulary are kept."""
+    known = _said(_Itself(universe.vocabulary))
+    if len(known) > MOST_KEPT:
+        known.clear()
+    for axiom, names in universe.axiom_bindings():
+        key = axiom, tuple(names.values())
+        if key not in known:
+            known[key] = SaidAxiom(said_of(axiom, names), universe.vocabulary)
+        yield known[key]
+
+
+class _Itself:
+    """A vocabulary as a key: the same object, for equal ones take long to compare."""
+
+    def __init__(self, vocabulary: Vocabulary) -> None:
+        self.vocabulary = vocabulary
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Itself) and other.vocabulary is self.vocabulary
+
+    def __hash__(self) -> int:
+        return id(self.vocabulary)
+
+
+@lru_cache(maxsize=8)
+def _said(_: _Itself) -> dict[tuple[Axiom, tuple[str, ...]], SaidAxiom]:
+    return {}
+
+
+def relevant_axioms(axioms: Sequence[SaidAxiom], read: Iterable[LetterFunction]) -> list[SaidAxiom]:
     """The axioms, in their order, that speak of what the functions read, or lead from it to more.
 
-    Those that defaults break are among them, and those that count objects.
+    Those that defaults break are among them, and those that count objects. Raises UndecidedError.
     """
     reached = {subject for function in read for subject in _subjects(function.reads)}
-    waiting = {number: _subjects(axiom.reads) for number, axiom in enumerate(axioms)}
+    waiting = {number: axiom.subjects for number, axiom in enumerate(axioms)}
     taken: set[int] = set()
     while True:
         more = [
             number
             for number, group in waiting.items()
             if not group.isdisjoint(reached)
-            or counts_read(axioms[number].reads)
-            or not _holds_by_default(axioms[number], vocabulary)
+            or axioms[number].is_counting
+            or not axioms[number].holds_by_default
         ]
         if not more:
             return [axiom for number, axiom in enumerate(axioms) if number in taken]

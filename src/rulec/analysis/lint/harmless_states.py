@@ -11,9 +11,9 @@ from collections.abc import Sequence
 
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.witnesses.joint_alphabet import JointAlphabet
-from rulec.witnesses.letter_functions import LetterFunction, axiom_function, counts_read
+from rulec.witnesses.letter_functions import LetterFunction, counts_read
 from rulec.witnesses.object_universe import ObjectUniverse
-from rulec.witnesses.relevant_axioms import hold_by_default
+from rulec.witnesses.relevant_axioms import hold_by_default, said_axioms
 
 
 def have_harmless_state(
@@ -32,12 +32,13 @@ def have_harmless_state(
         for function, own in zip(functions, harmless, strict=True)
     ]
     reads = [read for content in contents for read in content.reads]
-    vocabulary = universe.vocabulary
     # Counts have no default: the universe's own objects may be among those counted.
-    if not counts_read(reads) and hold_by_default(contents, vocabulary):
-        formulas = universe.axiom_formulas()
-        if hold_by_default((axiom_function(one, vocabulary) for one in formulas), vocabulary):
-            return True
+    if (
+        not counts_read(reads)
+        and hold_by_default(contents, universe.vocabulary)
+        and all(axiom.holds_by_default for axiom in said_axioms(universe))
+    ):
+        return True
     return JointAlphabet(universe, contents).can_be_read((1,) * len(contents))
 
 
