@@ -13,7 +13,7 @@ from rulec.monitoring.uncertainty.state_letters.entangled_reads import local_rea
 from rulec.monitoring.uncertainty.state_letters.read_digits import read_digits
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.vocabulary import Enumeration, Quantity
-from rulec.vocabulary.partial_values import UNKNOWN, Interval
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
 from support.builders.rulebooks import compile_here
 from support.generators.random_rulebooks import rulebook
 from support.generators.seeds import seeds
@@ -23,6 +23,9 @@ def drawn(chance, declaration):
     if chance.random() < 0.4:
         return UNKNOWN
     if isinstance(declaration, Enumeration):
+        if chance.random() < 0.3:
+            n_left = chance.randint(1, len(declaration.values))
+            return OneOf(frozenset(chance.sample(declaration.values, n_left)))
         return chance.choice(declaration.values)
     if isinstance(declaration, Quantity):
         low = chance.choice([-3.0, 0.0, 2.5, 10.0])

@@ -180,7 +180,7 @@ def local_reads(rule: CompiledRule, rulebook: CompiledRulebook) -> EntangledRead
     """The entangled reads of a rule, if its own objects alone decide what they may be."""
     known: dict[str, EntangledReads | None] = rulebook.prepared.setdefault(EntangledReads, {})
     if rule.name not in known:
-        parts: KnownParts = rulebook.prepared.setdefault(ReadsApart, {})
+        parts: KnownParts = rulebook.prepared.setdefault(KnownParts, KnownParts())
         known[rule.name] = _local_reads(rule, rulebook.axioms, rulebook.vocabulary, parts)
     return known[rule.name]
 

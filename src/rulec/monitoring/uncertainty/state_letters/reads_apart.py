@@ -8,6 +8,8 @@ fewer ways to say that than for all subjects together.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from functools import cached_property
 from itertools import product
 from operator import itemgetter
 from typing import Any, NamedTuple, TypeAlias
@@ -17,6 +19,11 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.completions import Digits, joint_digits
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in
+from rulec.monitoring.uncertainty.state_letters.joint_values import (
+    JointReads,
+    JointValues,
+    joint_reads,
+)
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters, read_digits
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     PartialView,
@@ -30,6 +37,10 @@ from rulec.vocabulary.vocabulary_model import choices
 
 MOST_KNOWN = 1 << 14
 """Values of which it is kept what they come to before all are forgotten."""
+
+
+_Together: TypeAlias = dict[object, "JointValues | None"]
+"""What subjects may be together, by these, the facts about them, and objects."""
 
 
 class _PartFound(NamedTuple):
@@ -55,10 +66,11 @@ class _PartTable:
         objects: Mapping[str, str],
         *,
         vocabulary: Vocabulary,
+        together: _Together,
     ) -> None:
         self._reads, self._ready = reads, [read_digits(read) for read in reads]
         self._subjects, self._binding, self._axioms = subjects, binding, axioms
-        self._objects, self._vocabulary = objects, vocabulary
+        self._objects, self._vocabulary, self._together = objects, vocabulary, together
         self.found: list[_PartFound] = []
         self._numbers: dict[_PartFound, int] = {}
         self._known: dict[tuple[object, ...], int] = {}
@@ -76,7 +88,28 @@ class _PartTable:
             self._known[values] = known
         return known
 
+    @cached_property
+    def _joint_reads(self) -> JointReads | None:
+        """The reads by all that their subjects may be together, if these are few words."""
+        key = self._subjects, self._axioms, (*self._objects.items(),)
+        with suppress(LookupError):
+            if key not in self._together:
+                self._together[key] = None
+                self._together[key] = JointValues(
+                    self._subjects, self._axioms, self._objects, self._vocabulary
+                )
+            values = self._together[key]
+            return None if values is None else joint_reads(self._ready, self._binding, values)
+        return None
+
     def _found(self, values: Sequence[PartialValue | None]) -> _PartFound:
+        joint: frozenset[Digits] | None = None
+        if self._joint_reads is not None:
+            # What is missing, and what contradicts facts, is found below.
+            with suppress(LookupError):
+                joint = self._joint_reads.found(values)
+        if joint is not None and len(joint) > 1:
+            return _PartFound(None, joint, True)
         given = with_values({}, dict(zip(self._subjects, values, strict=True)))
         state = StateView(given, self._objects, self._vocabulary)
         digits = [read.in_state(self._binding, state) for read in self._ready]
@@ -85,8 +118,10 @@ class _PartTable:
             known = tuple([own.bit_length() - 1 for own in digits])
             if UNKNOWN_TYPES.isdisjoint(map(type, values)):
                 return _PartFound(known, frozenset({known}), True)
-        joint = joint_digits(self._reads, self._binding, state, self._axioms)
-        return _PartFound(known, joint.digits, joint.exact)
+        if joint is not None:
+            return _PartFound(known, joint, True)
+        found = joint_digits(self._reads, self._binding, state, self._axioms)
+        return _PartFound(known, found.digits, found.exact)
 
 
 class _Part(NamedTuple):
@@ -97,8 +132,12 @@ class _Part(NamedTuple):
     table: _PartTable
 
 
-KnownParts: TypeAlias = "dict[object, _PartTable]"
-"""What is known of parts, by what they are."""
+class KnownParts:
+    """What is known of parts of all rules: ``tables`` by what they are."""
+
+    def __init__(self) -> None:
+        self.tables: dict[object, _PartTable] = {}
+        self.together: _Together = {}
 
 
 class ReadsApart:
@@ -188,10 +227,14 @@ class ReadsApart:
         if is_of_world and not any(fact.variables for fact in facts):
             binding, objects = {}, {}
         key = reads, subjects, facts, (*binding.items(),), (*objects.items(),)
-        if key not in known:
-            vocabulary = self._everybody.vocabulary
-            known[key] = _PartTable(reads, subjects, binding, facts, objects, vocabulary=vocabulary)
-        return known[key]
+        tables, vocabulary = known.tables, self._everybody.vocabulary
+        if key not in tables:
+            tables[key] = _PartTable(
+                *(reads, subjects, binding, facts, objects),
+                vocabulary=vocabulary,
+                together=known.together,
+            )
+        return tables[key]
 
 
 def _instances(axiom: CompiledAxiom, everybody: PartialView) -> Iterator[frozenset[Subject]]:
