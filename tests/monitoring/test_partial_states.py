@@ -286,3 +286,18 @@ def test_values_that_several_sums_read_are_completed_together():
     assert judge.step({"speed": Interval(3, 5), "limit": UNKNOWN}).rules["slow"] == "holds so far"
     found = judge.step({"speed": UNKNOWN, "limit": Interval(1, 2)})
     assert (found.best, found.worst, found.exact) == ("holds so far", "violated", True)
+
+
+SLIPPERY = """rulebook slippery
+type car
+signal horn, icy, wet, loud(v: car) default false
+fact icy implies wet
+hard rule calm { require always (horn and wet implies some c: car (loud(c))) }
+"""
+
+
+def test_a_fact_tells_what_is_unknown_to_a_rule_that_asks_of_everybody():
+    judge = Monitor(rulec.compile_rulebook(parse_rulebook(SLIPPERY)))
+    slides = {"horn": True, "wet": UNKNOWN, "loud": {"a": False}}
+    assert pair(judge.step(slides, CAR).rules["calm"]) == ("holds so far", "violated")
+    assert judge.step({**slides, "icy": True}, CAR).rules["calm"] == "violated"

@@ -201,7 +201,7 @@ class PreparedRule:
     def _perhaps_entangled(self) -> frozenset[int]:
         """The places of reads that count, and of those that share a name with others or facts."""
         names = [set(names_of_read(read)) for read in self.rule.machine.reads]
-        facts = [names_in(axiom.formula) for axiom in self.axioms]
+        facts = [frozenset(names_in(axiom.formula)) for axiom in self.axioms]
         return frozenset(
             n
             for n, own in enumerate(names)
