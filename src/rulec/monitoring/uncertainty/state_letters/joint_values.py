@@ -141,7 +141,7 @@ class JointValues:
                 raise LookupError from None
 
 
-class JointReads(NamedTuple):
+class ReadWays(NamedTuple):
     """Reads of some ``values``, each with the ways that have each of its digits."""
 
     values: JointValues
@@ -166,8 +166,8 @@ class JointReads(NamedTuple):
         return frozenset([digits for digits, _ in found])
 
 
-def joint_reads(
+def read_ways(
     reads: Iterable[ReadDigits], binding: Mapping[str, str], values: JointValues
-) -> JointReads:
+) -> ReadWays:
     """Reads of a binding's objects made ready. Raises LookupError if more than values decides."""
-    return JointReads(values, tuple([values.digits(read, binding) for read in reads]))
+    return ReadWays(values, tuple([values.digits(read, binding) for read in reads]))

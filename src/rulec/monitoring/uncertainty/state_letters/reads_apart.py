@@ -20,9 +20,9 @@ from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.completions import Digits, joint_digits
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in
 from rulec.monitoring.uncertainty.state_letters.joint_values import (
-    JointReads,
     JointValues,
-    joint_reads,
+    ReadWays,
+    read_ways,
 )
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters, read_digits
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
@@ -89,7 +89,7 @@ class _PartTable:
         return known
 
     @cached_property
-    def _joint_reads(self) -> JointReads | None:
+    def _read_ways(self) -> ReadWays | None:
         """The reads by all that their subjects may be together, if these are few words."""
         key = self._subjects, self._axioms, (*self._objects.items(),)
         with suppress(LookupError):
@@ -99,15 +99,15 @@ class _PartTable:
                     self._subjects, self._axioms, self._objects, self._vocabulary
                 )
             values = self._together[key]
-            return None if values is None else joint_reads(self._ready, self._binding, values)
+            return None if values is None else read_ways(self._ready, self._binding, values)
         return None
 
     def _found(self, values: Sequence[PartialValue | None]) -> _PartFound:
         joint: frozenset[Digits] | None = None
-        if self._joint_reads is not None:
+        if self._read_ways is not None:
             # What is missing, and what contradicts facts, is found below.
             with suppress(LookupError):
-                joint = self._joint_reads.found(values)
+                joint = self._read_ways.found(values)
         if joint is not None and len(joint) > 1:
             return _PartFound(None, joint, True)
         given = with_values({}, dict(zip(self._subjects, values, strict=True)))
