@@ -37,7 +37,7 @@ FEWEST_STATES = 2
 MOST_CELLS = 1 << 16
 """So many states of all participants, in several drives, are looked at by the same calls."""
 
-FEWEST_TOGETHER = 3
+FEWEST_TOGETHER = 2
 """Fewer drives are looked at one by one."""
 
 MOST_PLACES = 1 << 17
@@ -228,7 +228,8 @@ class Drives:
             at += 1
             if not np.isnan(places.extents.s[own, columns]).any():
                 members.append((own, name, columns))
-                cells += len(places.tracks.participants) * (columns.stop - columns.start)
+                n_there = np.count_nonzero(places.tracks.present[:, columns].any(axis=1))
+                cells += int(n_there) * (columns.stop - columns.start)
         if len(members) < FEWEST_TOGETHER:
             return
         rows, names, columns_of = zip(*members, strict=True)

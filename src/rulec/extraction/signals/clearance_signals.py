@@ -348,7 +348,7 @@ def _some_arrive(tracks: Tracks) -> bool:
 def _on_next_lane(context: DriveContext, side: Side) -> tuple[Flags, Flags]:
     """Flags of those who go ego's way on the lane at a side of it, and where there is one."""
     lane, there = _next_lane(context, side)
-    on_it = context.touched[:, np.arange(context.states), lane]
+    on_it = context.in_lane(lane)
     return on_it & context.going_along, there
 
 

@@ -147,7 +147,7 @@ def _disturbed(context: DriveContext, states: NDArray[intp]) -> Flags:
     """
     limits = context.thresholds
     station, gap = relations.station(context)[:, states], relations.gap(context)[:, states]
-    same = context.touched[:, states, context.ego_lane[states]] & context.going_along[:, states]
+    same = context.in_ego_lane[:, states] & context.going_along[:, states]
     along, own = context.extents.along[:, states], context.ego_extents.along[:, states]
     faster = np.maximum(along - own, 0.0)
     braking_distance = gap - faster * limits.reaction_s

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.signal_passes import once_a_recording
-from rulec.extraction.tracks.road_extents import RoadExtents, any_lane, lanes_touched
+from rulec.extraction.tracks.road_extents import LaneSets, RoadExtents, lane_sets, lanes_touched
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.paper_words import LATERALS, PAPER_TABLES, STATIONS
 
@@ -63,7 +63,7 @@ def lateral(context: DriveContext) -> Codes:
     Who is on a mark of ego's lane, reaching beyond it, and clear of ego sideways is at its side;
     who is no farther in but in the way of ego's body is in the lane.
     """
-    return _lateral(context, _beside_lane(context), 0.0)
+    return _lateral(context, _beside_lane(context), 0.0, context.lanes_within[0])
 
 
 @once
@@ -77,7 +77,11 @@ def possible_laterals(context: DriveContext) -> tuple[Codes, ...]:
     maps = [_beside_lane(context)]
     if context.map_offset_m.any():
         maps.append(_beside_lane_shifted(context, context.map_offset_m))
-    shifted = (_lateral(context, beside, way * place) for beside in maps for way in (-1, 1))
+    shifted = (
+        _lateral(context, beside, way * place, sets)
+        for beside in maps
+        for way, sets in zip((-1, 1), context.lanes_within[1:], strict=True)
+    )
     at_side = (station(context) == BEHIND) & ~_in_the_way(context)
     return *shifted, np.where(at_side, _ego_at(context), lateral(context))
 
@@ -101,8 +105,8 @@ def _aside(context: DriveContext) -> tuple[Floats, Floats]:
     """How far (m) others are clear of ego on its left and right, from the middle of ego's lane."""
     lane = context.ego_extents.lane
     own_low, own_high = context.ego_extents.from_middle(lane)
-    low, high = context.extents.from_middle(lane)
-    return low - own_high, own_low - high
+    others = _beside_lane(context)
+    return others.low - own_high, own_low - others.high
 
 
 @once
@@ -167,12 +171,13 @@ def _beside_lane_shifted(context: DriveContext, shift: Floats) -> _BesideLane:
     )
 
 
-def _lateral(context: DriveContext, beside: _BesideLane, inward: float) -> Codes:
-    """Sides, with others so much (m) further in ego's lane."""
+def _lateral(
+    context: DriveContext, beside: _BesideLane, inward: float, touched: LaneSets
+) -> Codes:
+    """Sides, with others so much (m) further in ego's lane; these touch the lanes of sets."""
     reach = context.thresholds.touching_m
-    touched = context.touched
-    if inward or beside.others is not context.extents:
-        touched = lanes_touched(beside.others, context.there, reach - inward)
+    if beside.others is not context.extents:
+        touched = lane_sets(lanes_touched(beside.others, context.there, reach - inward))
     clear = _clear(context)
     sides = _across(beside.own, touched, beside.low, beside.high)
     beside_way = (beside.beyond > reach + inward) & (clear > reach + inward)
@@ -181,16 +186,15 @@ def _lateral(context: DriveContext, beside: _BesideLane, inward: float) -> Codes
     return np.where(in_the_way, SAME_LANE, sides)
 
 
-def _across(own: RoadExtents, lanes: Flags, low: Floats, high: Floats) -> Codes:
-    """Ego's middle right of others' lanes (third axis), in or left of them; without any, of them.
+def _across(own: RoadExtents, lanes: LaneSets, low: Floats, high: Floats) -> Codes:
+    """Ego's middle right of others' lanes, in or left of them; without any lane, of them.
 
     ``low`` and ``high`` say how far (m) left of the middle of ego's lane others begin and end.
     """
-    by_lane, left_of = np.moveaxis(lanes, -1, 0), np.moveaxis(own.left_of, -1, 0)
-    inside, middle = any_lane(lanes), np.add(*own.from_middle(own.lane)) / 2
+    inside, middle = lanes != 0, np.add(*own.from_middle(own.lane)) / 2
     # Bounds ascend to the left: who is right of the first lane is left of the right bound of none
-    not_right_of = (by_lane & (left_of[:-1] > 0)).any(axis=0)
-    not_left_of = (by_lane & (left_of[1:] < 0)).any(axis=0)
+    not_right_of = (lanes & lane_sets(own.left_of[..., :-1] > 0)) != 0
+    not_left_of = (lanes & lane_sets(own.left_of[..., 1:] < 0)) != 0
     right_of = np.where(inside, ~not_right_of, middle <= low)
     left_of_all = np.where(inside, ~not_left_of, middle >= high)
     in_or_left: Codes = np.where(left_of_all, LEFT_OF, SAME_LANE)
@@ -237,11 +241,11 @@ def position(context: DriveContext) -> NDArray[np.str_]:
     walking = np.flatnonzero(context.tracks.of_type("pedestrian"))
     s_min, s_max = others.s_min, others.s_max
     facing = np.zeros(s_min.shape, dtype=intp)
-    touched = context.touched
+    touched = context.lanes_within[0]
     if len(walking):
         facing[walking] = _facing(others.part(walking, slice(None)))
         across = facing % 2 == 1
-        touched = touched & ~across[..., None]
+        touched = np.where(across, touched.dtype.type(0), touched)
         for start, end in context.road.crossings:
             on = across & (s_min < end) & (s_max > start)
             s_min, s_max = (
@@ -249,7 +253,8 @@ def position(context: DriveContext) -> NDArray[np.str_]:
                 np.where(on, np.maximum(s_max, end), s_max),
             )
     column = _along(ego, s_min, s_max)
-    row = _across(ego, touched, *others.from_middle(ego.lane))
+    beside = _beside_lane(context)
+    row = _across(ego, touched, beside.low, beside.high)
     inside = (row == SAME_LANE) & (column == BESIDE)
     half = np.minimum(ego.d_max - ego.d_min, others.d_max - others.d_min) / 2
     aside = _clear(context) > np.maximum(way_along(context), -half)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy import intp
@@ -21,6 +21,9 @@ from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks, end_to_end
 from rulec.scenario.recorded.lane_coordinates import outline_bounds
 from rulec.scenario.recorded.reference_line import turn
+
+LaneSets: TypeAlias = NDArray[Any]
+"""Lanes as whole numbers, of which bit ``k`` says whether lane ``k`` is among them."""
 
 _BOUNDS = ("s_min", "s_max", "d_min", "d_max")
 
@@ -278,6 +281,16 @@ def lanes_touched(extents: RoadExtents, there: Flags, touching_m: float) -> Flag
     # A narrow body, such as a pedestrian's, is in a lane with most of it
     touched: Flags = (extents.inside > np.minimum(touching_m, extents.breadth / 2)) & there
     return touched
+
+
+def lane_sets(lanes: Flags) -> LaneSets:
+    """Flags of lanes (last axis) as sets."""
+    # Of more than 64 lanes they are Python's integers
+    kind = np.min_scalar_type((1 << lanes.shape[-1]) - 1)
+    sets: LaneSets = np.zeros(lanes.shape[:-1], dtype=kind)
+    for lane in range(lanes.shape[-1]):
+        sets |= lanes[..., lane].astype(kind) << lane
+    return sets
 
 
 def any_lane(lanes: Flags) -> Flags:

@@ -8,7 +8,14 @@ from functools import cached_property
 import numpy as np
 
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.road_extents import RoadExtents, and_row, any_lane, lanes_touched
+from rulec.extraction.tracks.road_extents import (
+    LaneSets,
+    RoadExtents,
+    and_row,
+    any_lane,
+    lane_sets,
+    lanes_touched,
+)
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 
@@ -49,6 +56,9 @@ class RoadPlaces:
         # What is known of each need not be derived again
         for name in ("there", "touched", "on_lanes", "crosses", "counts", "seen"):
             joined.__dict__[name] = and_row(getattr(self, name), getattr(other, name), row)
+        for place_m, own in self._lanes_within.items():
+            both = zip(own, other.lanes_within(place_m), strict=True)
+            joined._lanes_within[place_m] = tuple(and_row(*sets, row) for sets in both)
         for name in ("s", "lane"):
             values = getattr(self.extents, name), getattr(other.extents, name)
             joined.extents.__dict__[name] = and_row(*values, row)
@@ -64,6 +74,24 @@ class RoadPlaces:
     def touched(self) -> Flags:
         """Flags of the lanes (last axis) that participants reach into."""
         return lanes_touched(self.extents, self.there, self.thresholds.touching_m)
+
+    def lanes_within(self, place_m: float) -> tuple[LaneSets, ...]:
+        """The sets of those lanes, and of those with all so much (m) less far and farther in them.
+
+        Across a lane's bounds each of a body's sides counts by itself.
+        """
+        if place_m not in self._lanes_within:
+            reach = self.thresholds.touching_m
+            others = (
+                lanes_touched(self.extents, self.there, reach - inward)
+                for inward in (-place_m, place_m)
+            )
+            self._lanes_within[place_m] = tuple(map(lane_sets, (self.touched, *others)))
+        return self._lanes_within[place_m]
+
+    @cached_property
+    def _lanes_within(self) -> dict[float, tuple[LaneSets, ...]]:
+        return {}
 
     @cached_property
     def on_lanes(self) -> Flags:

@@ -298,7 +298,7 @@ def end_to_end(
 ) -> NDArray[Any]:
     """Some rows in several ranges of columns, one behind the other.
 
-    Flags are false, and numbers NaN, for who is ``absent``, by row and column; a third axis stays
+    Flags are false, sets empty and measures NaN for who is ``absent``, by row and column; a third axis stays
     the first in memory.
     """
     by_lane = np.moveaxis(values, -1, 0) if values.ndim > 2 else values[None]
@@ -315,5 +315,6 @@ def end_to_end(
         found[:, :, begin:end] = by_lane[:, :, own].take(rows, axis=1)
         begin = end
     if absent.any():
-        np.copyto(found, False if values.dtype == bool else np.nan, where=absent)
+        none = values.dtype.type(np.nan if values.dtype.kind == "f" else 0)
+        np.copyto(found, none, where=absent)
     return np.moveaxis(found, 0, -1) if values.ndim > 2 else found[0]

@@ -134,8 +134,7 @@ def _by_others(context: DriveContext) -> Flags:
     slower = (angle < _ACROSS_RAD) & (others.along < context.ego.speed[0] + _ALIKE_MPS)
     not_to_pass = slower & (to_far > 0) & (away <= _COMES_M)
     behind = context.relevant & (relations.station(context) == relations.BEHIND)
-    same = context.touched[:, np.arange(context.states), context.ego_lane]
-    in_lane = behind & same & (relations.gap(context) <= reach)
+    in_lane = behind & context.in_ego_lane & (relations.gap(context) <= reach)
     in_way: Flags = near & ((away <= _IN_WAY_M) | comes | (across & others.moves) | not_to_pass)
     found: Flags = in_way.any(axis=0) | in_lane.any(axis=0)
     return found
@@ -207,8 +206,7 @@ def _impedes(context: DriveContext) -> SignalColumns:
 def _followed(context: DriveContext) -> Flags:
     """Flags of states in which somebody is behind ego in its lane, near enough to be held up."""
     station, speed = relations.station(context), context.extents.along
-    same = context.touched[:, np.arange(context.states), context.ego_lane]
-    behind = context.going_along & (station == relations.IN_FRONT_OF) & same
+    behind = context.going_along & (station == relations.IN_FRONT_OF) & context.in_ego_lane
     near = relations.gap(context) <= FOLLOWS_S * np.maximum(speed, 0.0)
     followed: Flags = (behind & near).any(axis=0)
     return followed

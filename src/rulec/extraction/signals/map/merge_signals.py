@@ -62,7 +62,7 @@ def _narrowings(context: DriveContext) -> SignalColumns:
 
 def _beside_in(context: DriveContext, lane: NDArray[intp]) -> Flags:
     """Flags of those who go ego's way beside it in a lane, by state."""
-    inside = context.touched[:, np.arange(context.states), lane]
+    inside = context.in_lane(lane)
     beside: Flags = inside & (relations.station(context) == relations.BESIDE) & context.going_along
     return beside
 

@@ -297,8 +297,7 @@ def _free_beyond(context: DriveContext, ahead: Flags, place: tuple[float, float]
 @once
 def _ahead_on_lane(context: DriveContext) -> Flags:
     """Flags of who goes ego's way ahead of it, and reaches into its lane."""
-    on_lane = context.touched[:, np.arange(context.states), context.ego_lane]
-    ahead: Flags = on_lane & context.going_along & (relations.station(context) == relations.BEHIND)
+    ahead: Flags = context.in_ego_lane & context.going_along & (relations.station(context) == relations.BEHIND)
     return ahead & ~_left_aside(context, ahead)
 
 
