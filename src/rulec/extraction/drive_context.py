@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.source_tolerances import Tolerances
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.road_extents import LaneSets, RoadExtents, part_of
+from rulec.extraction.tracks.road_extents import LaneSets, RoadExtents, is_in, part_of
 from rulec.extraction.tracks.road_places import KMH as KMH
 from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.tracks.surroundings import Surroundings
@@ -39,9 +39,9 @@ class DriveContext:
 
     ``relevant``: whether a participant counts for ego; ``in_sight``: is it on ego's lanes, so near
     that ego could reach it within ``catching_up_s``? ``there``: the lanes that exist where it is, a
-    third axis, ``touched``: those of them that it reaches into, ``lanes_within``: sets of these, and
-    of those that it may reach into if it is farther out or in; ``elsewhere``: does it drive on
-    lanelets of another road? ``surroundings`` are the recording's; ``alone`` gives those of one of
+    third axis; ``lanes_within``: sets of those of them that it reaches into, as it is, farther out
+    and farther in by the tolerance of places; ``elsewhere``: does it drive on lanelets of another
+    road? ``surroundings`` are the recording's; ``alone`` gives those of one of
     several drives by its number, if each has others, and ego's row in them. ``computed`` holds what
     functions have found ``once``.
     """
@@ -60,7 +60,6 @@ class DriveContext:
     relevant: Flags
     in_sight: Flags
     there: Flags
-    touched: Flags
     lanes_within: tuple[LaneSets, ...]
     elsewhere: Flags
     surroundings: Surroundings
@@ -119,7 +118,6 @@ class DriveContext:
                 relevant=self.relevant[:, columns],
                 in_sight=self.in_sight[:, columns],
                 there=self.there[:, columns],
-                touched=self.touched[:, columns],
                 lanes_within=tuple(sets[:, columns] for sets in self.lanes_within),
                 elsewhere=self.elsewhere[:, columns],
                 surroundings=surroundings,
@@ -214,13 +212,9 @@ class DriveContext:
         """Flags of who reaches into ego's lane."""
         return self.in_lane(self.ego_lane)
 
-    def in_lane(self, lane: NDArray[intp]) -> Flags:
+    def in_lane(self, lane: NDArray[intp] | int) -> Flags:
         """Flags of who reaches into a lane, by state."""
-        sets = self.lanes_within[0]
-        # Of the narrow kind of the sets, so that these stay so
-        only = np.left_shift(1, lane, dtype=sets.dtype, casting="unsafe")
-        flags: Flags = (sets & only) != 0
-        return flags
+        return is_in(self.lanes_within[0], lane)
 
     @cached_property
     def map_offset_m(self) -> Floats:
@@ -310,7 +304,6 @@ def drive_context(
         relevant=relevant[rows],
         in_sight=in_sight[rows],
         there=part_of(places.there, rows, columns),
-        touched=part_of(places.touched, rows, columns),
         lanes_within=tuple(
             sets[rows, columns] for sets in places.lanes_within(surroundings.tolerances.place_m)
         ),
@@ -409,10 +402,8 @@ def drives_context(
         relevant=relevant[rows],
         in_sight=in_sight[rows],
         there=end_to_end(places.there, *laid),
-        touched=end_to_end(places.touched, *laid),
         lanes_within=tuple(
-            end_to_end(sets, *laid)
-            for sets in places.lanes_within(surroundings.tolerances.place_m)
+            end_to_end(sets, *laid) for sets in places.lanes_within(surroundings.tolerances.place_m)
         ),
         elsewhere=end_to_end(places.elsewhere, *laid),
         surroundings=surroundings,

@@ -13,6 +13,7 @@ from rulec.extraction.signals.map.lanes_ahead import Leads, junctions_ahead
 from rulec.extraction.signals.queues import LOOSE, close_by, lanes_that_go_on, queues_by_lane
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, once_a_recording, signals_by
+from rulec.extraction.tracks.road_extents import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.recording import Lanelet, LaneMark, Side
 
@@ -104,16 +105,20 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     alone = own_lanes | one_way
     own = np.maximum(context.ego_extents.along[0], 0.0)
     against = (context.extents.along * KMH < -limits.standing_kmh) & context.relevant
-    against &= np.cos(context.extents.turned) < 0
-    against &= np.array(context.tracks.of_type("vehicle"), dtype=bool)[:, None]
-    station = relations.station(context)
-    closing: Floats = np.maximum(own - context.extents.along, 0.1)
+    against &= context.tracks.of_type("vehicle")[:, None]
+    rows, columns = against.nonzero()
+    comes = np.cos(context.extents.turned[rows, columns]) < 0
+    rows, columns = rows[comes], columns[comes]
+    station = relations.station(context)[rows, columns]
+    closing: Floats = np.maximum(own[columns] - context.extents.along[rows, columns], 0.1)
     would_meet = (station == relations.BEHIND) & (
-        relations.gap(context) / closing < limits.overtaking_s
+        relations.gap(context)[rows, columns] / closing < limits.overtaking_s
     )
     steps = round(limits.overtaking_s / context.recording.step_s)
-    met = (against & (station == relations.BESIDE)).any(axis=0)
-    meets = (against & would_meet).any(axis=0) | context.spans.within(met, steps)
+    met, meets = np.zeros((2, context.states), dtype=bool)
+    met[columns[station == relations.BESIDE]] = True
+    meets[columns[would_meet]] = True
+    meets |= context.spans.within(met, steps)
     ends = context.spans.columns + steps >= context.spans.end
     far_enough = 2 * own * limits.overtaking_s <= limits.near_m
     return alone | ~meets, ~alone & ~meets & ends & ~far_enough
@@ -147,10 +152,13 @@ def _obstructed(context: DriveContext) -> Flags:
     counts = context.relevant & stands & (relations.gap(context) <= _OBSTACLE_M)
     others = context.extents
     blocked = np.zeros(context.states, dtype=bool)
-    for lane in range(used.shape[1]):
-        room = np.maximum(others.left_of_min[..., lane], -others.left_of_max[..., lane + 1])
-        blocks = counts & context.touched[..., lane] & (room < width)
-        blocked |= used[:, lane] & blocks.any(axis=0)
+    rows, columns = counts.nonzero()
+    low, high = others.left_of_min[rows, columns], others.left_of_max[rows, columns]
+    sets = context.lanes_within[0][rows, columns]
+    for lane in range(used.shape[1]) if len(rows) else ():
+        room = np.maximum(low[:, lane], -high[:, lane + 1])
+        blocks = is_in(sets, lane) & (room < width[columns]) & used[columns, lane]
+        blocked[columns[blocks]] = True
     return blocked
 
 

@@ -24,6 +24,7 @@ from rulec.extraction.signals.queues import (
 )
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, ids_by_state
 from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.tracks.road_extents import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.plain_arrays import distinct, medians
 
@@ -236,9 +237,9 @@ def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
     closing = relations.gap(context) <= faster_mps * limits.passed_s
     rows, states = (comes & (closing | (station == relations.BESIDE))).nonzero()
     gets_past, lost = (flags[rows, states] for flags in _gets_past(context, distinct(rows)))
-    next_lane, lanes = _next_lane(context)[states], context.touched.shape[-1]
+    next_lane, lanes = _next_lane(context)[states], context.existing_lanes.shape[1]
     there = (next_lane >= 0) & (next_lane < lanes)
-    reaches = there & context.touched[rows, states, np.clip(next_lane, 0, lanes - 1)]
+    reaches = there & is_in(context.lanes_within[0][rows, states], np.clip(next_lane, 0, lanes - 1))
     inside = reaches & (context.extents.lane[rows, states] == next_lane)
     overtaken, open_end = np.zeros_like(comes), np.zeros(context.states, dtype=bool)
     past = inside & gets_past
@@ -276,7 +277,8 @@ def _next_lane(context: DriveContext) -> NDArray[intp]:
 
     While ego is on a mark that is the lane that it moves into, and none beyond.
     """
-    lanes, inside = np.arange(context.touched.shape[-1]), context.ego_extents.inside[0]
+    inside = context.ego_extents.inside[0]
+    lanes = np.arange(inside.shape[1])
     used = (inside > context.thresholds.touching_m) | (lanes == context.ego_lane[:, None])
     next_lane: NDArray[intp] = (
         used.argmax(axis=1) + 1

@@ -171,9 +171,7 @@ def _beside_lane_shifted(context: DriveContext, shift: Floats) -> _BesideLane:
     )
 
 
-def _lateral(
-    context: DriveContext, beside: _BesideLane, inward: float, touched: LaneSets
-) -> Codes:
+def _lateral(context: DriveContext, beside: _BesideLane, inward: float, touched: LaneSets) -> Codes:
     """Sides, with others so much (m) further in ego's lane; these touch the lanes of sets."""
     reach = context.thresholds.touching_m
     if beside.others is not context.extents:

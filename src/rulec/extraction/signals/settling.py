@@ -150,16 +150,22 @@ def only_when(
     Rows with a column per state. That is so of ``most`` states at a time, in all of which one is
     ``there``, and whose codes do not go to and fro.
     """
-    sure = there & ~doubtful
-    before, behind = spans.latest(sure), spans.next_state(sure)
-    first, last = np.maximum(before, spans.first), np.minimum(behind, spans.end - 1)
-    rows = np.arange(len(codes))[:, None]
+    in_doubt = np.flatnonzero(doubtful.any(axis=1))
+    codes, there, flags = codes[in_doubt], there[in_doubt], doubtful[in_doubt]
+    sure, cells = there & ~flags, flags.nonzero()
+    before, behind = spans.latest(sure)[cells], spans.next_state(sure)[cells]
+    begin, end = spans.first[cells[1]], spans.end[cells[1]]
+    between = (before >= begin) & (behind < end) & (behind - before - 1 <= most)
+    rows, columns, first, last = (
+        values[between]
+        for values in (*cells, np.maximum(before, begin), np.minimum(behind, end - 1))
+    )
     away = np.cumsum(~there, axis=-1)
     changes = np.cumsum(spans.changes(codes), axis=-1)
-    between = (before >= spans.first) & (behind < spans.end) & (behind - before - 1 <= most)
     kept = away[rows, last] == away[rows, first]
     # Codes that differ at the ends are all different, or go to and fro
     one_way = changes[rows, last] - changes[rows, first] <= _MOST_CHANGES
-    differ = codes[rows, first] != codes[rows, last]
-    only: Flags = doubtful & between & kept & one_way & differ
+    found = kept & one_way & (codes[rows, first] != codes[rows, last])
+    only = np.zeros_like(doubtful)
+    only[in_doubt[rows[found]], columns[found]] = True
     return only

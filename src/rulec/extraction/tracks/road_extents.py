@@ -293,6 +293,14 @@ def lane_sets(lanes: Flags) -> LaneSets:
     return sets
 
 
+def is_in(sets: LaneSets, lane: NDArray[intp] | int) -> Flags:
+    """Flags of the sets in which a lane is."""
+    # Of the narrow kind of the sets, so that what is found stays so
+    only = np.left_shift(1, lane, dtype=sets.dtype, casting="unsafe")
+    flags: Flags = (sets & only) != 0
+    return flags
+
+
 def any_lane(lanes: Flags) -> Flags:
     """Flags of participants and steps for which a flag of a lane (last axis) is set."""
     flags: Flags = np.logical_or.reduce(np.moveaxis(lanes, -1, 0), axis=0)

@@ -125,18 +125,21 @@ def _by_others(context: DriveContext) -> Flags:
     """Flags of states with somebody ahead in ego's way, who comes into it, or drives across it."""
     others, reach = _others(context), _reach(context)
     near = (others.ahead > -_REACH_M / 4) & (others.ahead <= reach + _REACH_M)
-    away = np.abs(others.left)
-    comes = (away <= _COMES_M) & (-others.sideways * np.sign(others.left) > _SIDEWAYS_MPS)
-    angle = np.abs(others.turned)
-    across = (away <= _CROSSES_M) & (angle > _ACROSS_RAD) & (angle < np.pi - _ACROSS_RAD)
+    rows, columns = (near & (np.abs(others.left) <= _CROSSES_M)).nonzero()
+    left = others.left[rows, columns]
+    away, motion = np.abs(left), _motion(context, rows, columns)
+    comes = (away <= _COMES_M) & (-motion.sideways * np.sign(left) > _SIDEWAYS_MPS)
+    angle = np.abs(motion.turned)
+    across = (angle > _ACROSS_RAD) & (angle < np.pi - _ACROSS_RAD)
     # Whom ego may not pass on the near side
-    to_far = others.left * (1 if context.side == "right" else -1)
-    slower = (angle < _ACROSS_RAD) & (others.along < context.ego.speed[0] + _ALIKE_MPS)
+    to_far = left * (1 if context.side == "right" else -1)
+    slower = (angle < _ACROSS_RAD) & (motion.along < context.ego.speed[0, columns] + _ALIKE_MPS)
     not_to_pass = slower & (to_far > 0) & (away <= _COMES_M)
+    in_way = (away <= _IN_WAY_M) | comes | (across & motion.moves) | not_to_pass
     behind = context.relevant & (relations.station(context) == relations.BEHIND)
     in_lane = behind & context.in_ego_lane & (relations.gap(context) <= reach)
-    in_way: Flags = near & ((away <= _IN_WAY_M) | comes | (across & others.moves) | not_to_pass)
-    found: Flags = in_way.any(axis=0) | in_lane.any(axis=0)
+    found: Flags = in_lane.any(axis=0)
+    found[columns[in_way]] = True
     return found
 
 
@@ -144,12 +147,21 @@ def _by_others(context: DriveContext) -> Flags:
 class _Others:
     """Where others are, by row and state: ahead of ego and left of it (m), by its heading.
 
-    ``along`` and ``sideways`` are their speeds ahead and to its left (m/s), ``turned`` is their
-    heading from its own (rad).
+    ``rows`` are theirs among all of the recording.
     """
 
+    rows: NDArray[intp]
     ahead: Floats
     left: Floats
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Motion:
+    """How some others move: their speeds ahead of ego and to its left (m/s), by its heading.
+
+    ``turned`` is their heading from its own (rad).
+    """
+
     along: Floats
     sideways: Floats
     turned: Floats
@@ -167,21 +179,26 @@ def _others(context: DriveContext) -> _Others:
     is_among = context.own is context.surroundings
     if is_among and spans.n_drives == 1:
         rows[int(own.rows[0])] = False
-    x, y, heading, vx, vy = (
-        values[:, columns][rows]
-        for values in (tracks.x, tracks.y, tracks.heading, tracks.vx, tracks.vy)
-    )
+    x, y = (values[:, columns][rows] for values in (tracks.x, tracks.y))
     if is_among and spans.n_drives > 1:
         places = np.cumsum(rows)[own.rows] - 1
         x[spans.spread(places), spans.columns] = np.nan
     cos, sin = np.cos(own.heading[0]), np.sin(own.heading[0])
     x, y = x - own.x[0], y - own.y[0]
-    return _Others(
-        ahead=x * cos + y * sin,
-        left=y * cos - x * sin,
+    return _Others(np.flatnonzero(rows), ahead=x * cos + y * sin, left=y * cos - x * sin)
+
+
+def _motion(context: DriveContext, rows: NDArray[intp], columns: NDArray[intp]) -> _Motion:
+    """How some of the others move, of rows and states."""
+    tracks = context.surroundings.tracks
+    at = _others(context).rows[rows], context.columns[columns]
+    own = context.ego.heading[0]
+    cos, sin, own = np.cos(own)[columns], np.sin(own)[columns], own[columns]
+    vx, vy = tracks.vx[at], tracks.vy[at]
+    return _Motion(
         along=vx * cos + vy * sin,
         sideways=vy * cos - vx * sin,
-        turned=turn(own.heading[0], heading),
+        turned=turn(own, tracks.heading[at]),
         moves=np.hypot(vx, vy) * KMH >= context.thresholds.standing_kmh,
     )
 

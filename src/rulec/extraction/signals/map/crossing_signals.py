@@ -16,7 +16,7 @@ from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
-from rulec.extraction.tracks.road_extents import RoadExtents, any_lane
+from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Floats
 
 _USES = ("not_crossing", "waiting_to_cross", "about_to_cross", "entering_crossing", "on_crossing")
@@ -195,10 +195,10 @@ def _behind_another(context: DriveContext, stopped: Flags) -> Flags:
     """
     start, _ = next_crossing(context)
     others, vehicles = context.extents, context.tracks.of_type("vehicle")[:, None]
-    waits = np.zeros_like(stopped)
+    waits, lanes = np.zeros_like(stopped), context.lanes_within[0]
     for row in np.flatnonzero(stopped.any(axis=1)):
         ahead = vehicles & (others.s_min >= others.s_max[row]) & (others.s_min < start)
-        same = any_lane(context.touched & context.touched[row])
+        same = (lanes & lanes[row]) != 0
         waits[row] = stopped[row] & (ahead & same).any(axis=0)
     return waits
 

@@ -297,7 +297,9 @@ def _free_beyond(context: DriveContext, ahead: Flags, place: tuple[float, float]
 @once
 def _ahead_on_lane(context: DriveContext) -> Flags:
     """Flags of who goes ego's way ahead of it, and reaches into its lane."""
-    ahead: Flags = context.in_ego_lane & context.going_along & (relations.station(context) == relations.BEHIND)
+    ahead: Flags = (
+        context.in_ego_lane & context.going_along & (relations.station(context) == relations.BEHIND)
+    )
     return ahead & ~_left_aside(context, ahead)
 
 
