@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.source_tolerances import Tolerances
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.road_extents import LaneSets, RoadExtents, is_in, part_of
+from rulec.extraction.tracks.road_extents import LaneSets, RoadExtents, is_in
 from rulec.extraction.tracks.road_places import KMH as KMH
 from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.tracks.surroundings import Surroundings
@@ -38,11 +38,11 @@ class DriveContext:
     are those of its ``own`` surroundings, in which its whole track is.
 
     ``relevant``: whether a participant counts for ego; ``in_sight``: is it on ego's lanes, so near
-    that ego could reach it within ``catching_up_s``? ``there``: the lanes that exist where it is, a
-    third axis; ``lanes_within``: sets of those of them that it reaches into, as it is, farther out
-    and farther in by the tolerance of places; ``elsewhere``: does it drive on lanelets of another
-    road? ``surroundings`` are the recording's; ``alone`` gives those of one of
-    several drives by its number, if each has others, and ego's row in them. ``computed`` holds what
+    that ego could reach it within ``catching_up_s``? ``lanes_there``: the set of lanes that exist
+    where it is; ``lanes_within``: the sets of those of them that it reaches into, as it is, farther
+    out and farther in by the tolerance of places; ``elsewhere``: does it drive on lanelets of
+    another road? ``surroundings`` are the recording's; ``alone`` gives those of one of several
+    drives by its number, if each has others, and ego's row in them. ``computed`` holds what
     functions have found ``once``.
     """
 
@@ -59,7 +59,7 @@ class DriveContext:
     extents: RoadExtents
     relevant: Flags
     in_sight: Flags
-    there: Flags
+    lanes_there: LaneSets
     lanes_within: tuple[LaneSets, ...]
     elsewhere: Flags
     surroundings: Surroundings
@@ -117,7 +117,7 @@ class DriveContext:
                 extents=self.extents.part(rows, columns),
                 relevant=self.relevant[:, columns],
                 in_sight=self.in_sight[:, columns],
-                there=self.there[:, columns],
+                lanes_there=self.lanes_there[:, columns],
                 lanes_within=tuple(sets[:, columns] for sets in self.lanes_within),
                 elsewhere=self.elsewhere[:, columns],
                 surroundings=surroundings,
@@ -200,6 +200,12 @@ class DriveContext:
         drives = self.tracks.of_type("vehicle")[:, None]
         turned = abs(self.extents.turned)
         return self.in_sight & drives & (turned < 1.0) & self.on_lanes
+
+    @cached_property
+    def there(self) -> Flags:
+        """Flags of the lanes (last axis) that exist where participants are."""
+        lanes = range(self.existing_lanes.shape[1])
+        return np.moveaxis(np.stack([is_in(self.lanes_there, lane) for lane in lanes]), 0, -1)
 
     @cached_property
     def on_lanes(self) -> Flags:
@@ -303,7 +309,7 @@ def drive_context(
         extents=places.extents.part(rows, columns),
         relevant=relevant[rows],
         in_sight=in_sight[rows],
-        there=part_of(places.there, rows, columns),
+        lanes_there=places.lanes_there[rows, columns],
         lanes_within=tuple(
             sets[rows, columns] for sets in places.lanes_within(surroundings.tolerances.place_m)
         ),
@@ -401,7 +407,7 @@ def drives_context(
         extents=places.extents.end_to_end(*laid),
         relevant=relevant[rows],
         in_sight=in_sight[rows],
-        there=end_to_end(places.there, *laid),
+        lanes_there=end_to_end(places.lanes_there, *laid),
         lanes_within=tuple(
             end_to_end(sets, *laid) for sets in places.lanes_within(surroundings.tolerances.place_m)
         ),

@@ -54,7 +54,7 @@ class RoadPlaces:
             fastest=and_row(self.fastest, other.fastest, row),
         )
         # What is known of each need not be derived again
-        for name in ("there", "touched", "on_lanes", "crosses", "counts", "seen"):
+        for name in ("there", "lanes_there", "touched", "on_lanes", "crosses", "counts", "seen"):
             joined.__dict__[name] = and_row(getattr(self, name), getattr(other, name), row)
         for place_m, own in self._lanes_within.items():
             both = zip(own, other.lanes_within(place_m), strict=True)
@@ -69,6 +69,11 @@ class RoadPlaces:
         """Flags of the lanes (last axis) that exist where participants are."""
         by_lane = np.moveaxis(self.road.lanes.existing_at(self.extents.s), -1, 0)
         return np.moveaxis(np.ascontiguousarray(by_lane), 0, -1)
+
+    @cached_property
+    def lanes_there(self) -> LaneSets:
+        """The sets of these lanes."""
+        return lane_sets(self.there)
 
     @cached_property
     def touched(self) -> Flags:

@@ -5,10 +5,10 @@ Rows are participants, in the order of the file; columns are time steps, from ``
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 import shapely
@@ -147,13 +147,7 @@ class Tracks:
 
     def end_to_end(self, rows: NDArray[intp], ranges: Sequence[slice], absent: Flags) -> Tracks:
         """Some participants in several ranges of columns, without who is ``absent`` there."""
-        return Tracks(
-            participants=tuple(self.participants[row] for row in rows.tolist()),
-            types=self.types,
-            rows=self.rows[rows],
-            first=self.first,
-            **{name: end_to_end(getattr(self, name), rows, ranges, absent) for name in _ARRAYS},
-        )
+        return _LaidTracks(self, rows, lambda values: end_to_end(values, rows, ranges, absent))
 
     def of_type(self, name: str) -> Flags:
         """Flags of participants of an object type or its subtypes."""
@@ -178,6 +172,35 @@ class Tracks:
 
 
 _ARRAYS = tuple(x.name for x in fields(Tracks))[4:]
+
+
+class _LaidTracks(Tracks):
+    """Some rows of a ``whole``, with each array laid out when it is first asked for.
+
+    Most of them never are.
+    """
+
+    def __init__(
+        self,
+        whole: Tracks,
+        rows: NDArray[intp],
+        lay: Callable[[NDArray[Any]], NDArray[Any]],
+    ) -> None:
+        self.__dict__.update(
+            participants=tuple(whole.participants[row] for row in rows.tolist()),
+            types=whole.types,
+            rows=whole.rows[rows],
+            first=whole.first,
+            _whole=whole,
+            _lay=lay,
+        )
+
+    def __getattr__(self, name: str) -> NDArray[Any]:
+        if name not in _ARRAYS:
+            raise AttributeError(name)
+        values = self.__dict__["_lay"](getattr(self.__dict__["_whole"], name))
+        self.__dict__[name] = values
+        return cast("NDArray[Any]", values)
 
 
 def _bodies(tracks: Tracks, *, repeated: bool) -> Bodies:
@@ -298,8 +321,8 @@ def end_to_end(
 ) -> NDArray[Any]:
     """Some rows in several ranges of columns, one behind the other.
 
-    Flags are false, sets empty and measures NaN for who is ``absent``, by row and column; a third axis stays
-    the first in memory.
+    Flags are false, sets empty and measures NaN for who is ``absent``, by row and column; a third
+    axis stays the first in memory.
     """
     by_lane = np.moveaxis(values, -1, 0) if values.ndim > 2 else values[None]
     found = np.empty((len(by_lane), *absent.shape), dtype=values.dtype)
