@@ -242,10 +242,18 @@ def _buses_leave(context: DriveContext, buses: NDArray[intp]) -> tuple[Flags, Fl
 
 def _ends_within(context: DriveContext, steps: int) -> Flags:
     """Flags of states in which a participant's track goes on for fewer states than so many."""
-    spans, present = context.spans, ~np.isnan(context.tracks.speed)
-    last = spans.latest(present)[:, spans.end - 1]
-    ends: Flags = spans.columns + steps > last
+    ends: Flags = context.spans.columns + steps > context.spans.spread(_last_seen(context))
     return ends
+
+
+@once
+def _last_seen(context: DriveContext) -> NDArray[intp]:
+    """The last state of each participant's track in each drive; the one before it for none."""
+    spans = context.spans
+    present = ~np.isnan(context.tracks.speed)
+    seen = np.where(present, spans.columns, spans.first - 1)
+    last: NDArray[intp] = np.maximum.reduceat(seen, spans.begins, axis=-1)
+    return last
 
 
 def _about_to_overtake(context: DriveContext) -> SignalColumns:

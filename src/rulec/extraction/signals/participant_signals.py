@@ -147,7 +147,8 @@ def _safe_gap(context: DriveContext) -> SignalColumns:
     moot = may_pass_by | (follows & parts_soon(context, cells))
     speed = np.maximum(context.ego_extents.along[0], 0.0)
     react_m = speed[cells[1]] * limits.reaction_s
-    stops = _stood_before(context)[cells] & (short - react_m <= 0)
+    ahead = np.flatnonzero(may_follow.any(axis=1))
+    stops = _stood_before(context, ahead)[cells] & (short - react_m <= 0)
     moot |= follows & stops
     safe, unknown = np.ones(may_follow.shape, dtype=bool), np.zeros(may_follow.shape, dtype=bool)
     safe[cells] = ~follows | (short <= 0)
@@ -163,21 +164,25 @@ def _brief_and_slight(context: DriveContext, late: Flags, far_too_late: Flags) -
     """Flags of runs of late states that last for less than ``_BRIEF_S`` and are nowhere far too."""
     if not late.any():
         return late
-    spans = context.spans
+    spans, rows, found = context.spans, np.flatnonzero(late.any(axis=1)), np.zeros_like(late)
+    late, far_too_late = late[rows], far_too_late[rows]
     since, until = spans.latest(~late) + 1, spans.next_state(~late)
     brief = (until - since) * context.recording.step_s < _BRIEF_S - _HAIR_S
     slight = (spans.latest(far_too_late) < since) & (spans.next_state(far_too_late) >= until)
-    found: Flags = late & brief & slight
+    found[rows] = late & brief & slight
     return found
 
 
-def _stood_before(context: DriveContext) -> Flags:
-    """Flags of those who stand, and have for ``reaction_s`` or since they were seen first."""
-    stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
+def _stood_before(context: DriveContext, rows: NDArray[intp]) -> Flags:
+    """Flags of those who stand, and have for ``reaction_s`` or since they were seen first.
+
+    Of these rows, False in all others.
+    """
+    stands = context.tracks.speed[rows] * KMH < context.thresholds.standing_kmh
     steps = round(context.thresholds.reaction_s / context.recording.step_s)
-    spans = context.spans
-    moved = spans.latest(~stands & ~np.isnan(context.extents.s_min))
-    stood: Flags = stands & ((moved < spans.first) | (spans.columns - moved > steps))
+    spans, stood = context.spans, np.zeros(context.relevant.shape, dtype=bool)
+    moved = spans.latest(~stands & ~np.isnan(context.extents.s_min[rows]))
+    stood[rows] = stands & ((moved < spans.first) | (spans.columns - moved > steps))
     return stood
 
 
@@ -240,8 +245,10 @@ def _waits_elsewhere(context: DriveContext) -> Flags:
     stands = np.abs(along) * KMH < context.thresholds.standing_kmh
     vehicles = context.tracks.of_type("vehicle")[:, None]
     moves_elsewhere = context.elsewhere & ~context.spans.all(stands)
-    stands |= (along > 0) & (np.cos(context.extents.turned) < -0.5)
-    waits: Flags = stands & vehicles & (moves_elsewhere | ~context.on_lanes)
+    waits: Flags = vehicles & (moves_elsewhere | ~context.on_lanes)
+    backs = (waits & ~stands & (along > 0)).nonzero()
+    waits &= stands
+    waits[backs] = np.cos(context.extents.turned[backs]) < -0.5
     return waits
 
 

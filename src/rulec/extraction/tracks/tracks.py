@@ -321,11 +321,12 @@ def end_to_end(
 ) -> NDArray[Any]:
     """Some rows in several ranges of columns, one behind the other.
 
-    Flags are false, sets empty and measures NaN for who is ``absent``, by row and column; a third
+    Flags are false, sets empty and measures NaN for who is ``absent`` from a whole range, by row and column; a third
     axis stays the first in memory.
     """
     by_lane = np.moveaxis(values, -1, 0) if values.ndim > 2 else values[None]
-    found = np.empty((len(by_lane), *absent.shape), dtype=values.dtype)
+    none = values.dtype.type(np.nan if values.dtype.kind == "f" else 0)
+    found = np.full((len(by_lane), *absent.shape), none, dtype=values.dtype)
     begin = 0
     if all(own == ranges[0] for own in ranges):
         # As of candidates, which all begin at the same time
@@ -335,9 +336,7 @@ def end_to_end(
         ranges = ()
     for own in ranges:
         end = begin + own.stop - own.start
-        found[:, :, begin:end] = by_lane[:, :, own].take(rows, axis=1)
+        there = np.flatnonzero(~absent[:, begin])
+        found[:, there, begin:end] = by_lane[:, rows[there], own]
         begin = end
-    if absent.any():
-        none = values.dtype.type(np.nan if values.dtype.kind == "f" else 0)
-        np.copyto(found, none, where=absent)
     return np.moveaxis(found, 0, -1) if values.ndim > 2 else found[0]
