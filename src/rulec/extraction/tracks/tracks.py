@@ -321,8 +321,8 @@ def end_to_end(
 ) -> NDArray[Any]:
     """Some rows in several ranges of columns, one behind the other.
 
-    Flags are false, sets empty and measures NaN for who is ``absent`` from a whole range, by row and column; a third
-    axis stays the first in memory.
+    Flags are false, sets empty and measures NaN for who is ``absent`` from a whole range, by row
+    and column; a third axis stays the first in memory.
     """
     by_lane = np.moveaxis(values, -1, 0) if values.ndim > 2 else values[None]
     none = values.dtype.type(np.nan if values.dtype.kind == "f" else 0)
