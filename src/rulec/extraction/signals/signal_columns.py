@@ -49,14 +49,17 @@ class SignalColumns:
 def together(parts: Sequence[SignalColumns], names: SignalNames = None) -> SignalColumns:
     """The signals of all these, optionally only those of some names."""
 
-    def columns(kind: str) -> dict[str, Any]:
-        found: dict[str, Any] = {}
-        for part in parts:
-            found |= getattr(part, kind)
-        return found if names is None else {x: found[x] for x in found if x in names}
-
-    kinds = ("world", "about", "unknown", "only", "bounds", "texts", "whom")
-    return SignalColumns(*map(columns, kinds))
+    kinds: tuple[dict[str, Any], ...] = ({}, {}, {}, {}, {}, {}, {})
+    for part in parts:
+        own = part.world, part.about, part.unknown, part.only, part.bounds, part.texts, part.whom
+        for found, columns in zip(kinds, own, strict=True):
+            if columns:
+                found.update(columns)
+    if names is not None:
+        for found in kinds:
+            for name in found.keys() - names:
+                del found[name]
+    return SignalColumns(*kinds)
 
 
 def end_to_end(parts: Sequence[SignalColumns]) -> SignalColumns:

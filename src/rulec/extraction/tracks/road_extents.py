@@ -192,18 +192,21 @@ def part_of(values: NDArray[Any], rows: NDArray[intp], columns: slice) -> NDArra
 def _at_bound(left_of: Floats, bound: NDArray[intp]) -> Floats:
     """The values of one bound (last axis), by column, or by row and column."""
     rows, columns = left_of.shape[:2]
-    by_column = np.atleast_2d(bound)
-    if len(by_column) != 1 or not columns:
-        values: Floats = left_of[np.arange(rows)[:, None], np.arange(columns), by_column]
+    if (bound.ndim > 1 and len(bound) != 1) or not columns:
+        values: Floats = left_of[np.arange(rows)[:, None], np.arange(columns), bound]
         return values
     # Ego seldom changes lanes: the values of a bound stand together
-    changes = (np.flatnonzero(np.diff(by_column[0])) + 1).tolist()
+    of_column = bound if bound.ndim == 1 else bound[0]
+    is_new = of_column[1:] != of_column[:-1]
+    if not is_new.any():
+        return left_of[:, :, int(of_column[0])]
+    changes = (is_new.nonzero()[0] + 1).tolist()
     starts, ends = [0, *changes], [*changes, columns]
     parts = [
         left_of[:, start:end, number]
-        for start, end, number in zip(starts, ends, by_column[0, starts].tolist(), strict=True)
+        for start, end, number in zip(starts, ends, of_column[starts].tolist(), strict=True)
     ]
-    return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
+    return np.concatenate(parts, axis=1)
 
 
 def road_extents(

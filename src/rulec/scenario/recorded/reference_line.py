@@ -221,4 +221,5 @@ def turn(before: Angle, after: Angle) -> Angle:
 
 def pieces_at(borders: _Values, s: _Values) -> NDArray[intp]:
     """The numbers of the pieces between ascending borders at places, the nearest beyond them."""
-    return np.clip(np.searchsorted(borders, np.nan_to_num(s), "right") - 1, 0, len(borders) - 2)
+    pieces = np.searchsorted(borders, np.where(np.isnan(s), 0.0, s), "right") - 1
+    return np.minimum(np.maximum(pieces, 0), len(borders) - 2)

@@ -54,8 +54,13 @@ def digits_of_sum(
             away = total - limit
             digits += away > 0
             unclear |= ~(np.abs(away) > error + abs(limit) * _UNIT)
+    # The same few numbers are at a limit again and again
+    known: dict[tuple[float, ...], int] = {}
     for state in np.flatnonzero(unclear & ~ignored).tolist():
-        digits[state] = read.digit(_exactly(summands, state))
+        numbers = _numbers_in(summands, state)
+        if numbers not in known:
+            known[numbers] = read.digit(_exactly(summands, numbers))
+        digits[state] = known[numbers]
     return digits
 
 
@@ -65,12 +70,16 @@ def digits_of_count(read: NumberRead, counted: Array) -> NDArray[np.uint8]:
     return np.array([read.digit(Fraction(n)) for n in numbers], dtype=np.uint8).take(counted)
 
 
-def _exactly(summands: Sequence[Summand], state: int) -> Fraction:
-    result = Fraction(0)
-    for coefficient, numbers in summands:
-        number = numbers[state].item() if isinstance(numbers, np.ndarray) else numbers
-        result += coefficient * exact(number)
-    return result
+def _numbers_in(summands: Sequence[Summand], state: int) -> tuple[float, ...]:
+    return tuple(
+        numbers[state].item() if isinstance(numbers, np.ndarray) else numbers
+        for _, numbers in summands
+    )
+
+
+def _exactly(summands: Sequence[Summand], numbers: Sequence[float]) -> Fraction:
+    pairs = zip(summands, numbers, strict=True)
+    return sum((coefficient * exact(own) for (coefficient, _), own in pairs), Fraction(0))
 
 
 def _nearest(number: Fraction) -> float:
