@@ -48,7 +48,6 @@ class SignalColumns:
 
 def together(parts: Sequence[SignalColumns], names: SignalNames = None) -> SignalColumns:
     """The signals of all these, optionally only those of some names."""
-
     kinds: tuple[dict[str, Any], ...] = ({}, {}, {}, {}, {}, {}, {})
     for part in parts:
         own = part.world, part.about, part.unknown, part.only, part.bounds, part.texts, part.whom
