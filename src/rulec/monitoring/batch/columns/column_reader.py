@@ -57,10 +57,10 @@ def digits_of_sum(
     # The same few numbers are at a limit again and again
     known: dict[tuple[float, ...], int] = {}
     for state in np.flatnonzero(unclear & ~ignored).tolist():
-        numbers = _numbers_in(summands, state)
-        if numbers not in known:
-            known[numbers] = read.digit(_exactly(summands, numbers))
-        digits[state] = known[numbers]
+        own = _numbers_in(summands, state)
+        if own not in known:
+            known[own] = read.digit(_exactly(summands, own))
+        digits[state] = known[own]
     return digits
 
 
