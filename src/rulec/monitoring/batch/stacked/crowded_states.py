@@ -24,6 +24,9 @@ from rulec.trace.plain_arrays import distinct
 from rulec.trace.trace_arrays import Flags
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, PartialValue
 
+_FEW = 4
+"""Numbers up to so many times how many there are count as small."""
+
 MOST_KINDS = 1 << 7
 """Where more different things are said of objects, states are looked at one by one."""
 
@@ -208,4 +211,11 @@ def _codes(column: StackColumn | None, where: Places) -> list[Places]:
 
 def _places(values: NDArray[np.generic]) -> Places:
     """The place of each value among the different ones."""
+    if values.dtype.kind in "iu" and len(values) and values.min() >= 0:
+        # Small whole numbers need no order
+        there = np.zeros(int(values.max()) + 1, dtype=bool)
+        if len(there) <= _FEW * len(values):
+            there[values] = True
+            places: Places = (np.cumsum(there) - 1).take(values)
+            return places
     return np.searchsorted(distinct(values), values)

@@ -94,11 +94,14 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
 
 
 def _are_idle(rule: StackedRule, numbers: Sequence[Numbers], n_spots: int) -> NDArray[np.bool_]:
-    letters = rule.letters.numbers(numbers)
+    table, codes = rule.letters.looked_up(numbers)
     flags = rule.idle_flags()
-    if isinstance(letters, np.ndarray):
-        return flags.take(letters)
-    return np.full(n_spots, flags[letters])
+    if not isinstance(codes, np.ndarray):
+        return np.full(n_spots, flags[table.item(codes)])
+    if len(codes) < len(table):
+        return flags.take(table.take(codes))
+    # What has not been met has no number
+    return flags.take(table, mode="clip").take(codes)
 
 
 def _busy_cells(

@@ -9,8 +9,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram
+from rulec.trace.plain_arrays import distinct
 
 Numbers = NDArray[np.intp] | int
+
+MOST_CODES = 1 << 16
+"""Reads whose numbers have no more combinations are looked up together."""
+
+_FEW_CODES = 1 << 12
+"""More combinations are too many for fewer letters."""
+
+_MOST_KEPT = 1 << 18
+"""So many combinations are kept before all are forgotten."""
+
+_UNMET = -1
 
 
 class LetterSets:
@@ -29,6 +41,9 @@ class LetterSets:
         self._sets: list[int] = []
         self._several = [np.array([mask & (mask - 1) != 0 for mask in row]) for row in meanings]
         self._tables = [np.full((0, len(row)), -1, dtype=np.intp) for row in meanings]
+        # By the numbers of reads that have one only, the numbers of letters of all the others'
+        self._together: dict[tuple[int | None, ...], NDArray[np.intp]] = {}
+        self._kept = 0
 
     @property
     def sets(self) -> list[int]:
@@ -52,6 +67,52 @@ class LetterSets:
 
     def numbers(self, columns: Sequence[Numbers]) -> Numbers:
         """The number of each letter, for columns of the reads' numbers, or one for all."""
+        table, codes = self.looked_up(columns)
+        return table.item(codes) if isinstance(codes, int) else table.take(codes)
+
+    def looked_up(self, columns: Sequence[Numbers]) -> tuple[NDArray[np.intp], Numbers]:
+        """A table of the numbers of letters, and the place of each letter in it."""
+        key = tuple([None if isinstance(own, np.ndarray) else own for own in columns])
+        width, n_letters = 1, 1
+        for read, own in enumerate(columns):
+            if isinstance(own, np.ndarray):
+                width *= len(self._meanings[read])
+                n_letters = len(own)
+        if width > MOST_CODES or width > max(_FEW_CODES, n_letters):
+            found = self._one_by_one(columns)
+            return np.arange(len(self._places[0])), found
+        codes: Numbers = 0
+        for read, column in enumerate(columns):
+            if isinstance(column, np.ndarray):
+                if isinstance(codes, int):
+                    codes = column.astype(np.uint16)
+                else:
+                    codes *= np.uint16(len(self._meanings[read]))
+                    np.add(codes, column, out=codes, casting="unsafe")
+        table = self._together.get(key)
+        if table is None:
+            self._kept += width
+            if self._kept > _MOST_KEPT:
+                self._together.clear()
+                self._kept = width
+            table = self._together[key] = np.full(width, _UNMET, dtype=np.intp)
+        unmet = np.asarray(table.take(codes)) == _UNMET
+        if unmet.any():
+            for code in distinct(np.asarray(codes)[unmet]).tolist():
+                table[code] = self._of_code(code, key)
+        return table, codes
+
+    def _of_code(self, code: int, key: Sequence[int | None]) -> Numbers:
+        """The number of the letter of which the reads have these numbers, some by a code."""
+        columns: list[int] = []
+        for read in range(len(key) - 1, -1, -1):
+            own = key[read]
+            if own is None:
+                code, own = divmod(code, len(self._meanings[read]))
+            columns.append(own)
+        return self._one_by_one(columns[::-1])
+
+    def _one_by_one(self, columns: Sequence[Numbers]) -> Numbers:
         here: Numbers = 0
         for read in range(len(columns) - 1, -1, -1):
             here = self._behind(read, here, columns[read])
