@@ -48,7 +48,7 @@ def score(
     candidate together. Raises RulecError R0780.
     """
     paths, past = world.candidates_of(candidates), world.past_of(after)
-    bodies = [world.body_along(path, past) for path in paths]
+    bodies = world.bodies_along(paths, past)
     first = world.now + 1
     steps = first - len(past), first + paths.shape[1] - 1
     about = past.tobytes(), steps

@@ -62,8 +62,8 @@ def along(velocities: Points, headings: Floats) -> Floats:
 
 
 def accelerations_of(speeds: Floats, step_s: float) -> Floats:
-    """Accelerations (m/s²) of speeds (m/s) one step apart; 0 for one alone."""
-    if len(speeds) < 2:
+    """Accelerations (m/s²) of speeds (m/s) one step apart, the last axis; 0 for one alone."""
+    if speeds.shape[-1] < 2:
         return np.zeros_like(speeds)
-    result: Floats = np.gradient(speeds, step_s)
+    result: Floats = np.gradient(speeds, step_s, axis=-1)
     return result

@@ -213,9 +213,10 @@ def _places(values: NDArray[np.generic]) -> Places:
     """The place of each value among the different ones."""
     if values.dtype.kind in "iu" and len(values) and values.min() >= 0:
         # Small whole numbers need no order
-        there = np.zeros(int(values.max()) + 1, dtype=bool)
-        if len(there) <= _FEW * len(values):
-            there[values] = True
-            places: Places = (np.cumsum(there) - 1).take(values)
-            return places
+        numbers = values.astype(np.intp)
+        n_numbers = int(numbers.max()) + 1
+        if n_numbers <= _FEW * len(numbers):
+            there = np.zeros(n_numbers, dtype=bool)
+            there[numbers] = True
+            return (np.cumsum(there) - 1).take(numbers)
     return np.searchsorted(distinct(values), values)
