@@ -67,7 +67,9 @@ def test_a_table_of_rules_and_vehicles(verify):
 def test_the_first_violation_is_explained(verify):
     _, out, _ = verify(*DEFAULTS)
     assert "4: violated" in out.splitlines()
-    assert "  hard rule slow [Art. 1]: cannot be kept any more after state 0" in out.splitlines()
+    assert (
+        "  hard rule slow [Art. 1]: cannot be kept any more after state 0 (0 s)" in out.splitlines()
+    )
     _, out, _ = verify("--as-recorded")
     assert "mirrored" not in out
 

@@ -100,6 +100,26 @@ def test_the_same_overtaking_in_a_mirror_for_a_book_of_the_other_side():
     assert "near_side_passing" not in as_recorded["8"]
 
 
+@pytest.mark.parametrize(("side", "slow", "fast"), [("left", 4.0, 8.0), ("right", 8.0, 4.0)])
+def test_a_finding_is_where_the_file_has_it_mirrored_or_not(side, slow, fast):
+    # 8 passes 7 on the near side of its traffic: in the file that is the left one, or the right.
+    lanes = [straight(1, 0, 1000, y=4.0, left_of=2), straight(2, 0, 1000, y=8.0, right_of=1)]
+    cars = [going(7, 50, slow, 20.0), going(8, 20, fast, 30.0)]
+    found = replace(recording(lanes, cars), side=side)
+    judged = RecordingVerdicts(found, BRITISH, RequestedDrives(), "by hand")
+    assert judged.mirrored == (side == "right")
+    findings = DriveFindings(judged, "by hand.xml")
+    places = {}
+    for one in judged.answers():
+        for violation in one.answer.violations:
+            place = evidence_of(violation, one.drive, BRITISH, {}).place
+            places.setdefault(one.drive.ego, set()).add(place.y)
+        for finding in findings.add(one):
+            if finding.outcome == "violated":
+                assert finding.y in places[finding.vehicle]
+    assert places["8"] == {fast}
+
+
 @pytest.mark.parametrize(("gap_m", "rules"), [(60, set()), (40, {"half"}), (12, {"half", "safe"})])
 def test_keeping_distance(gap_m, rules):
     # At 30 m/s (108 km/h) half the speedometer is 54 m. At equal speeds ego is safe with what it

@@ -22,6 +22,7 @@ from rulec.recordings.recording_files import read_recordings
 from rulec.recordings.recording_format import RecordingSource
 from rulec.report.text.terminal_text import visible
 from rulec.report.verdicts import recording_table, verdict_report
+from rulec.report.verdicts.state_times import StateTimes
 
 if TYPE_CHECKING:
     from rulec.monitoring.explain.explanation import Explanation
@@ -282,6 +283,7 @@ class _RecordingJudge:
                 width=self._settings.width,
                 doubts=False,
                 whom=[whom_of(one, drive) for one in explained],
+                times=StateTimes(drive.start_s, drive.arrays.step_s),
             )
             self._judged.blocks.append(f"\n{details}")
         return explained

@@ -17,7 +17,7 @@ from rulec.cli.verdict_outputs import VerdictOutputs
 from rulec.diagnostics import RulecError
 from rulec.files import opened
 from rulec.monitoring.assumptions import Assumptions
-from rulec.monitoring.batch.batch_verify import Items, rulebook_for, verify_items
+from rulec.monitoring.batch.batch_verify import Items, rulebook_for, step_of, verify_items
 from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.report.findings.diagnostics_text import Complaints
@@ -26,6 +26,7 @@ from rulec.report.verdict_findings.found_in_traces import not_judged_trace, trac
 from rulec.report.verdict_findings.verdict_finding import FoundInRecording, VerdictFinding
 from rulec.report.verdicts import verdict_json, verdict_report
 from rulec.report.verdicts.batch_table import BatchTally
+from rulec.report.verdicts.state_times import StateTimes
 from rulec.resource_limits import REFUSED
 from rulec.trace import Trace
 from rulec.trace.formats.trace_files import Format, format_of, read_chunks
@@ -121,7 +122,12 @@ class TraceRun:
             self.to.line(verdict_json.as_json(verdict, used, explained, says_engine=says_engine))
         if says and self.to.wants_text:
             text = verdict_report.as_text(
-                verdict, used, explained, every_part=self.every_part, width=page_width()
+                verdict,
+                used,
+                explained,
+                every_part=self.every_part,
+                width=page_width(),
+                times=StateTimes(step_s=step_of(traces, place)),
             )
             self.to.text(text)
         if self.to.wants_findings:

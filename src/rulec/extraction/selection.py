@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import partial
 
 from rulec.diagnostics import SourceLocation, did_you_mean, named
 from rulec.extraction.drives import Drives, NoDrive
 from rulec.extraction.recording_parts import RecordingPart, egos_of, recording_parts
-from rulec.extraction.to_trace import Drive, TraceWriter
+from rulec.extraction.to_trace import Drive, DrivePlaces, TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds, hinted, pair_of
 from rulec.recordings.recording import Recording, Side
@@ -69,7 +69,8 @@ class SelectedDrives:
             else:
                 seen = mirrored_recording(part.recording) if self.mirrored else part.recording
             self._looked_at = part, self._drives_of(seen, expected=part.egos)
-        return self._looked_at[1].of(ego)
+        found = self._looked_at[1].of(ego)
+        return map(_where_recorded, found) if self.mirrored else found
 
     def kinds(self) -> dict[str, type]:
         """The Python type of each signal of all drives, empty if nobody has a drive."""
@@ -77,6 +78,13 @@ class SelectedDrives:
         first = next(drives, None)
         # Others than those asked for have the same
         return self._drives_of(self.recording).kinds() if first is None else dict(first.kinds)
+
+
+def _where_recorded(drive: Drive | NoDrive) -> Drive | NoDrive:
+    """A drive of a mirrored recording, its places as in the file: only words are mirrored."""
+    if isinstance(drive, NoDrive) or not isinstance(drive.places, DrivePlaces):
+        return drive
+    return replace(drive, places=drive.places.mirrored())
 
 
 def chosen_side(

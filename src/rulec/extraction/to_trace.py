@@ -189,6 +189,10 @@ class DrivePlaces(Sequence[Place]):
         """Those of some states."""
         return DrivePlaces(self.x[states], self.y[states], self.numbers[states], self.lanelets)
 
+    def mirrored(self) -> DrivePlaces:
+        """The same places in the mirror that ``mirrored_recording`` looks into."""
+        return DrivePlaces(self.x, 0.0 - self.y, self.numbers, self.lanelets)
+
     def __len__(self) -> int:
         return len(self.x)
 

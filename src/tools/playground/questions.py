@@ -26,6 +26,7 @@ from rulec.report.json_document import as_builtins
 from rulec.report.rulebooks import diff_json, rule_json
 from rulec.report.tests import example_json
 from rulec.report.verdicts import verdict_json
+from rulec.report.verdicts.state_times import StateTimes
 from rulec.report.verdicts.verdict_report import open_in_words
 from rulec.report.verdicts.violation_table import decisive_state_in_words, kept_if
 from rulec.rulebook.files.search_path import find_rulebook
@@ -100,18 +101,22 @@ def _verdict(trace: rulec.Trace | rulec.RulecError, rules: rulec.CompiledRuleboo
     shown = verdict.violations[:MOST_EXPLAINED]
     explained = [explain(violation, trace, fitted) for violation in shown]
     document = json.loads(verdict_json.as_json(verdict, rules, explained))
-    phrases = phrases_of(rules)
+    phrases, times = phrases_of(rules), StateTimes(step_s=trace.step_s)
+    for told in document["violations"]:
+        told["when"] = "" if told["step"] is None else times.of(told["step"])
     for told, explanation in zip(document["violations"], explained, strict=False):
-        _add_words(told["explanation"], explanation, phrases)
+        _add_words(told["explanation"], explanation, phrases, times)
     for told, doubt in zip(document["open"], verdict.open, strict=True):
         told["in_words"] = open_in_words(doubt, len(doubt.outcomes))
     return document
 
 
-def _add_words(told: dict[str, Any], explanation: Explanation, phrases: Mapping[str, str]) -> None:
+def _add_words(
+    told: dict[str, Any], explanation: Explanation, phrases: Mapping[str, str], times: StateTimes
+) -> None:
     """Add the sentence of an explanation, what would have kept the rule, and by how much."""
-    told["in_words"] = decisive_state_in_words(explanation, phrases)
-    told["kept_if"] = kept_if(explanation) if explanation.looked_at is None else []
+    told["in_words"] = decisive_state_in_words(explanation, phrases, times)
+    told["kept_if"] = kept_if(explanation, times) if explanation.looked_at is None else []
     margins = [fact.margins for fact in explanation.facts]
     margins += [part.margins for part in explanation.parts]
     for row, by_state in zip([*told["facts"], *told["parts"]], margins, strict=True):

@@ -318,11 +318,16 @@ def _verify_alike(
 
 def rulebook_for(items: Items, place: int, rulebook: CompiledRulebook) -> CompiledRulebook:
     """The rulebook that one of ``verify_items`` was judged by."""
+    return rulebook_for_step(step_of(items, place), rulebook)
+
+
+def step_of(items: Items, place: int) -> float:
+    """The step of a trace that has been judged (s)."""
     if isinstance(items, Block):
-        return rulebook_for_step(items.step_s(place), rulebook)
+        return items.step_s(place)
     trace = items[place]
     assert isinstance(trace, Trace)
-    return rulebook_for_trace(trace, rulebook)
+    return trace.step_s
 
 
 def _verify_block(

@@ -11,6 +11,7 @@ from rulec.monitoring.verdict import OpenVerdict, Verdict, Violation
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.terminal_text import styled, visible
 from rulec.report.verdicts.outcome_cases import fewest_cases
+from rulec.report.verdicts.state_times import NUMBERS_ALONE, StateTimes
 from rulec.rulebook.rulebook_model import cited_law
 from rulec.rulebook.vocabulary_phrases import phrases_of
 
@@ -33,12 +34,13 @@ def as_text(
     width: int = PAGE_WIDTH,
     doubts: bool = True,
     whom: Sequence[Sequence[str]] = (),
+    times: StateTimes = NUMBERS_ALONE,
 ) -> str:
     """Write a trace's violations, a line each, below its name; with what is open and not judged.
 
     ``explained`` are explanations of the first violations; each follows its line, folded to a
     ``width`` unless ``every_part`` of it is asked for. ``whom`` are those because of whom the first
-    ones are, where their rules name nobody.
+    ones are, where their rules name nobody. ``times`` are those of states.
     """
     doubtful = [*_open_lines(verdict, rulebook), *_not_judged_lines(verdict)] if doubts else []
     if not verdict.violations and not doubtful:
@@ -50,7 +52,7 @@ def as_text(
     shown = verdict.violations[:MOST_VIOLATIONS]
     phrases: Mapping[str, str] | None = None
     for number, violation in enumerate(shown):
-        line = in_a_line(violation, rules[violation.rule], rulebook.name)
+        line = in_a_line(violation, rules[violation.rule], rulebook.name, times)
         because = ", ".join(whom[number]) if number < len(whom) else ""
         lines.append(visible(f"  {line}, because of {because}" if because else f"  {line}"))
         if number < len(explained):
@@ -60,7 +62,7 @@ def as_text(
             if phrases is None:
                 phrases = phrases_of(rulebook)
             options = violation_table.TableOptions(
-                width=width, every_part=every_part, phrases=phrases
+                width=width, every_part=every_part, phrases=phrases, times=times
             )
             lines.append(violation_table.as_text(explained[number], options))
     if len(verdict.violations) > len(shown):
@@ -132,12 +134,17 @@ def _about(binding: Mapping[str, str]) -> str:
     return f" for {where}" if where else ""
 
 
-def in_a_line(violation: Violation, rule: CompiledRule, rulebook: str) -> str:
+def in_a_line(
+    violation: Violation,
+    rule: CompiledRule,
+    rulebook: str,
+    times: StateTimes = NUMBERS_ALONE,
+) -> str:
     """The violated rule of ``rulebook``, its binding and its time."""
     when = (
         "not fulfilled when the trace ends"
         if violation.step is None
-        else f"cannot be kept any more after state {violation.step}"
+        else f"cannot be kept any more after state {violation.step}{times.of(violation.step)}"
     )
     return f"{rule.strength} rule {_title(rule, rulebook)}{_about(violation.binding)}: {when}"
 

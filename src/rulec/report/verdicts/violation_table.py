@@ -16,6 +16,7 @@ from rulec.monitoring.explain.margins import Margin, number_with_error
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.guard_text import GuardWording, runs
 from rulec.report.text.terminal_text import broken, styled, table_lines, visible
+from rulec.report.verdicts.state_times import NUMBERS_ALONE, StateTimes
 from rulec.report.verdicts.table_folding import MOST_PARTS, cut, fitting, folded, head, titled
 from rulec.trace import Value
 from rulec.vocabulary.partial_values import Interval
@@ -48,12 +49,13 @@ class TableOptions:
     """How a table is laid out and worded.
 
     One that is large or wider than ``width`` is folded, unless ``every_part`` is wanted.
-    ``phrases`` are those that the decisive state is told in.
+    ``phrases`` are those that the decisive state is told in, ``times`` stand beside its number.
     """
 
     width: int = PAGE_WIDTH
     every_part: bool = False
     phrases: Mapping[str, str] = field(default_factory=dict)
+    times: StateTimes = NUMBERS_ALONE
 
 
 DEFAULT_OPTIONS = TableOptions()
@@ -75,16 +77,18 @@ def as_text(explanation: Explanation, options: TableOptions = DEFAULT_OPTIONS) -
     rows = [[f"{title} " for title in ("state", *table.titles)], *columns]
     lines += table_lines(list(zip(*rows, strict=True)), indent=INDENT, ruled=(0, table.n_facts))
     lines += [*_left_out(explanation, table), *_in_words(explanation, options)]
-    return "\n".join([*lines, *_repair(explanation, width)])
+    return "\n".join([*lines, *_repair(explanation, options)])
 
 
 def _in_words(explanation: Explanation, options: TableOptions) -> Iterator[str]:
-    line = decisive_state_in_words(explanation, options.phrases)
+    line = decisive_state_in_words(explanation, options.phrases, options.times)
     if line:
         yield from broken(line, options.width, INDENT, 2 * INDENT)
 
 
-def decisive_state_in_words(explanation: Explanation, phrases: Mapping[str, str]) -> str:
+def decisive_state_in_words(
+    explanation: Explanation, phrases: Mapping[str, str], times: StateTimes = NUMBERS_ALONE
+) -> str:
     """What decides in the decisive state, as a sentence; empty if nothing can be said."""
     decisive = explanation.states.index(explanation.decisive)
     facts = []
@@ -94,37 +98,41 @@ def decisive_state_in_words(explanation: Explanation, phrases: Mapping[str, str]
             number = value.middle if isinstance(value, Interval) else value
             facts.append((fact.text, number, shown(value)))
     said = facts_in_words(facts, explanation.vocabulary, phrases)
-    return f"at state {explanation.decisive}: {visible(said)}" if said else ""
+    when = f"{explanation.decisive}{times.of(explanation.decisive)}"
+    return f"at state {when}: {visible(said)}" if said else ""
 
 
-def _repair(explanation: Explanation, width: int) -> Iterator[str]:
+def _repair(explanation: Explanation, options: TableOptions) -> Iterator[str]:
     if explanation.looked_at is not None:
         first, last = explanation.looked_at
-        yield f"{INDENT}(states {first}-{last} were looked at, of a long trace)"
+        when = options.times.of(first, last)
+        yield f"{INDENT}(states {first}-{last}{when} were looked at, of a long trace)"
         return
-    changes = kept_if(explanation)
+    changes = kept_if(explanation, options.times)
     for line in changes[:MOST_CHANGES]:
-        yield from broken(line, width, INDENT, 2 * INDENT)
+        yield from broken(line, options.width, INDENT, 2 * INDENT)
     if len(changes) > MOST_CHANGES:
         yield f"{INDENT}… and {len(changes) - MOST_CHANGES:,} more; --json has them all"
 
 
-def kept_if(explanation: Explanation) -> list[str]:
+def kept_if(explanation: Explanation, times: StateTimes = NUMBERS_ALONE) -> list[str]:
     """What states would have had to say for the rule to be kept, a line for each stretch."""
     if explanation.repair is None:
         return ["no trace of as many states keeps it"]
     changes = itertools.groupby(repaired_states(explanation), key=itemgetter(1))
     return [
-        f"{'and' if number else 'kept'} if {_states(list(run))}: {visible(says)}"
+        f"{'and' if number else 'kept'} if {_states(list(run), times)}: {visible(says)}"
         for number, (says, run) in enumerate(changes)
     ]
 
 
-def _states(run: Sequence[tuple[int, str]]) -> str:
+def _states(run: Sequence[tuple[int, str]], times: StateTimes) -> str:
     numbers = [number for number, _ in run]
     if len(numbers) == 1:
-        return f"state {numbers[0]} says"
+        return f"state {numbers[0]}{times.of(numbers[0])} says"
     spans = [f"{run[0]}-{run[-1]}" if len(run) > 1 else str(run[0]) for run in runs(numbers)]
+    if len(spans) == 1:
+        return f"states {spans[0]}{times.of(numbers[0], numbers[-1])} say"
     if len(spans) > MOST_SPANS:
         spans[MOST_SPANS:] = [f"… ({len(spans) - MOST_SPANS:,} more)"]
     return f"states {', '.join(spans)} say"

@@ -154,7 +154,7 @@ const about = (binding) => (bound(binding) ? ` for ${bound(binding)}` : "");
 
 function violation(one) {
   const told = one.explanation;
-  const after = one.step === null ? "violated by how it ends" : `cannot be kept any more after state ${one.step}`;
+  const after = one.step === null ? "violated by how it ends" : `cannot be kept any more after state ${one.step}${one.when}`;
   return element(
     "div",
     { class: "violation" },

@@ -1,0 +1,36 @@
+"""When the states of a trace are, beside their numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rulec.automata.thresholds import exact
+from rulec.logic.printing import number_in_words
+
+_DIGITS = 9
+"""Sums of steps are said without the noise of floats."""
+
+
+@dataclass(frozen=True, slots=True)
+class StateTimes:
+    """Times of states: the first one is at ``start_s``, the next ones ``step_s`` apart.
+
+    From 0 on, a second apart, which is also the step where nobody has told one, numbers say it all.
+    """
+
+    start_s: float = 0.0
+    step_s: float = 1.0
+
+    def of(self, first: int, last: int | None = None) -> str:
+        """What is said behind the number of a state, such as `` (3.7 s)``, or behind a stretch."""
+        if self == NUMBERS_ALONE:
+            return ""
+        if last in (None, first):
+            return f" ({self._at(first)} s)"
+        return f" ({self._at(first)}-{self._at(last)} s)"
+
+    def _at(self, state: int) -> str:
+        return number_in_words(exact(round(self.start_s + state * self.step_s, _DIGITS)))
+
+
+NUMBERS_ALONE = StateTimes()
