@@ -90,6 +90,21 @@ def test_one_that_would_have_come_at_once_was_held_up():
     assert found.world["conflict_from_right"][3]
 
 
+@pytest.mark.parametrize(
+    ("way", "conflict"),
+    [(3.0, True), (4.25, False), (5.0, False)],
+    ids=["brakes for ego", "hardly", "when ego is gone"],
+)
+def test_one_that_does_not_slow_down_for_ego_was_not_held_up(way, conflict):
+    """Ego is there from 2 s on and gone 1 s before 3.4 s; the other one comes at 3.5 s.
+
+    At 2 s it is 13.5 m away, and at 10 m/s up to 2.5 s. Then it covers a way in half a second.
+    """
+    places = np.array([-36.5, -11.5, -11.5 + way, -3])
+    found = signals(NORTH, lambda t: np.interp(t, [0, 2.5, 3, 3.5], places), np.pi / 2)
+    assert found.world["conflict_from_right"].any() == conflict
+
+
 @pytest.mark.parametrize(("at_1_s", "conflict"), [(-30, False), (-26, True)])
 def test_one_that_speeds_up_when_ego_has_entered_was_not_held_up(at_1_s, conflict):
     """Ego drives in at 1 s and is past its way at 2.5 s; the other one comes 1.5 s later.

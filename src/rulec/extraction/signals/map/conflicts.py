@@ -23,6 +23,12 @@ SLOWEST_MPS = 1.0
 _DRIVES_MPS = 3.0
 """Who drives more slowly in a junction may wait there."""
 
+_SLOWED = 0.9
+"""Who keeps more of its speed was not made to brake: speeds waver by so much on their own."""
+
+_BRIEFLY_S = 1.0
+"""Speeds are means over so long: who touches the brake for less is not held up."""
+
 _BEHIND_S = 0.3
 """Who gets to a place so short a time before another one has left it passes behind it."""
 
@@ -120,7 +126,19 @@ def _held_up(
     decides = min(max(_decides(context, own, enters) - first, 0), len(soon) - 1)
     # Who speeds up when ego is in the junction already was not held up by its driving in
     held_up = bool(soon[decides] and soon[-1])
+    # Nor who brakes once ego is gone
+    held_up = held_up and _slows_down(context, other, first + decides, ceil(until))
     return (int(columns[soon.argmax()]), leaves is not None) if held_up else None
+
+
+def _slows_down(context: DriveContext, other: Passage, first: int, last: int) -> bool:
+    """True if one is clearly slower for a while between two columns than it was in the first."""
+    passages, step_s = context.surroundings.passages, context.recording.step_s
+    steps = max(round(_BRIEFLY_S / step_s), 1)
+    travelled = passages.travelled[other.row, first : max(last, first + steps) + 1]
+    steps = min(steps, len(travelled) - 1)
+    slowest = float((travelled[steps:] - travelled[:-steps]).min()) / steps / step_s
+    return slowest < _SLOWED * float(passages.tracks.speed[other.row, first])
 
 
 def _decides(context: DriveContext, own: Passage, enters: int) -> int:
