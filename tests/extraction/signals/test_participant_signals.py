@@ -259,6 +259,26 @@ def test_who_is_behind_another_one_is_not_followed():
 
 
 @pytest.mark.parametrize(
+    ("y", "more", "parked"),
+    [
+        (-1.7, {}, True),
+        (1.7, {}, True),
+        (-1.3, {}, False),
+        (-1.3, {"width": 2.8}, False),
+        (-1.7, {"kind": "motorcycle"}, False),
+    ],
+    ids=["at the right edge", "at the left one", "off it", "too little room", "on two wheels"],
+)
+def test_who_stands_at_the_edge_of_a_wide_lane_all_the_time_is_parked(y, more, parked):
+    """The lane is 6 m wide, the other one 2 m or 2.8 m; it leaves 3.7 m at the edge, or 2.9 m."""
+    road = [straight(1, 0, 200, width=6.0)]
+    ways = dict.fromkeys(range(4), (30, y))
+    found = recording(road, [steady(7, 0, 0, steps=4), vehicle(8, ways, **more)])
+    signals = participant_signals(context_of(found))
+    assert signals.values("parked")[0].all() == parked
+
+
+@pytest.mark.parametrize(
     ("y", "moves_on", "parked"), [(-2.6, False, True), (-2.6, True, False), (-1.4, False, False)]
 )
 def test_who_stands_beside_the_lanes_all_the_time_is_parked(y, moves_on, parked):

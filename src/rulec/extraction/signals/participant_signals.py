@@ -30,6 +30,7 @@ from rulec.extraction.signals.signal_columns import (
     rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.paper_words import LATERALS, STATIONS
 
@@ -37,6 +38,9 @@ _ALONG = 0.5
 """The sine of the angle to the road up to which one heads along it."""
 
 _TWO_WHEELED = ("motorcycle", "bicycle")
+
+_EDGE_M, _ROOM_M = 0.5, 3.05
+"""Who parks does so at the edge; the widest vehicle (2.55 m) gets by with half a metre more."""
 
 _BRIEF_S = 1.0
 _OUTLIERS = 3.0
@@ -293,9 +297,10 @@ def _parked(context: DriveContext) -> SignalColumns:
 
 
 def _stays_aside(context: DriveContext) -> Flags:
-    """Flags of vehicles that stand beside the lanes of ego's road all the time they are recorded.
+    """Flags of vehicles that stand aside all the time they are recorded.
 
-    By their middles: those who wait in a lane do not, however long.
+    Their middles are beside the lanes of ego's road, or their sides at the road's edge, and they
+    leave room for all others in their lane. Those who wait in a lane do not, however long.
     """
     lanes, vehicles = context.existing_lanes, np.flatnonzero(context.tracks.of_type("vehicle"))
     aside = np.zeros(context.relevant.shape, dtype=bool)
@@ -304,8 +309,22 @@ def _stays_aside(context: DriveContext) -> Flags:
     if len(still):
         others = context.extents.part(still, slice(None))
         out = (others.middle_from(first) < 0) | (others.middle_from(end) > 0)
+        wide = [context.tracks.participants[row].type not in _TWO_WHEELED for row in still.tolist()]
+        out |= np.array(wide)[:, None] & _at_edge(others, context.there[still])
         aside[still] = context.spans.all(out | ~context.relevant[still])
     return aside
+
+
+def _at_edge(others: RoadExtents, there: Flags) -> Flags:
+    """Flags of bodies at an edge of the lanes, in a lane that has room beside them.
+
+    ``there``: the lanes (last axis) that exist where they are.
+    """
+    first, end = there.argmax(axis=2), there.shape[2] - there[..., ::-1].argmax(axis=2)
+    right = (others.from_bound(first)[0] < _EDGE_M) & (others.from_bound(first + 1)[1] < -_ROOM_M)
+    left = (others.from_bound(end)[1] > -_EDGE_M) & (others.from_bound(end - 1)[0] > _ROOM_M)
+    at_edge: Flags = there.any(axis=2) & (right | left)
+    return at_edge
 
 
 def _on_shoulder(context: DriveContext) -> SignalColumns:
