@@ -101,6 +101,29 @@ def test_who_is_away_for_a_sweep_has_no_state_there(tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("seen", "mps", "left"),
+    [
+        # Between two sweeps that are a second apart, or more
+        ({0, 10, 20}, 5.0, range(21)),
+        ({0, 11, 20}, 5.0, {0, *range(11, 21)}),
+        # It stands, behind something; or was in sight for a while
+        ({5}, 0.0, range(21)),
+        (range(5, 9), 6.0, range(5, 9)),
+        ((), 5.0, ()),
+    ],
+)
+def test_boxes_without_points_are_guesses(tmp_path, seen, mps, left):
+    moments = [1_000_000_000 + 100_000_000 * k for k in range(21)]
+    boxes = [
+        box(m, "car", "REGULAR_VEHICLE", 10 + mps * k / 10, 2, num_interior_pts=int(k in seen))
+        for k, m in enumerate(moments)
+    ]
+    found = read_recording(write_log(tmp_path, boxes, [pose(m, 20.0, -5.0) for m in moments]))
+    there = [body for body in found.participants if body.id == "car"]
+    assert [sorted(body.states) for body in there] == ([sorted(left)] if left else [])
+
+
+@pytest.mark.parametrize(
     ("category", "types"),
     [
         ("REGULAR_VEHICLE", ("car", "vehicle", "road_user", "obstacle")),

@@ -58,7 +58,9 @@ def test_what_the_log_has(sensor):
     assert len(ego.states) == len(set(table["timestamp_ns"])) == 157
     assert sum(x.type == "pedestrian" for x in sensor.participants) == 12
     assert (len(lanes), len(sensor.lanelets) - len(lanes)) == (150, 6)
-    assert sum(len(x.states) for x in sensor.participants) == len(table["track_uuid"])
+    # Of 13,820 boxes 3,452 have no point; some are between others, or stand
+    points = np.array(table["num_interior_pts"])
+    assert (points > 0).sum() < sum(len(x.states) for x in sensor.participants) < len(points)
 
 
 def test_ego_does_not_slip_sideways(sensor):

@@ -46,10 +46,12 @@ EGO = "AV"
 _EGO_CATEGORY = "EGO_VEHICLE"
 _QUATERNION, _PLACE = ("qw", "qx", "qy", "qz"), ("tx_m", "ty_m", "tz_m")
 _POSES = Wanted(numbers=(*_QUATERNION, *_PLACE), whole=("timestamp_ns",))
+_POINTS = "num_interior_pts"
 _BOXES = Wanted(
     numbers=(*_QUATERNION, *_PLACE, "length_m", "width_m"),
-    whole=("timestamp_ns",),
+    whole=("timestamp_ns", _POINTS),
     texts=("track_uuid", "category"),
+    optional=frozenset({_POINTS}),
 )
 _LARGEST_M = 200.0
 _NAME = re.compile(MAP.replace("*", r"([0-9A-Za-z-]+)_*.*").replace(".json", r"\.json"))
@@ -156,7 +158,10 @@ def _tracks(table: ArrowTable, sweeps: _Sweeps, sweep_of: NDArray[intp]) -> Iter
         if category not in CATEGORIES:
             raise table.refused(int(rows[0]), f"`category` is `{short(category)}`")
         length, width = np.median(sizes[rows], axis=0).tolist()
-        yield TrackBoxes(names.values[number], category, own, in_city.taken(rows), (length, width))
+        poses = in_city.taken(rows)
+        boxes = TrackBoxes(names.values[number], category, own, poses, (length, width))
+        points = table.whole.get(_POINTS)
+        yield boxes if points is None else boxes.measured(points[rows], sweeps.seconds)
 
 
 def _ego(name: str, size: tuple[float, float], sweeps: _Sweeps) -> TrackBoxes:

@@ -17,6 +17,13 @@ from rulec.recordings.track import Track, TrackOutlines, TrackStates
 _RIDDEN_M = 1.0
 """A rider's box is on what it rides if their middles are no farther apart."""
 
+_UNEVEN_S = 0.01
+"""Sweeps are a tenth of a second apart to within a millisecond."""
+
+_UNSEEN_S, _STAYED_M = 1.0, 0.5
+"""Between two sweeps with points a box is where it is drawn, if they are no farther apart in time,
+or the box does not move from one to the other. Speeds are means over a second, too."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TrackBoxes:
@@ -32,6 +39,26 @@ class TrackBoxes:
         """Its boxes in some sweeps only."""
         rows = np.flatnonzero(flags)
         return replace(self, sweeps=self.sweeps[rows], poses=self.poses.taken(rows))
+
+    def measured(self, points: NDArray[int64], seconds: NDArray[float64]) -> TrackBoxes:
+        """Without the boxes that were only guessed: no point is in them, and they move.
+
+        ``points`` are how many are in each of its boxes, ``seconds`` the moments of all sweeps.
+        """
+        seen = np.flatnonzero(points > 0)
+        if len(seen) in (0, len(points)):
+            return self if len(seen) else self.kept(points > 0)
+        moments, places = seconds[self.sweeps], self.poses.translations[:, :2]
+        after = np.searchsorted(seen, np.arange(len(points)))
+        before = np.searchsorted(seen, np.arange(len(points)), side="right") - 1
+        previous, following = (seen[np.clip(at, 0, len(seen) - 1)] for at in (before, after))
+        between = (before >= 0) & (after < len(seen))
+        short = between & (moments[following] - moments[previous] <= _UNSEEN_S + _UNEVEN_S)
+        stayed = np.all(
+            [np.hypot(*(places - places[at]).T) <= _STAYED_M for at in (previous, following)],
+            axis=0,
+        )
+        return self.kept((points > 0) | short | stayed)
 
 
 def with_riders(boxes: Sequence[TrackBoxes], rides: Mapping[str, str]) -> list[TrackBoxes]:
