@@ -401,6 +401,16 @@ def test_the_gap_to_one_that_is_lost_as_it_goes_aside_is_moot(drift, unknown):
     assert signals.unknown["safe_gap"][0, 2] == unknown
 
 
+@pytest.mark.parametrize(("drift", "unknown"), [(0.5, True), (-0.5, True), (0.2, False)])
+def test_the_gap_to_one_that_begins_to_go_aside_and_is_lost_is_moot(drift, unknown):
+    """It is seen up to 2.5 s, 1 m farther aside, and has 2.5 s more for the second metre."""
+    places = {k: (10 + 2.5 * k, drift * max(k - 3, 0)) for k in range(6)}
+    bodies = [steady(7, 0, 0, speed=10.0, steps=10), vehicle(8, places, speed=5.0)]
+    signals = participant_signals(context_of(recording([straight(1, -100, 300, 0, 8.0)], bodies)))
+    assert not signals.about["safe_gap"][0, 2]
+    assert signals.unknown["safe_gap"][0, 2] == unknown
+
+
 @pytest.mark.parametrize(("aside", "unknown"), [(1.5, True), (1.1, False)])
 def test_the_gap_to_one_that_ego_goes_past_on_a_broad_lane_is_moot(aside, unknown):
     """Bodies are 2 m wide; 3.5 s later ego is to that side of its lane, the other as far away."""

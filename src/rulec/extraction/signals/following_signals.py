@@ -84,8 +84,9 @@ def parts_soon(context: DriveContext, cells: tuple[NDArray[intp], ...]) -> Flags
     """Flags of those cells, rows and columns, whose lane is not ego's within ``parting_s``.
 
     Or who are clear of ego at its side then, as on a broad lane; or who are lost from sight before,
-    and go aside by ``_AWAY_MPS``, or ego does when they are seen last, such that it may be clear of
-    them then. Where ways part in a junction nobody is clear of one that stops before.
+    and go aside by ``_AWAY_MPS``, or do so from each other when they are seen last, such that they
+    may be clear of each other then. Where ways part in a junction nobody is clear of one that stops
+    before.
     """
     horizon = round(context.thresholds.parting_s / context.recording.step_s)
     (pairs, places), others, own = pair_states(context, cells), context.extents, context.ego_extents
@@ -103,8 +104,8 @@ def parts_soon(context: DriveContext, cells: tuple[NDArray[intp], ...]) -> Flags
     side = np.sign(middles[0] - middles[1])
     gone = spans.next_state(~seen, horizon)
     last = np.clip(gone - 1, spans.first, spans.end - 1)
-    away, still = (-own.across[0, columns] * side)[last], way_across[last]
-    left_s = (until - last) * context.recording.step_s
+    away = ((others.across[at] - own.across[0, columns]) * side)[last]
+    still, left_s = way_across[last], (until - last) * context.recording.step_s
     swings_out = (away >= _AWAY_MPS) & (still + away * left_s > -context.tolerances.place_m)
     lost = gone <= np.minimum(np.where(inside[last], stopped, until), until)
     parts |= seen & lost & ((others.across[at] * side >= _AWAY_MPS) | swings_out)
