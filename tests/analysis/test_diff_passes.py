@@ -61,6 +61,25 @@ class TestDiverseWitnesses:
         assert diverse_witnesses(forbidding, allowing, first, 2) == found[:2]
         assert diverse_witnesses(forbidding, allowing, first, 1) == (first,)
 
+    def test_where_nothing_does_without_no_less_is_asked(self, monkeypatch):
+        fast, follows = ALONE[3], Atom("follows", ("x", "y"))
+        forbidden = Binary(BinaryOperator.AND, P, either(fast, follows))
+        forbidding, _ = sides([always(no(forbidden)), always(P)], [X, Y])
+        _, allowing = sides([always(P), always(either(P, no(P)))], [X, Y])
+        asked = []
+
+        def counted(*question):
+            asked.append(question)
+            return counterexample(*question)
+
+        first = counterexample(forbidding, [allowing])
+        monkeypatch.setattr("rulec.analysis.diff.rule_comparison.counterexample", counted)
+        found = diverse_witnesses(forbidding, allowing, first, 5)
+        names = [sorted(non_default_names(one, VOCABULARY)) for one in found]
+        assert sorted(names) == [["follows", "p"], ["p", "speed"]]
+        # Without one of the two, without `p`, without both; without one of them and `p` is clear.
+        assert len(asked) == 3
+
     def test_names_with_another_value_than_the_default(self):
         trace = Trace(
             "t", 1.0, {"x": "thing"}, ({"speed": 0.0}, {"p": True, "place": {"x": "near"}})

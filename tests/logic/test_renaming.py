@@ -3,7 +3,7 @@
 from fractions import Fraction
 
 from rulec.logic.formula import Atom, Comparison, Count, QuantityTerm, Same
-from rulec.logic.free_names import rename_variables
+from rulec.logic.free_names import rename_variables, required_inputs
 
 GAP_V, GAP_W = QuantityTerm("gap", ("v",)), QuantityTerm("gap", ("w",))
 
@@ -41,3 +41,24 @@ def test_text_of_several_arguments_and_units_by_the_same_name():
 
 def test_names_that_are_not_given_stay():
     assert rename_variables(Atom("p", ("x", "y")), {"y": "z"}) == Atom("p", ("x", "z"))
+
+
+def test_inputs_of_counts_are_asked_of_each_object_that_may_count():
+    def at_least_one(variable, kind, body):
+        return Comparison(((Fraction(1), Count(variable, kind, body)),), ">=", Fraction(1))
+
+    near = at_least_one("w", "car", Atom("near", ("v", "w", "x")))
+    slow = Comparison(((Fraction(1), GAP_V), (Fraction(-1), GAP_W)), "<", Fraction(0))
+    objects = {"x": "car", "w": "bus"}
+    fits = lambda kind, wanted: wanted in (kind, "any")  # noqa: E731
+    assert list(required_inputs(at_least_one("v", "any", near), objects, fits)) == [
+        Atom("near", ("x", "x", "x")),
+        Atom("near", ("w", "x", "x")),
+    ]
+    assert list(required_inputs(at_least_one("v", "any", slow), objects, fits)) == [
+        QuantityTerm("gap", ("x",)),
+        GAP_W,
+        GAP_W,
+        GAP_W,
+    ]
+    assert list(required_inputs(slow, objects, fits)) == [GAP_V, GAP_W]

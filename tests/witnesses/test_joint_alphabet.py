@@ -68,7 +68,7 @@ def test_diagrams_are_the_functions(functions):
             node = root
             for level, joint_digit in enumerate(joint_digits):
                 assert diagrams.level(node) >= level
-                node = diagrams.child(node, level, joint_digit)
+                (node,) = diagrams.children([node], level, joint_digit)
             assert diagrams.level(node) == float("inf")
             assert diagrams.value(node) == function.value(joint.own_digits(index, joint_digits))
             table.append(diagrams.value(node))

@@ -106,23 +106,34 @@ def required_inputs(
     ``objects`` maps those that are there to their types; ``fits`` tells whether the first of two
     types is the second or one below it.
     """
+    return _inputs(formula, objects, fits, {})
+
+
+def _inputs(
+    formula: ltl.Formula,
+    objects: Mapping[str, str],
+    fits: Callable[[str, str], bool],
+    names: Mapping[str, str],
+) -> Iterator[ltl.Atom | ltl.QuantityTerm]:
+    """The inputs of a formula in which variables stand for these names."""
     for atom in ltl.atoms_of(formula):
         if isinstance(atom, ltl.Comparison):
             for _, term in atom.terms:
-                yield from _of_term(term, objects, fits)
+                yield from _of_term(term, objects, fits, names)
         else:
-            yield atom
+            yield replace(atom, arguments=_renamed(atom.arguments, names)) if names else atom
 
 
 def _of_term(
-    term: ltl.Term, objects: Mapping[str, str], fits: Callable[[str, str], bool]
+    term: ltl.Term,
+    objects: Mapping[str, str],
+    fits: Callable[[str, str], bool],
+    names: Mapping[str, str],
 ) -> Iterator[ltl.Atom | ltl.QuantityTerm]:
     if isinstance(term, ltl.QuantityTerm):
-        yield term
+        yield replace(term, arguments=_renamed(term.arguments, names)) if names else term
         return
     for name, kind in objects.items():
         if fits(kind, term.type):
             # What is asked of the object that stands in the count's place.
-            yield from required_inputs(
-                rename_variables(term.body, {term.variable: name}), objects, fits
-            )
+            yield from _inputs(term.body, objects, fits, {**names, term.variable: name})

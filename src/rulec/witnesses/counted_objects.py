@@ -7,10 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import reduce
 from itertools import product
 from math import ceil
-from operator import add
+from operator import add, and_
 
+from rulec.automata.alphabet import reads_of
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic.formula import Count, Formula
 from rulec.logic.free_names import variables_of
@@ -199,9 +201,10 @@ def _first_of_each(
     """
     choices = [range(read.size) if digit is None else (digit,) for read, digit in reads]
     seen = set()
+    allowed = reduce(and_, counted.allowed, -1)
     for digits in product(*choices):
         letter = letter_functions.letter_of(digits, counted.reads)
-        if not all(letters >> letter & 1 for letters in counted.allowed):
+        if not allowed >> letter & 1:
             continue
         adds = tuple([letters >> letter & 1 for letters in counted.counted])
         if adds in seen:
@@ -226,7 +229,7 @@ def _axioms_about(kind: str, universe: ObjectUniverse, bodies: Sequence[Formula]
     axioms = [
         axiom for axiom in said_axioms(with_it) if not axiom.is_counting and EXTRA in axiom.objects
     ]
-    read = [letter_functions.axiom_function(body, universe.vocabulary) for body in bodies]
+    read = [reads_of(body, universe.vocabulary) for body in bodies]
     return [axiom.formula for axiom in relevant_axioms(axioms, read)]
 
 

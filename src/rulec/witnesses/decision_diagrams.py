@@ -106,7 +106,11 @@ class DecisionDiagrams(_Nodes):
 
         return built(own.root, 0)
 
-    def child(self, node: int, level: float, digit: int) -> int:
-        """Restriction of a node to one digit of a joint read."""
-        own, children = self._nodes[node]
-        return children[digit] if own == level else node
+    def children(self, nodes: Sequence[int], level: float, digit: int) -> list[int]:
+        """Restrictions of nodes to one digit of a joint read."""
+        known = self._nodes
+        return [
+            children[digit] if own == level else node
+            for node in nodes
+            for own, children in (known[node],)
+        ]

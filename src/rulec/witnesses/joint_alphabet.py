@@ -59,7 +59,7 @@ class JointAlphabet:
             for count in letter_functions.counts_read(reads)
         ]
         read = [*monitors, *(count.function for count in self._counts)]
-        relevant = relevant_axioms(axioms, read)
+        relevant = relevant_axioms(axioms, [function.reads for function in read])
         functions = [*read, *(axiom.function for axiom in relevant)]
         self._joint = joint_reads(functions, vocabulary)
         self._n_keys = len(monitors) + len(self._counts)
@@ -71,6 +71,9 @@ class JointAlphabet:
         ]
         self._plain: dict[tuple[int, ...], dict[JointLetter, tuple[int, Steps]]] = {}
         self._states: dict[JointLetter, state_synthesis.JointState | None] = {}
+        self._numbers: dict[
+            object, dict[state_synthesis.Subject, state_synthesis.Value] | None
+        ] = {}
         ways_to = self._ways_to = dict[JointLetter, list[tuple[int, int, Steps, JointLetter]]]()
         numbers = count()
         for number_digits, ways in self._numbered(self._cleared(roots), ()):
@@ -133,7 +136,7 @@ class JointAlphabet:
         return int(min(len(self._joint.reads), *map(self._diagrams.level, nodes)))
 
     def _after(self, nodes: Sequence[int], level: int, digit: int) -> tuple[int, ...]:
-        return self._cleared([self._diagrams.child(node, level, digit) for node in nodes])
+        return self._cleared(self._diagrams.children(nodes, level, digit))
 
     def _numbered(
         self, nodes: tuple[int, ...], number_digits: tuple[tuple[int, int], ...]
@@ -190,15 +193,33 @@ class JointAlphabet:
         while candidates:
             _, _, steps, classes = heappop(candidates)
             self._take(_COUNTS_TRIED if self._counts else 1)
-            digits = []
+            chosen = []
             while steps is not None:
-                (level, digit), steps = steps
-                digits.append((self._joint.reads[level], digit))
-            counted = tuple(
-                (function.count, function.counted[letter_class])
-                for function, letter_class in zip(self._counts, classes, strict=True)
-            )
-            state = state_synthesis.synthesize_state(self._universe, digits, counted)
+                step, steps = steps
+                chosen.append(step)
+            state = self._state(chosen, classes)
             if state is not None and fewest_counted_objects(state, self._object_kinds) is not None:
                 return state
         return None
+
+    def _state(
+        self, chosen: Sequence[tuple[int, int]], classes: Sequence[int]
+    ) -> state_synthesis.JointState | None:
+        """A state with these digits at these levels; ``classes`` are those of counts."""
+        vocabulary = self._universe.vocabulary
+        counted = tuple(
+            (function.count, function.counted[letter_class])
+            for function, letter_class in zip(self._counts, classes, strict=True)
+        )
+        digits = [(self._joint.reads[level], digit) for level, digit in chosen]
+        sums = [(read, digit) for read, digit in digits if isinstance(read, NumberRead)]
+        # Many states differ in nothing but what is no number.
+        key = tuple(chosen[: len(sums)]), tuple([number for _, number in counted])
+        if key not in self._numbers:
+            numbers = state_synthesis.solve_numbers(sums, vocabulary, dict(counted))
+            self._numbers[key] = None if numbers is None else state_synthesis.float_values(numbers)
+        values = self._numbers[key]
+        if values is None:
+            return None
+        values = state_synthesis.values_of(digits, vocabulary) | values
+        return state_synthesis.JointState(values, sums, counted)

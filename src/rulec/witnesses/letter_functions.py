@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import product
 
 from rulec.automata.alphabet import count_letters, joined, letters_with, propositions_of, reads_of
@@ -146,6 +147,7 @@ def counts_read(reads: Iterable[Read | NumberRead]) -> list[ltl.Count]:
     return [term for term in terms if isinstance(term, ltl.Count)]
 
 
+@lru_cache(maxsize=1024)
 def body_of(count: ltl.Count, name: str) -> ltl.Formula:
     """Condition that an object must satisfy to be counted."""
     return _settled(rename_variables(count.body, {count.variable: name}))

@@ -62,10 +62,11 @@ def said_axioms(universe: ObjectUniverse) -> Iterator[SaidAxiom]:
     if len(known) > MOST_KEPT:
         known.clear()
     for axiom, names in universe.axiom_bindings():
-        key = axiom, tuple(names.values())
+        key = id(axiom), *names.values()
         if key not in known:
-            known[key] = SaidAxiom(said_of(axiom, names), universe.vocabulary)
-        yield known[key]
+            # It is kept beside it, so that no other one can have its number.
+            known[key] = axiom, SaidAxiom(said_of(axiom, names), universe.vocabulary)
+        yield known[key][1]
 
 
 class _Itself:
@@ -82,16 +83,16 @@ class _Itself:
 
 
 @lru_cache(maxsize=8)
-def _said(_: _Itself) -> dict[tuple[Axiom, tuple[str, ...]], SaidAxiom]:
+def _said(_: _Itself) -> dict[tuple[object, ...], tuple[Axiom, SaidAxiom]]:
     return {}
 
 
-def relevant_axioms(axioms: Sequence[SaidAxiom], read: Iterable[LetterFunction]) -> list[SaidAxiom]:
-    """The axioms, in their order, that speak of what the functions read, or lead from it to more.
+def relevant_axioms(axioms: Sequence[SaidAxiom], read: Iterable[Reads]) -> list[SaidAxiom]:
+    """The axioms, in their order, that speak of what is read, or lead from it to more.
 
     Those that defaults break are among them, and those that count objects. Raises UndecidedError.
     """
-    reached = {subject for function in read for subject in _subjects(function.reads)}
+    reached = {subject for reads in read for subject in _subjects(reads)}
     waiting = {number: axiom.subjects for number, axiom in enumerate(axioms)}
     taken: set[int] = set()
     while True:

@@ -75,11 +75,17 @@ def synthesize_state(
     numbers = solve_numbers(number_digits, vocabulary, dict(counted)) if number_digits else {}
     if numbers is None:
         return None
-    values = values_of(digits, vocabulary)
-    for term, number in numbers.items():
-        if isinstance(term, QuantityTerm):
-            values[term.name, term.arguments] = float(number)
+    values = values_of(digits, vocabulary) | float_values(numbers)
     return JointState(values, number_digits, counted)
+
+
+def float_values(numbers: Mapping[Term, Fraction]) -> dict[Subject, Value]:
+    """The numbers of quantities as values."""
+    return {
+        (term.name, term.arguments): float(number)
+        for term, number in numbers.items()
+        if isinstance(term, QuantityTerm)
+    }
 
 
 def values_of(digits: Digits, vocabulary: Vocabulary) -> dict[Subject, Value]:

@@ -138,6 +138,7 @@ def diverse_witnesses(
     shown = [non_default_names(first, vocabulary)]
     waiting = deque(frozenset([name]) for name in sorted(shown[0]))
     asked: set[frozenset[str]] = set()
+    hopeless: list[frozenset[str]] = []
     while waiting and len(traces) < most and len(asked) < MOST_SEARCHES:
         defaulted = waiting.popleft()
         if defaulted in asked:
@@ -145,8 +146,14 @@ def diverse_witnesses(
         known = next((names for names in shown if not names & defaulted), None)
         if known is None:
             asked.add(defaulted)
-            trace = _without(defaulted, forbidding, allowing)
+            if any(names <= defaulted for names in hopeless):
+                continue  # there is no trace without less than that either
+            try:
+                trace = _without(defaulted, forbidding, allowing)
+            except UndecidedError:
+                continue
             if trace is None:
+                hopeless.append(defaulted)
                 continue
             known = non_default_names(trace, vocabulary)
             traces.append(trace)
@@ -171,7 +178,10 @@ def non_default_names(trace: Trace, vocabulary: Vocabulary) -> frozenset[str]:
 def _without(
     names: frozenset[str], forbidding: AnalyzedRule, allowing: AnalyzedRule
 ) -> Trace | None:
-    """A trace in which these declarations have their defaults, for all objects."""
+    """A trace in which these declarations have their defaults, for all objects.
+
+    None if there is none. Raises UndecidedError.
+    """
     axioms = []
     for name in sorted(names):
         declaration = forbidding.rulebook.vocabulary.declarations[name]
@@ -180,10 +190,7 @@ def _without(
         )
         arguments = tuple(variable.name for variable in variables)
         axioms.append(Axiom(variables, _has_default(name, arguments, declaration)))
-    try:
-        return counterexample(forbidding, [allowing], axioms)
-    except UndecidedError:
-        return None
+    return counterexample(forbidding, [allowing], axioms)
 
 
 def _has_default(name: str, arguments: tuple[str, ...], declaration: Declaration) -> ltl.Formula:
