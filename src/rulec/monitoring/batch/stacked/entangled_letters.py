@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,16 +75,34 @@ def entangled_letters(
             return None
         reads, found = told
     letters = rule.machine.classes.of_rule(rule.rule, reads)
-    digits = [digits_at(rule, n, numbers[n], places) for n in letters.independent]
+    digits_told = (numbers[n] for n in letters.independent)
+    varying = [told[places] for told in digits_told if isinstance(told, np.ndarray)]
+    different, which = _different(varying, found)
+    digits = [digits_at(rule, n, numbers[n], places[different]) for n in letters.independent]
     keys: dict[tuple[int, ...], int] = {}
-    own = [keys.setdefault(key, len(keys)) for key in zip(*digits, found, strict=True)]
+    alike = [found[place] for place in different.tolist()]
+    own = [keys.setdefault(key, len(keys)) for key in zip(*digits, alike, strict=True)]
     return EntangledLetters(
         places,
-        np.array(own, dtype=np.intp),
+        np.array(own, dtype=np.intp)[which],
         tuple(map(letters.letters, keys)),
         tuple([reads.found[key[-1]][1] for key in keys]),
         tuple(map(letters.classes_of, keys)),
     )
+
+
+def _different(
+    digits: Sequence[NDArray[Any]], found: Sequence[int]
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """The first of the places that are alike by digits and what is found, and which is whose."""
+    _, firsts, which = np.unique(found, return_index=True, return_inverse=True)
+    for own in digits:
+        codes = which * (int(own.max(initial=0)) + 1) + own.astype(np.intp)
+        _, firsts, which = np.unique(codes, return_index=True, return_inverse=True)
+    order = np.argsort(firsts)
+    rank = np.empty(len(order), dtype=np.intp)
+    rank[order] = np.arange(len(order))
+    return firsts[order], rank[which]
 
 
 def _are_entangled(reads: EntangledReads, reader: StackReader, spots: Spots) -> Flags:

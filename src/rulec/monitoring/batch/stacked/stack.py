@@ -313,6 +313,19 @@ class _Piece:
         return _Piece(tuple(both), self.texts, self.n_objects + other.n_objects)
 
 
+def side_by_side(traces: Sequence[TraceArrays]) -> list[int]:
+    """The places of traces, those in the same arrays one after the other as they stand there."""
+    known: dict[int, int] = {}
+
+    def place(number: int) -> tuple[int, int]:
+        own = traces[number].world
+        if not isinstance(own, SharedColumns):
+            return len(traces) + number, 0
+        return known.setdefault(id(own.columns), len(known)), own.states.start
+
+    return sorted(range(len(traces)), key=place)
+
+
 def _pieces(traces: Sequence[TraceArrays]) -> Iterator[_Piece]:
     """What the traces say, those together that are in the same arrays."""
     last: _Piece | None = None

@@ -20,7 +20,7 @@ from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.columns.columnize import UnencodableError
 from rulec.monitoring.batch.stacked.contradictions import contradicted
 from rulec.monitoring.batch.stacked.open_reasons import StackedReasons
-from rulec.monitoring.batch.stacked.stack import Stack
+from rulec.monitoring.batch.stacked.stack import Stack, side_by_side
 from rulec.monitoring.batch.stacked.stack_reader import StackReader
 from rulec.monitoring.batch.stacked.stacked_outcomes import (
     StackedOutcome,
@@ -48,7 +48,8 @@ def verify_arrays(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> 
     """Answers for traces in arrays, in their order: a verdict, or a ``NotJudged``."""
     answers: list[Answer | None] = [None] * len(traces)
     groups: dict[object, list[int]] = {}
-    for place, trace in enumerate(traces):
+    for place in side_by_side(traces):
+        trace = traces[place]
         names = frozenset(trace.world), frozenset(trace.about)
         key = trace.step_s, trace.ends, trace.told, names
         groups.setdefault(key, []).append(place)
