@@ -127,15 +127,15 @@ def _held_up(
     # Who speeds up when ego is in the junction already was not held up by its driving in
     held_up = bool(soon[decides] and soon[-1])
     # Nor who brakes once ego is gone
-    held_up = held_up and _slows_down(context, other, first + decides, ceil(until))
+    held_up = held_up and _slows_down(context, other, first + decides, int(until))
     return (int(columns[soon.argmax()]), leaves is not None) if held_up else None
 
 
 def _slows_down(context: DriveContext, other: Passage, first: int, last: int) -> bool:
-    """True if one is clearly slower for a while between two columns than it was in the first."""
+    """True if one is clearly slower for a while than in a column, from then or a later one on."""
     passages, step_s = context.surroundings.passages, context.recording.step_s
     steps = max(round(_BRIEFLY_S / step_s), 1)
-    travelled = passages.travelled[other.row, first : max(last, first + steps) + 1]
+    travelled = passages.travelled[other.row, first : max(last, first) + steps + 1]
     steps = min(steps, len(travelled) - 1)
     slowest = float((travelled[steps:] - travelled[:-steps]).min()) / steps / step_s
     return slowest < _SLOWED * float(passages.tracks.speed[other.row, first])
