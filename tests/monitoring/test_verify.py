@@ -188,6 +188,12 @@ RULES = compile_rulebook(book(rule("A", always(implies(near("x"), Q)), "x: car")
     ("judged", "code", "words", "way_out"),
     [
         (trace("g", objects={"a": "cat"}), "R0505", "`a` is of type `cat`", "`car`"),
+        (
+            trace("g", objects={"a": "Auto"}),
+            "R0505",
+            "`a` is of type `Auto`",
+            "did you mean `car`?",
+        ),
         (trace("ggg", plase={}), "R0502", "speaks of `plase`", "`place`"),
         (trace("ggg", near=True), "R0502", "speaks of `near`", '{"place": … "near"}'),
         (trace("ggg", q=1.0), "R0503", "`q` is `1`; it is true or false", ""),

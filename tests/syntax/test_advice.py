@@ -8,6 +8,7 @@ from rulec.syntax.messages.in_items import FORMS, IN_FORCE
 
 COMPARED = "quantities are compared by `=`, formulas by `iff`"
 NAMES = "names are made of letters, digits and `_`, and begin with a letter"
+AS_OFTEN = "a state is one step long: write it as often as it lasts, with `;` between"
 BOUNDS = "a bound is written `[<= 3 s]`, `[>= 1 s]`, `[1 s .. 4 s]` or `[2 steps]`"
 BEHIND = "a bound stands behind its operator, such as `always[<= 3 s] p`"
 OVER_TIME = "only operators over time take a bound, such as `always[<= 3 s]`"
@@ -239,7 +240,11 @@ LINES = [
     ('law "A" 2020', "2020", 'the line is written `law "…"` or `law "…" as of 2006-03-28`'),
     ("hard rule no-u { require p }", "-", NAMES),
     ('hard rule "A" { require p }', '"A"', "write `A` without quotes"),
-    ('hard rule "a b" { require p }', '"a b"', NAMES),
+    ('hard rule "Too fast!" { require p }', '"Too fast!"', f"{NAMES}, such as `too_fast`"),
+    ('hard rule "§ 5" { require p }', '"§ 5"', NAMES),
+    ("// why", "//", "a comment begins with `#`"),
+    ("hard rule a { require p accept { p for 3 s } }", "for", AS_OFTEN),
+    ("hard rule a { require p accept { 3 x (not p) } }", "3", AS_OFTEN),
     ("hard rule a { p -> q }", "p", "a formula stands behind `require`"),
     ("colour", "colour", "an enumeration is declared by `colour is one of a, b`"),
     ("hard a { require p }", "a", "write `hard rule a`"),

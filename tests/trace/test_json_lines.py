@@ -65,7 +65,7 @@ def test_blank_lines_a_bom_and_a_missing_last_line_end():
         (b"{'states': [{}]}", "in JSON texts stand in double quotes"),
         (b'{"states": [{"p": True}]}', "in JSON texts stand in double quotes"),
         (b'{"states": [{}], "ends": "never"}', '`"ends": "complete"` or `"ends": "cut"`'),
-        (b'{"zebra": 1, "states": [{}]}', "a trace is a line such as"),
+        (b'{"zebra": 1, "states": [{}]}', "there are `states`, `id`, `step_s`, `objects`"),
         (b"{", "write or copy the file again"),
         (b"[1]", "a trace is a line such as"),
     ],
@@ -315,3 +315,15 @@ def test_objects_called_from_and_to():
     first, second = read(both + one)
     assert first.states == ({"gap": about},)
     assert second.states == ({"gap": {"from": Interval(1, 2)}, "speed": Interval(1, 2)},)
+
+
+@pytest.mark.parametrize(
+    ("text", "way_out"),
+    [
+        (line(dt=0.1), "there are `states`, `id`, `step_s`, `objects`"),
+        (line(objects=["v1"]), 'objects have types: write "objects": {"v1": "car"}'),
+        (line(objects={"v1": 3}), 'objects have types: write "objects": {"v1": "car"}'),
+    ],
+)
+def test_a_way_out_shows_what_is_meant(text, way_out):
+    assert way_out in problem(text).help

@@ -107,7 +107,7 @@ def check_objects(
             raise UNKNOWN_OBJECT.error(
                 place,
                 f"object `{name}` is of type `{kind}`, which `{vocabulary.name}` does not know",
-                help=_suggest(kind, vocabulary.types),
+                help=_type_meant(kind, vocabulary.types) or _suggest(kind, vocabulary.types),
             )
 
 
@@ -304,6 +304,16 @@ def _suggest(name: str, known: Iterable[str]) -> str:
     # A key that Python code has made may be no text: an object's number, say.
     known = [str(name) for name in known]
     return did_you_mean(str(name), known) or (f"known: {named(known)}" if known else "")
+
+
+def _type_meant(kind: str, types: Iterable[str]) -> str:
+    # Synonyms are read from a file: only for this message.
+    from rulec.rulebook.vocabulary_phrases import synonyms_of_the_field
+
+    others = synonyms_of_the_field()
+    said = str(kind).casefold()
+    meant = (name for name in types if said in others.get(name, ()))
+    return next((f"did you mean `{name}`?" for name in meant), "")
 
 
 def _unknown_name(name: str, vocabulary: Vocabulary) -> str:

@@ -189,7 +189,10 @@ def _name(scene: ParseContext) -> str:
     named = "NAME" in scene.accepted and not scene.quantity and token.kind in ("number", "string")
     hyphen = token.text == "-" and scene.touches() and "MINUS" not in scene.accepted
     if scene.kind != "state" and (named or (hyphen and before.kind == "word")):
-        return "names are made of letters, digits and `_`, and begin with a letter"
+        rule = "names are made of letters, digits and `_`, and begin with a letter"
+        name = re.sub(r"\W+", "_", token.text.casefold()).strip("_")
+        is_text = token.kind == "string" and name.isidentifier() and name not in RESERVED
+        return f"{rule}, such as `{name}`" if is_text else rule
     words = (before.text, token.text) if before.kind == token.kind == "word" else ()
     if scene.accepted == {"$END"} and words and not RESERVED.intersection(words):
         lists = scene.first in ITEM_WORDS and scene.at == 2

@@ -219,6 +219,8 @@ def advise_on_state(scene: ParseContext) -> str:
         return "states are separated by `;`, the facts of one state by `and`"
     if text in ("or", "|", "||"):
         return "a state says what holds; for another possibility write another example"
+    if text in ("for", "during", "within", "x", "times") or scene.text_at(scene.at + 1) == "x":
+        return "a state is one step long: write it as often as it lasts, with `;` between"
     if text in OPERATOR_WORDS | OPERATOR_LETTERS:
         return "a state holds atoms and `not` before a signal; no other operator"
     if text == "=" and "not" in (scene.text_at(scene.at - 2), scene.text_at(0)):

@@ -145,6 +145,8 @@ def _unknown_item(source: Source, inside: list[Token]) -> Diagnostic:
             way_out = way_out or f"write `param {token.text} = …` or `define {token.text} = …`"
         if not (way_out or named or token.text in keywords.RESERVED):
             way_out = f"an enumeration is declared by `{token.text} is one of a, b`"
+    if token.text in ("//", "/*"):
+        way_out = "a comment begins with `#`"
     return UNEXPECTED_WORD.at(
         _span(source, token),
         f"nothing in the language begins with `{_short(token.text)}`",

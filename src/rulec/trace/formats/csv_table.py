@@ -98,7 +98,7 @@ def _traces(stream: IO[bytes], file: str) -> Iterator[Trace | RulecError]:
 
 def _check_separator(columns: Sequence[str], place: SourceLocation) -> None:
     for name, mark in (("semicolons", ";"), ("tabs", "\t"), ("bars", "|")):
-        if len(columns) == 1 and mark in columns[0] and tables.TRACE in columns[0].split(mark):
+        if len(columns) == 1 and mark in columns[0]:
             message = f"the columns' names are separated by {name}"
             raise tables.problem(
                 message, place, "separate the cells by commas, and decimals by points"

@@ -9,7 +9,7 @@ from typing import Generic, TypeVar, get_args, get_type_hints
 
 import msgspec
 
-from rulec.diagnostics import RulecError, SourceLocation, did_you_mean
+from rulec.diagnostics import RulecError, SourceLocation, did_you_mean, named
 from rulec.diagnostics.json_problems import json_words
 from rulec.trace.formats.stream_lines import not_utf8, placed
 from rulec.trace.trace_messages import NOT_A_TRACE
@@ -83,7 +83,10 @@ class Kind(Generic[Record]):
             help_text = _spelling(line[at : at + 10]) or help_text
         unknown = _UNKNOWN_FIELD.search(str(problem))
         if unknown is not None:
-            help_text = did_you_mean(unknown[1], self.structure.__struct_fields__) or help_text
+            fields = self.structure.__struct_fields__
+            help_text = did_you_mean(unknown[1], fields) or f"there are {named(fields)}"
+        if "at `$.objects" in str(problem):
+            help_text = 'objects have types: write "objects": {"v1": "car"}'
         choice = _UNKNOWN_CHOICE.search(str(problem))
         if choice is not None:
             choices = get_args(get_type_hints(self.structure)[choice[1]])

@@ -9,7 +9,7 @@ from functools import cached_property
 from itertools import chain, groupby, islice
 from typing import Any, cast, get_args
 
-from rulec.diagnostics import RulecError, SourceLocation, did_you_mean
+from rulec.diagnostics import RulecError, SourceLocation, nearest_name
 from rulec.diagnostics.diagnostic import as_answer
 from rulec.resource_limits import STATES
 from rulec.trace.trace_messages import NOT_A_TABLE
@@ -98,8 +98,9 @@ def check_columns(columns: Sequence[str], place: SourceLocation) -> None:
                 raise problem(f"there is a column `{name}`, but no `{missing}`", place, _BOUNDS)
     for name in (TRACE, STEP):
         if name not in times:
-            near = did_you_mean(name, columns)
-            raise problem(f"there is no column `{name}`", place, near or _FORM)
+            near = nearest_name(name, columns)
+            way_out = _FORM if near is None else f"if `{near}` is that, call it `{name}`"
+            raise problem(f"there is no column `{name}`", place, way_out)
 
 
 _BOUNDS = "a number known to lie between two others has both: such as 1 and 2.5"
