@@ -11,7 +11,7 @@ import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.tracks.tracks import Floats, Tracks
+from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.recording import Lanelet, Recording, is_lane
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import directions_at, lanelet_area
@@ -69,15 +69,14 @@ def candidates(recording: Recording, tracks: Tracks) -> LaneCandidates:
     rows, columns = np.nonzero(tracks.present & moving[:, None])
     if not lanes or not len(rows):
         return _NONE
-    places = np.stack((tracks.x[rows, columns], tracks.y[rows, columns]), axis=1)
-    points, headings = shapely.points(places), tracks.heading[rows, columns]
+    x, y, headings = (values[rows, columns] for values in (tracks.x, tracks.y, tracks.heading))
+    points = shapely.points(x, y)
     areas = [lanelet_area(lanelet) for lanelet in lanes]
-    low, high = np.split(shapely.bounds(areas), 2, axis=1)
+    bounds = shapely.bounds(areas) + np.array([-1.0, -1.0, 1.0, 1.0]) * _AROUND_M
     found = []
-    for lanelet, area, *corners in zip(
-        lanes, areas, low - _AROUND_M, high + _AROUND_M, strict=True
-    ):
-        around = np.flatnonzero(((places >= corners[0]) & (places <= corners[1])).all(axis=1))
+    for lanelet, area, (left, low, right, high) in zip(lanes, areas, bounds.tolist(), strict=True):
+        around = np.flatnonzero((x >= left) & (x <= right) & (y >= low) & (y <= high))
+        around = around[_beside(lanelet, area, x[around], y[around])]
         shapely.prepare(area)
         near = around[shapely.dwithin(area, points[around], NEAR_M)]
         found.append(_candidates_on(lanelet, near, points[near], headings[near]))
@@ -98,6 +97,22 @@ def candidates(recording: Recording, tracks: Tracks) -> LaneCandidates:
         costs=costs[order],
         along=along[order],
     )
+
+
+def _beside(lanelet: Lanelet, area: shapely.Polygon, x: Floats, y: Floats) -> Flags:
+    """Flags of places hardly farther to a lanelet's sides than its area; whoever is near is there.
+
+    Of those in the rectangle around one that lies aslant most are not.
+    """
+    corners = shapely.get_coordinates(area)
+    (ux, uy), (x0, y0) = lanelet.centre[-1] - lanelet.centre[0], lanelet.centre[0]
+    length = np.hypot(ux, uy)
+    if not length:
+        return np.ones(len(x), dtype=bool)
+    own = ((corners[:, 1] - y0) * ux - (corners[:, 0] - x0) * uy) / length
+    away = ((y - y0) * ux - (x - x0) * uy) / length
+    beside: Flags = (away >= own.min() - _AROUND_M) & (away <= own.max() + _AROUND_M)
+    return beside
 
 
 def _candidates_on(
