@@ -12,7 +12,7 @@ _Number = TypeVar("_Number", bound=np.generic)
 _INT16_MAX = np.iinfo(np.int16).max
 
 _MOST_EMPTY = 8
-"""Rows of groups may take so many times the room of their values."""
+"""Rows of groups, and tables of numbers, may take so many times the room of their values."""
 
 
 def distinct(values: NDArray[_Number]) -> NDArray[_Number]:
@@ -21,6 +21,19 @@ def distinct(values: NDArray[_Number]) -> NDArray[_Number]:
     is_new = np.ones(len(ascending), dtype=bool)
     np.not_equal(ascending[1:], ascending[:-1], out=is_new[1:])
     return ascending[is_new]
+
+
+def places_among(values: NDArray[_Number]) -> NDArray[np.intp]:
+    """The place of each number of an array among the different ones, ascending; without NaN."""
+    if values.dtype.kind in "iu" and len(values) and values.min() >= 0:
+        # Small whole numbers need no order
+        numbers = values.astype(np.intp)
+        n_numbers = int(numbers.max()) + 1
+        if n_numbers <= _MOST_EMPTY * len(numbers):
+            there = np.zeros(n_numbers, dtype=bool)
+            there[numbers] = True
+            return (np.cumsum(there) - 1).take(numbers)
+    return np.searchsorted(distinct(values), values)
 
 
 def median(values: NDArray[Any]) -> float:

@@ -20,12 +20,9 @@ from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in, e
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.trace import Value
-from rulec.trace.plain_arrays import distinct
+from rulec.trace.plain_arrays import places_among
 from rulec.trace.trace_arrays import Flags
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, PartialValue
-
-_FEW = 4
-"""Numbers up to so many times how many there are count as small."""
 
 MOST_KINDS = 1 << 7
 """Where more different things are said of objects, states are looked at one by one."""
@@ -119,7 +116,7 @@ class CrowdedStates:
         said = [codes for name in self._world for codes in _codes(stack.column(name), states)]
         groups = np.zeros(len(states), dtype=np.intp)
         for codes in (*often.T, *said):
-            groups = _places(groups * (int(codes.max(initial=0)) + 1) + codes)
+            groups = places_among(groups * (int(codes.max(initial=0)) + 1) + codes)
         firsts = np.empty(int(groups.max(initial=-1)) + 1, dtype=np.intp)
         firsts[groups[::-1]] = np.arange(len(states))[::-1]
         examples = np.empty(n_kinds, dtype=np.intp)
@@ -142,7 +139,7 @@ class CrowdedStates:
         kinds = of_object[stack.object_of[cells]]
         for name in self._about:
             for codes in _codes(stack.column(name), cells):
-                kinds = _places(kinds * (int(codes.max(initial=0)) + 1) + codes)
+                kinds = places_among(kinds * (int(codes.max(initial=0)) + 1) + codes)
         return kinds
 
     def _found(
@@ -203,20 +200,7 @@ def _codes(column: StackColumn | None, where: Places) -> list[Places]:
     if column is None:
         return []
     ends = [column.values] if column.upper is None else [column.values, column.upper]
-    codes = [_places(end[where]) + 1 for end in ends]
+    codes = [places_among(end[where]) + 1 for end in ends]
     if column.unknown is not None:
         codes = [np.where(column.unknown[where], 0, own) for own in codes]
     return codes
-
-
-def _places(values: NDArray[np.generic]) -> Places:
-    """The place of each value among the different ones."""
-    if values.dtype.kind in "iu" and len(values) and values.min() >= 0:
-        # Small whole numbers need no order
-        numbers = values.astype(np.intp)
-        n_numbers = int(numbers.max()) + 1
-        if n_numbers <= _FEW * len(numbers):
-            there = np.zeros(n_numbers, dtype=bool)
-            there[numbers] = True
-            return (np.cumsum(there) - 1).take(numbers)
-    return np.searchsorted(distinct(values), values)
