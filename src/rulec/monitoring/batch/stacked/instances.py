@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,17 +27,58 @@ _NONE = np.empty(0, dtype=np.intp)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class KnownLetters:
+    """The numbers of letters in a table, and the place of the letter of each state, or cell."""
+
+    table: Places
+    codes: Numbers
+
+    def at(self, spots: Spots, variables: Sequence[str]) -> Numbers:
+        """The numbers of the letters at some spots."""
+        if not isinstance(self.codes, np.ndarray):
+            return self.table.item(self.codes)
+        (where,) = [spots.cells[variable] for variable in variables] or [spots.states]
+        return self.table.take(self.codes.take(where))
+
+
+class NumbersAt(Sequence[Numbers]):
+    """The numbers of a rule's reads at some spots, each read when it is first asked for."""
+
+    def __init__(self, rule: StackedRule, reader: StackReader, spots: Spots) -> None:
+        self._rule, self._reader, self._spots = rule, reader, spots
+        self._known: dict[int, Numbers] = {}
+
+    def __len__(self) -> int:
+        return len(self._rule.reads)
+
+    @overload
+    def __getitem__(self, place: int) -> Numbers: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> list[Numbers]: ...
+
+    def __getitem__(self, place: int | slice) -> Numbers | list[Numbers]:
+        if isinstance(place, slice):
+            return [self[k] for k in range(*place.indices(len(self)))]
+        if place not in self._known:
+            self._known[place] = self._reader.numbers(self._rule.reads[place], self._spots)
+        return self._known[place]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Instances:
     """Choices of objects for a rule's variables, in the order in which verdicts list them.
 
     ``traces`` are theirs, ``objects`` has an array for each variable; each is judged from its
     state in ``firsts`` to that in ``lasts``. Objects and states are numbered as in the stack.
+    ``letters`` are those of all states, or of all cells of the only variable, if they are known.
     """
 
     traces: Places
     objects: tuple[Places, ...]
     firsts: Places
     lasts: Places
+    letters: KnownLetters | None = None
 
     def bounds(self) -> Places:
         """Where the states of each begin if they stand one after the other, and all end."""
@@ -71,18 +113,23 @@ def numbers_at(
 def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
     """All choices that may not be kept, and perhaps others that are."""
     stack = reader.stack
-    busy = ~_are_idle(rule, numbers_at(rule, reader, None), stack.n_states)
+    every = KnownLetters(*rule.letters.looked_up(numbers_at(rule, reader, None)))
+    busy = ~_are_idle(rule, every, stack.n_states)
     if not busy.any():
         return Instances(_NONE, (_NONE,) * len(rule.variables), _NONE, _NONE)
     if not rule.variables:
         traces = distinct(np.searchsorted(stack.begins, np.flatnonzero(busy), side="right") - 1)
-        return Instances(traces, (), stack.begins[traces], stack.begins[traces + 1] - 1)
-    chosen = [
+        firsts, lasts = stack.begins[traces], stack.begins[traces + 1] - 1
+        return Instances(traces, (), firsts, lasts, every)
+    found = [
         _busy_cells(rule, reader, busy, (variable, kind))
         for variable, kind in zip(rule.variables, rule.types, strict=True)
     ]
+    chosen = [cells for cells, _ in found]
     objects: tuple[Places, ...]
+    letters: KnownLetters | None = None
     if len(chosen) == 1:
+        ((_, letters),) = found
         is_busy = np.zeros(len(stack.types), dtype=bool)
         is_busy[stack.object_of[chosen[0]]] = True
         objects = (np.flatnonzero(is_busy),)
@@ -90,12 +137,11 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
         objects = _pairs(rule, reader, chosen[0], chosen[1])
     firsts = np.max([stack.firsts[own] for own in objects], axis=0)
     lasts = np.min([stack.lasts[own] for own in objects], axis=0)
-    return Instances(stack.trace_of[objects[0]], objects, firsts, lasts)
+    return Instances(stack.trace_of[objects[0]], objects, firsts, lasts, letters)
 
 
-def _are_idle(rule: StackedRule, numbers: Sequence[Numbers], n_spots: int) -> NDArray[np.bool_]:
-    table, codes = rule.letters.looked_up(numbers)
-    flags = rule.idle_flags()
+def _are_idle(rule: StackedRule, letters: KnownLetters, n_spots: int) -> NDArray[np.bool_]:
+    table, codes, flags = letters.table, letters.codes, rule.idle_flags()
     if not isinstance(codes, np.ndarray):
         return np.full(n_spots, flags[table.item(codes)])
     if len(codes) < len(table):
@@ -109,8 +155,11 @@ def _busy_cells(
     reader: StackReader,
     busy: NDArray[np.bool_],
     about: tuple[str, str],
-) -> Places:
-    """The cells of objects for a variable in which a letter might do something."""
+) -> tuple[Places, KnownLetters | None]:
+    """The cells of objects for a variable in which a letter might do something.
+
+    With the letters of all cells if these have been looked at.
+    """
     (variable, kind), stack = about, reader.stack
     cells, states = stack.cells_of_type(kind), stack.states_of_type(kind)
     is_every = bool(busy.all())
@@ -118,10 +167,11 @@ def _busy_cells(
         there = busy[states]
         cells, states = cells[there], states[there]
     if not len(cells):
-        return cells
+        return cells, None
     spots = Spots(states, {variable: cells}, kind=kind if is_every else None)
-    numbers = numbers_at(rule, reader, spots, (variable,))
-    return cells[~_are_idle(rule, numbers, len(cells))]
+    letters = KnownLetters(*rule.letters.looked_up(numbers_at(rule, reader, spots, (variable,))))
+    is_whole = len(cells) == stack.starts[-1]
+    return cells[~_are_idle(rule, letters, len(cells))], letters if is_whole else None
 
 
 def _pairs(
@@ -136,7 +186,7 @@ def _pairs(
         one, other = one[differ], other[differ]
         cells = dict(zip(rule.variables, (one, other), strict=True))
         numbers = numbers_at(rule, reader, Spots(stack.state_of[one], cells), rule.variables)
-        busy = ~_are_idle(rule, numbers, len(one))
+        busy = ~_are_idle(rule, KnownLetters(*rule.letters.looked_up(numbers)), len(one))
         pairs = stack.object_of[one[busy]] * n_objects + stack.object_of[other[busy]]
         found.append(distinct(pairs))
     every = distinct(np.concatenate(found))

@@ -13,7 +13,11 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.outcome_machine import KEPT
 from rulec.monitoring.batch.stacked.crowded_states import CrowdedStates
 from rulec.monitoring.batch.stacked.entangled_letters import EntangledLetters, entangled_letters
-from rulec.monitoring.batch.stacked.instances import Instances, doubtful_instances, numbers_at
+from rulec.monitoring.batch.stacked.instances import (
+    Instances,
+    NumbersAt,
+    doubtful_instances,
+)
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
 from rulec.monitoring.batch.uncertain.partial_reader import number_of_value
@@ -147,7 +151,7 @@ def _words(
 ) -> Iterator[StackedWords]:
     """The words of choices, those together of which the same constants are unknown."""
     bounds, spots = instances.bounds(), instances.spots(rule, reader.stack)
-    numbers = numbers_at(rule, reader, spots, rule.variables)
+    numbers = NumbersAt(rule, reader, spots)
     constants = rule.constants
     dark = np.zeros((len(constants), len(instances.traces)), dtype=bool)
     for row, place in enumerate(constants):
@@ -163,9 +167,10 @@ def _words(
             tuple(own[members] for own in instances.objects),
             instances.firsts[members],
             instances.lasts[members],
+            instances.letters,
         )
         own_spots = chosen.spots(rule, reader.stack)
-        own_numbers = numbers_at(rule, reader, own_spots, rule.variables)
+        own_numbers = NumbersAt(rule, reader, own_spots)
         told = chosen, chosen.bounds(), own_spots, own_numbers
         yield _of_group(rule, reader, rulebook, told, which)
 
@@ -207,13 +212,18 @@ def _of_group(
     every_numbers, every_letters, every_entangled = [], [], []
     crowd: CrowdedStates | None = None
     for values in supposed:
-        own = list(numbers)
+        instead = {}
         for place in unknown:
             value = values.get(_subject(rule, place))
             if value is not None:
                 read = rule.reads[place].read
-                own[place] = number_of_value(read, value, vocabulary)[1]
-        letters = np.array(np.broadcast_to(np.asarray(rule.letters.numbers(own)), (n_spots,)))
+                instead[place] = number_of_value(read, value, vocabulary)[1]
+        own = [instead.get(n, x) for n, x in enumerate(numbers)] if instead else numbers
+        if instead or instances.letters is None:
+            found = rule.letters.numbers(own)
+        else:
+            found = instances.letters.at(spots, rule.variables)
+        letters = np.array(np.broadcast_to(np.asarray(found), (n_spots,)))
         entangled = None
         if rule.related and not odd.all():
             partial = rule.letters.are_partial(own, rule.related)
