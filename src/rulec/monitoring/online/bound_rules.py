@@ -94,6 +94,7 @@ class BoundRules:
         self._awake: dict[tuple[str, ...], frozenset[Items]] = {}
         cast = Cast(self.objects, rulebook.vocabulary, 1, {})
         self._bindings: list[tuple[RuleGroup, tuple[Items, ...]]] = []
+        self._at: list[tuple[RuleGroup, Items]] = []
         by_name: dict[str, BoundRule] = {}
         end = 0
         for group in groups.groups:
@@ -109,6 +110,7 @@ class BoundRules:
                 by_name[prepared.name] = BoundRule(prepared, bindings, group, places, number)
             if bindings:
                 self._bindings.append((group, bindings))
+                self._at += [(group, items) for items in bindings]
         self.rules = tuple([by_name[prepared.name] for prepared in groups.rules])
         self.hard = tuple([rule.name for rule in rulebook.rules if rule.strength == "hard"])
 
@@ -158,7 +160,10 @@ class BoundRules:
                 encoded = reader.shape.encode(state)
                 known = reader.shape, encoded
                 if not self._counting:
-                    return reader.letters(state, encoded), known
+                    letters = reader.letters(state, encoded)
+                    if self.groups.cache_size.has_holes:
+                        letters = self._filled(letters, state, (number, place), known)
+                    return letters, known
         except (LookupError, TypeError, AttributeError):
             pass
         with suppress(LookupError, TypeError):
@@ -233,19 +238,49 @@ class BoundRules:
                         if partial is None
                         else partial.letter_class(prepared, items)
                     )
-        groups = [group for group, bindings in self._bindings for _ in bindings]
         letters = [
             own if isinstance(own, int) else _letter(group, own)
-            for group, own in zip(groups, found, strict=True)
+            for (group, _), own in zip(self._at, found, strict=True)
         ]
-        return letters, is_partial
+        return self._filled(letters, state, (number, place), known), is_partial
+
+    def _filled(
+        self,
+        letters: Letters,
+        state: State,
+        where: tuple[int, SourceLocation | None],
+        known: KnownState | None,
+    ) -> Letters:
+        """The letters, read from the whole state where they have holes.
+
+        Raises RulecError as ``read`` does.
+        """
+        has_holes = [
+            (place, group, items)
+            for place, (letter, (group, items)) in enumerate(zip(letters, self._at, strict=True))
+            if letter in group.holes
+        ]
+        if not has_holes:
+            return letters
+        before = None if known is None else self._partial.get(known)
+        if before is not None:
+            return before
+        number, place_ = where
+        partial = self._partial_state(state, (f"state {number}", place_))
+        for at, group, items in has_holes:
+            letters[at] = group.filled(letters[at], partial.reader(items))
+        if known is not None:
+            if len(self._partial) >= MOST_STATES:
+                self._partial.clear()
+            self._partial[known] = letters
+        return letters
 
     def _known_letters(self, state: State, known: KnownState | None) -> Sequence[int | RulesRead]:
         """What can be read of a state that is perhaps encoded, without a closer look."""
         reader = None if known is None else self._readers[tuple(state)]
         if known is not None and reader is not None:
             return reader.known_letters(state, known[1])
-        return [[None] * len(group.rules) for group, own in self._bindings for _ in own]
+        return [[None] * len(group.rules) for group, _ in self._at]
 
 
 def _letter(group: RuleGroup, read: RulesRead) -> int:

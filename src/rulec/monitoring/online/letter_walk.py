@@ -21,6 +21,10 @@ MOST_NODES = 1 << 14
 """Nodes of a rule that are kept before all are forgotten."""
 
 
+class WholeStateError(LookupError):
+    """More than a rule's own objects decides which letters it may read."""
+
+
 class WalkedRead(NamedTuple):
     """A read with a digit of its own: its ``place`` among the rule's reads.
 
@@ -90,7 +94,7 @@ class LetterWalk:
         """The classes of the letters with these digits, and whether no more are said than are.
 
         ``digits`` are in the order of the reads. Raises LookupError if one is wrong, if facts
-        exclude all these letters, or if more than the rule's own objects decides about them.
+        exclude all these letters, as WholeStateError if more than the rule's own objects decides.
         """
         return self._walked(self._begun(cubes, is_exact), digits)
 
@@ -101,8 +105,14 @@ class LetterWalk:
         return self._walked(self._start, digits)
 
     def _walked(self, node: _Node, digits: Sequence[Any]) -> tuple[LetterClass, bool]:
-        for digit in reversed(digits):
-            node = node[digit]
+        try:
+            for digit in reversed(digits):
+                node = node[digit]
+        except WholeStateError:
+            # No other digit is wrong.
+            for place, digit in zip(sorted(self._reads), digits, strict=True):
+                self._reads[place].masks[digit]
+            raise
         if node.classes is None:
             raise LookupError
         return node.classes, node.is_exact
@@ -113,7 +123,7 @@ class LetterWalk:
         read = self._reads[place]
         mask = read.masks[digit]
         if mask & (mask - 1) and not read.decided_alone:
-            raise LookupError
+            raise WholeStateError
         is_exact = node.is_exact and not (read.is_constant and type(digit) in UNKNOWN_TYPES)
         sets = tuple([self._diagram.step(place, here, mask) for here in node.sets])
         return self._node(node.level + 1, node.cubes, sets, is_exact)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import SourceLocation
@@ -42,6 +42,10 @@ class PartialStateReader:
     def bits_of(self, prepared: PreparedRule) -> ReadBits:
         """A reader of the digits, as bits, of a rule's reads one by one."""
         return self._reader.bits_of(prepared.rule)
+
+    def reader(self, items: Items) -> Callable[[PreparedRule], tuple[LetterClass, bool]]:
+        """``letter_class`` of some objects."""
+        return lambda prepared: self.letter_class(prepared, items)
 
     def letter_class(self, prepared: PreparedRule, items: Items) -> tuple[LetterClass, bool]:
         """The classes that a rule may read of objects, and whether no more are said than are.

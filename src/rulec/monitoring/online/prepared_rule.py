@@ -24,7 +24,7 @@ from rulec.monitoring.online.four_valued import (
     RunningVerdict,
     linked_edges,
 )
-from rulec.monitoring.online.letter_walk import LetterWalk, WalkedRead
+from rulec.monitoring.online.letter_walk import LetterWalk, WalkedRead, WholeStateError
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import EntangledReads, local_reads
 from rulec.monitoring.uncertainty.state_letters.read_digits import (
     Letters,
@@ -37,6 +37,9 @@ from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval
 
 MOST_CLASSES = 1 << 12
 """Classes of a rule's letters that are kept before all are forgotten."""
+
+BY_STATE = IMPOSSIBLE - 1
+"""In place of the class of a rule's letter that takes a look at the whole state."""
 
 if TYPE_CHECKING:
     from rulec.automata.outcome_machine import OutcomeMachine
@@ -237,7 +240,7 @@ class ClassTable(dict[tuple[Any, ...], "LetterClass"]):
     """The classes that a rule reads, by its inputs' digits, or values that are partly known.
 
     ``inexact`` are those of which more classes are said to be possible than are: a constant that is
-    not known may be another one in each state.
+    not known may be another one in each state. Where the whole state decides it is ``BY_STATE``.
     """
 
     def __init__(self, prepared: PreparedRule) -> None:
@@ -245,7 +248,10 @@ class ClassTable(dict[tuple[Any, ...], "LetterClass"]):
         self.inexact: set[tuple[Any, ...]] = set()
 
     def __missing__(self, digits: tuple[Any, ...]) -> LetterClass:
-        letter_class, is_exact = self._prepared.letter_class(digits)
+        try:
+            letter_class, is_exact = self._prepared.letter_class(digits)
+        except WholeStateError:
+            letter_class, is_exact = BY_STATE, True
         if len(self) >= MOST_CLASSES:
             self.clear()
             self.inexact.clear()

@@ -8,7 +8,7 @@ when they are first met.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence, Set
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.monitoring.online.encoding.encoded_values import (
@@ -21,7 +21,7 @@ from rulec.monitoring.online.four_valued import (
     LetterClass,
     RunningVerdict,
 )
-from rulec.monitoring.online.prepared_rule import ClassTable, PreparedRule, prepared_rule
+from rulec.monitoring.online.prepared_rule import BY_STATE, ClassTable, PreparedRule, prepared_rule
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES
 
 if TYPE_CHECKING:
@@ -86,10 +86,18 @@ class GroupNode(dict[int, "GroupNode"]):
 
 
 class CacheSize:
-    """Number of cached nodes, letters and transitions, and whether some letter is inexact."""
+    """Number of cached nodes, letters and transitions, and what letters there are."""
 
     n = 0
     is_inexact = False
+    has_holes = False
+
+
+class Holes(NamedTuple):
+    """The numbers of a letter's rules that read the whole state, and of those that are inexact."""
+
+    rules: tuple[int, ...]
+    inexact: frozenset[int]
 
 
 class RuleGroup:
@@ -97,7 +105,8 @@ class RuleGroup:
 
     ``own`` are their inputs about variables, ``world`` those about none. ``classes`` are the letter
     classes of each letter, one for each rule; ``cache_size`` counts for all groups together.
-    Letters that are ``inexact`` have names of rules of which more is taken to be possible than is.
+    Letters that are ``inexact`` have names of rules of which more is taken to be possible than is;
+    with ``holes`` they are to be ``filled`` before they are read.
     """
 
     def __init__(
@@ -109,6 +118,7 @@ class RuleGroup:
         self.world = tuple([read for read in inputs if read not in self.own])
         self.classes: list[tuple[LetterClass, ...]] = []
         self.inexact: dict[int, frozenset[str]] = {}
+        self.holes: dict[int, Holes] = {}
         self._letters: dict[tuple[tuple[LetterClass, ...], frozenset[int]], int] = {}
         self._nodes: dict[tuple[Edge, ...], GroupNode] = {}
         self._tables = [(prepared.classes, values_at(prepared.all_inputs)) for prepared in rules]
@@ -132,16 +142,30 @@ class RuleGroup:
             letter = self._letters[key] = len(self.classes)
             self.classes.append(classes)
             self.cache_size.n += 1
-            if inexact:
+            if BY_STATE in classes:
+                self.cache_size.has_holes = True
+                own = tuple([n for n, found in enumerate(classes) if found == BY_STATE])
+                self.holes[letter] = Holes(own, key[1])
+            elif inexact:
                 self.cache_size.is_inexact = True
                 self.inexact[letter] = frozenset(self.rules[number].name for number in inexact)
         return letter
 
+    def filled(self, letter: int, read: Callable[[PreparedRule], tuple[LetterClass, bool]]) -> int:
+        """A letter in whose ``holes`` is what those rules read."""
+        holes = self.holes[letter]
+        classes, inexact = list(self.classes[letter]), set(holes.inexact)
+        for number in holes.rules:
+            classes[number], is_exact = read(self.rules[number])
+            if not is_exact:
+                inexact.add(number)
+        return self.letter(tuple(classes), inexact)
+
     def letter_of(self, digits: Mapping[MonitorInput, Any]) -> int:
         """The letter where inputs have these digits, or values that are partly known.
 
-        Raises LookupError or TypeError if one is missing or wrong, if no state is such, or if it
-        takes a look at the whole state.
+        It may have holes. Raises LookupError or TypeError if one is missing or wrong, or if no
+        state is such.
         """
         read = [pick(digits) for _, pick in self._tables]
         classes = tuple([table[own] for (table, _), own in zip(self._tables, read, strict=True)])
@@ -166,7 +190,8 @@ def _read_by_rule(
 ) -> tuple[LetterClass, bool] | None:
     try:
         own = pick(digits)
-        return table[own], own not in table.inexact
+        letter_class = table[own]
+        return None if letter_class == BY_STATE else (letter_class, own not in table.inexact)
     except (LookupError, TypeError):
         return None
 
