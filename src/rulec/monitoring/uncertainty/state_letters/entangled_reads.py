@@ -20,6 +20,7 @@ from rulec.logic.kleene import Unknown, holds
 from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.completions import joint_digits
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in, counts, crowd_of
+from rulec.monitoring.uncertainty.state_letters.joint_values import CountsApart
 from rulec.monitoring.uncertainty.state_letters.read_digits import (
     Letters,
     names_of_read,
@@ -44,6 +45,9 @@ from rulec.vocabulary.vocabulary_model import choices
 
 MOST_KNOWN = 1 << 14
 """Values whose letters are kept before all are forgotten."""
+
+MOST_COUNTED = 16
+"""Among more objects it is not looked at each by itself who counts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +88,7 @@ class EntangledReads:
         everybody: NothingKnown,
         *,
         local_parts: KnownParts | None = None,
+        counted_parts: KnownParts | None = None,
     ) -> None:
         reads = rule.machine.reads
         self.is_local = is_local = local_parts is not None
@@ -118,6 +123,13 @@ class EntangledReads:
             self._apart = ReadsApart(
                 self._reads, self.subjects, binding, axioms, everybody, known=local_parts
             )
+        self._counts = None
+        if counted_parts is not None and len(everybody.objects) <= MOST_COUNTED:
+            with suppress(LookupError):
+                self._counts = CountsApart(
+                    *(self._reads, self.subjects, binding, axioms, everybody),
+                    known=counted_parts.together,
+                )
         self.found: list[tuple[Letters, bool]] = []
         self._numbers: dict[tuple[Letters, bool], int] = {}
         self._known: dict[tuple[object, ...], int] = {}
@@ -137,19 +149,26 @@ class EntangledReads:
         """
         key: tuple[object, ...] = values
         if there is not None:
+            if self._counts is not None and len(there) == len(self._everybody.objects):
+                # What is missing, and what contradicts facts, is found below.
+                with suppress(LookupError):
+                    return self._place((self._counts.letters(values), True))
             key = values, *there
             if self._crowd is not None:
                 key, there = self._crowd.few(values, there)
         known = self._known.get(key)
         if known is None:
             found = self._letters(values, self._everybody.objects if there is None else there)
-            known = self._numbers.setdefault(found, len(self.found))
-            if known == len(self.found):
-                self.found.append(found)
             if len(self._known) >= MOST_KNOWN:
                 self._known.clear()
-            self._known[key] = known
+            known = self._known[key] = self._place(found)
         return known
+
+    def _place(self, found: tuple[Letters, bool]) -> int:
+        place = self._numbers.setdefault(found, len(self.found))
+        if place == len(self.found):
+            self.found.append(found)
+        return place
 
     def _letters(
         self, values: Sequence[PartialValue | None], there: Mapping[str, str]
@@ -180,9 +199,15 @@ def local_reads(rule: CompiledRule, rulebook: CompiledRulebook) -> EntangledRead
     """The entangled reads of a rule, if its own objects alone decide what they may be."""
     known: dict[str, EntangledReads | None] = rulebook.prepared.setdefault(EntangledReads, {})
     if rule.name not in known:
-        parts: KnownParts = rulebook.prepared.setdefault(KnownParts, KnownParts())
+        parts = known_parts(rulebook)
         known[rule.name] = _local_reads(rule, rulebook.axioms, rulebook.vocabulary, parts)
     return known[rule.name]
+
+
+def known_parts(rulebook: CompiledRulebook) -> KnownParts:
+    """What is known of parts of a rulebook's rules."""
+    parts: KnownParts = rulebook.prepared.setdefault(KnownParts, KnownParts())
+    return parts
 
 
 def _local_reads(

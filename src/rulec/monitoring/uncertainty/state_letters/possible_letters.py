@@ -17,6 +17,7 @@ from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     EntangledReads,
     NothingKnown,
+    known_parts,
     local_reads,
 )
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses, RuleLetters
@@ -165,7 +166,10 @@ class PossibleLetters:
         key = rule.name, classes, tuple(objects.values())
         if key not in self._bound:
             everybody = NothingKnown(self._trace.objects, self._vocabulary)
-            reads = EntangledReads(rule, objects, self._rulebook.axioms, everybody)
+            parts = known_parts(self._rulebook)
+            reads = EntangledReads(
+                *(rule, objects, self._rulebook.axioms, everybody), counted_parts=parts
+            )
             self._bound[key] = RuleLetters(classes, rule, reads)
         return self._bound[key]
 

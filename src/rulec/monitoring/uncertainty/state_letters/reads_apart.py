@@ -11,8 +11,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property
 from itertools import product
-from operator import itemgetter
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read
@@ -20,27 +19,22 @@ from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.completions import Digits, joint_digits
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in
 from rulec.monitoring.uncertainty.state_letters.joint_values import (
+    MOST_KNOWN,
     JointValues,
     ReadWays,
+    instances_of,
+    joined_sets,
     read_ways,
+    values_at,
 )
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters, read_digits
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     PartialView,
     Subject,
-    subjects_in,
     subjects_of_read,
 )
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, PartialValue
-from rulec.vocabulary.vocabulary_model import choices
-
-MOST_KNOWN = 1 << 14
-"""Values of which it is kept what they come to before all are forgotten."""
-
-
-_Together: TypeAlias = dict[object, "JointValues | None"]
-"""What subjects may be together, by these, the facts about them, and objects."""
 
 
 class _PartFound(NamedTuple):
@@ -66,7 +60,7 @@ class _PartTable:
         objects: Mapping[str, str],
         *,
         vocabulary: Vocabulary,
-        together: _Together,
+        together: dict[object, Any],
     ) -> None:
         self._reads, self._ready = reads, [read_digits(read) for read in reads]
         self._subjects, self._binding, self._axioms = subjects, binding, axioms
@@ -95,8 +89,11 @@ class _PartTable:
         with suppress(LookupError):
             if key not in self._together:
                 self._together[key] = None
+                everybody = StateView({}, self._objects, self._vocabulary)
+                of_all = [fact for axiom in self._axioms for fact in instances_of(axiom, everybody)]
+                facts = [fact for fact in of_all if not fact.about.isdisjoint(self._subjects)]
                 self._together[key] = JointValues(
-                    self._subjects, self._axioms, self._objects, self._vocabulary
+                    self._subjects, facts, self._objects, self._vocabulary
                 )
             values = self._together[key]
             return None if values is None else read_ways(self._ready, self._binding, values)
@@ -133,11 +130,14 @@ class _Part(NamedTuple):
 
 
 class KnownParts:
-    """What is known of parts of all rules: ``tables`` by what they are."""
+    """What is known of parts of all rules, by what they are.
+
+    ``tables`` are those of parts of reads, ``together`` has what subjects may be together.
+    """
 
     def __init__(self) -> None:
         self.tables: dict[object, _PartTable] = {}
-        self.together: _Together = {}
+        self.together: dict[object, Any] = {}
 
 
 class ReadsApart:
@@ -198,8 +198,10 @@ class ReadsApart:
     ) -> Iterator[_Part]:
         everybody = self._everybody
         of_reads = [frozenset(subjects_of_read(read, self._binding, everybody)) for read in reads]
-        of_facts = [(axiom, own) for axiom in axioms for own in _instances(axiom, everybody)]
-        apart = _joined([*of_reads, *[own for _, own in of_facts]])
+        of_facts = [
+            (axiom, own) for axiom in axioms for _, _, own in instances_of(axiom, everybody)
+        ]
+        apart = joined_sets([*of_reads, *[own for _, own in of_facts]])
         # Reads that depend on nothing are one more.
         for own in [*apart, frozenset[Subject]()]:
             members = tuple([n for n, about in enumerate(of_reads) if about & own or about == own])
@@ -213,7 +215,7 @@ class ReadsApart:
                 facts,
                 known,
             )
-            yield _Part(members, _values_at(places), table)
+            yield _Part(members, values_at(places), table)
 
     def _table(
         self,
@@ -235,29 +237,3 @@ class ReadsApart:
                 together=known.together,
             )
         return tables[key]
-
-
-def _instances(axiom: CompiledAxiom, everybody: PartialView) -> Iterator[frozenset[Subject]]:
-    """Of what a fact speaks, for each choice of its objects."""
-    names = [variable.name for variable in axiom.variables]
-    types = [variable.type for variable in axiom.variables]
-    for chosen in choices(types, everybody.objects, everybody.vocabulary):
-        environment = dict(zip(names, chosen, strict=True))
-        yield frozenset(subjects_in(axiom.formula, environment, everybody))
-
-
-def _joined(sets: Sequence[frozenset[Subject]]) -> list[frozenset[Subject]]:
-    """The unions of those that have members in common."""
-    found: list[frozenset[Subject]] = []
-    for own in sets:
-        if own:
-            touched = [other for other in found if other & own]
-            found = [other for other in found if not other & own]
-            found.append(own.union(*touched))
-    return found
-
-
-def _values_at(places: Sequence[int]) -> Callable[[Any], tuple[Any, ...]]:
-    if len(places) > 1:
-        return itemgetter(*places)
-    return lambda values: tuple([values[place] for place in places])
