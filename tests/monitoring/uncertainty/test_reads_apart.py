@@ -1,19 +1,27 @@
 """Reads looked at in parts come to what they do when all are looked at together."""
 
 from fractions import Fraction
+from itertools import product
 from random import Random
 
 import pytest
 from hypothesis import given
 
 import rulec
+from rulec.automata.outcome_machine import bits_of
 from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.completions import joint_digits
-from rulec.monitoring.uncertainty.state_letters.entangled_reads import local_reads
+from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
+    EntangledReads,
+    NothingKnown,
+    local_reads,
+)
 from rulec.monitoring.uncertainty.state_letters.read_digits import read_digits
+from rulec.monitoring.uncertainty.state_letters.reads_apart import KnownParts
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.vocabulary import Enumeration, Quantity
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
+from rulec.vocabulary.vocabulary_model import choices
 from support.builders.rulebooks import compile_here
 from support.generators.random_rulebooks import rulebook
 from support.generators.seeds import seeds
@@ -83,3 +91,48 @@ def outcome(call, *given):
         return None, call(*given)
     except MissingValueError as missing:
         return missing.subject, None
+
+
+def agree_on_who_counts(chance, compiled, rule, objects):
+    """Whether each who may count is looked at by himself; if so, all that is drawn has to agree."""
+    kinds = [variable.type for variable in rule.variables]
+    (*_, chosen) = [(), *choices(kinds, objects, compiled.vocabulary)]
+    if len(chosen) < len(kinds) or local_reads(rule, compiled) is not None:
+        return False
+    binding = {variable.name: x for variable, x in zip(rule.variables, chosen, strict=True)}
+    asked = rule, binding, compiled.axioms, NothingKnown(objects, compiled.vocabulary)
+    together, apart = EntangledReads(*asked), EntangledReads(*asked, counted_parts=KnownParts())
+    if apart._counts is None:
+        return False
+    declared = [compiled.vocabulary.declarations[name] for name, _ in apart.subjects]
+    for _ in range(12):
+        values = tuple(drawn(chance, declaration) for declaration in declared)
+        lacking, expected = outcome(together.number, values, objects)
+        missing, found = outcome(apart.number, values, objects)
+        assert missing == lacking, (rule, values)
+        if expected is not None:
+            (letters, is_exact), (own, _) = together.found[expected], apart.found[found]
+            assert set(own) == set(spelled(letters)) or (not is_exact and set(own) < set(letters))
+    return True
+
+
+def spelled(letters):
+    """Letters one by one."""
+    return [tuple(1 << n for n in one) for cube in letters for one in product(*map(bits_of, cube))]
+
+
+@given(seeds)
+def test_each_who_may_count_by_himself_as_all_together(chance):
+    compiled = compile_here(rulebook(chance, Fraction(1)), Fraction(1))
+    kinds = list(compiled.vocabulary.types)
+    objects = {f"o{n}": chance.choice(kinds) for n in range(chance.randint(1, 4))} if kinds else {}
+    for rule in compiled.rules:
+        agree_on_who_counts(chance, compiled, rule, objects)
+
+
+def test_of_law_who_may_count_by_himself_as_all_together():
+    chance = Random("who counts")
+    compiled = rulec.compile_rulebook("de").fitted_to(1)
+    cars = {"a": "car", "b": "car"}
+    own = [rule for rule in compiled.rules if agree_on_who_counts(chance, compiled, rule, cars)]
+    assert [rule.name for rule in own] == ["keep_near_side", "wrong_way"]
