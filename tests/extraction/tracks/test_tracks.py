@@ -1,13 +1,14 @@
 """Tracks: who is where when, and velocities as differences of places."""
 
 from dataclasses import replace
+from math import nan
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.extraction.tracks.tracks import tracks_of
+from rulec.extraction.tracks.tracks import end_to_end, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
 from support.builders.recordings import recording, straight, vehicle
 
@@ -90,3 +91,22 @@ def test_constant_velocity_is_found_wherever_it_can_be(vx, vy, steps, smoothing_
         alone = step - 1 not in steps and step + 1 not in steps
         expected = 0.0 if alone else vx
         assert found.vx[0, step - found.first] == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("ranges", "expected"),
+    [
+        ([slice(1, 3), slice(1, 3)], [[9, 10, 9, 10], [1, 2, nan, nan]]),
+        ([slice(1, 3), slice(2, 4)], [[9, 10, 10, 11], [1, 2, nan, nan]]),
+    ],
+)
+def test_who_is_absent_from_a_range_has_no_values_in_it(ranges, expected):
+    values, absent = np.arange(12.0).reshape(3, 4), np.zeros((2, 4), dtype=bool)
+    absent[1, 2:] = True
+    rows = np.array([2, 0])
+    assert np.array_equal(end_to_end(values, rows, ranges, absent), expected, equal_nan=True)
+    by_lane = end_to_end(np.stack((values, -values), axis=-1), rows, ranges, absent)
+    for lane, sign in enumerate((1, -1)):
+        assert np.array_equal(by_lane[..., lane], sign * np.array(expected), equal_nan=True)
+    flags = end_to_end(values > 0, rows, ranges, absent)
+    assert flags.tolist() == [[True] * 4, [True, True, False, False]]

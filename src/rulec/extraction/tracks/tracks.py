@@ -326,14 +326,15 @@ def end_to_end(
     """
     by_lane = np.moveaxis(values, -1, 0) if values.ndim > 2 else values[None]
     none = values.dtype.type(np.nan if values.dtype.kind == "f" else 0)
-    found = np.full((len(by_lane), *absent.shape), none, dtype=values.dtype)
-    begin = 0
+    shape = len(by_lane), *absent.shape
     if all(own == ranges[0] for own in ranges):
         # As of candidates, which all begin at the same time
         part = by_lane[:, :, ranges[0]].take(rows, axis=1)
-        found.reshape(*part.shape[:2], len(ranges), part.shape[2])[:] = part[:, :, None]
-        begin = found.shape[2]
-        ranges = ()
+        found = np.tile(part, (1, 1, len(ranges)))
+        if absent.any():
+            np.copyto(found, none, where=absent)
+        return np.moveaxis(found, 0, -1) if values.ndim > 2 else found[0]
+    found, begin = np.full(shape, none, dtype=values.dtype), 0
     for own in ranges:
         end = begin + own.stop - own.start
         there = np.flatnonzero(~absent[:, begin])
