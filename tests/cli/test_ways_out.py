@@ -36,6 +36,14 @@ def said(capsys, *arguments):
             "param gap_min : length = 1.5\nsignal p\nhard rule r { require always p }",
             "write the unit, such as `1.5 m`",
         ),
+        (
+            "signal p, q\nhard rule r { require never p require never q }",
+            "join them by `and`, or write a rule for each",
+        ),
+        (
+            'signal p\nhard rule r { cite "1" cite "2" require never p }',
+            "keep one of them",
+        ),
         ("extends germany", "did you mean `de` (Germany)?"),
     ],
 )

@@ -126,9 +126,10 @@ def test_what_only_an_author_can_mend_has_none(code, folder):
             HEAD + RULE + RULE.replace("rule r", "rule r_2"),
         ),
         (
-            HEAD + "hard rule r { require always p require always q }\n",
-            ["Leave out this `require`"],
-            HEAD + "hard rule r { require always p }\n",
+            # Of two that are required neither is left out: it would be another law.
+            HEAD + 'hard rule r { says "One." require always p says "Two." }\n',
+            ["Leave out this `says`"],
+            HEAD + 'hard rule r { says "One." require always p }\n',
         ),
         (
             "rulebook sample\nsignal stop, wet\nhard rule r { require never (ѕtop and wet) }\n",

@@ -100,7 +100,10 @@ def given_twice(what: str, again: Span, first: Span) -> Diagnostic:
         again,
         f"{what} is given twice",
         expected="given again here",
-        help="keep one of them",
+        # To leave out what is required would make another law of it.
+        help="join them by `and`, or write a rule for each"
+        if what == "`require`"
+        else "keep one of them",
         labels=(Label(first.place, "first given here"),),
     )
 
