@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, get_args
 import click
 
 import rulec
-from rulec.api.rulebook_verbs import Kind
+from rulec.api.rulebook_questions import Kind
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import open_session, put_answer

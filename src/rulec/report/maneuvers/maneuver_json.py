@@ -11,231 +11,43 @@ from typing import Any, TypeVar
 from msgspec import UNSET, UnsetType
 
 from rulec.monitoring.verdict import Verdict, Violation
-from rulec.partition import AdjacencyName, ExtentName, NavigationGraph, PartitionName, envelope
+from rulec.partition import NavigationGraph, envelope
 from rulec.planning import Maneuvers, RankedManeuver, RulePruning
 from rulec.planning.probability.rule_probability import AlternativeCounts
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
 from rulec.planning.ranking.penalties import PenaltyRank
-from rulec.report.json_document import JsonDocument, JsonPart, Number, as_line, filled
+from rulec.report.json_document import JsonPart, as_line, filled
 from rulec.report.maneuvers import maneuver_report
-from rulec.report.maneuvers.dead_end_json import DeadEndData, dead_end_data
+from rulec.report.maneuvers.dead_end_json import dead_end_data
+from rulec.report.maneuvers.maneuver_document import (
+    BindingProbability,
+    CellData,
+    ChancesData,
+    ClassesData,
+    DerivedSignal,
+    EnvelopeData,
+    LevelPenalty,
+    ManeuverData,
+    ManeuversDocument,
+    ManeuverViolation,
+    PastViolation,
+    PruningData,
+    RuleProbabilityData,
+    SceneData,
+    WorldData,
+)
 from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
-from rulec.report.maneuvers.trajectory_json import TrajectoryData, trajectory_data
+from rulec.report.maneuvers.trajectory_json import trajectory_data
 from rulec.report.verdicts.verdict_json import (
-    NotJudgedRule,
     OpenData,
     not_judged_data,
     open_data,
 )
-from rulec.rulebook.rulebook_model import Strength
 from rulec.scenario import Account
-from rulec.scenario.scenario_model import Surface
 
 Item = TypeVar("Item")
 Data = TypeVar("Data", bound=JsonPart)
-
-
-class DerivedSignal(JsonPart, frozen=True, kw_only=True):
-    """A signal that the recording supplies, and the reason for its value."""
-
-    value: bool | int | float | str
-    because: str
-
-
-class SceneData(JsonPart, frozen=True, kw_only=True):
-    """Account of a recorded scene: counts of obstacles, and derived signals."""
-
-    reference: str
-    obstacles: int
-    left_out: int
-    recorded_until_s: float
-    remarks: Sequence[str]
-    derived: Mapping[str, DerivedSignal]
-
-
-class LevelPenalty(JsonPart, frozen=True, kw_only=True):
-    """The summed weight of violated rules by levels; null is no level."""
-
-    strength: Strength
-    levels: Sequence[str | None]
-    weight: Number
-
-
-class ManeuverViolation(JsonPart, frozen=True, kw_only=True):
-    """A violated rule; ``lost_s`` is null if final only at the end.
-
-    ``inherited_from`` names the rulebook whose law it is where this one has not confirmed it.
-    """
-
-    rule: str
-    cite: str
-    binding: Mapping[str, str]
-    lost_s: float | None
-    strength: Strength
-    level: str | None
-    weight: Number
-    inherited_from: str | UnsetType = UNSET
-
-
-class CellData(JsonPart, frozen=True, kw_only=True):
-    """A cell of the maneuver, with its relation to every obstacle."""
-
-    cell: int
-    start_s: float
-    surface: Surface
-    signature: Mapping[str, str | tuple[str, str]]
-
-
-class EnvelopeData(JsonPart, frozen=True, kw_only=True):
-    """The bounds in a layer, in metres; profiles are pairs (s, d)."""
-
-    s_min: float
-    s_max: float
-    d_left: Sequence[tuple[float, float]]
-    d_right: Sequence[tuple[float, float]]
-
-
-class BindingProbability(JsonPart, frozen=True, kw_only=True):
-    """The probability that a rule is kept for some objects, or its bounds."""
-
-    binding: Mapping[str, str]
-    kept: float
-    kept_at_most: float | UnsetType = UNSET
-
-
-class RuleProbabilityData(JsonPart, frozen=True, kw_only=True):
-    """The probability that a rule is kept, null if unknown.
-
-    If there is a ``kept_at_most`` both are bounds, since it depends on unknown values.
-    """
-
-    rule: str
-    strength: Strength
-    kept: float | None
-    bindings: Sequence[BindingProbability]
-    kept_at_most: float | UnsetType = UNSET
-
-
-class ChancesData(JsonPart, frozen=True, kw_only=True):
-    """The probabilities that nobody hits ego, and that rules are kept."""
-
-    clear: float
-    every_hard_rule: float | None
-    rules: Sequence[RuleProbabilityData]
-    every_hard_rule_at_most: float | UnsetType = UNSET
-
-
-class ManeuverData(JsonPart, frozen=True, kw_only=True):
-    """A maneuver: cost (1/s), margin, cells and bounds in time.
-
-    One that is ranked has ``place``, ``penalty``, ``members`` with this penalty and ``violations``;
-    a class's has ``members``, an example of a pruning ``violations``. Where not all is known
-    ``open`` is what depends on it; it is in the ``penalty``, and not in the one ``at_least``.
-    """
-
-    place: int | UnsetType = UNSET
-    penalty: Sequence[LevelPenalty] | UnsetType = UNSET
-    members: int | UnsetType = UNSET
-    at_least: Sequence[LevelPenalty] | UnsetType = UNSET
-    violations: Sequence[ManeuverViolation] | UnsetType = UNSET
-    open: Sequence[OpenData] | UnsetType = UNSET
-    cost: float
-    margin_s: float | None
-    cells: Sequence[CellData]
-    envelope: Sequence[EnvelopeData]
-    trajectory: TrajectoryData | UnsetType = UNSET
-    chances: ChancesData | UnsetType = UNSET
-
-
-class PastViolation(JsonPart, frozen=True, kw_only=True):
-    """A violation by the past, which no maneuver can mend."""
-
-    rule: str
-    binding: Mapping[str, str]
-    step: int | None
-
-
-class WorldData(JsonPart, frozen=True, kw_only=True):
-    """Counts for an obstacle's less likely prediction, numbered from 1."""
-
-    obstacle: str
-    prediction: int
-    weight: float
-    traces: int
-    satisfying: int
-    open: int
-
-
-class PruningData(JsonPart, frozen=True, kw_only=True):
-    """Counts of maneuvers violating a rule, and no other hard one (``alone``).
-
-    On ``open`` more it depends on what is unknown.
-    """
-
-    rule: str
-    strength: Strength
-    violating: int
-    alone: int | None
-    open: int
-    example: ManeuverData | None
-
-
-class ClassesData(JsonPart, frozen=True, kw_only=True):
-    """The counts of homotopy classes, and the cheapest satisfying members of some.
-
-    So many more are ``open``.
-    """
-
-    total: int
-    satisfying: int
-    divided: int
-    open: int
-    counting_steps: Sequence[str]
-    representatives: Sequence[ManeuverData]
-
-
-class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
-    """The counts of maneuvers in a scenario, and further answers asked for.
-
-    On ``open`` more than those ``satisfying`` it depends on what is ``unknown``; ``exact`` is false
-    if there was too much to look at, and some may be known after all. ``judged`` are the rules that
-    half of them or more keep or violate for sure, null unless cells have words. With ``bounds`` of
-    ego's motion (m, s) they are paths through reachable cells, else through all. ``least_braking``
-    (m/s²) is there where one is shown that brakes hard, and none brakes less than that.
-    """
-
-    scenario: str
-    rulebook: str
-    partition: PartitionName
-    adjacency: AdjacencyName
-    extent: ExtentName
-    step_s: float
-    horizon_s: float
-    nodes: int
-    edges: int
-    bounds: Mapping[str, float] | None
-    traces: int
-    satisfying: int
-    violating: int
-    open: int
-    exact: bool
-    judged: Sequence[str] | None
-    unknown: Sequence[str]
-    not_judged: Sequence[NotJudgedRule]
-    by_default: Sequence[str]
-    dead_end: DeadEndData | None
-    seconds: float
-    scene: SceneData | UnsetType = UNSET
-    violated_before: Sequence[PastViolation] | UnsetType = UNSET
-    least_violating: Sequence[ManeuverData] | UnsetType = UNSET
-    ranked: Sequence[ManeuverData] | UnsetType = UNSET
-    maneuvers: Sequence[ManeuverData] | UnsetType = UNSET
-    likeliest: float | UnsetType = UNSET
-    worlds: Sequence[WorldData] | UnsetType = UNSET
-    rules: Sequence[PruningData] | UnsetType = UNSET
-    classes: ClassesData | UnsetType = UNSET
-    least_braking: float | UnsetType = UNSET
 
 
 def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> str:
