@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from typing import TypeAlias
 
 import numpy as np
 
@@ -15,18 +16,21 @@ from rulec.monitoring.uncertainty.state_letters.completions import can_be
 from rulec.monitoring.uncertainty.state_letters.related_facts import related_facts
 from rulec.trace.plain_arrays import distinct
 
+LinkedFacts: TypeAlias = tuple[CompiledAxiom, ...]
+"""Facts that share names."""
+
 _OBJECT = "an object"
 
 
-def contradicted(facts: Sequence[CompiledAxiom], reader: StackReader) -> set[int]:
+def contradicted(linked_facts: Sequence[LinkedFacts], reader: StackReader) -> set[int]:
     """All traces in which a state contradicts facts, each ``is_of_one``, and perhaps others.
 
     Raises UnencodableError.
     """
     places = [
         _contradicted_states(group, reader, spots, objects)
-        for linked in _linked(facts)
-        for group, spots, objects in _asked(linked, reader.stack)
+        for together in linked_facts
+        for group, spots, objects in _asked(together, reader.stack)
     ]
     states = distinct(np.concatenate([np.empty(0, dtype=np.intp), *places]))
     found: list[int] = distinct(
@@ -35,7 +39,7 @@ def contradicted(facts: Sequence[CompiledAxiom], reader: StackReader) -> set[int
     return set(found)
 
 
-def _linked(facts: Sequence[CompiledAxiom]) -> Iterator[tuple[CompiledAxiom, ...]]:
+def linked(facts: Sequence[CompiledAxiom]) -> Iterator[LinkedFacts]:
     """The facts in groups that share no names."""
     while facts:
         group = related_facts(names_in(facts[0].formula), facts)
@@ -46,14 +50,14 @@ def _linked(facts: Sequence[CompiledAxiom]) -> Iterator[tuple[CompiledAxiom, ...
 _Asked = tuple[Sequence[CompiledAxiom], Spots, Mapping[str, str]]
 
 
-def _asked(linked: Sequence[CompiledAxiom], stack: Stack) -> Iterator[_Asked]:
+def _asked(together: LinkedFacts, stack: Stack) -> Iterator[_Asked]:
     """Facts that all hold at some spots, and the object that they are about, if any, by type."""
-    if not linked[0].variables:
-        yield linked, Spots(np.arange(stack.n_states), {}, whole=True), {}
+    if not together[0].variables:
+        yield together, Spots(np.arange(stack.n_states), {}, whole=True), {}
         return
     by_facts: dict[tuple[CompiledAxiom, ...], list[str]] = {}
     for kind in dict.fromkeys(stack.types):
-        own = [x for x in linked if stack.vocabulary.is_subtype(kind, x.variables[0].type)]
+        own = [x for x in together if stack.vocabulary.is_subtype(kind, x.variables[0].type)]
         by_facts.setdefault(tuple(own), []).append(kind)
     for group, kinds in by_facts.items():
         if group:

@@ -30,6 +30,8 @@ from rulec.vocabulary.partial_values import UNKNOWN
 
 Places = NDArray[np.intp]
 
+_NOWHERE = np.zeros(0, dtype=bool)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StackColumn:
@@ -179,13 +181,13 @@ class Stack:
             values = _end_to_end(parts)
             if values.dtype != bool or any(name in piece.texts for piece in self._pieces):
                 raise UnencodableError
-            unfit = np.zeros(0, dtype=bool)
+            unfit = _NOWHERE
         else:
             values, upper = self._numbers(name, parts)
             unfit = ~np.isfinite(values)
             if upper is not None:
                 unfit |= ~(values <= upper) | ~np.isfinite(upper)
-        if unfit.any():
+        if unfit is not _NOWHERE and unfit.any():
             nowhere = _either(unknown, unsaid)
             if nowhere is None or (unfit & ~nowhere).any():
                 raise UnencodableError
@@ -254,6 +256,9 @@ class Stack:
     ) -> Flags | None:
         if not any(name in own for own in flags):
             return None
+        if len(flags) == 1:
+            own = flags[0][name]
+            return own if own.any() else None
         joined = _end_to_end(
             [
                 own.get(name, np.zeros(len(part), dtype=bool))

@@ -18,7 +18,7 @@ from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.columns.columnize import UnencodableError
-from rulec.monitoring.batch.stacked.contradictions import contradicted
+from rulec.monitoring.batch.stacked.contradictions import LinkedFacts, contradicted, linked
 from rulec.monitoring.batch.stacked.open_reasons import StackedReasons
 from rulec.monitoring.batch.stacked.stack import Stack, side_by_side
 from rulec.monitoring.batch.stacked.stack_reader import StackReader
@@ -106,10 +106,9 @@ class _StackedRun:
                 for rule, machine in self._judged.machines
             ]
         rules = known[key]
-        simple = [rule.is_simple and all(map(self._stack.can_tell, rule.names)) for rule in rules]
-        about = [rule.facts for rule, is_simple in zip(rules, simple, strict=True) if is_simple]
-        facts = tuple(dict.fromkeys(fact for own in about for fact in own))
-        self._odd |= contradicted(facts, self._reader)
+        untold = {name for name in _names_of(rules) if not self._stack.can_tell(name)}
+        simple = [rule.is_simple and untold.isdisjoint(rule.names) for rule in rules]
+        self._odd |= contradicted(self._facts_of(key, rules, simple), self._reader)
         for number, (rule, is_simple) in enumerate(zip(rules, simple, strict=True)):
             if is_simple:
                 rule.forget_many()
@@ -124,6 +123,18 @@ class _StackedRun:
             else self._verdict(number)
             for number, trace in enumerate(self._traces)
         ]
+
+    def _facts_of(
+        self, key: object, rules: Sequence[StackedRule], simple: Sequence[bool]
+    ) -> Sequence[LinkedFacts]:
+        """The facts that have to do with simple rules; mostly these are the same ones again."""
+        known: dict[object, tuple[Sequence[bool], Sequence[LinkedFacts]]]
+        known = self._rulebook.prepared.setdefault(contradicted, {})
+        if key not in known or known[key][0] != simple:
+            about = [rule.facts for rule, is_simple in zip(rules, simple, strict=True) if is_simple]
+            facts = tuple(dict.fromkeys(fact for own in about for fact in own))
+            known[key] = simple, tuple(linked(facts))
+        return known[key][1]
 
     def _add(self, rule_number: int, outcome: StackedOutcome) -> None:
         words, place, stack = outcome.words, outcome.place, self._stack
@@ -172,6 +183,10 @@ class _StackedRun:
         doubtful = tuple([result for result in found if isinstance(result, OpenVerdict)])
         presumed = tuple([name for name in judged.presumed if not trace.says(name)])
         return Verdict(trace.id, violations, doubtful, judged.not_judged, presumed)
+
+
+def _names_of(rules: Sequence[StackedRule]) -> frozenset[str]:
+    return frozenset().union(*(rule.names for rule in rules if rule.is_simple))
 
 
 class _CloseLook:
