@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from statistics import median
 
 from rulec.recordings.recording import Participant, Recording, StatedError, WholeRecording
 from rulec.recordings.track import TrackOutlines
@@ -19,7 +18,7 @@ def whole_recording(recording: Recording) -> WholeRecording:
     return WholeRecording(
         first=first,
         last=max((ends for _, ends in spans), default=0),
-        stated_error=StatedError(*map(median, zip(*stated, strict=True))) if stated else None,
+        stated_error=_in_the_middle(stated) if stated else None,
         arrivals=any(
             begins > first
             for body, (begins, _) in zip(_moving(recording), spans, strict=True)
@@ -27,6 +26,13 @@ def whole_recording(recording: Recording) -> WholeRecording:
         ),
         shows=frozenset().union(*(body.shows for body in recording.participants)),
     )
+
+
+def _in_the_middle(stated: Iterable[StatedError]) -> StatedError:
+    # 4 ms: only where a source states errors.
+    from statistics import median
+
+    return StatedError(*map(median, zip(*stated, strict=True)))
 
 
 def looked_at(recording: Recording) -> tuple[int, int]:
