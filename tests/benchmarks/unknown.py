@@ -43,7 +43,8 @@ MOST_TIMES = 2
 
 NOTE = (
     f"One by one, and where it is asked on what open verdicts depend, {N_ALONE} of the drives are "
-    "judged; monitors go on from round to round."
+    "judged; monitors go on from round to round, and where they meet new states, those of no round "
+    "before (under `esterle2019` there are few)."
 )
 
 
@@ -72,6 +73,12 @@ def paired(name: str, rules: CompiledRulebook, rounds: int) -> Result:
         engines[engine] = watched, (), ()
         drive = drawn(rules, 0, n_vehicles, LONG)
         for label, trace in (engine, drive), (in_part(engine), blurred(rules, drive, 0)):
+            work = partial(watched, Monitor(rules, STEP_S), cycle(trace.states), trace.objects)
+            tasks[label] = processor_time(work, N_WATCHED * 1e3)
+        engine = f"{engine}, new states"
+        engines[engine] = watched, (), ()
+        drive = drawn(rules, 1, n_vehicles, N_WATCHED * (rounds + 1))
+        for label, trace in (engine, drive), (in_part(engine), blurred(rules, drive, 1)):
             work = partial(watched, Monitor(rules, STEP_S), cycle(trace.states), trace.objects)
             tasks[label] = processor_time(work, N_WATCHED * 1e3)
     tasks[doubts] = processor_time(

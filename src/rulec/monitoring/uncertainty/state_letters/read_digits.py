@@ -12,7 +12,14 @@ from typing import Any, TypeAlias
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import scale
 from rulec.logic import formula as ltl
-from rulec.logic.kleene import Between, Unknown, holds, weighted_sum
+from rulec.logic.kleene import (
+    Between,
+    Evaluator,
+    Unknown,
+    alias_of,
+    evaluator_of,
+    weighted_sum,
+)
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     MissingValueError,
     PartialView,
@@ -25,6 +32,32 @@ Cube: TypeAlias = tuple[int, ...]
 
 Letters: TypeAlias = tuple[Cube, ...]
 """The letters that a state may have: those of all the cubes."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Count:
+    """A count made ready; where it holds, its variable is the same object as ``alias``, if any."""
+
+    count: ltl.Count
+    alias: str | None
+    evaluate: Evaluator
+
+    def range(self, binding: Mapping[str, str], view: PartialView) -> tuple[Fraction, Fraction]:
+        """How many objects count for sure, and how many may. Raises MissingValueError."""
+        low = unknown = 0
+        present, kind, alias = view.objects, self.count.type, self.alias
+        inner = dict(binding)
+        for item in present if alias is None else {binding[alias]} & present.keys():
+            if view.vocabulary.is_subtype(present[item], kind):
+                inner[self.count.variable] = item
+                truth = self.evaluate(inner, view)
+                if isinstance(truth, Unknown):
+                    if not unknown and view.given(truth.name, truth.objects) is None:
+                        raise MissingValueError(truth.name, truth.objects)
+                    unknown += 1
+                else:
+                    low += truth
+        return Fraction(low), Fraction(low + unknown)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,6 +75,7 @@ class ReadDigits:
     subject: Subject | None
     _floors: tuple[float, ...] = ()
     _known: dict[Any, int] = field(default_factory=dict)
+    _count: _Count | None = None
 
     def of_values(self, values: Sequence[PartialValue | None]) -> list[int]:
         """The digits for each value of the ``subject``; none for what is missing."""
@@ -64,7 +98,10 @@ class ReadDigits:
         """The digits in a state. Raises MissingValueError."""
         if self.subject is None:
             assert isinstance(self.read, NumberRead)
-            return _digits_of_sum(self.read, binding, view)
+            if self._count is None:
+                return _digits_of_sum(self.read, binding, view)
+            low, high = self._count.range(binding, view)
+            return _digits_between(self.read.digit(low), self.read.digit(high))
         name, variables = self.subject
         items = tuple([binding[variable] for variable in variables])
         digits = possible_digits(self.read, view.given(name, items))
@@ -82,8 +119,19 @@ def read_digits(read: Read | NumberRead) -> ReadDigits:
     known = scale(read)
     number = known.quantity
     subject = None if number is None else (number.name, number.arguments)
+    count = None
+    match read.terms:
+        case ((1, ltl.Count(variable, _, body) as counted),):
+            # Both would be looked up by the whole formula in each state.
+            count = _Count(counted, alias_of(variable, body), evaluator_of(body))
     return ReadDigits(
-        read, known, known.names, known.variables, subject=subject, _floors=known.floors
+        read,
+        known,
+        known.names,
+        known.variables,
+        subject=subject,
+        _floors=known.floors,
+        _count=count,
     )
 
 
@@ -108,7 +156,7 @@ def possible_digits(read: Read | NumberRead, value: PartialValue | Fraction | No
 
 
 def _digits_of_sum(read: NumberRead, binding: Mapping[str, str], view: PartialView) -> int:
-    """The digits of a sum or a count; all of them if a sum has a count that is unknown."""
+    """The digits of a sum; all of them if it has a count that is unknown."""
     total = weighted_sum(read.terms, binding, view)
     if not isinstance(total, Unknown):
         return 1 << read.digit(total)
@@ -116,29 +164,12 @@ def _digits_of_sum(read: NumberRead, binding: Mapping[str, str], view: PartialVi
         return _digits_between(read.digit(total.low), read.digit(total.high))
     if view.given(total.name, total.objects) is None:
         raise MissingValueError(total.name, total.objects)
-    match read.terms:
-        case ((_, ltl.Count() as count),):
-            low, high = _counted_range(count, binding, view)
-            return _digits_between(read.digit(low), read.digit(high))
     return (1 << read.size) - 1
 
 
 def names_of_read(read: Read | NumberRead) -> tuple[str, ...]:
     """The names that a read depends on."""
     return (read.name,) if isinstance(read, Read) else scale(read).names
-
-
-def _counted_range(
-    count: ltl.Count, binding: Mapping[str, str], view: PartialView
-) -> tuple[Fraction, Fraction]:
-    """How many objects count for sure, and how many may."""
-    low = high = 0
-    for item, kind in view.objects.items():
-        if view.vocabulary.is_subtype(kind, count.type):
-            truth = holds(count.body, {**binding, count.variable: item}, view)
-            low += truth is True
-            high += truth is not False
-    return Fraction(low), Fraction(high)
 
 
 def _digits_between(first: int, last: int) -> int:
