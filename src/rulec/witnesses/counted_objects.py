@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
-from itertools import product
+from itertools import accumulate, product
 from math import ceil
-from operator import add, and_
+from operator import add, and_, mul
 
 from rulec.automata.alphabet import reads_of
 from rulec.automata.mealy_monitor import NumberRead, Read
@@ -202,8 +202,9 @@ def _first_of_each(
     choices = [range(read.size) if digit is None else (digit,) for read, digit in reads]
     seen = set()
     allowed = reduce(and_, counted.allowed, -1)
+    weights = [*accumulate((read.size for read in counted.reads), mul, initial=1)][:-1]
     for digits in product(*choices):
-        letter = letter_functions.letter_of(digits, counted.reads)
+        letter = sum(map(mul, digits, weights))
         if not allowed >> letter & 1:
             continue
         adds = tuple([letters >> letter & 1 for letters in counted.counted])
