@@ -156,6 +156,9 @@ class Lanelet:
 NO_LANES = frozenset({"sidewalk", "crosswalk", "border", "parking", "restricted_area"})
 """Types of lanelets that are no part of the carriageway."""
 
+JOINING = "accessRamp"
+"""The type of a lane that ends beside others, to join them."""
+
 
 def is_lane(lanelet: Lanelet) -> bool:
     """True if a lanelet is a part of the carriageway."""

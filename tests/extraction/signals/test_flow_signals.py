@@ -96,6 +96,18 @@ def test_who_sets_off_beside_others_is_not_told_to_be_overtaken(stood_s, known):
     assert found.unknown["being_overtaken"][last] == (not known)
 
 
+@pytest.mark.parametrize("types", [(), ("accessRamp",)])
+def test_who_gets_up_speed_on_a_lane_that_joins_is_not_overtaken(types):
+    road = [
+        straight(1, -100, 300, left_of=2, types=frozenset(types)),
+        straight(2, -100, 300, 4.0, right_of=1),
+    ]
+    bodies = [steady(7, 0, 0, 21, steps=12), steady(8, 0, 4.0, 26, steps=12)]
+    found = flow_signals(context_of(recording(road, bodies), route=("1",)))
+    assert found.world["being_overtaken"][0] == (not types)
+    assert not found.unknown["being_overtaken"].any() or not types
+
+
 @pytest.mark.parametrize(("speed", "known"), [(9, False), (21, True)])
 def test_who_may_have_stood_before_anybody_saw_it_may_set_off(speed, known):
     """To 9 m/s it takes 4.5 s, to 21 m/s 10.5 s."""

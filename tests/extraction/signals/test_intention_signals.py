@@ -141,6 +141,13 @@ def test_who_signals_and_pulls_out():
     assert unlit[19:30] == ["?"] * 11
 
 
+def test_who_joins_from_a_lane_that_ends_is_not_about_to_overtake():
+    ego, body = steady(7, 0, 0, 10, STEPS), pulling_out(lit("left_indicator"))
+    right, left = lanes()
+    road = [replace(right, types=frozenset({"accessRamp"})), left]
+    assert set(told("about_to_overtake", road, ego, body, route=("1",))[:30]) == {"False"}
+
+
 def bus(lamps, starts=30, steps=STEPS, shows=(*INDICATORS, "doors")):
     places = {k: (0 + max(0, k - starts) * 2.0, 0.0) for k in range(steps)}
     body = vehicle(8, places, "bus", length=12)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.queues import (
     LOOSE,
     MEASURED,
@@ -26,6 +27,7 @@ from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, 
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.road_extents import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.recordings.recording import JOINING
 from rulec.trace.plain_arrays import distinct, medians
 
 _DRIFT_MPS = 0.2
@@ -122,6 +124,9 @@ def _begins_to_overtake(context: DriveContext) -> SignalColumns:
 
 def _being_overtaken(context: DriveContext) -> SignalColumns:
     by, open_end = _overtaken(context)
+    # Who is about to join gets up speed for it, beside others on the lanes that go on
+    joins = own_lanelets(context).flags(lambda at: JOINING in at.types)
+    by, open_end = by & ~joins, open_end & ~joins
     overtaken = by.any(axis=0)
     dense, surely, not_told = _dense_lines(context)
     # Lanes that move off beside each other do not overtake

@@ -22,7 +22,7 @@ from rulec.extraction.signals.signal_passes import (
     signals_by,
 )
 from rulec.extraction.tracks.tracks import Flags
-from rulec.recordings.recording import Lamp
+from rulec.recordings.recording import JOINING, Lamp
 
 _PUBLIC = ("bus", "rail_vehicle")
 _FLASH_S = 1.0
@@ -257,7 +257,10 @@ def _last_seen(context: DriveContext) -> NDArray[intp]:
 
 
 def _about_to_overtake(context: DriveContext) -> SignalColumns:
-    """The signal of those who have signalled to pull out to the far side, and do so soon."""
+    """The signal of those who have signalled to pull out to the far side, and do so soon.
+
+    Who is on a lane that joins others has to leave it, and overtakes nobody by that.
+    """
     far, lane = (1 if context.side == "right" else -1), context.extents.lane
     steps = round(context.thresholds.signalling_s / context.recording.step_s)
     onward = context.spans.after(lane)
@@ -267,11 +270,16 @@ def _about_to_overtake(context: DriveContext) -> SignalColumns:
     pulls_out[rows] &= inside & context.spans.after(inside)
     soon = np.zeros_like(pulls_out)
     soon[rows] = context.going_along[rows] & context.spans.within(pulls_out[rows], steps)
+    joining = np.array(
+        [[x is not None and JOINING in x.types for x in row] for row in context.road.rows]
+    )
+    joins = joining[context.road.piece(np.nan_to_num(context.extents.s)), lane]
+    soon &= ~joins
     lit, told = _far_indicator(context)
     ends = _ends_within(context, steps)
     return SignalColumns(
         about={"about_to_overtake": soon & lit},
-        unknown={"about_to_overtake": np.where(told, lit & ends & ~soon, soon)},
+        unknown={"about_to_overtake": np.where(told, lit & ends & ~soon & ~joins, soon)},
     )
 
 
