@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.extraction.tracks.driven_road import driven_road
-from rulec.extraction.tracks.road_extents import road_extents
+from rulec.extraction.tracks.road_extents import is_in, lane_sets, road_extents
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
 from support.builders.recordings import lanelet, recording, straight, vehicle
@@ -115,3 +115,14 @@ def test_one_row_and_a_part():
     assert found.of(1).s.tolist() == [[20, 21]]
     assert found.part(np.array([2, 0]), slice(1, 2)).s.tolist() == [[31], [11]]
     assert found.moved(np.array([0.0, 0.5])).left_of[2, 1] == pytest.approx([2.5, -1.5])
+
+
+@pytest.mark.parametrize("n_lanes", [1, 2, 8, 9, 64, 65, 70])
+def test_a_set_of_lanes_has_those_that_are_flagged(n_lanes):
+    flags = np.random.default_rng(n_lanes).random((4, 6, n_lanes)) < 0.4
+    sets = lane_sets(flags)
+    for lane in range(n_lanes):
+        assert (is_in(sets, lane) == flags[..., lane]).all()
+    lanes = np.arange(6) * 7 % n_lanes
+    assert (is_in(sets, lanes) == flags[:, np.arange(6), lanes]).all()
+    assert ((sets != 0) == flags.any(axis=2)).all()
