@@ -45,6 +45,13 @@ def test_who_queues_beside_a_lane_that_flows_is_in_no_jam(speed, slow):
     assert not found["walking_pace_flow"]
 
 
+@pytest.mark.parametrize(("speed", "slow"), [(2.0, True), (17.0, False)])
+def test_two_lanes_that_flow_with_one_on_each_are_no_jam(speed, slow):
+    ego, drives = steady(7, 0, 0, speed=0), [(30, 4.0), (31, 8.0)]
+    others = [steady(number, 10, y, speed=speed) for number, y in drives]
+    assert first(*line(0, 4), *others, ego=ego, count=3)["walking_pace_flow"] == slow
+
+
 def test_a_single_one_that_drives_past_a_jam_is_no_flow():
     ego = steady(7, 0, 0, speed=0)
     assert first(*line(0, 4), steady(30, 10, 4.0, speed=17), ego=ego)["walking_pace_flow"]

@@ -49,7 +49,7 @@ def flow_signals(context: DriveContext, names: SignalNames = None) -> SignalColu
 
 
 def _slow_traffic(context: DriveContext) -> SignalColumns:
-    """Whether traffic is slow as a whole, and no lane flows beside the others.
+    """Whether traffic is slow as a whole, and no lane flows beside the others, nor all but ego's.
 
     Who queues to leave, beside lanes on which traffic flows, is in no jam of the road.
     """
@@ -60,7 +60,11 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     place = around.state * lanes + around.lane
     of_lane, on_lane = medians(place, around.speed, context.states * lanes)
     fast = np.where(on_lane > 1, of_lane, 0.0).reshape(context.states, lanes)
-    fastest_kmh = fast.max(axis=1, initial=0.0) * KMH
+    # Where traffic flows freely each lane may have one alone
+    beside = around.lane != context.ego_lane[around.state]
+    of_others, others = medians(around.state[beside], around.speed[beside], context.states)
+    flows = np.where(others > 1, of_others, 0.0)
+    fastest_kmh = np.maximum(fast.max(axis=1, initial=0.0), flows) * KMH
 
     def slow(below_kmh: float) -> Flags:
         called: Flags = (speed_kmh < below_kmh) & (fastest_kmh < TIMES_AS_FAST * below_kmh)
