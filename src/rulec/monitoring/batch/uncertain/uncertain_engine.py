@@ -31,6 +31,7 @@ from rulec.monitoring.uncertainty.judged_rules import JudgedRules
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     EntangledReads,
     NothingKnown,
+    known_parts,
     local_reads,
 )
 from rulec.monitoring.uncertainty.state_letters.letter_classes import RuleLetters
@@ -150,7 +151,10 @@ class _Engine:
             if reads is not None:
                 self._bound[key] = machine.classes.of_rule(rule, reads)
             else:
-                reads = EntangledReads(rule, binding.objects, axioms, self._everybody)
+                reads = EntangledReads(
+                    *(rule, binding.objects, axioms, self._everybody),
+                    counted_parts=known_parts(self._rulebook),
+                )
                 self._bound[key] = RuleLetters(machine.classes, rule, reads)
         return self._bound[key]
 
