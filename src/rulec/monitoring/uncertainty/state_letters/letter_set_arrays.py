@@ -72,6 +72,10 @@ class LetterSets:
 
     def looked_up(self, columns: Sequence[Numbers]) -> tuple[NDArray[np.intp], Numbers]:
         """A table of the numbers of letters, and the place of each letter in it."""
+        # One number for all letters may be in an array without an axis, too
+        columns = [
+            own.item() if isinstance(own, np.ndarray) and not own.ndim else own for own in columns
+        ]
         key = tuple([None if isinstance(own, np.ndarray) else own for own in columns])
         width, n_letters = 1, 1
         for read, own in enumerate(columns):
