@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import lru_cache
 
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
@@ -21,7 +22,7 @@ from rulec.trace import Trace
 from rulec.vocabulary import Declaration, ObjectType, Vocabulary
 from rulec.witnesses.joint_alphabet import JointAlphabet
 from rulec.witnesses.letter_functions import monitor_function
-from rulec.witnesses.object_universe import ObjectUniverse
+from rulec.witnesses.object_universe import Itself, ObjectUniverse
 from rulec.witnesses.shortest_traces import shortest_word
 from rulec.witnesses.trace_synthesis import synthesize_trace
 from rulec.witnesses.undecided import UndecidedError
@@ -108,6 +109,13 @@ def shared_vocabulary(first: Vocabulary, second: Vocabulary) -> SharedVocabulary
     Where defaults differ there is none, so that traces say the value; what one calls constant or
     presumed and the other does not is neither. Raises UndecidedError.
     """
+    return _shared_vocabulary(Itself(first), Itself(second))
+
+
+# All rules of two rulebooks ask for the same one; what is known of its axioms is kept beside it.
+@lru_cache(maxsize=8)
+def _shared_vocabulary(one: Itself[Vocabulary], other: Itself[Vocabulary]) -> SharedVocabulary:
+    first, second = one.item, other.item
     types: dict[str, ObjectType] = dict(first.types)
     for name, kind in second.types.items():
         if types.setdefault(name, kind).parent != kind.parent:

@@ -139,23 +139,40 @@ class Bound:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
+class _Hashed:
+    """A formula with parts, which remembers its hash: formulas are keys again and again."""
+
+    __slots__ = ("_number",)
+    _number: int
+
+    def __hash__(self) -> int:
+        try:
+            return self._number
+        except AttributeError:
+            number = hash(tuple([getattr(self, name) for name in self.__slots__]))
+            object.__setattr__(self, "_number", number)
+            return number
+
+
 @dataclass(frozen=True, slots=True)
-class Unary:
+class Unary(_Hashed):
     """An operator on one formula. Only a temporal operator has a ``bound``."""
 
     operator: UnaryOperator
     operand: Formula
     bound: Bound | None = None
+    __hash__ = _Hashed.__hash__
 
 
 @dataclass(frozen=True, slots=True)
-class Binary:
+class Binary(_Hashed):
     """An operator between two formulas. Only a temporal operator has a ``bound``."""
 
     operator: BinaryOperator
     left: Formula
     right: Formula
     bound: Bound | None = None
+    __hash__ = _Hashed.__hash__
 
 
 Formula = Atom | Comparison | Same | Constant | Unary | Binary

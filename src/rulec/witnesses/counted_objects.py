@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import reduce
+from functools import lru_cache, reduce
 from itertools import accumulate, product
 from math import ceil
 from operator import add, and_, mul
@@ -16,8 +16,9 @@ from rulec.automata.alphabet import reads_of
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic.formula import Count, Formula
 from rulec.logic.free_names import variables_of
+from rulec.vocabulary import Vocabulary
 from rulec.witnesses import letter_functions
-from rulec.witnesses.object_universe import EXTRA, ObjectUniverse
+from rulec.witnesses.object_universe import EXTRA, Itself, ObjectUniverse
 from rulec.witnesses.relevant_axioms import relevant_axioms, said_axioms
 from rulec.witnesses.state_synthesis import JointState, Subject, Value, synthesize_state
 from rulec.witnesses.undecided import UndecidedError
@@ -153,7 +154,8 @@ class CountedObjectKinds:
                 if vocabulary.is_subtype(kind, count.type)
             }
             axioms = _axioms_about(kind, self.universe, list(bodies.values()))
-            reads, truths = letter_functions.truths_of([*bodies.values(), *axioms], vocabulary)
+            about = (*bodies.values(), *axioms)
+            reads, truths = _truths_of(about, Itself(vocabulary))
             letters = dict(zip(bodies, truths, strict=False))
             counted = tuple(letters.get(place, 0) for place in range(len(counts)))
             yield _CountedType(kind, reads, counted, tuple(truths[len(bodies) :]))
@@ -174,6 +176,14 @@ class CountedObjectKinds:
         if key not in self._found:
             self._found[key] = tuple(_first_of_each(counted, reads, universe))
         return self._found[key]
+
+
+# Universes of a few objects and one vocabulary have the same additional ones.
+@lru_cache(maxsize=1024)
+def _truths_of(
+    formulas: tuple[Formula, ...], vocabulary: Itself[Vocabulary]
+) -> tuple[letter_functions.Reads, list[int]]:
+    return letter_functions.truths_of(formulas, vocabulary.item)
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Generic, TypeVar
 
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import rename_variables
@@ -16,6 +17,22 @@ COUNTED = "?"
 
 EXTRA = "+"
 """An object that is there only to be counted, before it has a name."""
+
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Itself(Generic[T]):
+    """A key that is equal for the same object alone, for equal ones take long to compare."""
+
+    item: T
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Itself) and other.item is self.item
+
+    def __hash__(self) -> int:
+        return id(self.item)
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ from rulec.logic.free_names import variables_of
 from rulec.rulebook.rulebook_model import Axiom
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.letter_functions import LetterFunction, Reads, axiom_function
-from rulec.witnesses.object_universe import ObjectUniverse, counts_in, said_of
+from rulec.witnesses.object_universe import Itself, ObjectUniverse, counts_in, said_of
 from rulec.witnesses.state_synthesis import Subject, default_digit
 
 MOST_KEPT = 20_000
@@ -58,7 +58,7 @@ class SaidAxiom:
 
 def said_axioms(universe: ObjectUniverse) -> Iterator[SaidAxiom]:
     """The axioms, said of the universe's objects; those of one vocabulary are kept."""
-    known = _said(_Itself(universe.vocabulary))
+    known = _said(Itself(universe.vocabulary))
     if len(known) > MOST_KEPT:
         known.clear()
     for axiom, names in universe.axiom_bindings():
@@ -69,21 +69,8 @@ def said_axioms(universe: ObjectUniverse) -> Iterator[SaidAxiom]:
         yield known[key][1]
 
 
-class _Itself:
-    """A vocabulary as a key: the same object, for equal ones take long to compare."""
-
-    def __init__(self, vocabulary: Vocabulary) -> None:
-        self.vocabulary = vocabulary
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Itself) and other.vocabulary is self.vocabulary
-
-    def __hash__(self) -> int:
-        return id(self.vocabulary)
-
-
 @lru_cache(maxsize=8)
-def _said(_: _Itself) -> dict[tuple[object, ...], tuple[Axiom, SaidAxiom]]:
+def _said(_: Itself[Vocabulary]) -> dict[tuple[object, ...], tuple[Axiom, SaidAxiom]]:
     return {}
 
 
