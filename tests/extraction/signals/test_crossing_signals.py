@@ -84,6 +84,22 @@ def test_who_has_crossed_egos_lane_has_done_so_while_it_turns_along_the_road():
 
 
 @pytest.mark.parametrize(
+    ("jumps_to", "expected"),
+    [(2.3, "not_crossing"), (2.1, "not_crossing"), (1.9, "on_crossing")],
+    ids=["beside ego's lane", "reaches into it", "in it"],
+)
+def test_who_has_crossed_egos_lane_is_back_in_it_with_its_middle(jumps_to, expected):
+    """It walks on at 1.5 m/s, but is seen 0.7 m or so back at 2.1 s; ego's lane ends at y = 2."""
+    y = np.interp(np.arange(40) * 0.1, [0, 2, 2.1, 3.1, 3.9], [-0.2, 2.8, jumps_to, 4, 5.2])
+    walker = vehicle(8, {k: (60, y[k]) for k in range(40)}, "pedestrian", length=0.4, width=0.4)
+    ego = steady(7, 0, 0, speed=2, steps=40, step_s=0.1)
+    context = context_of(recording([*lanes(2), ZEBRA], [ego, walker], step_s=0.1))
+    uses = crossing_signals(context).values("crossing_use")[0]
+    assert uses[5] == "on_crossing"
+    assert [uses[k] for k in (19, 21, 25)] == ["not_crossing", expected, "not_crossing"]
+
+
+@pytest.mark.parametrize(
     ("turn", "expected"), [(-1, "not_crossing"), (0, "on_crossing"), (1, "on_crossing")]
 )
 def test_who_turns_away_from_those_who_have_crossed_its_lane_is_not_in_their_way(turn, expected):

@@ -170,19 +170,24 @@ def _towards(others: RoadExtents) -> Floats:
 def _past_ego(context: DriveContext) -> Flags:
     """Flags of pedestrians that have left ego's lane, and ego's body, and walk away from them.
 
-    Who turns along the road then has left them behind too, until they walk back, for ``away_s``. Of
-    ego's body counts the middle if it turns away from them: what reaches farther is its rear.
+    Who turns along the road then has left them behind too, for ``away_s``, until they walk back or
+    their middle is in ego's way: how far bodies reach is not known well. Of ego's body counts the
+    middle if it turns away from them: what reaches farther is its rear.
     """
     own, others, bound = context.ego_extents, _walking(context), context.ego_lane
     low = np.where(own.across > 0, own.middle_from(bound), own.from_bound(bound)[0])
     high = np.where(own.across < 0, own.middle_from(bound + 1), own.from_bound(bound + 1)[1])
-    on_left = others.from_bound(bound + 1)[0] > np.maximum(high, 0.0)
-    on_right = others.from_bound(bound)[1] < np.minimum(low, 0.0)
+    leftmost, rightmost = np.maximum(high, 0.0), np.minimum(low, 0.0)
+    on_left = others.from_bound(bound + 1)[0] > leftmost
+    on_right = others.from_bound(bound)[1] < rightmost
+    left = others.middle_from(bound + 1) > leftmost
+    right = others.middle_from(bound) < rightmost
+    # Outwards from ego's way
+    leaves = np.where(left, others.across, np.where(right, -others.across, 0.0))
     least = context.thresholds.standing_kmh / KMH
-    beyond = np.where(on_left, 1.0, np.where(on_right, -1.0, 0.0))
     spans = context.spans
-    away = spans.latest(beyond * others.across > least)
-    back = spans.latest((beyond == 0) | (beyond * others.across < -least))
+    away = spans.latest((on_left | on_right) & (leaves > least))
+    back = spans.latest(~(left | right) | (leaves < -least))
     longest = round(context.thresholds.away_s / context.recording.step_s)
     past: Flags = (away > back) & (spans.columns - away <= longest)
     return past
