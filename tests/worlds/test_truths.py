@@ -11,10 +11,11 @@ from support.worlds.truths.crossing_truths import pedestrian_facts
 from support.worlds.world_state import WorldState
 
 
-def _zebra(folder, walker):
+def _zebra(folder, walker, faces=270):
     """A world on the stored zebra's roads: one drives over its crossing while somebody walks.
 
-    ``walker``: time (s) -> its edge, x and y (m); it is seen at these times alone.
+    ``faces``: the angle of who drives, 270 for straight on. ``walker``: time (s) -> its edge, x and
+    y of its front (m), angle; it is seen at these times alone.
     """
     files = WorldFiles(Path(folder))
     files.net.write_bytes((FOLDER / "zebra.net.xml").read_bytes())
@@ -22,11 +23,11 @@ def _zebra(folder, walker):
     for step in range(80):
         time, x = step / 10, 150 - step
         lane, pos = _lane(x)
-        place = f'x="{x}" y="1.6" angle="270" pos="{pos}" lane="{lane}"'
+        place = f'x="{x}" y="1.6" angle="{faces}" pos="{pos}" lane="{lane}"'
         bodies = [f'<vehicle id="car" {place} type="lawful" speed="10"/>']
         if time in walker:
-            edge, x, y = walker[time]
-            place = f'x="{x}" y="{y}" angle="107" pos="0" edge="{edge}"'
+            edge, x, y, angle = walker[time]
+            place = f'x="{x}" y="{y}" angle="{angle}" pos="0" edge="{edge}"'
             bodies.append(f'<person id="walker" {place} type="walker" speed="1.3"/>')
         moments.append(f'<timestep time="{time}">{"".join(bodies)}</timestep>')
     files.data.write_text(f"<fcd-export>{''.join(moments)}</fcd-export>", encoding="utf-8")
@@ -39,8 +40,8 @@ def _lane(x):
     return (":n1_0_0", 115 - x) if x > 111 else ("n1_n0_1", 111 - x)
 
 
-def _pavement(y):
-    return {step / 10: (":n1_w0", 112.0, y) for step in range(20, 45)}
+def _pavement(y, angle=107):
+    return {step / 10: (":n1_w0", 112.0, y, angle) for step in range(20, 45)}
 
 
 @pytest.mark.parametrize(
@@ -49,12 +50,22 @@ def _pavement(y):
         # The simulator draws it on the road as it rounds the corner, and the world ends
         (_pavement(3.1), [False]),
         (_pavement(3.3), []),
-        ({step / 10: (":n1_c0", 113.0, 3.0) for step in range(10, 45)}, [True]),
+        # It faces the pavement, and its middle is 0.1 m behind
+        (_pavement(3.22, 0), [False]),
+        ({step / 10: (":n1_c0", 113.0, 3.0, 107) for step in range(10, 45)}, [True]),
     ],
-    ids=["drawn on the road", "on the pavement", "on the crossing"],
+    ids=["drawn on the road", "on the pavement", "its middle on the road", "on the crossing"],
 )
 def test_who_is_drawn_on_a_crossing_is_not_sure_to_be_on_it(walker, sure, tmp_path):
     world = WorldState(_zebra(tmp_path, walker), 0.1)
+    assert [fact.sure for fact in pedestrian_facts(world)] == sure
+
+
+@pytest.mark.parametrize(("faces", "sure"), [(270, []), (250, [False])])
+def test_a_corner_of_who_is_askew_reaches_a_crossing_before_its_front(faces, sure, tmp_path):
+    """The front's middle is at the crossing's edge at 3.5 s; somebody is drawn on it just then."""
+    walker = {3.5: _pavement(3.1)[3.5]}
+    world = WorldState(_zebra(tmp_path, walker, faces), 0.1)
     assert [fact.sure for fact in pedestrian_facts(world)] == sure
 
 

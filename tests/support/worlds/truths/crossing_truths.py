@@ -4,12 +4,15 @@ import numpy as np
 
 from support.worlds.facts import Fact
 from support.worlds.truths.following_truths import BRAKING_MPS2, REACTION_S
-from support.worlds.world_state import LENGTH_M
+from support.worlds.world_state import LENGTH_M, WIDTH_M
 
 _SOON_S = 3.0
 _WAITED_S = 3.0
 _STANDS_MPS = 0.1
 _CLEAR_M = 1.0
+
+_WALKER_M = 0.215
+"""From front to back: SUMO's own length of who walks."""
 
 
 def pedestrian_facts(world):
@@ -20,7 +23,10 @@ def pedestrian_facts(world):
             continue
         placed = world.along(crossing)
         length = sum(world.net.lanes[lane].length for lane in crossing.link.inner)
-        on_it = np.flatnonzero((placed > 0) & (placed - LENGTH_M < length))
+        # A corner of who is askew as it changes lanes reaches farther than the middle of its front
+        askew = world.changing[crossing.track.id][crossing.row - 1]
+        beside_m = WIDTH_M / 2 if askew else 0.0
+        on_it = np.flatnonzero((placed > -beside_m) & (placed - LENGTH_M < length))
         steps = [crossing.track.step[row] for row in on_it]
         at = (steps[0] * world.step_s, steps[-1] * world.step_s)
         for walker in world.walkers.values():
@@ -78,14 +84,17 @@ def _on_crossing(world, walker, walk, where):
 def _drawn_on_road(world, walker, row, walk):
     """True if it is on the pavement, but drawn on a lane: SUMO rounds its corners in jumps.
 
-    Whether it walks over the crossing afterwards the world's end may hide.
+    Whether it walks over the crossing afterwards the world's end may hide. What counts is its
+    middle; the simulator tells where its front is.
     """
     if not walker.lane[row].startswith(walk.rpartition("_")[0] + "_w"):
         return False
     start, *_, end = world.net.lanes[f"{walk}_0"].shape
-    x, y = (walker.column(name)[row] for name in ("x", "y"))
+    x, y, angle = (walker.column(name)[row] for name in ("x", "y", "angle"))
+    faces = np.sin(np.radians(angle)), np.cos(np.radians(angle))
+    middle = np.array([x, y]) - np.array(faces) * _WALKER_M / 2
     ahead = (end - start) / np.hypot(*(end - start))
-    return 0 < ((x, y) - start) @ ahead < np.hypot(*(end - start))
+    return 0 < (middle - start) @ ahead < np.hypot(*(end - start))
 
 
 def _across(walker, walk):
