@@ -15,6 +15,9 @@ from rulec.report.verdicts.state_times import StateTimes
         (StateTimes(step_s=0.1), " (3.7 s)", " (3.7-4 s)"),
         (StateTimes(12.2, 0.04), " (13.68 s)", " (13.68-13.8 s)"),
         (StateTimes(100, 1), " (137 s)", " (137-140 s)"),
+        (StateTimes(1e308, 1), "", ""),
+        (StateTimes(step_s=1e308), "", ""),
+        (StateTimes(step_s=1e-300), " (0 s)", " (0-0 s)"),
     ],
 )
 def test_times_have_no_more_digits_than_their_steps(times, one, stretch):
