@@ -2,12 +2,14 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from support.worlds.judging import last_moment_s
 from support.worlds.simulate import WorldFiles
 from support.worlds.stored import FOLDER
 from support.worlds.truths.crossing_truths import pedestrian_facts
+from support.worlds.truths.priority_truths import roundabout_facts
 from support.worlds.world_state import WorldState
 
 
@@ -67,6 +69,50 @@ def test_a_corner_of_who_is_askew_reaches_a_crossing_before_its_front(faces, sur
     walker = {3.5: _pavement(3.1)[3.5]}
     world = WorldState(_zebra(tmp_path, walker, faces), 0.1)
     assert [fact.sure for fact in pedestrian_facts(world)] == sure
+
+
+def _roundabout(folder, ends_s):
+    """A world on the stored roundabout's roads: one drives in, one comes on the ring, and stops.
+
+    The first is out of the other one's way at 3.4 s, which enters the junction at 3 s, brakes from
+    3.5 s on, and stands from 4 s on, 2 m before it would be in the first one's.
+    """
+    files = WorldFiles(Path(folder))
+    files.net.write_bytes((FOLDER / "roundabout.net.xml").read_bytes())
+    times = np.arange(0, ends_s + 0.05, 0.1)
+    on_ring = np.interp(times, [0, 3, 3.5, 4], [-14, 0, 2.4, 3.3])
+    rows = {"drives in": (7 * times - 7, ("w_rw_0", 89.3), (":rw_2_0", 7.83))}
+    rows["on the ring"] = (on_ring, ("rn_rw_0", 14.91), (":rw_1_0", 12.04))
+    moments = []
+    for k, time in enumerate(times):
+        bodies = []
+        for name, (places, *lanes) in rows.items():
+            place, speed = places[k], np.gradient(places, times)[k]
+            lane, pos = _on(place, [*lanes, ("rw_rs_0", 100.0)])
+            where = f'x="0" y="0" angle="0" speed="{speed}" pos="{pos}" lane="{lane}"'
+            bodies.append(f'<vehicle id="{name}" {where} type="lawful"/>')
+        moments.append(f'<timestep time="{time:.1f}">{"".join(bodies)}</timestep>')
+    files.data.write_text(f"<fcd-export>{''.join(moments)}</fcd-export>", encoding="utf-8")
+    return files
+
+
+def _on(place, lanes):
+    """The lane on which somebody is, and how far along it, so far (m) beyond the first one."""
+    (first, length), *beyond = lanes
+    place += length
+    if place <= length or not beyond:
+        return first, place
+    return _on(place - length - beyond[0][1], beyond)
+
+
+@pytest.mark.parametrize(
+    ("ends_s", "sure"),
+    # It has not braked yet; it has, for one or another; for whom ego has left long ago
+    [(3.2, []), (5.0, [False]), (8.0, [])],
+)
+def test_who_stops_for_whom_before_the_recording_ends_is_not_sure(ends_s, sure, tmp_path):
+    world = WorldState(_roundabout(tmp_path, ends_s), 0.1)
+    assert [fact.sure for fact in roundabout_facts(world)] == sure
 
 
 def test_a_recording_ends_with_its_last_state(tmp_path):

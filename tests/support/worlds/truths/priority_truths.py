@@ -116,13 +116,15 @@ def _grade(world, one, other):
     theirs = _occupied(world, other, within[1])
     if own[0] < theirs[0]:
         spare = theirs[0] - own[1]
-        if spare >= _FREE_S:
+        # Whose track ends before it gets there would not have come earlier
+        if min(theirs[0], other.track.step[-1] * world.step_s) - own[1] >= _FREE_S:
             return None
         row = other.track.at(one.track.step[one.row])
         if row is None:
             return False
         speed = other.track.column("speed")
-        reaches = other.track.at(round(theirs[0] / world.step_s)) if theirs[0] < np.inf else None
+        ends = theirs[0] == np.inf
+        reaches = len(speed) - 1 if ends else other.track.at(round(theirs[0] / world.step_s))
         until = max(other.row, reaches or 0)
         waited = speed[row : until + 1].min(initial=np.inf) if row <= until else np.inf
         # Who had to stop for it, or to wait for others, may have had its own reasons
