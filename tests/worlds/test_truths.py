@@ -115,6 +115,18 @@ def test_who_stops_for_whom_before_the_recording_ends_is_not_sure(ends_s, sure, 
     assert [fact.sure for fact in roundabout_facts(world)] == sure
 
 
+@pytest.mark.parametrize(
+    ("lane", "starts"),
+    [("n2_n1_1", ["n2_n1_1"]), ("n2_n1_2", ["n2_n1_1"]), ("n1_n2_1", [])],
+    ids=["its own", "beside it", "of another road"],
+)
+def test_who_changes_lanes_at_the_line_drives_on_over_the_junction(lane, starts, tmp_path):
+    files = _zebra(tmp_path, {})
+    text = files.data.read_text(encoding="utf-8").replace("n2_n1_1", lane)
+    files.data.write_text(text, encoding="utf-8")
+    assert [one.link.start for one in WorldState(files, 0.1).crossings] == starts
+
+
 def test_a_recording_ends_with_its_last_state(tmp_path):
     """In every second state alone nobody finds what happens in the last one between."""
     assert last_moment_s(_zebra(tmp_path, {}).data) == 7.9

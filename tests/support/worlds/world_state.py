@@ -94,7 +94,8 @@ class WorldState:
     def _crossings_of(self, track):
         for row in range(1, len(track.lane)):
             link = self.net.links.get(track.lane[row])
-            if link is not None and track.lane[row - 1] == link.start:
+            # Who changes lanes at the line comes from the one beside
+            if link is not None and self._same_road(track.lane[row - 1], link.start):
                 yield Crossing(track, link, row)
 
     @cached_property
@@ -135,8 +136,10 @@ class WorldState:
         return placed
 
     def _beside(self, lane, link, done):
-        same = self.net.lanes[lane].edge == self.net.lanes[link.end].edge
-        return done if same else np.nan
+        return done if self._same_road(lane, link.end) else np.nan
+
+    def _same_road(self, *lanes):
+        return len({self.net.lanes[lane].edge for lane in lanes}) == 1
 
 
 def _lights(file, step_s):
