@@ -122,8 +122,10 @@ def test_who_stops_for_whom_before_the_recording_ends_is_not_sure(ends_s, sure, 
 )
 def test_who_changes_lanes_at_the_line_drives_on_over_the_junction(lane, starts, tmp_path):
     files = _zebra(tmp_path, {})
-    text = files.data.read_text(encoding="utf-8").replace("n2_n1_1", lane)
-    files.data.write_text(text, encoding="utf-8")
+    own = '<lane id="n2_n1_1"'
+    beside = '<lane id="n2_n1_2" index="2" speed="13.89" length="109" shape="224,4.8 115,4.8"/>'
+    for file, old, new in (files.net, own, beside + own), (files.data, "n2_n1_1", lane):
+        file.write_text(file.read_text(encoding="utf-8").replace(old, new), encoding="utf-8")
     assert [one.link.start for one in WorldState(files, 0.1).crossings] == starts
 
 
