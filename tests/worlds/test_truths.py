@@ -71,17 +71,21 @@ def test_a_corner_of_who_is_askew_reaches_a_crossing_before_its_front(faces, sur
     assert [fact.sure for fact in pedestrian_facts(world)] == sure
 
 
-def _roundabout(folder, ends_s):
+def _roundabout(folder, ends_s, stands_m=None):
     """A world on the stored roundabout's roads: one drives in, one comes on the ring, and stops.
 
     The first is out of the other one's way at 3.4 s, which enters the junction at 3 s, brakes from
-    3.5 s on, and stands from 4 s on, 2 m before it would be in the first one's.
+    3.5 s on, and stands from 4 s on, 2 m before it would be in the first one's. With ``stands_m``
+    the first one stands so far before its line from 0.4 s on, until it enters at 1 s.
     """
     files = WorldFiles(Path(folder))
     files.net.write_bytes((FOLDER / "roundabout.net.xml").read_bytes())
     times = np.arange(0, ends_s + 0.05, 0.1)
     on_ring = np.interp(times, [0, 3, 3.5, 4], [-14, 0, 2.4, 3.3])
-    rows = {"drives in": (7 * times - 7, ("w_rw_0", 89.3), (":rw_2_0", 7.83))}
+    enters = 7 * times - 7
+    if stands_m is not None:
+        enters[4:10] = -stands_m
+    rows = {"drives in": (enters, ("w_rw_0", 89.3), (":rw_2_0", 7.83))}
     rows["on the ring"] = (on_ring, ("rn_rw_0", 14.91), (":rw_1_0", 12.04))
     moments = []
     for k, time in enumerate(times):
@@ -94,6 +98,13 @@ def _roundabout(folder, ends_s):
         moments.append(f'<timestep time="{time:.1f}">{"".join(bodies)}</timestep>')
     files.data.write_text(f"<fcd-export>{''.join(moments)}</fcd-export>", encoding="utf-8")
     return files
+
+
+@pytest.mark.parametrize(("stands_m", "begins"), [(None, 1.0), (0.05, 0.4), (0.2, 1.0)])
+def test_who_stands_at_the_line_may_have_entered_the_junction(stands_m, begins, tmp_path):
+    """At 1 s its front is at the line, and at 1.1 s beyond it."""
+    (fact,) = roundabout_facts(WorldState(_roundabout(tmp_path, 5.0, stands_m), 0.1))
+    assert (fact.begin, fact.end) == pytest.approx((begins, 1.1))
 
 
 def _on(place, lanes):

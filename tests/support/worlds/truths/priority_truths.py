@@ -17,6 +17,9 @@ _SLOWED = 0.9
 _ABOUT_S = 0.3
 """Who gets there first by less gets there together with the other."""
 
+_AT_LINE_M = 0.1
+"""Lines of one junction lie apart by so little in the simulator's net and on a map made of it."""
+
 _MOVING_MPS, _STOPS_MPS = 3.0, 1.0
 _APART_M = WIDTH_M + 0.2
 _SIDEWAYS_DEG, _ABOUT_DEG = (40.0, 140.0), 10.0
@@ -103,8 +106,11 @@ def _conflicts(world):
                 ):
                     grade = _grade(world, one, other)
                     if grade is not None:
+                        # Who stands at the line may be over it by another map
+                        close = world.along(one)[: one.row] >= -_AT_LINE_M
+                        stands = int(close[::-1].argmin()) if not close.all() else 0
                         at = world.time(one.track, one.row)
-                        yield one, other, grade, (at, at)
+                        yield one, other, grade, (at - stands * world.step_s, at)
 
 
 def _grade(world, one, other):
