@@ -26,11 +26,17 @@ def pedestrian_facts(world):
         # A corner of who is askew as it changes lanes reaches farther than the middle of its front
         askew = world.changing[crossing.track.id][crossing.row - 1]
         beside_m = WIDTH_M / 2 if askew else 0.0
-        on_it = np.flatnonzero((placed > -beside_m) & (placed - LENGTH_M < length))
-        steps = [crossing.track.step[row] for row in on_it]
-        at = (steps[0] * world.step_s, steps[-1] * world.step_s)
+        before_end = placed - LENGTH_M < length
+        on_it = np.flatnonzero((placed > 0) & before_end)
+        perhaps = np.flatnonzero((placed > -beside_m) & before_end)
+        steps, reached = ([crossing.track.step[row] for row in rows] for rows in (on_it, perhaps))
+        at = (reached[0] * world.step_s, reached[-1] * world.step_s)
         for walker in world.walkers.values():
             grade = _grade(world, walker, walk, (steps, crossing.link.inner[0]))
+            if askew and grade is None:
+                # How far the corner reaches nobody tells for sure
+                by_corner = _grade(world, walker, walk, (reached, crossing.link.inner[0]))
+                grade = None if by_corner is None else False
             # Nobody has to do what cannot be done any more
             grade = grade and _in_time(world, crossing, walker, walk)
             if grade is not None:
