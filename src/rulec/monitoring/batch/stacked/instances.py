@@ -80,6 +80,16 @@ class Instances:
     lasts: Places
     letters: KnownLetters | None = None
 
+    def part(self, members: Places) -> Instances:
+        """Some of them."""
+        return Instances(
+            self.traces[members],
+            tuple(own[members] for own in self.objects),
+            self.firsts[members],
+            self.lasts[members],
+            self.letters,
+        )
+
     def bounds(self) -> Places:
         """Where the states of each begin if they stand one after the other, and all end."""
         return np.concatenate([np.zeros(1, dtype=np.intp), np.cumsum(self.lasts - self.firsts + 1)])

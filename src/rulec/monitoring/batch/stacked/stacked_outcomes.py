@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -23,7 +23,6 @@ from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
 from rulec.monitoring.batch.uncertain.partial_reader import number_of_value
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
-from rulec.monitoring.uncertainty.supposed_constants import ConstantsReader
 from rulec.monitoring.uncertainty.uncertain_machine import Answer
 from rulec.trace import Value
 from rulec.trace.plain_arrays import distinct
@@ -70,7 +69,10 @@ def outcomes(
     instances = doubtful_instances(rule, reader)
     if not len(instances.traces):
         return
-    for words in _words(rule, reader, instances, rulebook):
+    for chosen in _by_unknown_constants(rule, reader, instances, rulebook):
+        words = _doubtful_words(rule, reader, chosen)
+        if words is None:
+            continue
         is_odd = np.logical_or.reduceat(words.odd, words.bounds[:-1])
         alternatives = [_stretches(letters, words.bounds) for letters in words.letters]
         first_alike = _first_alike(words.letters, words.bounds)
@@ -146,35 +148,6 @@ def _joined(answers: Sequence[Answer]) -> Answer:
     )
 
 
-def _words(
-    rule: StackedRule, reader: StackReader, instances: Instances, rulebook: CompiledRulebook
-) -> Iterator[StackedWords]:
-    """The words of choices, those together of which the same constants are unknown."""
-    bounds, spots = instances.bounds(), instances.spots(rule, reader.stack)
-    numbers = NumbersAt(rule, reader, spots)
-    constants = rule.constants
-    dark = np.zeros((len(constants), len(instances.traces)), dtype=bool)
-    for row, place in enumerate(constants):
-        own = np.broadcast_to(np.asarray(numbers[place]), (len(spots.states),))
-        dark[row] = own[bounds[:-1]] == rule.reads[place].unknown
-    for members, unknown in _alike(dark):
-        which = [constants[row] for row in unknown]
-        if len(members) == len(instances.traces):
-            yield _of_group(rule, reader, rulebook, (instances, bounds, spots, numbers), which)
-            continue
-        chosen = Instances(
-            instances.traces[members],
-            tuple(own[members] for own in instances.objects),
-            instances.firsts[members],
-            instances.lasts[members],
-            instances.letters,
-        )
-        own_spots = chosen.spots(rule, reader.stack)
-        own_numbers = NumbersAt(rule, reader, own_spots)
-        told = chosen, chosen.bounds(), own_spots, own_numbers
-        yield _of_group(rule, reader, rulebook, told, which)
-
-
 def _alike(flags: NDArray[np.bool_]) -> Iterator[tuple[NDArray[np.intp], list[int]]]:
     """Columns with the same flags, and the rows of these."""
     if not flags.any():
@@ -185,72 +158,163 @@ def _alike(flags: NDArray[np.bool_]) -> Iterator[tuple[NDArray[np.intp], list[in
         yield np.flatnonzero(kinds.ravel() == kind), np.flatnonzero(row).tolist()
 
 
-_Told: TypeAlias = tuple[Instances, NDArray[np.intp], Spots, Sequence[Numbers]]
+@dataclass(frozen=True, slots=True, eq=False)
+class _Chosen:
+    """Choices of objects of which the same constants are unknown, which may be what is supposed.
 
+    ``bounds``, ``spots`` and ``numbers`` are as in ``StackedWords``, but for unknown constants.
+    """
 
-def _of_group(
-    rule: StackedRule,
-    reader: StackReader,
-    rulebook: CompiledRulebook,
-    told: _Told,
-    unknown: Sequence[int],
-) -> StackedWords:
-    """The words of choices of which the same constants are ``unknown``, places of reads."""
-    instances, bounds, spots, numbers = told
-    vocabulary, n_spots = reader.stack.vocabulary, len(spots.states)
-    odd = _hides_constants(rule, reader, spots)
-    supposed: Sequence[Mapping[Subject, Value]] = [{}]
-    is_exact = True
-    if unknown:
-        subjects = {place: _subject(rule, place) for place in unknown}
-        given = dict.fromkeys(subjects.values(), UNKNOWN)
-        supposed, is_exact = ConstantsReader(rulebook, vocabulary, {}).suppositions(
-            rule.rule, dict(given)
+    instances: Instances
+    bounds: NDArray[np.intp]
+    spots: Spots
+    numbers: Sequence[Numbers]
+    unknown: Sequence[int] = ()
+    supposed: Sequence[Mapping[Subject, Value]] = ({},)
+    is_exact: bool = True
+
+    @staticmethod
+    def of(rule: StackedRule, reader: StackReader, instances: Instances) -> _Chosen:
+        """Some choices, with nothing supposed."""
+        spots = instances.spots(rule, reader.stack)
+        return _Chosen(instances, instances.bounds(), spots, NumbersAt(rule, reader, spots))
+
+    def part(self, rule: StackedRule, reader: StackReader, members: NDArray[np.intp]) -> _Chosen:
+        """Some of them."""
+        if len(members) == len(self.instances.traces):
+            return self
+        instances = self.instances.part(members)
+        spots = instances.spots(rule, reader.stack)
+        numbers = NumbersAt(rule, reader, spots)
+        return replace(
+            self, instances=instances, bounds=instances.bounds(), spots=spots, numbers=numbers
         )
-        if len(given) > 1 and supposed == [{}]:
-            odd[:] = True
-    every_numbers, every_letters, every_entangled = [], [], []
-    crowd: CrowdedStates | None = None
-    for values in supposed:
+
+
+def _by_unknown_constants(
+    rule: StackedRule, reader: StackReader, instances: Instances, rulebook: CompiledRulebook
+) -> Iterator[_Chosen]:
+    """The choices, those together of which the same constants are unknown."""
+    chosen = _Chosen.of(rule, reader, instances)
+    constants = rule.constants
+    if not constants:
+        yield chosen
+        return
+    dark = np.zeros((len(constants), len(instances.traces)), dtype=bool)
+    for row, place in enumerate(constants):
+        own = np.broadcast_to(np.asarray(chosen.numbers[place]), (len(chosen.spots.states),))
+        dark[row] = own[chosen.bounds[:-1]] == rule.reads[place].unknown
+    for members, unknown in _alike(dark):
+        which = tuple([constants[row] for row in unknown])
+        supposed, is_exact = rule.suppositions(which, rulebook)
+        own_part = chosen.part(rule, reader, members)
+        yield replace(own_part, unknown=which, supposed=supposed, is_exact=is_exact)
+
+
+def _doubtful_words(rule: StackedRule, reader: StackReader, chosen: _Chosen) -> StackedWords | None:
+    """The words of those choices that are not surely kept, taking each read for itself.
+
+    What reads may be together is less than that, so there is no need to find it for the others.
+    """
+    alternatives = _alternatives(rule, reader, chosen)
+    doubtful = np.zeros(len(chosen.instances.traces), dtype=bool)
+    for _, _, letters in alternatives:
+        doubtful |= ~_are_surely_kept(rule, letters, chosen.bounds)
+    if not doubtful.any():
+        return None
+    if not doubtful.all():
+        chosen = chosen.part(rule, reader, np.flatnonzero(doubtful))
+        alternatives = _alternatives(rule, reader, chosen)
+    return _entangled_words(rule, reader, chosen, alternatives)
+
+
+_Alternative: TypeAlias = tuple[Mapping[Subject, Value], Sequence[Numbers], NDArray[np.intp]]
+"""What is supposed, and the numbers of reads and of letters."""
+
+
+def _alternatives(
+    rule: StackedRule, reader: StackReader, chosen: _Chosen
+) -> Sequence[_Alternative]:
+    """The letters for all that is supposed, taking each read for itself."""
+    found = []
+    for values in chosen.supposed:
         instead = {}
-        for place in unknown:
-            value = values.get(_subject(rule, place))
+        for place in chosen.unknown:
+            value = values.get(rule.subject(place))
             if value is not None:
                 read = rule.reads[place].read
-                instead[place] = number_of_value(read, value, vocabulary)[1]
-        own = [instead.get(n, x) for n, x in enumerate(numbers)] if instead else numbers
-        if instead or instances.letters is None:
-            found = rule.letters.numbers(own)
+                instead[place] = number_of_value(read, value, reader.stack.vocabulary)[1]
+        own = chosen.numbers
+        if instead:
+            own = [instead.get(n, x) for n, x in enumerate(own)]
+        if instead or chosen.instances.letters is None:
+            letters = rule.letters.numbers(own)
         else:
-            found = instances.letters.at(spots, rule.variables)
-        letters = np.array(np.broadcast_to(np.asarray(found), (n_spots,)))
+            letters = chosen.instances.letters.at(chosen.spots, rule.variables)
+        if not isinstance(letters, np.ndarray):
+            letters = np.full(len(chosen.spots.states), letters, dtype=np.intp)
+        found.append((values, own, letters))
+    return found
+
+
+def _are_surely_kept(
+    rule: StackedRule, letters: NDArray[np.intp], bounds: NDArray[np.intp]
+) -> NDArray[np.bool_]:
+    """For each word whether it is kept, whatever its letters are of those that they may be."""
+    kept = np.zeros(len(bounds) - 1, dtype=bool)
+    first_alike = _first_alike([letters], bounds)
+    rows, ends = _stretches(letters, bounds)
+    sets = rule.letters.sets
+    for place in distinct(first_alike).tolist():
+        own = rows[ends[place] : ends[place + 1]]
+        # What cannot be, because facts exclude it, is never kept
+        if all(sets[number] for number in own[:, 0].tolist()):
+            kept[place] = rule.answer(own).worst == KEPT
+    return kept[first_alike]
+
+
+def _entangled_words(
+    rule: StackedRule,
+    reader: StackReader,
+    chosen: _Chosen,
+    alternatives: Sequence[_Alternative],
+) -> StackedWords:
+    """The words of choices, with what their reads may be together."""
+    spots = chosen.spots
+    odd = _hides_constants(rule, reader, spots)
+    if len(chosen.unknown) > 1 and not any(chosen.supposed):
+        odd[:] = True
+    every_letters: list[NDArray[np.intp]] = []
+    every_entangled: list[EntangledLetters | None] = []
+    crowd: CrowdedStates | None = None
+    for values, numbers, letters in alternatives:
         entangled = None
         if rule.related and not odd.all():
-            partial = rule.letters.are_partial(own, rule.related)
-            partial = np.broadcast_to(partial, (n_spots,))
+            partial = rule.letters.are_partial(numbers, rule.related)
+            partial = np.broadcast_to(partial, (len(spots.states),))
             if partial.any():
                 about = spots, partial
                 crowd = crowd or CrowdedStates(rule, reader)
-                entangled = entangled_letters(rule, reader, about, own, values, crowd=crowd)
+                entangled = entangled_letters(rule, reader, about, numbers, values, crowd=crowd)
                 if entangled is None:
                     odd |= partial
                 else:
                     sets = [rule.letters.number_of(classes) for classes in entangled.classes]
+                    letters = letters.copy()
                     letters[entangled.places] = np.array(sets, dtype=np.intp)[entangled.numbers]
         if rule.facts:
             nothing = [n for n, classes in enumerate(rule.letters.sets) if not classes]
             odd |= np.isin(letters, nothing)
         every_entangled.append(entangled)
-        every_numbers.append(own)
         every_letters.append(letters)
     return StackedWords(
         rule,
-        instances,
-        bounds=bounds,
+        chosen.instances,
+        bounds=chosen.bounds,
         spots=spots,
-        supposed=supposed,
-        is_exact=is_exact,
-        numbers=every_numbers,
+        supposed=chosen.supposed,
+        is_exact=chosen.is_exact,
+        numbers=[numbers for _, numbers, _ in alternatives],
         letters=every_letters,
         entangled=every_entangled,
         odd=odd,
@@ -271,8 +335,3 @@ def _hides_constants(rule: StackedRule, reader: StackReader, spots: Spots) -> ND
             for begin, last in zip(first.tolist(), end.tolist(), strict=True):
                 found |= (begin <= spots.states) & (spots.states < last)
     return found
-
-
-def _subject(rule: StackedRule, place: int) -> Subject:
-    read = rule.reads[place]
-    return read.names[0], read.variables

@@ -26,8 +26,12 @@ from rulec.monitoring.uncertainty.state_letters.related_facts import (
     is_of_one,
     related_facts,
 )
+from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
+from rulec.monitoring.uncertainty.supposed_constants import ConstantsReader
 from rulec.monitoring.uncertainty.uncertain_machine import Answer, UncertainMachine
+from rulec.trace import Value
 from rulec.vocabulary import Enumeration, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN
 
 NOBODY = NothingKnown({}, Vocabulary("", {}, {}))
 """Nothing is known of anybody."""
@@ -114,6 +118,27 @@ class StackedRule:
         self._vocabulary = vocabulary
         self._everybody: dict[str, str] = {}
         self._crowd: EntangledReads | None = None
+        self._supposed: dict[tuple[int, ...], tuple[Sequence[Mapping[Subject, Value]], bool]] = {}
+
+    def subject(self, place: int) -> Subject:
+        """What a read of a single value is about."""
+        read = self.reads[place]
+        return read.names[0], read.variables
+
+    def suppositions(
+        self, places: tuple[int, ...], rulebook: CompiledRulebook
+    ) -> tuple[Sequence[Mapping[Subject, Value]], bool]:
+        """What constants, of which nothing is known, may be together, by the reads of them.
+
+        Second is whether no more is supposed to be possible than is.
+        """
+        if not places:
+            return ({},), True
+        if places not in self._supposed:
+            given = dict.fromkeys(map(self.subject, places), UNKNOWN)
+            reader = ConstantsReader(rulebook, self._vocabulary, {})
+            self._supposed[places] = reader.suppositions(self.rule, dict(given))
+        return self._supposed[places]
 
     def reads_among(self, everybody: Mapping[str, str]) -> EntangledReads:
         """The entangled reads of a rule without variables, where these objects may be there.
