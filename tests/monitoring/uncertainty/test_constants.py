@@ -139,3 +139,37 @@ def test_two_values_are_an_error_that_names_both_states(values):
     )
     for answer in verify_many([trace] * 4, compiled):
         assert answer.error.diagnostics == (problem,)
+
+
+def test_together_too_what_counts_is_the_same_in_all_states():
+    rule = "(always count c: car (heavy(c)) <= 0) or (always count c: car (heavy(c)) >= 1)"
+    text = BOOK + f"hard rule same {{ require {rule} }}"
+    compiled = rulec.compile(rulec.parse_rulebook(text))
+    state = {"heavy": {"a": UNKNOWN, "b": UNKNOWN}}
+    trace = Trace("t", 1.0, {"a": "car", "b": "car"}, (state, state))
+    assert [answer.open for answer in verify_many([trace] * 4, compiled)] == [()] * 4
+
+
+MANY = """\
+rulebook many
+kind is one of a, b, c, d, e, f, g, h, i default a
+mood is one of k, l, m, n, o, p, q, r default k
+signal fast default false
+constant kind, mood
+hard rule steady { require (always a) or (always not a) or (always (k and not fast)) }
+"""
+
+
+def test_each_of_many_traces_has_unknown_constants_of_its_own():
+    compiled = rulec.compile(rulec.parse_rulebook(MANY))
+    told = {
+        "known": {"kind": "b", "mood": "l"},
+        "one unknown": {"kind": UNKNOWN, "mood": "l"},
+        "the other unknown": {"kind": "b", "mood": UNKNOWN},
+        # They may be together what is more than is gone through
+        "both unknown": {"kind": UNKNOWN, "mood": UNKNOWN},
+    }
+    many = [Trace(name, 1.0, {}, (state, {**state, "fast": True})) for name, state in told.items()]
+    answers = list(verify_many(many, compiled))
+    assert [answer.trace for answer in answers if answer.open] == ["both unknown"]
+    assert answers == [verify(trace, compiled) for trace in many]

@@ -28,7 +28,7 @@ from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.trace import Value
 from rulec.trace.trace_columns import Array, Key, TraceColumns
 from rulec.vocabulary import Enumeration, Signal, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval, PartialValue
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
 
 
 def meanings_of(read: Read | NumberRead, vocabulary: Vocabulary) -> Sequence[int]:
@@ -102,10 +102,8 @@ class PartialReader(ColumnReader):
         numbers = values.astype(np.intp)
         return numbers if unknown is None else np.where(unknown, n_values, numbers)
 
-    def values_at(
-        self, key: Key, places: NDArray[np.intp], supposed: Value | None
-    ) -> list[PartialValue | None]:
-        """What states at some places say of a name, or what is supposed where it is not known."""
+    def values_at(self, key: Key, places: NDArray[np.intp]) -> list[PartialValue | None]:
+        """What states at some places say of a name."""
         declaration, columns = self._vocabulary.declarations[key[0]], self.columns
         if key not in columns.values:
             values: list[Any] = [declaration.default] * len(places)
@@ -121,8 +119,6 @@ class PartialReader(ColumnReader):
             if key in columns.unknown:
                 dark = columns.unknown[key][places].tolist()
                 values = [UNKNOWN if x else value for x, value in zip(dark, values, strict=True)]
-        if supposed is not None:
-            values = [supposed if type(value) in UNKNOWN_TYPES else value for value in values]
         return values
 
     def is_dark(self, key: Key) -> bool:

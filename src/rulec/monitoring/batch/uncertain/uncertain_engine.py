@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,7 @@ from rulec.monitoring.batch.uncertain.set_table import (
     SetTables,
     set_tables,
 )
+from rulec.monitoring.batch.uncertain.supposed_rows import SupposedRows, supposed_rows
 from rulec.monitoring.batch.verdict_columns import RuleBinding, VerdictColumns
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.uncertainty.judged_rules import JudgedRules
@@ -40,9 +42,9 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.monitoring.uncertainty.supposed_constants import ConstantsReader
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine
 from rulec.trace import Value
-from rulec.trace.trace_columns import Array, TraceColumns, smallest_unsigned
+from rulec.trace.trace_columns import Array, Layout, TraceColumns, smallest_unsigned
 from rulec.vocabulary import Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
+from rulec.vocabulary.partial_values import UNKNOWN
 
 Places = NDArray[np.intp]
 
@@ -88,28 +90,27 @@ class _Engine:
         self._everybody = NothingKnown(columns.objects, vocabulary)
         self._bound: dict[tuple[str, ...], RuleLetters] = {}
         self._machines: dict[str, SetTables] = {}
+        self._rows: dict[object, SupposedRows] = {}
 
     def outcomes(self, binding: RuleBinding, machine: UncertainMachine) -> UncertainOutcomes:
         """What a rule comes to for some objects."""
         machines = self._set_tables(binding.rule, machine)
-        alternatives, unread = self._alternatives(binding, machine)
-        words = [self._letters(binding, machines, values) for values in alternatives]
+        rows, unread = self._rows_of(binding, machine)
+        word = self._letters(binding, machines, rows)
         tables = machines.now()
         n_traces = self._columns.layout.n_traces
         if tables is None:
             nothing = np.empty(0, dtype=np.intp)
             every = np.arange(n_traces)
             return UncertainOutcomes(binding, nothing, nothing.astype(np.int64), nothing, every)
-        first, last = binding.stretch
-        layout = self._columns.layout
-        runs = [run(tables.joint, cells, layout, first, last) for cells in words]
-        possible = np.any([(one & POSSIBLE) != 0 for one in runs], axis=0)
-        certain = np.all([(one & CERTAIN) != 0 for one in runs], axis=0)
-        unread = np.union1d(unread, self._impossible(binding, tables, words))
+        verdicts = run(tables.joint, word, rows.layout, *binding.stretch)
+        possible = rows.in_any((verdicts & POSSIBLE) != 0)
+        certain = rows.in_all((verdicts & CERTAIN) != 0)
+        unread = np.union1d(unread, _impossible(binding, tables, rows, word))
         return UncertainOutcomes(
             binding,
             np.flatnonzero(~possible),
-            _lost_at(binding, tables, (self._columns, words), possible),
+            _lost_at(binding, tables, (rows, word), possible),
             np.flatnonzero(possible & ~certain),
             unread,
         )
@@ -122,22 +123,20 @@ class _Engine:
             self._machines[rule.name] = set_tables(machine, meanings)
         return self._machines[rule.name]
 
-    def _letters(
-        self, binding: RuleBinding, machines: SetTables, supposed: Mapping[Subject, Value]
-    ) -> Array:
-        """The number of the set of letters in each state."""
-        n_states = self._columns.layout.n_states
-        numbers = [self._supposed(read, binding, supposed) for read in binding.rule.machine.reads]
+    def _letters(self, binding: RuleBinding, machines: SetTables, rows: SupposedRows) -> Array:
+        """The number of the set of letters in each state of rows."""
+        n_states = rows.layout.n_states
+        numbers = [self._numbers(read, binding, rows) for read in binding.rule.machine.reads]
         letters = np.broadcast_to(np.asarray(machines.letters.numbers(numbers)), (n_states,))
         own = self._rule_letters(binding, machines.machine)
         if own.entangled.numbers:
             partial = machines.letters.are_partial(numbers, own.entangled.numbers)
-            dark = self._are_entangled(binding, own) & partial
-            places = self._on_stretch(binding, np.flatnonzero(dark))
+            dark = self._are_entangled(binding, own, rows) & partial
+            places = _on_stretch(binding, rows.layout, np.flatnonzero(dark))
             if len(places):
                 letters = letters.copy()
                 digits = [machines.digits(n, numbers[n], places) for n in own.independent]
-                keys = self._keys(binding, own.entangled, (places, digits), supposed)
+                keys = self._keys(binding, own.entangled, (places, digits), rows)
                 letters[places] = [machines.letters.number_of(each) for each in own.classes(keys)]
         cells: Array = letters.astype(smallest_unsigned(len(machines.letters.sets)))
         return cells
@@ -163,28 +162,32 @@ class _Engine:
         binding: RuleBinding,
         entangled: EntangledReads,
         told: tuple[Places, Sequence[Sequence[int]]],
-        supposed: Mapping[Subject, Value],
+        rows: SupposedRows,
     ) -> list[tuple[int, ...]]:
         """The keys of letters at some places, where independent reads have these digits."""
         places, digits = told
+        of_traces = rows.places(places)
         columns = [
-            self._reader.values_at(subject, places, supposed.get(subject))
+            rows.with_supposed(subject, self._reader.values_at(subject, of_traces), places)
             for subject in entangled.subjects_of(binding.objects)
         ]
-        rows = zip(*columns, strict=True) if columns else [()] * len(places)
-        numbers = map(entangled.number, rows)
+        values = zip(*columns, strict=True) if columns else [()] * len(places)
+        numbers = map(entangled.number, values)
         if not entangled.is_local:
-            own, starts = self._columns, self._columns.layout.starts
+            own, starts = self._columns, rows.layout.starts
             steps = np.searchsorted(starts, places, side="right") - 1
             there = [present_in(step, own.objects, own.present) for step in steps.tolist()]
-            numbers = map(entangled.number, rows, there)
+            numbers = map(entangled.number, values, there)
         return list(zip(*digits, numbers, strict=True))
 
-    def _are_entangled(self, binding: RuleBinding, own: RuleLetters) -> NDArray[np.bool_]:
-        """The states in which unknown values have to do with each other."""
+    def _are_entangled(
+        self, binding: RuleBinding, own: RuleLetters, rows: SupposedRows
+    ) -> NDArray[np.bool_]:
+        """The states of rows in which unknown values have to do with each other."""
         columns = self._columns
         found = np.zeros(columns.layout.n_states, dtype=bool)
         reads = own.entangled
+        supposed = np.zeros(rows.layout.n_states, dtype=bool)
         asked = zip(reads.subjects, reads.subjects_of(binding.objects), strict=True)
         for about, subject in asked:
             if about in reads.shared and self._reader.is_dark(subject):
@@ -193,82 +196,127 @@ class _Engine:
                 found |= columns.unknown[subject]
             if subject in columns.upper:
                 found |= columns.upper[subject] != columns.values[subject]
-        return found
+            # What is supposed is not in the numbers of what counts.
+            where = rows.where_supposed(subject)
+            if where is not None:
+                supposed |= where[1] >= 0
+        return rows.flags(found) | supposed
 
-    def _on_stretch(self, binding: RuleBinding, places: Places) -> Places:
-        (first, last), starts = binding.stretch, self._columns.layout.starts
-        end = starts[-1 if last is None else last + 1]
-        chosen: Places = places[(places >= starts[first]) & (places < end)]
-        return chosen
-
-    def _supposed(
-        self, read: Read | NumberRead, binding: RuleBinding, supposed: Mapping[Subject, Value]
+    def _numbers(
+        self, read: Read | NumberRead, binding: RuleBinding, rows: SupposedRows
     ) -> Numbers:
-        """A read's numbers, where constants that are unknown have these values."""
-        numbers = self._reader.numbers(read, binding.objects)
-        if not supposed:
+        """A read's numbers in the states of rows."""
+        numbers = rows.numbers(self._reader.numbers(read, binding.objects))
+        if not rows.supposed:
             return numbers
-        name, variables = (read.name, read.variables) if isinstance(read, Read) else quantity(read)
-        value = supposed.get((name, tuple([binding.objects[variable] for variable in variables])))
-        if value is None:
+        where = rows.where_supposed(_subject_of(read, binding))
+        if where is None:
             return numbers
-        unknown, number = number_of_value(read, value, self._vocabulary)
-        return np.where(np.equal(numbers, unknown), number, numbers)
+        values, places = where
+        told = [number_of_value(read, value, self._vocabulary) for value in values]
+        own = np.array([*[number for _, number in told], 0], dtype=np.intp).take(places)
+        is_unknown = np.equal(numbers, told[0][0])
+        return np.where(is_unknown & (places >= 0), own, numbers)
 
-    def _impossible(self, binding: RuleBinding, tables: SetTable, words: Sequence[Array]) -> Places:
-        if not tables.impossible:
-            return np.empty(0, dtype=np.intp)
-        wrong = [np.flatnonzero(np.isin(word, list(tables.impossible))) for word in words]
-        places = self._on_stretch(binding, np.concatenate(wrong))
-        return np.unique(self._columns.layout.traces_at(places))
-
-    def _alternatives(
+    def _rows_of(
         self, binding: RuleBinding, machine: UncertainMachine
-    ) -> tuple[Sequence[Mapping[Subject, Value]], Places]:
-        """Values of constants that are unknown in some trace, and traces to look at one by one."""
-        columns, first = self._columns, binding.first
-        layout = columns.layout
-        now = slice(layout.starts[first], layout.starts[first + 1])
-        dark, odd = np.zeros((2, layout.active(first)), dtype=bool)
-        given: dict[Subject, PartialValue | None] = {}
-        for subject in self._constants.read_by(binding.rule, binding.objects):
+    ) -> tuple[SupposedRows, Places]:
+        """Each trace once for all that its unknown constants may be; which to look at by itself."""
+        layout = self._columns.layout
+        dark, odd = self._dark_constants(binding)
+        if not dark:
+            return SupposedRows(layout), np.flatnonzero(odd)
+        if self._constants.of_facts and self._rule_letters(binding, machine).entangled.numbers:
+            return SupposedRows(layout), np.flatnonzero(np.any([odd, *dark.values()], axis=0))
+        key = binding.rule.name, binding.first, *dark
+        if key not in self._rows:
+            suppose = partial(self._suppositions, binding, machine)
+            self._rows[key] = supposed_rows(layout, dark, suppose)
+        return self._rows[key], np.flatnonzero(odd)
+
+    def _suppositions(
+        self, binding: RuleBinding, machine: UncertainMachine, subjects: Sequence[Subject]
+    ) -> Sequence[Mapping[Subject, Value]]:
+        """What unknown constants may be together, as far as the rule tells it apart."""
+        every, _ = self._constants.suppositions(binding.rule, dict.fromkeys(subjects, UNKNOWN))
+        joint = set(self._rule_letters(binding, machine).entangled.subjects_of(binding.objects))
+        reads: dict[Subject, list[Read | NumberRead]] = {subject: [] for subject in subjects}
+        for read in binding.rule.machine.reads:
+            reads.get(_subject_of(read, binding), []).append(read)
+
+        def told_apart(subject: Subject, value: Value) -> object:
+            if subject in joint:
+                return value
+            own = reads[subject]
+            return tuple([number_of_value(read, value, self._vocabulary)[1] for read in own])
+
+        different = {
+            tuple([told_apart(*own) for own in supposed.items()]): supposed for supposed in every
+        }
+        return list(different.values())
+
+    def _dark_constants(
+        self, binding: RuleBinding
+    ) -> tuple[Mapping[Subject, NDArray[np.bool_]], NDArray[np.bool_]]:
+        """The traces in which each constant is unknown, and those to look at one by one."""
+        columns, layout = self._columns, self._columns.layout
+        dark: dict[Subject, NDArray[np.bool_]] = {}
+        odd = np.zeros(layout.n_traces, dtype=bool)
+        for subject in sorted(self._constants.read_by(binding.rule, binding.objects)):
+            first = max((columns.present.get(x, (0, 0))[0] for x in subject[1]), default=0)
+            now = slice(layout.starts[first], layout.starts[first] + layout.n_traces)
             unknown = columns.unknown.get(subject)
-            if self._reader.is_dark(subject) or (unknown is not None and unknown[now].any()):
-                given[subject] = UNKNOWN
-                dark |= True if unknown is None else unknown[now]
+            if self._reader.is_dark(subject):
+                dark[subject] = ~odd | odd
+            elif unknown is not None and unknown[now].any():
+                dark[subject] = unknown[now]
             if subject in columns.upper:
                 odd |= columns.upper[subject][now] != columns.values[subject][now]
-        if not given:
-            return [{}], np.flatnonzero(odd)
-        supposed, _ = self._constants.suppositions(binding.rule, given)
-        own = self._rule_letters(binding, machine).entangled.numbers
-        if (own and self._constants.of_facts) or (supposed == [{}] and len(given) > 1):
-            return [{}], np.flatnonzero(odd | dark)
-        return supposed, np.flatnonzero(odd)
+        return dark, odd
+
+
+def _subject_of(read: Read | NumberRead, binding: RuleBinding) -> Subject:
+    """The value that a read is of a binding's objects; none for a sum or a count."""
+    name, variables = (read.name, read.variables) if isinstance(read, Read) else quantity(read)
+    return name, tuple([binding.objects[variable] for variable in variables])
+
+
+def _on_stretch(binding: RuleBinding, layout: Layout, places: Places) -> Places:
+    (first, last), starts = binding.stretch, layout.starts
+    end = starts[-1 if last is None else last + 1]
+    chosen: Places = places[(places >= starts[first]) & (places < end)]
+    return chosen
+
+
+def _impossible(binding: RuleBinding, tables: SetTable, rows: SupposedRows, word: Array) -> Places:
+    """The traces of which some state can have no letter, whatever is supposed."""
+    if not tables.impossible:
+        return np.empty(0, dtype=np.intp)
+    wrong = np.flatnonzero(np.isin(word, list(tables.impossible)))
+    return rows.traces_at(_on_stretch(binding, rows.layout, wrong))
 
 
 def _lost_at(
     binding: RuleBinding,
     tables: SetTable,
-    read: tuple[TraceColumns, Sequence[Array]],
+    read: tuple[SupposedRows, Array],
     accepted: NDArray[np.bool_],
 ) -> NDArray[np.int64]:
-    """The states after which violating traces are lost for all words; -1 where one never is."""
-    columns, words = read
+    """The states after which violating traces are lost in all rows; -1 where in one never."""
+    rows, word = read
     if accepted.all():
         return np.empty(0, dtype=np.int64)
-    task = replace(binding, rule=replace(binding.rule, machine=tables.possible))
-    steps = np.stack(
-        [
-            VerdictColumns(
-                task=task,
-                accepted=accepted,
-                unread=np.empty(0, dtype=np.intp),
-                _layout=columns.layout,
-                _cells=word,
-                _letters=tables.joint.letters,
-            ).lost_at()
-            for word in words
-        ]
-    )
-    return np.where((steps < 0).any(axis=0), -1, steps.max(axis=0))
+    steps = VerdictColumns(
+        task=replace(binding, rule=replace(binding.rule, machine=tables.possible)),
+        accepted=rows.in_rows(accepted),
+        unread=np.empty(0, dtype=np.intp),
+        _layout=rows.layout,
+        _cells=word,
+        _letters=tables.joint.letters,
+    ).lost_at()
+    if rows.traces is None:
+        return steps
+    of_traces = rows.traces[~rows.in_rows(accepted)]
+    begins = np.flatnonzero(np.diff(of_traces, prepend=-1))
+    never = np.minimum.reduceat(steps, begins) < 0
+    return np.where(never, -1, np.maximum.reduceat(steps, begins))
