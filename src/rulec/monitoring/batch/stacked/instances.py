@@ -123,6 +123,8 @@ def numbers_at(
 def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
     """All choices that may not be kept, and perhaps others that are."""
     stack = reader.stack
+    if rule.does_nothing([reader.digits(read) for read in rule.reads]):
+        return Instances(_NONE, (_NONE,) * len(rule.variables), _NONE, _NONE)
     every = KnownLetters(*rule.letters.looked_up(numbers_at(rule, reader, None)))
     busy = ~_are_idle(rule, every, stack.n_states)
     if not busy.any():

@@ -77,6 +77,7 @@ class Stack:
         self.names = [name for trace in traces for name in trace.objects]
         self._columns: dict[str, StackColumn | None] = {}
         self._of_type: dict[str, Flags] = {}
+        self._whole_types: dict[str, bool] = {}
         self._cells_of_type: dict[str, Places] = {}
         self._states_of_type: dict[str, Places] = {}
 
@@ -176,7 +177,8 @@ class Stack:
         upper = None
         if isinstance(declaration, Enumeration):
             values = self._places(name, declaration, parts)
-            unfit = values >= len(declaration.values)
+            is_fit = int(values.max(initial=0)) < len(declaration.values)
+            unfit = _NOWHERE if is_fit else values >= len(declaration.values)
         elif isinstance(declaration, Signal):
             values = _end_to_end(parts)
             if values.dtype != bool or any(name in piece.texts for piece in self._pieces):
@@ -244,21 +246,31 @@ class Stack:
     def _not_about(self, name: str, declaration: Declaration) -> Flags | None:
         """The cells of the objects that a name is not said of."""
         every = [
-            piece.only.get(name, np.ones(piece.n_objects, dtype=bool)) for piece in self._pieces
+            piece.only[name] if name in piece.only else np.ones(piece.n_objects, dtype=bool)
+            for piece in self._pieces
         ]
         said = _end_to_end(every)
-        if (said & ~self.of_type(declaration.parameters[0])).any():
+        (kind,) = declaration.parameters
+        if not self._all_are(kind) and (said & ~self.of_type(kind)).any():
             raise UnencodableError
         return None if said.all() else np.repeat(~said, np.diff(self.starts))
+
+    def _all_are(self, kind: str) -> bool:
+        """Whether all objects are of a type."""
+        if kind not in self._whole_types:
+            self._whole_types[kind] = bool(self.of_type(kind).all())
+        return self._whole_types[kind]
 
     def _joined(
         self, name: str, flags: Sequence[Mapping[str, Flags]], parts: Sequence[Array]
     ) -> Flags | None:
-        if not any(name in own for own in flags):
-            return None
         if len(flags) == 1:
+            if name not in flags[0]:
+                return None
             own = flags[0][name]
             return own if own.any() else None
+        if not any(name in own for own in flags):
+            return None
         joined = _end_to_end(
             [
                 own.get(name, np.zeros(len(part), dtype=bool))

@@ -59,6 +59,7 @@ class StackReader:
         self.stack = stack
         self._numbers: dict[object, Array | int] = {}
         self._of_kind: dict[tuple[object, str], Array] = {}
+        self._digits: dict[object, int] = {}
         self._every_state = np.arange(stack.n_states)
 
     def numbers(self, read: StackedRead, spots: Spots | None) -> Numbers:
@@ -83,9 +84,55 @@ class StackReader:
             self._of_kind[key] = found if is_every else found.take(own)
         return self._of_kind[key]
 
+    def digits(self, read: StackedRead) -> int:
+        """The digits, as bits, that a read has anywhere, and perhaps others.
+
+        Raises UnencodableError.
+        """
+        if read.count is not None or len(read.names) > 1:
+            return read.every
+        # Reads of the same values may take different ones together
+        key = read.key, read.meanings
+        known = self._digits.get(key)
+        if known is None:
+            known = self._digits[key] = self._digits_met(read) or read.every
+        return known
+
+    def _digits_met(self, read: StackedRead) -> int:
+        (name,) = read.names
+        column = self.stack.column(name)
+        if column is None:
+            default = self.stack.default(name)
+            if default is UNKNOWN_VALUE:
+                return read.every
+            if isinstance(read.read, Read):
+                return read.meanings[int(default)]
+            return 1 << scale(read.read).digit(float(default))
+        values = column.values
+        if column.unknown is not None or not len(values):
+            return read.every
+        if isinstance(read.read, NumberRead):
+            ready = scale(read.read)
+            if ready.quantity is None:
+                return read.every
+            upper = values if column.upper is None else column.upper
+            low, high = ready.digit(float(values.min())), ready.digit(float(upper.max()))
+            return (1 << high + 1) - (1 << low)
+        if values.dtype == bool:
+            false, true, _ = read.meanings
+            return (true if values.any() else 0) | (0 if values.all() else false)
+        found = 0
+        for number in np.flatnonzero(np.bincount(values)).tolist():
+            found |= read.meanings[number]
+        return found
+
     def _everywhere(self, read: StackedRead) -> Array | int:
         """The numbers in all states, or cells."""
         stack = self.stack
+        if len(read.names) == 1:
+            digits = self.digits(read)
+            if digits & (digits - 1) == 0 and read.meanings.count(digits) == 1:
+                return read.meanings.index(digits)
         every = Spots(self._every_state, {}, whole=True)
         if read.variables:
             cells = np.arange(stack.starts[-1])

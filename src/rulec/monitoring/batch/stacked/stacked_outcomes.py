@@ -99,6 +99,8 @@ def _first_alike(
     Words of the letters of all alternatives, which begin and end at ``bounds``. They are told apart
     by sums of letters with weights, and compared then.
     """
+    if len(bounds) == 2:
+        return np.zeros(1, dtype=np.intp)
     begins, lengths = bounds[:-1], np.diff(bounds)
     states = np.arange(bounds[-1]) - np.repeat(begins, lengths)
     weights = _weights(int(lengths.max(initial=0)) + 1)

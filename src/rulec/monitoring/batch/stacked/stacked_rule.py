@@ -61,6 +61,11 @@ class StackedRead:
     key: object
 
     @property
+    def every(self) -> int:
+        """All digits."""
+        return (1 << self.read.size) - 1
+
+    @property
     def counts_itself(self) -> bool:
         """Whether only the object that it is asked of may count."""
         return self.count is not None and bool(self.variables)
@@ -115,6 +120,7 @@ class StackedRule:
         self.letters = self._no_letters()
         self._answers: dict[bytes, Answer] = {}
         self._bytes = 0
+        self._does_nothing: dict[tuple[int, ...], bool] = {}
         self._vocabulary = vocabulary
         self._everybody: dict[str, str] = {}
         self._crowd: EntangledReads | None = None
@@ -159,6 +165,16 @@ class StackedRule:
         if len(self.letters.sets) > MOST_SETS:
             self.letters, self._answers = self._no_letters(), {}
             self._idle_flags = np.zeros(0, dtype=bool)
+
+    def does_nothing(self, digits: Sequence[int]) -> bool:
+        """Whether letters are idle that have any of these digits, as bits, for each read."""
+        key = tuple(digits)
+        known = self._does_nothing.get(key)
+        if known is None:
+            if len(self._does_nothing) > MOST_SETS:
+                self._does_nothing.clear()
+            known = self._does_nothing[key] = self.machine.idle.of_cube(key)
+        return known
 
     def idle_flags(self) -> NDArray[np.bool_]:
         """Whether each set of letters that has been met is idle."""

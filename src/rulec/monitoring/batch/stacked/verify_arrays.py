@@ -7,6 +7,7 @@ the rules that arrays cannot be read for.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property, partial
 from operator import itemgetter
 from typing import TypeAlias
@@ -29,7 +30,7 @@ from rulec.monitoring.batch.stacked.stacked_outcomes import (
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
 from rulec.monitoring.implied_values import with_all_said
 from rulec.monitoring.state_validation import check_objects, check_told
-from rulec.monitoring.uncertainty.judged_rules import judged_rules
+from rulec.monitoring.uncertainty.judged_rules import JudgedRules, judged_rules
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict, Violation
@@ -79,16 +80,14 @@ class _StackedRun:
         self._traces = traces
         self._whole_rulebook = rulebook
         self._rulebook = rules = rulebook_for_step(example.step_s, rulebook)
-        for rule in rules.rules:
-            check_step(rule, exact_step(example.step_s))
-        check_told(example.told, rules.vocabulary)
+        key = example.told, example.ends, example.step_s
+        known: dict[object, _ReadyRules] = rules.prepared.setdefault(_ReadyRules, {})
+        if key not in known:
+            known[key] = _ready_rules(example, rules)
+        self._ready = known[key]
         for trace in traces:
             check_objects(trace.objects, rules.vocabulary)
-        constants = rules.vocabulary.constants
-        for fact in rules.axioms:
-            if counts(fact.formula) or not set(constants).isdisjoint(names_in(fact.formula)):
-                raise UnencodableError  # what it says of values is looked up state by state
-        self._judged = judged_rules(rules, example.told, cut=example.ends == "cut")
+        self._judged = self._ready.judged
         self._stack = Stack(traces, self._judged.vocabulary)
         self._reader = StackReader(self._stack)
         self._reasons = StackedReasons(self._reader)
@@ -98,17 +97,10 @@ class _StackedRun:
 
     def verdicts(self) -> list[Answer]:
         """The answers."""
-        key = self._traces[0].told, self._traces[0].ends
-        known: dict[object, list[StackedRule]] = self._rulebook.prepared.setdefault(StackedRule, {})
-        if key not in known:
-            known[key] = [
-                StackedRule(rule, machine, self._rulebook, self._judged.vocabulary)
-                for rule, machine in self._judged.machines
-            ]
-        rules = known[key]
-        untold = {name for name in _names_of(rules) if not self._stack.can_tell(name)}
+        rules = self._ready.rules
+        untold = {name for name in self._ready.names if not self._stack.can_tell(name)}
         simple = [rule.is_simple and untold.isdisjoint(rule.names) for rule in rules]
-        self._odd |= contradicted(self._facts_of(key, rules, simple), self._reader)
+        self._odd |= contradicted(self._facts_of(simple), self._reader)
         for number, (rule, is_simple) in enumerate(zip(rules, simple, strict=True)):
             if is_simple:
                 rule.forget_many()
@@ -124,17 +116,14 @@ class _StackedRun:
             for number, trace in enumerate(self._traces)
         ]
 
-    def _facts_of(
-        self, key: object, rules: Sequence[StackedRule], simple: Sequence[bool]
-    ) -> Sequence[LinkedFacts]:
+    def _facts_of(self, simple: Sequence[bool]) -> Sequence[LinkedFacts]:
         """The facts that have to do with simple rules; mostly these are the same ones again."""
-        known: dict[object, tuple[Sequence[bool], Sequence[LinkedFacts]]]
-        known = self._rulebook.prepared.setdefault(contradicted, {})
-        if key not in known or known[key][0] != simple:
-            about = [rule.facts for rule, is_simple in zip(rules, simple, strict=True) if is_simple]
-            facts = tuple(dict.fromkeys(fact for own in about for fact in own))
-            known[key] = simple, tuple(linked(facts))
-        return known[key][1]
+        key, known = tuple(simple), self._ready.facts
+        if key not in known:
+            rules = zip(self._ready.rules, simple, strict=True)
+            facts = dict.fromkeys(fact for rule, own in rules if own for fact in rule.facts)
+            known[key] = tuple(linked(tuple(facts)))
+        return known[key]
 
     def _add(self, rule_number: int, outcome: StackedOutcome) -> None:
         words, place, stack = outcome.words, outcome.place, self._stack
@@ -185,8 +174,35 @@ class _StackedRun:
         return Verdict(trace.id, violations, doubtful, judged.not_judged, presumed)
 
 
-def _names_of(rules: Sequence[StackedRule]) -> frozenset[str]:
-    return frozenset().union(*(rule.names for rule in rules if rule.is_simple))
+@dataclass(frozen=True, slots=True, eq=False)
+class _ReadyRules:
+    """What is the same for all traces of one kind.
+
+    ``names`` are those of the ``rules`` that are simple; of which of them there are, as flags, go
+    the linked ``facts`` that have been asked for.
+    """
+
+    judged: JudgedRules
+    rules: Sequence[StackedRule]
+    names: frozenset[str]
+    facts: dict[tuple[bool, ...], Sequence[LinkedFacts]]
+
+
+def _ready_rules(example: TraceArrays, rules: CompiledRulebook) -> _ReadyRules:
+    """The rules for traces like this one. Raises RulecError, UnencodableError."""
+    for rule in rules.rules:
+        check_step(rule, exact_step(example.step_s))
+    check_told(example.told, rules.vocabulary)
+    constants = rules.vocabulary.constants
+    for fact in rules.axioms:
+        if counts(fact.formula) or not set(constants).isdisjoint(names_in(fact.formula)):
+            raise UnencodableError  # what it says of values is looked up state by state
+    judged = judged_rules(rules, example.told, cut=example.ends == "cut")
+    ready = [
+        StackedRule(rule, machine, rules, judged.vocabulary) for rule, machine in judged.machines
+    ]
+    names = frozenset().union(*(rule.names for rule in ready if rule.is_simple))
+    return _ReadyRules(judged, ready, names, {})
 
 
 class _CloseLook:
