@@ -122,3 +122,43 @@ def test_what_is_asked_again_is_neither_parsed_nor_compiled(tmp_path, monkeypatc
     assert all(" 2 True" not in line for line in runs[0][1])
     assert runs[0][1][-1].endswith("True ['', 'diagrams']")
     assert [line[-8:] for line in runs[1][1]] == ["False []"] * len(ASKED_AGAIN)
+
+
+def test_what_lives_until_the_end_is_not_looked_through_then():
+    program = (
+        "import atexit, gc, sys\n"
+        "atexit.register(lambda: print(gc.get_freeze_count() > 10_000))\n"
+        "from rulec.cli.entry_point import run\n"
+        "sys.argv = ['rulec', 'list']\n"
+        "sys.exit(run())"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True)
+    assert done.stdout.split()[-1] == b"True"
+
+
+def test_there_is_room_for_the_frames_of_all_that_the_program_calls():
+    program = (
+        "import resource\n"
+        "from rulec.cli import entry_point, main\n"
+        "\n"
+        "def nothing():\n"
+        "    pass\n"
+        "\n"
+        "def deep(left):\n"
+        "    for _ in range(1000):\n"
+        "        nothing()\n"
+        "    if left:\n"
+        "        deep(left - 1)\n"
+        "\n"
+        "def count(_=None):\n"
+        "    before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt\n"
+        "    deep(500)\n"
+        "    print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)\n"
+        "    return 0\n"
+        "\n"
+        "main.main = count\n"
+        "entry_point.run()"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True)
+    # A new piece for each call at its boundary is a fault of a page, a thousand times
+    assert int(done.stdout) < 1000
