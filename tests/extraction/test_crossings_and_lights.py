@@ -116,16 +116,33 @@ def test_crossing_the_line_at_red():
     assert "red_light" not in violated(green, GERMAN)["7"]
 
 
-def test_the_light_is_the_one_that_is_crossed():
-    # It turns green in the state in which 7 crosses
-    found = recording(lit((("red", 2), ("green", 10))), [going(7, 90, 10.0)])
+@pytest.mark.parametrize(
+    ("begins", "crossed"),
+    [
+        # Its front is at 100 and 100.3 m 0.01 and 0.04 s after state 1, between, or before state 2
+        (92.9, "red_light"),
+        (90.8, UNKNOWN),
+        (88.4, "green_light"),
+    ],
+)
+def test_the_light_is_the_one_that_is_crossed(begins, crossed):
+    """It turns green between the states before and after: 5 m, and half a second."""
+    found = recording(lit((("red", 2), ("green", 10))), [going(7, begins, 10.0)])
     told = [(state["light"], state["crosses_light_line"]) for state in states(found, "7")]
     assert told[:4] == [
         ("red_light", False),
         ("red_light", False),
-        ("green_light", True),
+        (crossed, True),
         ("no_light", False),
     ]
+
+
+def test_who_stands_beyond_the_place_of_a_line_sets_off_from_there():
+    """It stops with its front at 100.2 m while it is red, and goes on at green."""
+    places = {k: (x, 0) for k, x in enumerate((96.0, 98.2, 98.2, 98.2, 98.2, 100.0, 104.0))}
+    found = recording(lit((("red", 3), ("green", 10))), [vehicle(7, places)])
+    told = [(state["light"], state["crosses_light_line"]) for state in states(found, "7")]
+    assert told[4:6] == [("green_light", False), ("green_light", True)]
 
 
 def test_lights_that_differ_tell_nothing():

@@ -9,6 +9,7 @@ from support.worlds.judging import last_moment_s
 from support.worlds.simulate import WorldFiles
 from support.worlds.stored import FOLDER
 from support.worlds.truths.crossing_truths import pedestrian_facts
+from support.worlds.truths.passing_truths import near_side_facts
 from support.worlds.truths.priority_truths import roundabout_facts
 from support.worlds.world_state import WorldState
 
@@ -71,33 +72,40 @@ def test_a_corner_of_who_is_askew_reaches_a_crossing_before_its_front(faces, sur
     assert [fact.sure for fact in pedestrian_facts(world)] == sure
 
 
-def _roundabout(folder, ends_s, stands_m=None):
+def _roundabout(folder, ends_s, stands_m=None, comes=((0, 3, 3.5, 4), (-14, 0, 2.4, 3.3))):
     """A world on the stored roundabout's roads: one drives in, one comes on the ring, and stops.
 
     The first is out of the other one's way at 3.4 s, which enters the junction at 3 s, brakes from
     3.5 s on, and stands from 4 s on, 2 m before it would be in the first one's. With ``stands_m``
-    the first one stands so far before its line from 0.4 s on, until it enters at 1 s.
+    the first one stands so far before its line from 0.4 s on, until it enters at 1 s. ``comes``:
+    times (s) and places (m) of the one on the ring.
     """
     files = WorldFiles(Path(folder))
     files.net.write_bytes((FOLDER / "roundabout.net.xml").read_bytes())
     times = np.arange(0, ends_s + 0.05, 0.1)
-    on_ring = np.interp(times, [0, 3, 3.5, 4], [-14, 0, 2.4, 3.3])
+    on_ring = np.interp(times, *comes)
     enters = 7 * times - 7
     if stands_m is not None:
         enters[4:10] = -stands_m
     rows = {"drives in": (enters, ("w_rw_0", 89.3), (":rw_2_0", 7.83))}
     rows["on the ring"] = (on_ring, ("rn_rw_0", 14.91), (":rw_1_0", 12.04))
+    rows = {name: (*row, ("rw_rs_0", 100.0)) for name, row in rows.items()}
+    _write(files, times, rows)
+    return files
+
+
+def _write(files, times, rows, heading=0):
+    """Name -> places (m) at the times, and lanes with their lengths, of one at x = y = 0."""
     moments = []
     for k, time in enumerate(times):
         bodies = []
         for name, (places, *lanes) in rows.items():
-            place, speed = places[k], np.gradient(places, times)[k]
-            lane, pos = _on(place, [*lanes, ("rw_rs_0", 100.0)])
-            where = f'x="0" y="0" angle="0" speed="{speed}" pos="{pos}" lane="{lane}"'
+            lane, pos = _on(places[k], lanes)
+            speed = np.gradient(places, times)[k]
+            where = f'x="0" y="0" angle="{heading}" speed="{speed}" pos="{pos}" lane="{lane}"'
             bodies.append(f'<vehicle id="{name}" {where} type="lawful"/>')
         moments.append(f'<timestep time="{time:.1f}">{"".join(bodies)}</timestep>')
     files.data.write_text(f"<fcd-export>{''.join(moments)}</fcd-export>", encoding="utf-8")
-    return files
 
 
 @pytest.mark.parametrize(("stands_m", "begins"), [(None, 1.0), (0.05, 0.4), (0.2, 1.0)])
@@ -138,6 +146,32 @@ def test_who_changes_lanes_at_the_line_drives_on_over_the_junction(lane, starts,
     for file, old, new in (files.net, own, beside + own), (files.data, "n2_n1_1", lane):
         file.write_text(file.read_text(encoding="utf-8").replace(old, new), encoding="utf-8")
     assert [one.link.start for one in WorldState(files, 0.1).crossings] == starts
+
+
+@pytest.mark.parametrize(("fastest_mps", "sure"), [(5.0, []), (7.0, [False])])
+def test_who_brakes_after_it_sped_up_may_have_been_made_to(fastest_mps, sure, tmp_path):
+    """It gets to the first one's way at 5.4 s, two seconds after that one has left."""
+    speeds, times = (5.0, fastest_mps, 5.0), (0, 1.5, 3, 6)
+    places = 5.3 + 3 - np.array([np.dot(speeds[k:], np.diff(times)[k:]) for k in range(4)])
+    world = WorldState(_roundabout(tmp_path, 6.0, comes=(times, places)), 0.1)
+    assert [fact.sure for fact in roundabout_facts(world)] == sure
+
+
+@pytest.mark.parametrize(
+    ("ends_m", "sure"),
+    # Bodies are 4.5 m long: level; in front but for a hair; in front, and a while longer
+    [(3.9, set()), (4.4, {False}), (4.6, {False, True})],
+)
+def test_who_is_all_but_past_when_the_world_ends(ends_m, sure, tmp_path):
+    files = WorldFiles(tmp_path)
+    files.net.write_bytes((FOLDER / "motorway.net.xml").read_bytes())
+    times = np.arange(0, 6.05, 0.1)
+    other = 100 + 20 * times
+    own = other + np.linspace(-20, ends_m, len(times))
+    rows = {"passes": (own, ("a_b_0", 0.0)), "is passed": (other, ("a_b_2", 0.0))}
+    _write(files, times, rows, heading=89.3)
+    facts = near_side_facts(WorldState(files, 0.1))
+    assert {(fact.vehicle, fact.sure) for fact in facts} == {("passes", one) for one in sure}
 
 
 def test_a_recording_ends_with_its_last_state(tmp_path):

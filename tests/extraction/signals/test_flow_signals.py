@@ -352,3 +352,18 @@ def test_overtaking_begins_when_ego_pulls_out():
     # Who stays behind does not
     stays = context_of(recording(lanes(2), [steady(7, 0, 0, speed=20), slow]))
     assert not flow_signals(stays).world["begins_to_overtake"].any()
+
+
+@pytest.mark.parametrize(("complete", "unknown"), [((), True), (("light",), False)])
+def test_one_queue_where_a_world_begins_is_not_one_on_all_lanes(complete, unknown):
+    """Three are on one of three lanes, which are too short for the longest queue of three."""
+    short = [
+        straight(1, 0, 60, left_of=2),
+        straight(2, 0, 60, 4, right_of=1, left_of=3),
+        straight(3, 0, 60, 8, right_of=2),
+    ]
+    found = recording(short, [steady(7, 10, 0), *line(10, 2, start=24.0)])
+    found = replace(found, complete=frozenset(complete))
+    signals = flow_signals(context_of(found))
+    assert signals.unknown["dense_all_lanes"][0] == unknown
+    assert unknown or not signals.world["dense_all_lanes"][0]

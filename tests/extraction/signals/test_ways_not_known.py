@@ -3,11 +3,14 @@
 Ego comes along y = 0 to a junction from x = 100 to 120, from where ways lead on, left and right.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from rulec.extraction.signals.map.junction_signals import junction_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
+from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
@@ -44,7 +47,7 @@ def told(word, xs, lanes=None, **thresholds):
     values = []
     for one, side in ((found, "right"), (mirrored_recording(found), "left")):
         signals = junction_signals(context_of(one, ("1", "2", "5"), side, **thresholds))
-        column, unknown = signals.world[word], signals.unknown[word]
+        column, unknown = signals.world[word], signals.unknown.get(word, False)
         values.append(np.where(unknown, "?", column).tolist())
     assert values[0] == values[1]
     return values[0]
@@ -93,3 +96,21 @@ def test_who_leaves_by_a_ramp_has_prepared_for_it(preparing_s, first):
     # The middle is on the ramp from 120 on, in state 8 (at 125; it is at its very end in state 7)
     assert found.index("True") in (first - 1, first)
     assert found[-1] == "True"
+
+
+@pytest.mark.parametrize(
+    ("xs", "lights"),
+    [
+        # Fronts are 2 m ahead: it is over the line at 100.3 m in the last state
+        ((60, 94, 97, 98.5), ["green_light", "?", "?", "?"]),
+        ((60, 94, 97, 98.5, 130), ["green_light"] * 4 + ["no_light"]),
+    ],
+)
+def test_the_light_of_a_way_is_not_known_where_the_way_is_not(xs, lights):
+    """Straight on is green, to the left red."""
+    ways = {"2": Light(0, (("green", 9),)), "3": Light(0, (("red", 9),))}
+    lanes = road()
+    lanes[0] = replace(lanes[0], lights=tuple(ways.values()), lights_to=ways)
+    assert told("light", xs, lanes) == lights
+    crosses = [False, False, False, True, False][: len(xs)]
+    assert told("crosses_light_line", xs, lanes) == [str(flag) for flag in crosses]

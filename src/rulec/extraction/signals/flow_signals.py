@@ -149,11 +149,14 @@ def _dense_lines(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     queues, _ = queues_by_lane(context)
     decides = context.existing_lanes & (lanes_that_decide(context) | queues)
     all_queue = np.logical_and((queues | ~decides).all(axis=-1), decides.any(axis=-1))
+    # What a few lanes are is not told of the others, but where the world of all of them ends
+    few = 2 * decides.sum(axis=-1) < context.existing_lanes.sum(axis=-1)
+    whole = "light" in context.recording.complete
+    all_queue &= ~(few & whole)
     # Whom nobody is ahead of goes as fast as it likes, unless that one is not recorded any more
     gap, gap_behind = (
         _gap_in_lane(context, side) for side in (relations.BEHIND, relations.IN_FRONT_OF)
     )
-    whole = "light" in context.recording.complete
     cut_off = all_queue[LOOSE] & np.isinf(gap) & (not whole)
     speed = context.ego_extents.along[0]
     longest = longest_gaps(context, speed, context.ego.speed_error[0])
@@ -162,10 +165,8 @@ def _dense_lines(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     )
     # Nor is there a queue where the world ends, whose traffic is all recorded
     nobody_knows = ~decides[MEASURED].any(axis=-1) & (not whole)
-    # What a few lanes are is not told of the others
-    few = 2 * decides[MEASURED].sum(axis=-1) < context.existing_lanes.sum(axis=-1)
     # And who is last behind a queue may be in it or not
-    surely &= ~few & (gap_behind <= longest[LOOSE])
+    surely &= ~few[MEASURED] & (gap_behind <= longest[LOOSE])
     return dense, surely, (perhaps | dense) & ~surely | cut_off | nobody_knows
 
 

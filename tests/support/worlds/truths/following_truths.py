@@ -14,8 +14,9 @@ _SURELY_M, _PERHAPS_M, _LEAST_S = 0.4, 0.7, 0.6
 _NEAR_M = 150.0
 _FALLS_BACK_S = 3.0
 """Who is put onto the road has not chosen its distance, no more than one whom another cuts off."""
-_ALIKE, _ASIDE_M = 0.4, 6.0
-"""The cosine between two headings that are much alike, and how far one is beside the other's."""
+_ALIKE, _ASIDE_M = 0.1, 6.0
+"""The cosine between headings of two who will follow each other, as where roads lead to a ring at
+84 degrees, and how far one is beside the other's."""
 
 
 _STANDS_MPS = 0.3

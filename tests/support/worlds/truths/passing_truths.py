@@ -44,7 +44,11 @@ def _passes(world, track, other):
     level = runs((np.abs(ahead) <= LENGTH_M) & same)
     about = runs((np.abs(ahead) <= LENGTH_M + _ABOUT_M) & same)
     for begin, end in sorted({*level, *about}):
-        if begin == 0 or end == len(ahead) - 1 or ahead[begin] > 0 or ahead[end] < 0:
+        if begin == 0 or ahead[begin] > 0 or ahead[end] < 0:
+            continue
+        # Who is level to the end has not got past, unless it is in front but for a hair
+        to_the_end = end == len(ahead) - 1
+        if to_the_end and ahead[end] < LENGTH_M - _ABOUT_M:
             continue
         # Who changes lanes beside the other may be there for some of the time only
         around = slice(max(0, begin - 1), end + 2)
@@ -54,7 +58,7 @@ def _passes(world, track, other):
         )
         if not nearer[around].any() and not moves:
             continue
-        sure = nearer[around].all() and not moves
+        sure = nearer[around].all() and not moves and not to_the_end
         sure &= begin * world.step_s >= _SEEN_S
         sure &= (begin, end) in level and not _in_queues(world, track, other, first + begin)
         at = ((first + begin - 10) * world.step_s, (first + end + 10) * world.step_s)

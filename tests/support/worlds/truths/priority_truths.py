@@ -132,10 +132,12 @@ def _grade(world, one, other):
         ends = theirs[0] == np.inf
         reaches = len(speed) - 1 if ends else other.track.at(round(theirs[0] / world.step_s))
         until = max(other.row, reaches or 0)
-        waited = speed[row : until + 1].min(initial=np.inf) if row <= until else np.inf
+        on_its_way = speed[row : until + 1]
+        waited = on_its_way.min(initial=np.inf)
+        kept = (on_its_way / np.maximum.accumulate(on_its_way).clip(1e-9)).min(initial=np.inf)
         # Who had to stop for it, or to wait for others, may have had its own reasons
         moved = speed[row] > _MOVING_MPS and waited > _MOVING_MPS
-        if spare > _UNHINDERED_S and moved and waited > _SLOWED * speed[row]:
+        if spare > _UNHINDERED_S and moved and kept > _SLOWED:
             return None
         return bool(spare < _HINDERED_S and moved)
     spare = own[0] - theirs[1]

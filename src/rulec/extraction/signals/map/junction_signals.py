@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from math import ceil, floor
+
 import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext
@@ -23,6 +26,9 @@ from rulec.trace.plain_arrays import distinct
 _LINE_REACH_M = 40.0
 _SLOWEST_MPS = 5.0
 """Who stands at the end of a drive goes on so fast."""
+
+_AT_ONCE_S = 0.05
+"""Within so short a time of a state ego crosses a line in that state: lights change less often."""
 
 COLOURS = {
     "red": "red_light",
@@ -105,14 +111,11 @@ def _traffic_lights(context: DriveContext) -> SignalColumns:
     if not (nowhere or complete or map_contents(context).lights):
         return SignalColumns()
     front = context.ego_extents.s_max[0]
-    light, crosses, changed = _lights(context, front)
+    light, crosses = _lights(context, front)
     unseen = front + context.thresholds.light_reach_m > context.road.borders[-1]
     return SignalColumns(
         {"light": light, "crosses_light_line": crosses},
-        unknown={
-            "light": (light == "") | (unseen & nowhere & (not complete)),
-            "crosses_light_line": changed,
-        },
+        unknown={"light": (light == "") | (unseen & nowhere & (not complete))},
     )
 
 
@@ -231,15 +234,13 @@ def turn_at(context: DriveContext, start: float, end: float) -> str:
     return "turn_near" if (turned < 0) == (context.side == "right") else "turn_far"
 
 
-def _lights(context: DriveContext, front: Floats) -> tuple[SignalColumn, Flags, Flags]:
-    """The light for ego, empty for several colours, and flags of ego crossing its line.
+def _lights(context: DriveContext, front: Floats) -> tuple[SignalColumn, Flags]:
+    """The light for ego, empty where it is not known which, and flags of ego crossing its line.
 
-    In the state in which ego crosses the line the light is still the one that it crosses. The last
-    flags are those of crossings of which it is not known whether the light changed before: the line
-    has no place on the map, and ego did not stand where it may be.
+    In the state in which ego crosses the line the light is still the one that it crosses.
     """
     colours = np.full(context.states, "no_light", dtype="<U11")
-    crosses, changed = np.zeros((2, context.states), dtype=bool)
+    crosses = np.zeros(context.states, dtype=bool)
     lanes = distinct(context.ego_lane).tolist()
     for piece in range(len(context.road.rows) - 1, -1, -1):
         if not any(row is not None and row.lights for row in context.road.rows[piece]):
@@ -251,14 +252,16 @@ def _lights(context: DriveContext, front: Floats) -> tuple[SignalColumn, Flags, 
             first, last = stop_line(context, piece, lane)
             passes = _passes(context, last)
             ahead = (front <= last) & (front > first - context.thresholds.light_reach_m)
-            since = _first_crossed(context, front, first)
+            while_crossing = _while_crossing(context, front, (first, last))
+            every = context.road.lanelet(piece, lane).lights
+            several = _way_not_known(context) if len(every) > len(lights) else crosses & False
             for state in np.flatnonzero((ahead | passes) & (context.ego_lane == lane)).tolist():
-                shown = {_colour(context, lights, state)}
-                if passes[state]:
-                    crosses[state] = True
-                    changed[state] = {_colour(context, lights, since[state])} != shown
-                colours[state] = shown.pop()
-    return colours, crosses, changed
+                own = every if several[state] else lights
+                moments = while_crossing(state) if passes[state] else (state,)
+                shown = {_colour(context, own, moment) for moment in moments}
+                crosses[state] |= passes[state]
+                colours[state] = shown.pop() if len(shown) == 1 else ""
+    return colours, crosses
 
 
 def _own_lights(context: DriveContext, piece: int, lane: int) -> tuple[Light | ObservedLight, ...]:
@@ -277,15 +280,34 @@ def _colour(context: DriveContext, lights: tuple[Light | ObservedLight, ...], st
     return shown.pop() if len(shown) == 1 else ""
 
 
-def _first_crossed(context: DriveContext, front: Floats, line: float) -> list[int]:
-    """For each state the last one in which ego passed a place, or stood beyond it."""
+def _while_crossing(
+    context: DriveContext, front: Floats, line: tuple[float, float]
+) -> Callable[[int], range]:
+    """A function from a state in which ego is beyond a line to the states around its crossing.
+
+    It crosses between the states before and after, as fast on the way as on average, and nearer to
+    one of them than ``_AT_ONCE_S`` it crosses in that state. Where the line lies between two
+    places, all from the first one on count, or from where ego last stood beyond that.
+    """
+    first, last = line
     stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
-    moved = _passes(context, line) | (stands & (front > line))
-    latest = context.spans.latest(moved)
-    since: list[int] = np.where(
-        latest < context.spans.first, context.spans.columns, latest
-    ).tolist()
-    return since
+    latest = context.spans.latest(_passes(context, first) | (stands & (front > first)))
+    since = np.where(latest < context.spans.first, context.spans.columns, latest)
+    at_once = _AT_ONCE_S / context.recording.step_s
+
+    def when(state: int, place: float) -> float:
+        before, after = front[state - 1], front[state]
+        if state == context.spans.first[state] or not before <= place < after:
+            return float(state)  # it stood there, or was there from the start
+        return state - float((after - place) / (after - before))
+
+    def around(state: int) -> range:
+        begin, end = when(int(since[state]), first), when(state, last)
+        begins = round(begin) if abs(round(begin) - begin) <= at_once else floor(begin)
+        ends = round(end) if abs(round(end) - end) <= at_once else ceil(end)
+        return range(begins, ends + 1)
+
+    return around
 
 
 def stop_line(context: DriveContext, piece: int, lane: int) -> tuple[float, float]:
