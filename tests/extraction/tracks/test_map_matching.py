@@ -3,6 +3,7 @@
 from dataclasses import replace
 from itertools import groupby, pairwise
 from math import atan2, hypot, pi, radians
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from rulec.extraction.tracks import map_matching
 from rulec.extraction.tracks.lane_candidates import NEAR_M, SIGMA_M, candidates
 from rulec.extraction.tracks.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.map_matching import BETA_M, BREAK_COST, CHANGE_COST, MapMatching
@@ -207,10 +209,15 @@ def test_many_drives_at_once_take_the_cheapest_paths_of_each(one, other, gaps, s
     bodies = [body for body in bodies if body.states]
     found = recording(GRID, bodies)
     tracks, graph = tracks_of(found, USUAL), LaneletGraph(found)
-    own, matching = candidates(found, tracks), MapMatching(found, tracks, graph)
-    for row in range(len(bodies)):
-        lanelets = [part.chain[k] for part in matching.of(row) for k in part.places]
-        assert lanelets == list(cheapest_by_hand(own, tracks, graph, row))
+    own = candidates(found, tracks)
+    by_hand = [list(cheapest_by_hand(own, tracks, graph, row)) for row in range(len(bodies))]
+    # As arrays, and number by number
+    for few in (0, 1 << 20):
+        with mock.patch.object(map_matching, "FEW_TRANSITIONS", few):
+            matching = MapMatching(found, tracks, graph)
+            for row, expected in enumerate(by_hand):
+                lanelets = [part.chain[k] for part in matching.of(row) for k in part.places]
+                assert lanelets == expected
 
 
 def test_the_grid_is_consistent():

@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from math import hypot
+from math import hypot, inf
 
 import numpy as np
 from numpy import bool_, intp
@@ -40,6 +40,10 @@ BREAK_COST = 50.0
 
 _AT_ONCE = 1 << 19
 """So many transitions are computed together."""
+
+
+FEW_TRANSITIONS = 16
+"""For fewer transitions in a step each is computed by itself."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,6 +140,8 @@ def likeliest_paths(
     starts, lengths = starts[longest], lengths[longest]
     going = np.searchsorted(-lengths, -np.arange(int(lengths[0])), "left").tolist()
     width = int(found.counts.max())
+    if len(starts) * width**2 <= FEW_TRANSITIONS:
+        return _paths_one_by_one(found, places, begins, graph)
     back = np.zeros((len(begins), width), dtype=intp)
     broken = np.zeros((len(begins), width), dtype=bool)
     reached = _padded(found, starts, found.costs)
@@ -164,6 +170,51 @@ def likeliest_paths(
         parted[states] |= broken[states, chosen]
         own[:count] = back[states, chosen]
     return lanes, parted
+
+
+def _paths_one_by_one(
+    found: LaneCandidates, places: Floats, begins: NDArray[bool_], graph: LaneletGraph
+) -> tuple[NDArray[intp], NDArray[bool_]]:
+    """The same of few runs: in numbers, since arrays are not worth it for some of them."""
+    starts = np.flatnonzero(begins).tolist()
+    to = _transitions(found, places, np.flatnonzero(~begins), graph)
+    steps = iter(zip(to.off.tolist(), to.changes.tolist(), to.own.tolist(), strict=True))
+    first_costs = iter(_padded(found, np.array(starts), found.costs).tolist())
+    first, counts = found.first.tolist(), found.counts.tolist()
+    lanes, parted = np.empty(len(begins), dtype=intp), begins.copy()
+    for start, end in zip(starts, [*starts[1:], len(begins)], strict=True):
+        reached = next(first_costs)
+        back: list[list[tuple[int, bool]]] = []
+        for _ in range(start + 1, end):
+            ways, costs = _cheapest(reached, *next(steps))
+            back.append(ways)
+            reached = costs
+        own = first[end - 1]
+        names = [found.names[found.lanes[own + k]] for k in range(counts[end - 1])]
+        # As cheap ones by their name
+        _, _, chosen = min(zip(reached[: len(names)], names, range(len(names)), strict=True))
+        for state in range(end - 1, start - 1, -1):
+            lanes[state] = found.lanes[first[state] + chosen]
+            if state > start:
+                chosen, parted[state] = back[state - start - 1][chosen]
+    return lanes, parted
+
+
+def _cheapest(
+    before: list[float], off: list[list[float]], changes: list[list[float]], own: list[float]
+) -> tuple[list[tuple[int, bool]], list[float]]:
+    """For each candidate the one before and whether its stretch breaks there; and the costs."""
+    ways, costs = [], []
+    for off_own, changed, more in zip(off, changes, own, strict=True):
+        least, way = inf, (0, False)
+        for number, (cost, away, change) in enumerate(zip(before, off_own, changed, strict=True)):
+            through, broken = cost + away + change, cost + BREAK_COST
+            cheaper = min(through, broken)
+            if cheaper < least or not number:
+                least, way = cheaper, (number, through > broken)
+        ways.append(way)
+        costs.append(least + more)
+    return ways, costs
 
 
 def _ends(
