@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.extraction.drives import NoDrive
@@ -26,6 +26,7 @@ from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict, Violation
 from rulec.recordings.recording import Participant
 from rulec.scoring.scores import CandidateScore, Scores
 from rulec.scoring.traffic_world import TrafficWorld
+from rulec.trace.no_collection import no_collection
 
 _Key = tuple[str, tuple[str, ...]]
 """A rule, and the objects of its variables."""
@@ -48,6 +49,17 @@ def score(
     candidate together. Raises RulecError R0780.
     """
     paths, past = world.candidates_of(candidates), world.past_of(after)
+    # Many candidates have some ten thousand parts, none of which is garbage
+    with no_collection():
+        return _scored(paths, past, world, rules)
+
+
+def _scored(
+    paths: NDArray[np.float64],
+    past: NDArray[np.float64],
+    world: TrafficWorld,
+    rules: CompiledRulebook,
+) -> Scores:
     bodies = world.bodies_along(paths, past)
     first = world.now + 1
     steps = first - len(past), first + paths.shape[1] - 1

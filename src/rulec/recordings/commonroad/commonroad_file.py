@@ -12,9 +12,10 @@ from rulec.recordings.commonroad.scenario_content import Content, add, add_step,
 from rulec.recordings.commonroad.states import wanted_of_state
 from rulec.recordings.encodings.tree import Tree
 from rulec.recordings.encodings.xml_element import XmlFormat, short
-from rulec.recordings.encodings.xml_tree import Alike, no_collection, scan_trees, whole_tree
+from rulec.recordings.encodings.xml_tree import Alike, scan_trees, whole_tree
 from rulec.recordings.recording import Recording
 from rulec.recordings.road_map import RoadMap
+from rulec.trace.no_collection import no_collection
 
 COMMONROAD = XmlFormat(
     "a CommonRoad scenario",

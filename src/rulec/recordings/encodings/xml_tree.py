@@ -8,10 +8,8 @@ a time, so a file may be larger than that.
 
 from __future__ import annotations
 
-import gc
 import re
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from operator import itemgetter
 from pathlib import Path
@@ -248,21 +246,6 @@ def _begins_well(head: bytes, form: XmlFormat) -> bool:
     except (ExpatError, LookupError, ValueError):
         return False
     return seen[:1] == [form.root]
-
-
-@contextmanager
-def no_collection() -> Iterator[None]:
-    """Let no garbage be looked for while a tree is made and read.
-
-    It has hundreds of thousands of elements; none is garbage, which takes long to find out.
-    """
-    enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if enabled:
-            gc.enable()
 
 
 def _tree(

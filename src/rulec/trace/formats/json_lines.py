@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import gc
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import PurePath
@@ -19,6 +18,7 @@ from rulec.trace.formats import json_line_problems
 from rulec.trace.formats.json_numbers import as_written, exactly, may_be_no_float
 from rulec.trace.formats.partial_json import BOUNDS, from_json, to_json
 from rulec.trace.formats.stream_lines import foreign, lines_as_they_come, placed
+from rulec.trace.no_collection import no_collection
 from rulec.trace.trace_model import Ending, State, Trace
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def read_chunks(
         alike = _alike([b"" if n in large else one for n, one in enumerate(lines)], together)
         known = set(chain.from_iterable(found.lines.tolist() for found in alike))
         places: dict[int, int] = {}
-        with _no_collection():
+        with no_collection():
             for index, line in enumerate(lines):
                 number += 1
                 place = SourceLocation(file, number)
@@ -163,18 +163,6 @@ def _heading(line: bytes) -> tuple[str, float, Mapping[str, str]] | None:
     if not is_usual or not 0 < read.step_s < math.inf or may_be_no_float(line):
         return None
     return str(read.id), read.step_s, read.objects
-
-
-@contextmanager
-def _no_collection() -> Iterator[None]:
-    """Time in which nobody searches for circles: of what is decoded there is much, and none."""
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_enabled:
-            gc.enable()
 
 
 @dataclass(slots=True)
