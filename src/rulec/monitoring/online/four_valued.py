@@ -34,8 +34,11 @@ class VerdictRange(NamedTuple):
 RunningVerdict: TypeAlias = "FourValued | VerdictRange"
 """A verdict that is known, or within which it lies."""
 
-LetterClass: TypeAlias = int | frozenset[int]
-"""A class of letters, or several of which a state has one."""
+LetterClass: TypeAlias = int
+"""A class of letters; beyond a rule's classes a set of them, of which a state has one.
+
+``UncertainSteps`` numbers the sets. Numbers are no concern of the garbage collector, sets are.
+"""
 
 
 def best_of(verdict: RunningVerdict) -> FourValued:

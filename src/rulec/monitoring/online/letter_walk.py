@@ -10,7 +10,8 @@ from collections.abc import Callable, Hashable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rulec.automata.mealy_monitor import IMPOSSIBLE
-from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
+from rulec.monitoring.online.encoding.encoded_values import PARTIAL_DIGITS
+from rulec.vocabulary.partial_values import Interval
 
 if TYPE_CHECKING:
     from rulec.monitoring.online.four_valued import LetterClass
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
 
 MOST_NODES = 1 << 14
 """Nodes of a rule that are kept before all are forgotten."""
+
+
+_NOTHING: tuple[int, Sequence[Cube]] = -1, ()
 
 
 class WholeStateError(LookupError):
@@ -42,18 +46,18 @@ class WalkedRead(NamedTuple):
 class _Node(dict[Any, "_Node"]):
     """What some digits may lead to; behind the last one ``classes``, and if no more than that."""
 
-    __slots__ = ("classes", "cubes", "is_exact", "level", "sets", "walk")
+    __slots__ = ("begin", "classes", "is_exact", "level", "sets", "walk")
 
     def __init__(
         self,
         walk: LetterWalk,
         level: int,
-        cubes: Sequence[Cube],
+        begin: tuple[int, Sequence[Cube]],
         sets: tuple[int, ...],
         *,
         is_exact: bool,
     ) -> None:
-        self.walk, self.level, self.cubes, self.sets = walk, level, cubes, sets
+        self.walk, self.level, self.begin, self.sets = walk, level, begin, sets
         self.is_exact = is_exact
         self.classes: LetterClass | None = None
 
@@ -85,23 +89,26 @@ class LetterWalk:
         self._class_of = class_of
         # The last read is the diagram's first level.
         self._order = range(len(reads) + len(others) - 1, -1, -1)
+        # Behind this level no cube has a digit.
+        self._n_begun = len(self._order) - min(others, default=len(self._order))
         self._nodes: dict[Hashable, _Node] = {}
         self._start: _Node | None = None
 
     def classes(
-        self, digits: Sequence[Any], cubes: Sequence[Cube], *, is_exact: bool
+        self, digits: Sequence[Any], begin: tuple[int, Sequence[Cube]], *, is_exact: bool
     ) -> tuple[LetterClass, bool]:
         """The classes of the letters with these digits, and whether no more are said than are.
 
-        ``digits`` are in the order of the reads. Raises LookupError if one is wrong, if facts
-        exclude all these letters, as WholeStateError if more than the rule's own objects decides.
+        ``digits`` are in the order of the reads, what they ``begin`` with are cubes, with a number
+        by which these are known. Raises LookupError if a digit is wrong, if facts exclude all these
+        letters, as WholeStateError if more than the rule's own objects decides.
         """
-        return self._walked(self._begun(cubes, is_exact), digits)
+        return self._walked(self._begun(begin, is_exact), digits)
 
     def classes_alone(self, digits: Sequence[Any]) -> tuple[LetterClass, bool]:
         """The same of a rule whose reads all have digits of their own. Raises as ``classes``."""
         if self._start is None or len(self._nodes) >= MOST_NODES:
-            self._start = self._begun(((),), True)
+            self._start = self._begun((0, ((),)), True)
         return self._walked(self._start, digits)
 
     def _walked(self, node: _Node, digits: Sequence[Any]) -> tuple[LetterClass, bool]:
@@ -124,24 +131,30 @@ class LetterWalk:
         mask = read.masks[digit]
         if mask & (mask - 1) and not read.decided_alone:
             raise WholeStateError
-        is_exact = node.is_exact and not (read.is_constant and type(digit) in UNKNOWN_TYPES)
+        is_exact = node.is_exact and not (read.is_constant and type(digit) in PARTIAL_DIGITS)
         sets = tuple([self._diagram.step(place, here, mask) for here in node.sets])
-        return self._node(node.level + 1, node.cubes, sets, is_exact)
+        return self._node(node.level + 1, node.begin, sets, is_exact)
 
-    def _begun(self, cubes: Sequence[Cube], is_exact: bool) -> _Node:
+    def _begun(self, begin: tuple[int, Sequence[Cube]], is_exact: bool) -> _Node:
         if len(self._nodes) >= MOST_NODES:
             self._nodes.clear()
-        key = cubes, is_exact
+        number, cubes = begin
+        key = number, is_exact
         known = self._nodes.get(key)
         if known is None:
             start = (self._diagram.start,) * len(cubes)
-            known = self._nodes[key] = self._node(0, cubes, start, is_exact)
+            known = self._nodes[key] = self._node(0, begin, start, is_exact)
         return known
 
     def _node(
-        self, level: int, cubes: Sequence[Cube], sets: tuple[int, ...], is_exact: bool
+        self,
+        level: int,
+        begin: tuple[int, Sequence[Cube]],
+        sets: tuple[int, ...],
+        is_exact: bool,
     ) -> _Node:
         """The node behind all reads without digits of their own that come next."""
+        number, cubes = begin
         while level < len(self._order) and (place := self._order[level]) in self._others:
             own = self._others[place]
             sets = tuple(
@@ -151,15 +164,15 @@ class LetterWalk:
                 ]
             )
             level += 1
-        is_last = level == len(self._order)
-        if is_last:
+        if level >= self._n_begun:
+            # The digits that are still to come are the same behind all cubes.
             whole = 0
             for here in sets:
                 whole |= here
-            sets, cubes = (whole,), ()
-        key = level, cubes, sets, is_exact
+            sets, number, begin = (whole,), -1, _NOTHING
+        key = level, number, sets, is_exact
         if key not in self._nodes:
-            node = self._nodes[key] = _Node(self, level, cubes, sets, is_exact=is_exact)
-            if is_last and (found := self._class_of(sets[0] >> 1)) != IMPOSSIBLE:
+            node = self._nodes[key] = _Node(self, level, begin, sets, is_exact=is_exact)
+            if level == len(self._order) and (found := self._class_of(sets[0] >> 1)) != IMPOSSIBLE:
                 node.classes = found
         return self._nodes[key]

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead, Read
 from rulec.logic.free_names import names_in
 from rulec.monitoring.online.encoding.encoded_values import (
+    DARK,
     MISSING,
+    PARTIAL_DIGITS,
     DigitWeight,
     MonitorInput,
     monitor_inputs,
@@ -33,7 +35,7 @@ from rulec.monitoring.uncertainty.state_letters.read_digits import (
 )
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.vocabulary import Enumeration, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
 MOST_CLASSES = 1 << 12
 """Classes of a rule's letters that are kept before all are forgotten."""
@@ -86,7 +88,7 @@ class PreparedRule:
 
         def are_idle(classes: int) -> bool:
             letters = steps.letter_class(classes)
-            return letters is not None and self.is_at_start(steps.after(self.start, letters))
+            return letters is not None and self.is_at_start(steps.rows[self.start][letters])
 
         return IdleLetters(steps.classes.diagram, are_idle)
 
@@ -133,14 +135,15 @@ class PreparedRule:
         ``digits`` are those of the ``inputs`` and then the ``values``, as encoded. Raises
         LookupError if one is missing or wrong, or if it takes a look at the whole state.
         """
-        if self._is_simple and not UNKNOWN_TYPES.isdisjoint(map(type, digits)):
+        if self._is_simple and not PARTIAL_DIGITS.isdisjoint(map(type, digits)):
             # The usual case where something is not known
             return self._walk.classes_alone(digits)
         n_alone = len(self._weights)
         own, values = digits[:n_alone], digits[n_alone:]
-        cubes, is_exact, letter = self._decided.get(values) or self._decided_by(values)
-        if letter is None or not UNKNOWN_TYPES.isdisjoint(map(type, own)):
-            return self._walk.classes(own, cubes, is_exact=is_exact)
+        place, is_exact, letter = self._decided.get(values) or self._decided_by(values)
+        if letter is None or not PARTIAL_DIGITS.isdisjoint(map(type, own)):
+            cubes = self._cubes_at(place)
+            return self._walk.classes(own, (place, cubes), is_exact=is_exact)
         for weight_of, digit in zip(self._weights, own, strict=True):
             letter += weight_of(digit)
         letter_class = self.letters[letter]
@@ -158,24 +161,30 @@ class PreparedRule:
 
     def _decided_by(self, values: tuple[Any, ...]) -> _Decided:
         """What these values decide, which are often the same while others change."""
-        (cubes, is_exact), weight = _NO_CUBES, 0
+        (cubes, is_exact), place, weight = _NO_CUBES, 0, 0
         if self.entangled is not None and self.entangled.numbers:
-            cubes, is_exact = self.entangled.found[self._place(self.entangled, values)]
+            place = self._place(self.entangled, values)
+            cubes, is_exact = self.entangled.found[place]
             is_exact = is_exact and not self._has_unknown_constant(values)
             if len(cubes) == 1:
                 strides = [self._strides[n] for n in self.entangled.numbers]
                 digits = [x.bit_length() - 1 for x in cubes[0]]
                 weight = sum([x * y for x, y in zip(strides, digits, strict=True)])
         is_known = len(cubes) == 1 and not any(x & (x - 1) for x in cubes[0])
-        decided = _Decided(cubes, is_exact, weight if is_known else None)
+        decided = place, is_exact, weight if is_known else None
         if len(self._decided) >= MOST_CLASSES:
             self._decided.clear()
         self._decided[values] = decided
         return decided
 
+    def _cubes_at(self, place: int) -> Letters:
+        if self.entangled is None or not self.entangled.numbers:
+            return _NO_CUBES[0]
+        return self.entangled.found[place][0]
+
     def _has_unknown_constant(self, values: Sequence[Any]) -> bool:
         return bool(self.constants) and any(
-            type(value) in UNKNOWN_TYPES and not self.constants.isdisjoint(read.names)
+            type(value) in PARTIAL_DIGITS and not self.constants.isdisjoint(read.names)
             for read, value in zip(self.values, values, strict=True)
         )
 
@@ -217,7 +226,7 @@ class PreparedRule:
             if allowed is not None and value not in allowed:
                 raise LookupError
         try:
-            return entangled.number(tuple([None if x is MISSING else x for x in encoded]))
+            return entangled.fresh_number(tuple([_VALUES.get(x, x) for x in encoded]))
         except MissingValueError:
             raise LookupError from None
 
@@ -226,7 +235,7 @@ class PreparedRule:
         """Of each value that is an enumeration's what it may be, encoded."""
         declared = [self.vocabulary.declarations[read.names[0]] for read in self.values]
         return [
-            frozenset([*own.values, MISSING, UNKNOWN]) if isinstance(own, Enumeration) else None
+            frozenset([*own.values, MISSING, DARK]) if isinstance(own, Enumeration) else None
             for own in declared
         ]
 
@@ -261,12 +270,14 @@ class ClassTable(dict[tuple[Any, ...], "LetterClass"]):
         return letter_class
 
 
-class _Decided(NamedTuple):
-    """What entangled reads may be together, and if they can be but one thing its weight."""
+_Decided: TypeAlias = tuple[int, bool, int | None]
+"""The place of what entangled reads may be together, and whether no more is said than is.
 
-    cubes: Letters
-    is_exact: bool
-    weight: int | None
+If they can be but one thing its weight. A plain tuple of numbers no garbage collector looks at.
+"""
+
+_VALUES: Mapping[object, Any] = {MISSING: None, DARK: UNKNOWN}
+"""What stands for values that are not given, or not known."""
 
 
 class _Masks(dict[Any, int]):
@@ -285,10 +296,11 @@ class _Masks(dict[Any, int]):
             if isinstance(read, Read):
                 raise LookupError
             return possible_digits(read, digit)
-        if digit is not UNKNOWN:
-            self._weight_of(digit)
-        is_digit = digit is not UNKNOWN and isinstance(read, NumberRead)
-        self[digit] = 1 << digit if is_digit else possible_digits(read, digit)
+        if digit is DARK:
+            self[digit] = possible_digits(read, UNKNOWN)
+            return self[digit]
+        self._weight_of(digit)
+        self[digit] = 1 << digit if isinstance(read, NumberRead) else possible_digits(read, digit)
         return self[digit]
 
 

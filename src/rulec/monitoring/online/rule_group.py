@@ -70,16 +70,16 @@ class GroupNode(dict[int, "GroupNode"]):
         classes = self.group.classes[letter]
         try:
             edges: list[Edge] = [
-                edge.successors[letter_class]  # type: ignore[index]
+                edge.successors[letter_class]
                 for edge, letter_class in zip(self.edges, classes, strict=True)
             ]
-        except (TypeError, LookupError):
-            # Several classes are no index, and several edges have no successors.
+        except IndexError:
+            # Sets of classes are beyond all classes, and several edges have no successors.
             rules = zip(self.group.rules, self.edges, classes, strict=True)
             edges = [
                 edge.successors[letter_class]
-                if type(letter_class) is int and edge.successors
-                else prepared.uncertain.after(edge, letter_class)
+                if letter_class < len(edge.successors)
+                else prepared.uncertain.rows[edge][letter_class]
                 for prepared, edge, letter_class in rules
             ]
         return self.group.node(tuple(edges))
@@ -119,7 +119,7 @@ class RuleGroup:
         self.classes: list[tuple[LetterClass, ...]] = []
         self.inexact: dict[int, frozenset[str]] = {}
         self.holes: dict[int, Holes] = {}
-        self._letters: dict[tuple[tuple[LetterClass, ...], frozenset[int]], int] = {}
+        self._letters: dict[tuple[object, ...], int] = {}
         self._nodes: dict[tuple[Edge, ...], GroupNode] = {}
         self._tables = [(prepared.classes, values_at(prepared.all_inputs)) for prepared in rules]
         self._all_inexact = [table.inexact for table, _ in self._tables]
@@ -136,7 +136,8 @@ class RuleGroup:
 
         Of the rules with ``inexact`` numbers more is taken to be possible than is.
         """
-        key = classes, frozenset(inexact)
+        # What is exact has but numbers in its key, for the garbage collector's sake.
+        key = (classes, frozenset(inexact)) if inexact else classes
         letter = self._letters.get(key)
         if letter is None:
             letter = self._letters[key] = len(self.classes)
@@ -145,7 +146,7 @@ class RuleGroup:
             if BY_STATE in classes:
                 self.cache_size.has_holes = True
                 own = tuple([n for n, found in enumerate(classes) if found == BY_STATE])
-                self.holes[letter] = Holes(own, key[1])
+                self.holes[letter] = Holes(own, frozenset(inexact))
             elif inexact:
                 self.cache_size.is_inexact = True
                 self.inexact[letter] = frozenset(self.rules[number].name for number in inexact)

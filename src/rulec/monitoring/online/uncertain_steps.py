@@ -45,7 +45,8 @@ Edge: TypeAlias = MonitorEdge | UncertainEdge
 class UncertainSteps:
     """Steps of a rule's machine from and to sets of edges, made as they are met.
 
-    ``edges`` are the single edges of ``machine``, by state reached and verdict.
+    ``edges`` are the single edges of ``machine``, by state reached and verdict. ``rows`` have by
+    edge the edge or the edges behind each class, or set of classes, met so far.
     """
 
     def __init__(
@@ -54,25 +55,27 @@ class UncertainSteps:
         self._machine = machine
         self.classes = LetterClasses(machine)
         self._single = edges
-        self._sets: dict[int, LetterClass | None] = {}
+        self._numbers: dict[int, LetterClass] = {}
+        self._sets: list[tuple[int, ...]] = []
         self._edges: dict[tuple[frozenset[int], RunningVerdict], UncertainEdge] = {}
-        self._steps: dict[tuple[Edge, LetterClass], Edge] = {}
+        self.rows = _Rows(self)
+        self._n_steps = 0
 
-    def after(self, edge: Edge, letters: LetterClass) -> Edge:
-        """The edge or the edges behind some letters."""
-        key = edge, letters
-        known = self._steps.get(key)
-        if known is None:
-            if len(self._steps) >= MOST_STEPS:
-                self._steps.clear()
-                self._edges.clear()
-            states = edge.states if isinstance(edge, UncertainEdge) else (edge.state,)
-            symbols = (letters,) if isinstance(letters, int) else letters
-            pairs = [(state, symbol) for state in states for symbol in symbols]
-            reached = {self._machine.successors[state][symbol] for state, symbol in pairs}
-            verdicts = {self._verdict(state, symbol) for state, symbol in pairs}
-            known = self._steps[key] = self.edge(reached, verdicts)
-        return known
+    def step(self, edge: Edge, letters: LetterClass) -> Edge:
+        """The edge or the edges behind some letters, found anew; ``rows`` keep it."""
+        self._n_steps += 1
+        if self._n_steps > MOST_STEPS:
+            self._n_steps = 0
+            self.rows.clear()
+            self._edges.clear()
+        machine = self._machine
+        states = edge.states if isinstance(edge, UncertainEdge) else (edge.state,)
+        n_classes = machine.n_classes
+        symbols = (letters,) if letters < n_classes else self._sets[letters - n_classes]
+        pairs = [(state, symbol) for state in states for symbol in symbols]
+        reached = {machine.successors[state][symbol] for state, symbol in pairs}
+        verdicts = {self._verdict(state, symbol) for state, symbol in pairs}
+        return self.edge(reached, verdicts)
 
     def edge(self, states: Iterable[int], verdicts: Iterable[FourValued]) -> Edge:
         """The edges to any of these states, with verdicts from the worst to the best of these."""
@@ -91,13 +94,38 @@ class UncertainSteps:
 
     def letter_class(self, mask: int) -> LetterClass | None:
         """The classes given as bits; None if facts exclude them all."""
-        if mask not in self._sets:
-            single = mask.bit_length() - 1 if mask else None
-            self._sets[mask] = single if mask & (mask - 1) == 0 else frozenset(bits_of(mask))
-        return self._sets[mask]
+        if mask & (mask - 1) == 0:
+            return mask.bit_length() - 1 if mask else None
+        number = self._numbers.get(mask)
+        if number is None:
+            number = self._numbers[mask] = self._machine.n_classes + len(self._sets)
+            self._sets.append(bits_of(mask))
+        return number
 
     def _verdict(self, state: int, symbol: int) -> FourValued:
         return _four_valued(self._machine, state, symbol)
+
+
+class _Rows(dict[Edge, "_Row"]):
+    __slots__ = ("_steps",)
+
+    def __init__(self, steps: UncertainSteps) -> None:
+        self._steps = steps
+
+    def __missing__(self, edge: Edge) -> _Row:
+        row = self[edge] = _Row(self._steps, edge)
+        return row
+
+
+class _Row(dict[LetterClass, Edge]):
+    __slots__ = ("_edge", "_steps")
+
+    def __init__(self, steps: UncertainSteps, edge: Edge) -> None:
+        self._steps, self._edge = steps, edge
+
+    def __missing__(self, letters: LetterClass) -> Edge:
+        after = self[letters] = self._steps.step(self._edge, letters)
+        return after
 
 
 def cut_edges(

@@ -18,7 +18,7 @@ from rulec.automata.thresholds import EXACT_IN_FLOATS, scale
 from rulec.logic.free_names import names_in
 from rulec.monitoring.state_validation import NUMBERS
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES
+from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval
 
 Breakpoints: TypeAlias = Mapping[str, tuple[float, ...] | None]
 """By quantity the ``floor_of`` each threshold of any rule, ascending; None if all values matter.
@@ -38,6 +38,16 @@ PARTIAL_NUMBERS = NUMBERS | UNKNOWN_TYPES
 
 MISSING: Final = object()
 """In place of an encoded value that is not given and has no default."""
+
+DARK: Final = object()
+"""In place of the digit of what is unknown.
+
+Digits are kept as keys, of which the garbage collector would look at those again and again that
+have ``UNKNOWN``, a member of an enumeration, in them. A plain object is no concern of its.
+"""
+
+PARTIAL_DIGITS = frozenset({object, Interval})
+"""The types of digits that are not known: of ``DARK``, and of bounds."""
 
 Encoder: TypeAlias = Callable[[tuple[Any, ...]], Encoded]
 """Encodes values.
@@ -151,7 +161,7 @@ class MonitorInput:
 
     ``name`` is the declaration; None if ``number`` is a count or a sum, whose ``variables`` these
     are. A number's digit is how many thresholds it passes; that of anything else is its value.
-    What is partly known stands for itself.
+    What is unknown is ``DARK``, and what is partly known stands for itself.
     """
 
     name: str | None
@@ -165,7 +175,9 @@ class MonitorInput:
 
         Raises a TypeError where a number is missing.
         """
-        if self.name is None or self.number is None or type(encoded) in UNKNOWN_TYPES:
+        if encoded is UNKNOWN:
+            return DARK
+        if self.name is None or self.number is None or type(encoded) is Interval:
             return encoded
         floors = breakpoints[self.name]
         # A number has reached just these of its own floors that the highest one of all has reached.

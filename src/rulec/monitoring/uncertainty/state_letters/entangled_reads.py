@@ -133,6 +133,7 @@ class EntangledReads:
         self.found: list[tuple[Letters, bool]] = []
         self._numbers: dict[tuple[Letters, bool], int] = {}
         self._known: dict[tuple[object, ...], int] = {}
+        self._places: dict[tuple[int, ...], int] = {}
 
     def subjects_of(self, objects: Mapping[str, str]) -> list[Subject]:
         """The subjects, asked of a binding's objects."""
@@ -164,6 +165,18 @@ class EntangledReads:
             known = self._known[key] = self._place(found)
         return known
 
+    def fresh_number(self, values: tuple[PartialValue | None, ...]) -> int:
+        """``number`` of local reads, for who keeps it himself."""
+        if self._apart is not None:
+            # What is missing first is found below.
+            with suppress(MissingValueError):
+                key = self._apart.key(values)
+                place = self._places.get(key)
+                if place is None:
+                    place = self._places[key] = self._place(self._apart.letters(key))
+                return place
+        return self._place(self._letters(values, self._everybody.objects))
+
     def _place(self, found: tuple[Letters, bool]) -> int:
         place = self._numbers.setdefault(found, len(self.found))
         if place == len(self.found):
@@ -176,7 +189,7 @@ class EntangledReads:
         if self._apart is not None:
             # What is missing first is found below.
             with suppress(MissingValueError):
-                return self._apart.letters(values)
+                return self._apart.letters(self._apart.key(values))
         given = with_values({}, dict(zip(self.subjects, values, strict=True)))
         state = StateView(given, there, self._everybody.vocabulary)
         digits = [read.in_state(self._binding, state) for read in self._ready]

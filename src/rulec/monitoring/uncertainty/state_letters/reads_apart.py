@@ -160,14 +160,18 @@ class ReadsApart:
         self._binding, self._everybody = binding, everybody
         self._n_reads = len(reads)
         self._parts = tuple(self._apart(reads, subjects, axioms, known))
+        self._tables = [(part.values, part.table) for part in self._parts]
         self._letters: dict[tuple[int, ...], tuple[Letters, bool]] = {}
 
-    def letters(self, values: Sequence[PartialValue | None]) -> tuple[Letters, bool]:
-        """What the reads may be together for these values, and whether no more is said than is.
+    def key(self, values: Sequence[PartialValue | None]) -> tuple[int, ...]:
+        """By what it is known what the reads may be for these values.
 
         Raises MissingValueError, not always about the value that is missing first.
         """
-        key = tuple([part.table.number(part.values(values)) for part in self._parts])
+        return tuple([table.number(pick(values)) for pick, table in self._tables])
+
+    def letters(self, key: tuple[int, ...]) -> tuple[Letters, bool]:
+        """What the reads may be together, and whether no more is said than is."""
         known = self._letters.get(key)
         if known is None:
             known = self._letters[key] = self._together(key)
