@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, wraps
-from typing import TypeVar, cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy import intp
@@ -17,7 +17,7 @@ from rulec.extraction.tracks.road_extents import LaneSets, RoadExtents, is_in
 from rulec.extraction.tracks.road_places import KMH as KMH
 from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.tracks.surroundings import Surroundings
-from rulec.extraction.tracks.tracks import Flags, Floats, Tracks, end_to_end
+from rulec.extraction.tracks.tracks import Flags, Floats, LaidOut, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Recording, Side
 from rulec.trace.end_to_end import EndToEnd
@@ -178,15 +178,16 @@ class DriveContext:
         if not changes.any():
             return self.ego_lane
         steady: NDArray[intp] = self.ego_lane.copy()
+        left_of = self.ego_extents.left_of[0]
         for _, columns in self.spans.those(self.spans.any(changes)):
-            lane, left_of = steady[columns].tolist(), self.ego_extents.left_of[0, columns].tolist()
-            existing = self.existing_lanes[columns]
-            for state in range(1, len(lane)):
-                before = lane[state - 1]
-                beyond = max(-left_of[state][before], left_of[state][before + 1])
-                if beyond < self.thresholds.changed_m and existing[state, before]:
-                    lane[state] = before
-            steady[columns] = lane
+            state = columns.start
+            while state < columns.stop:
+                own, later = int(steady[state]), slice(state + 1, columns.stop)
+                beyond = np.maximum(-left_of[later, own], left_of[later, own + 1])
+                stays = (beyond < self.thresholds.changed_m) & self.existing_lanes[later, own]
+                left = np.flatnonzero((steady[later] != own) & ~stays)
+                end = state + 1 + int(left[0]) if len(left) else columns.stop
+                steady[state:end], state = own, end
         return steady
 
     @cached_property
@@ -291,7 +292,7 @@ def drive_context(
     """The part of a recording that one drive is about: ``ego``'s row, in a range of columns."""
     own = np.array([ego])
     tracks, extents = places.tracks.part(own, columns), places.extents.part(own, columns)
-    relevant, in_sight = _near(places, columns, extents)
+    relevant, in_sight = _near(places, (columns,), extents)
     relevant[ego] = in_sight[ego] = False
     rows = (relevant | in_sight).any(axis=1).nonzero()[0]
     n_states = columns.stop - columns.start
@@ -318,17 +319,26 @@ def drive_context(
     )
 
 
-def _near(
-    places: RoadPlaces, columns: slice | NDArray[intp], ego: RoadExtents
-) -> tuple[Flags, Flags]:
-    """Flags of participants (rows) that count for ego, and that are in its sight, by step."""
+def _near(places: RoadPlaces, ranges: Sequence[slice], ego: RoadExtents) -> tuple[Flags, Flags]:
+    """Flags of participants (rows) that count for ego, and that are in its sight.
+
+    By state, those of several ``ranges`` end to end.
+    """
     limits, extents = places.thresholds, places.extents
-    s_min, s_max, along = (x[:, columns] for x in (extents.s_min, extents.s_max, extents.along))
-    gap = np.maximum(s_min - ego.s_max, ego.s_min - s_max)
+
+    def laid(values: NDArray[Any]) -> NDArray[Any]:
+        parts = [values[:, own] for own in ranges]
+        return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
+
+    gap = laid(extents.s_min) - ego.s_max
+    np.maximum(gap, ego.s_min - laid(extents.s_max), out=gap)
     # A little farther, since speeds are known to some tolerance
-    reach = np.maximum(ego.along - along + 1.0, 0.0) * limits.catching_up_s
-    relevant = places.counts[:, columns] & (gap <= limits.near_m) & ~np.isnan(ego.s_min)
-    in_sight = places.seen[:, columns] & (gap <= np.maximum(limits.near_m, reach))
+    reach = ego.along - laid(extents.along)
+    reach += 1.0
+    np.maximum(reach, 0.0, out=reach)
+    reach *= limits.catching_up_s
+    relevant = laid(places.counts) & (gap <= limits.near_m) & ~np.isnan(ego.s_min)
+    in_sight = laid(places.seen) & (gap <= np.maximum(limits.near_m, reach, out=reach))
     return relevant, in_sight
 
 
@@ -387,12 +397,12 @@ def drives_context(
     members = np.array(egos.rows, dtype=intp)
     own = spans.spread(members)[None], columns[None]
     ego = egos.places.extents.at(*own)
-    relevant, in_sight = _near(places, columns, ego)
+    relevant, in_sight = _near(places, egos.columns, ego)
     if egos.own is surroundings:
         relevant[own[0], spans.columns] = in_sight[own[0], spans.columns] = False
     are_near = relevant | in_sight
     rows = are_near.any(axis=1).nonzero()[0]
-    laid = rows, egos.columns, ~spans.any(are_near[rows])
+    laid = LaidOut(rows, egos.columns, ~spans.any(are_near[rows]))
     return DriveContext(
         recording=surroundings.recording,
         thresholds=places.thresholds,
@@ -403,15 +413,15 @@ def drives_context(
         own=egos.own,
         ego=egos.places.tracks.at(*own, members),
         ego_extents=ego,
-        tracks=places.tracks.end_to_end(*laid),
-        extents=places.extents.end_to_end(*laid),
+        tracks=places.tracks.end_to_end(laid),
+        extents=places.extents.end_to_end(laid),
         relevant=relevant[rows],
         in_sight=in_sight[rows],
-        lanes_there=end_to_end(places.lanes_there, *laid),
+        lanes_there=laid(places.lanes_there),
         lanes_within=tuple(
-            end_to_end(sets, *laid) for sets in places.lanes_within(surroundings.tolerances.place_m)
+            laid(sets) for sets in places.lanes_within(surroundings.tolerances.place_m)
         ),
-        elsewhere=end_to_end(places.elsewhere, *laid),
+        elsewhere=laid(places.elsewhere),
         surroundings=surroundings,
         alone=egos.alone,
     )

@@ -41,10 +41,9 @@ from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.signals.map.road_signals import road_signals
 from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
 from rulec.extraction.signals.map.zone_signals import zone_signals
-from rulec.extraction.signals.measured_numbers import safe_distance_error
 from rulec.extraction.signals.participant_signals import (
-    gap_beside_safe_distance,
     participant_signals,
+    safe_gaps,
 )
 from rulec.extraction.signals.settling import agreeing, settled
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, together
@@ -330,8 +329,10 @@ def _decided_by(
     """The numbers by which signals of each drive were decided."""
     if "safe_gap" not in chosen.columns.about:
         return [{} for _ in present]
-    gap, safe = gap_beside_safe_distance(context)
-    place, error = context.tolerances.place_m, safe_distance_error(context)
+    followed, place = safe_gaps(context), context.tolerances.place_m
+    gap, safe, error = np.full((3, *context.relevant.shape), np.nan)
+    gap[followed.cells], safe[followed.cells] = followed.gap, followed.safe
+    error[followed.cells] = followed.safe_error
     found = []
     for own, columns in zip(present, context.spans.slices, strict=True):
         rows = {presence.name: presence.row for presence in own}

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.extraction.tracks.tracks import end_to_end, tracks_of
+from rulec.extraction.tracks import tracks as own_tracks
+from rulec.extraction.tracks.tracks import LaidOut, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
 from support.builders.recordings import recording, straight, vehicle
 
@@ -93,6 +94,7 @@ def test_constant_velocity_is_found_wherever_it_can_be(vx, vy, steps, smoothing_
         assert found.vx[0, step - found.first] == pytest.approx(expected, abs=1e-9)
 
 
+@pytest.mark.parametrize("long", [0, 200])
 @pytest.mark.parametrize(
     ("ranges", "expected"),
     [
@@ -100,13 +102,14 @@ def test_constant_velocity_is_found_wherever_it_can_be(vx, vy, steps, smoothing_
         ([slice(1, 3), slice(2, 4)], [[9, 10, 10, 11], [1, 2, nan, nan]]),
     ],
 )
-def test_who_is_absent_from_a_range_has_no_values_in_it(ranges, expected):
+def test_who_is_absent_from_a_range_has_no_values_in_it(ranges, expected, long, monkeypatch):
+    monkeypatch.setattr(own_tracks, "_LONG", long)
     values, absent = np.arange(12.0).reshape(3, 4), np.zeros((2, 4), dtype=bool)
     absent[1, 2:] = True
-    rows = np.array([2, 0])
-    assert np.array_equal(end_to_end(values, rows, ranges, absent), expected, equal_nan=True)
-    by_lane = end_to_end(np.stack((values, -values), axis=-1), rows, ranges, absent)
+    laid = LaidOut(np.array([2, 0]), ranges, absent)
+    assert np.array_equal(laid(values), expected, equal_nan=True)
+    by_lane = laid(np.stack((values, -values), axis=-1))
     for lane, sign in enumerate((1, -1)):
         assert np.array_equal(by_lane[..., lane], sign * np.array(expected), equal_nan=True)
-    flags = end_to_end(values > 0, rows, ranges, absent)
+    flags = laid(values > 0)
     assert flags.tolist() == [[True] * 4, [True, True, False, False]]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
@@ -189,12 +191,14 @@ def _needs_access(context: DriveContext) -> tuple[Flags, Flags]:
 
 def _far_lane_is_free(context: DriveContext) -> Flags:
     """Flags of states in which nobody is in, or soon in, the place beside ego on the next lane."""
-    beside, there = _on_next_lane(context, "left" if context.side == "right" else "right")
-    gap, station = relations.gap(context), relations.station(context)
-    closing = np.maximum(context.extents.along - context.ego_extents.along, 0.0)
-    near = gap <= closing * context.thresholds.passed_s + _OBSTACLE_M / 3
-    taken = beside & ((station == relations.BESIDE) | ((station == relations.IN_FRONT_OF) & near))
-    free: Flags = there & ~np.any(taken, axis=0)
+    lane, there = _next_lane(context, "left" if context.side == "right" else "right")
+    cells = _on_lane(context, lane, np.flatnonzero(there))
+    gap, station = relations.gap(context)[cells], relations.station(context)[cells]
+    along, own = context.extents.along[cells], context.ego_extents.along[0, cells[1]]
+    near = gap <= np.maximum(along - own, 0.0) * context.thresholds.passed_s + _OBSTACLE_M / 3
+    free: Flags = there.copy()
+    beside = station == relations.BESIDE
+    free[cells[1][beside | ((station == relations.IN_FRONT_OF) & near)]] = False
     return free
 
 
@@ -204,18 +208,24 @@ def _near_lane_is_free(context: DriveContext) -> Flags:
     It cannot go there across a solid line, as beside lanes for who turns off, nor to a bus lane,
     nor to one that leads elsewhere at the junction that ego gets to within ``preparing_s``.
     """
-    limits = context.thresholds
-    inside, there = _on_next_lane(context, context.side)
-    station, gap = relations.station(context), relations.gap(context)
-    own, other = (np.maximum(x.along, 0.0) for x in (context.ego_extents, context.extents))
-    leads = station == relations.BEHIND
-    behind, ahead = np.where(leads, own, other), np.where(leads, other, own)
-    safe = limits.reaction_s * behind + (behind**2 - ahead**2) / (2 * limits.braking_mps2)
-    taken = inside & ((station == relations.BESIDE) | (gap < safe))
+    limits, others, taken = (
+        context.thresholds,
+        context.extents,
+        np.zeros(context.states, dtype=bool),
+    )
+    lane, there = _next_lane(context, context.side)
     parted = own_lanelets(context).flags(lambda lanelet: _near_mark(lanelet, context) in _SOLID)
     turned, _ = _sorted_ahead(context)
     kept = parted | _bus_lane_beside(context) | turned
-    free: Flags = ~there | ~(taken.any(axis=0) | kept)
+    cells = _on_lane(context, lane, np.flatnonzero(there & ~kept))
+    station, gap = relations.station(context)[cells], relations.gap(context)[cells]
+    own = np.maximum(context.ego_extents.along[0, cells[1]], 0.0)
+    other = np.maximum(others.along[cells], 0.0)
+    leads = station == relations.BEHIND
+    behind, ahead = np.where(leads, own, other), np.where(leads, other, own)
+    safe = limits.reaction_s * behind + (behind**2 - ahead**2) / (2 * limits.braking_mps2)
+    taken[cells[1][(station == relations.BESIDE) | (gap < safe)]] = True
+    free: Flags = ~there | ~(taken | kept)
     return free
 
 
@@ -244,12 +254,15 @@ def _of_no_use(context: DriveContext) -> Flags:
     queues, speed_kmh = queues_by_lane(context)
     full, own = (queues[LOOSE, states, number] for number in (lane, context.ego_lane))
     slow = speed_kmh[states, context.ego_lane] < context.thresholds.slow_queue_kmh
-    used = (close_by(context) & (context.extents.lane == lane)).any(axis=0)
     _, sorting = _sorted_ahead(context)
     map_ends = (
         context.road.borders[-1] - context.ego_extents.s_max[0] < context.thresholds.approach_m
     )
-    no_use: Flags = there & (side_lane | full | (own & slow & used) | sorting | map_ends)
+    no_use: Flags = there & (side_lane | full | sorting | map_ends)
+    queues_beside = np.flatnonzero(there & ~no_use & own & slow)
+    used = close_by(context)[:, queues_beside]
+    used &= context.extents.lane[:, queues_beside] == lane[queues_beside]
+    no_use[queues_beside] = used.any(axis=0)
     return no_use
 
 
@@ -297,19 +310,42 @@ def _perhaps_on_near_lane(context: DriveContext) -> Flags:
         return np.zeros(context.states, dtype=bool)
     lane, there = _next_lane(context, context.side)
     perhaps: Flags = there & ~_known_behind(context)
-    others, spans, step_s = context.extents, context.spans, context.recording.step_s
-    seen = context.driving_along
-    before, behind = spans.latest(seen), spans.next_state(seen)
-    gone, comes = before >= spans.first, behind < spans.end
-    for unseen, edges in ((gone & ~comes, before), (comes & ~gone, behind)):
-        rows, states = (unseen & there).nonzero()
-        edge = edges[rows, states]
+    others, step_s = context.extents, context.recording.step_s
+    for rows, edge, states in _unseen(context, int(_UNSEEN_S / step_s) + 1):
         away_s = (states - edge) * step_s
         place = others.s[rows, edge] + others.along[rows, edge] * away_s
         near = np.abs(place - context.ego_extents.s[0, states]) < context.thresholds.approach_m
         near &= (others.lane[rows, edge] == lane[states]) & (np.abs(away_s) < _UNSEEN_S)
+        near &= there[states]
         perhaps[states[near]] = True
     return perhaps
+
+
+def _unseen(context: DriveContext, most: int) -> Iterator[tuple[NDArray[intp], ...]]:
+    """The states after others were last seen in a drive, then those before they were first seen.
+
+    Rows, the states in which they were seen, and no more than ``most`` states for each.
+    """
+    spans, seen = context.spans, context.driving_along
+    ends = np.array(spans.bounds[1:], dtype=intp)
+    last = np.maximum.reduceat(np.where(seen, spans.columns, -1), spans.begins, axis=-1)
+    rows, drives = (last >= 0).nonzero()
+    edge = last[rows, drives]
+    yield _around(rows, edge, (edge + 1, np.minimum(edge + most + 1, ends[drives])))
+    first = np.where(seen, spans.columns, spans.n_states)
+    edge = np.minimum.reduceat(first, spans.begins, axis=-1)[rows, drives]
+    yield _around(rows, edge, (np.maximum(edge - most, spans.begins[drives]), edge))
+
+
+def _around(
+    rows: NDArray[intp], edge: NDArray[intp], ranges: tuple[NDArray[intp], NDArray[intp]]
+) -> tuple[NDArray[intp], ...]:
+    """Rows and edges for each state of a range each, and these states."""
+    first, end = ranges
+    lengths = end - first
+    before = np.cumsum(lengths) - lengths
+    states = np.arange(int(lengths.sum())) + np.repeat(first - before, lengths)
+    return np.repeat(rows, lengths), np.repeat(edge, lengths), states
 
 
 def _known_behind(context: DriveContext) -> Flags:
@@ -353,11 +389,13 @@ def _some_arrive(tracks: Tracks) -> bool:
     return bool((~vehicles[:, :1] & vehicles.any(axis=1, keepdims=True)).any())
 
 
-def _on_next_lane(context: DriveContext, side: Side) -> tuple[Flags, Flags]:
-    """Flags of those who go ego's way on the lane at a side of it, and where there is one."""
-    lane, there = _next_lane(context, side)
-    on_it = context.in_lane(lane)
-    return on_it & context.going_along, there
+def _on_lane(
+    context: DriveContext, lane: NDArray[intp], states: NDArray[intp]
+) -> tuple[NDArray[intp], NDArray[intp]]:
+    """Those who go ego's way on a lane, by state, in some states: rows and states."""
+    on_it = is_in(context.lanes_within[0][:, states], lane[states])
+    rows, places = (on_it & context.going_along[:, states]).nonzero()
+    return rows, states[places]
 
 
 _PASSES: Passes = {

@@ -273,8 +273,10 @@ def _about_to_overtake(context: DriveContext) -> SignalColumns:
     joining = np.array(
         [[x is not None and JOINING in x.types for x in row] for row in context.road.rows]
     )
-    joins = joining[context.road.piece(np.nan_to_num(context.extents.s)), lane]
-    soon &= ~joins
+    joins: Flags | np.bool_ = np.False_
+    if joining.any():
+        joins = joining[context.road.piece(np.nan_to_num(context.extents.s)), lane]
+        soon &= ~joins
     lit, told = _far_indicator(context)
     ends = _ends_within(context, steps)
     return SignalColumns(

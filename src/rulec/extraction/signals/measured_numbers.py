@@ -6,6 +6,8 @@ have nothing to do with each other.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
@@ -93,39 +95,44 @@ def difference_bounds(context: DriveContext) -> Bounds:
     return rounded_outward(difference - wrong, difference + wrong)
 
 
-@once
-def safe_distance(context: DriveContext) -> Floats:
-    """The distance (m) for ego to stop behind a participant braking fully.
+def safe_distance(context: DriveContext, cells: Any = ...) -> Floats:
+    """The distance (m) for ego to stop behind a participant braking fully, at some cells, or all.
 
     Ego brakes as hard after its reaction time: v t + (v² - u²) / 2a, as in RSS (Shalev-Shwartz,
-    Shammah, Shashua 2017). An oncoming participant counts as standing.
+    Shammah, Shashua 2017). An oncoming participant counts as standing. Cells are rows and states.
     """
     limits = context.thresholds
-    own, other = _ahead(context)
+    own, other = _ahead(context, cells)
     distance: Floats = limits.reaction_s * own + (own**2 - other**2) / (2 * limits.braking_mps2)
     return distance
 
 
-@once
-def safe_distance_error(context: DriveContext) -> Floats:
+def safe_distance_error(context: DriveContext, cells: Any = ...) -> Floats:
     """How far the safe distance (m) may be wrong, as speeds are."""
     limits = context.thresholds
-    own, other = _ahead(context)
-    of_own = (limits.reaction_s + own / limits.braking_mps2) * context.ego.speed_error
-    error: Floats = np.hypot(of_own, other / limits.braking_mps2 * context.tracks.speed_error)
-    return error
+    own, other = _ahead(context, cells)
+    error = _of_ego(context.ego.speed_error, cells)
+    of_own = (limits.reaction_s + own / limits.braking_mps2) * error
+    found: Floats = np.hypot(
+        of_own, other / limits.braking_mps2 * context.tracks.speed_error[cells]
+    )
+    return found
 
 
-@once
-def _ahead(context: DriveContext) -> tuple[Floats, Floats]:
+def _ahead(context: DriveContext, cells: Any) -> tuple[Floats, Floats]:
     """The speeds (m/s) of ego and of others, from which they brake.
 
     Who turns off brakes on its own way, so its whole speed counts while it still goes about ego's.
     """
-    others = np.maximum(context.extents.along, 0.0)
-    alike = np.cos(context.extents.turned) > _ALIKE
-    others = np.where(alike & (others > 0), np.maximum(context.tracks.speed, others), others)
-    return np.maximum(context.ego_extents.along, 0.0), others
+    others = np.maximum(context.extents.along[cells], 0.0)
+    alike = np.cos(context.extents.turned[cells]) > _ALIKE
+    others = np.where(alike & (others > 0), np.maximum(context.tracks.speed[cells], others), others)
+    return np.maximum(_of_ego(context.ego_extents.along, cells), 0.0), others
+
+
+def _of_ego(values: Floats, cells: Any) -> Floats:
+    """Ego's values at cells of others."""
+    return values if cells is ... else values[0, cells[1]]
 
 
 def own_widths(context: DriveContext) -> Floats:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
@@ -140,9 +142,9 @@ def _safe_gap(context: DriveContext) -> SignalColumns:
     more than ``_OUTLIERS`` tolerances: that may be what boxes err.
     """
     _, _, may_follow = relations.ahead_in_lane(context)
-    place, cells, limits = context.tolerances.place_m, may_follow.nonzero(), context.thresholds
-    short = safe_distance(context)[cells] - relations.gap(context)[cells]
-    wrong = np.hypot(safe_distance_error(context)[cells], place)
+    place, limits, followed = context.tolerances.place_m, context.thresholds, safe_gaps(context)
+    cells, short = followed.cells, followed.safe - followed.gap
+    wrong = np.hypot(followed.safe_error, place)
     stands = context.tracks.speed[cells] * KMH < limits.standing_kmh
     # One that stands, and that ego drives by, does not drive ahead
     aside = relations.way_across(context)[cells] - limits.touching_m
@@ -190,10 +192,23 @@ def _stood_before(context: DriveContext, rows: NDArray[intp]) -> Flags:
     return stood
 
 
-def gap_beside_safe_distance(context: DriveContext) -> tuple[Floats, Floats]:
-    """The two distances (m) that ``safe_gap`` compares; NaN where ego does not follow."""
+@dataclass(frozen=True, eq=False, slots=True)
+class SafeGaps:
+    """The distances (m) that ``safe_gap`` compares: where ego may follow, rows and states."""
+
+    cells: tuple[NDArray[intp], ...]
+    gap: Floats
+    safe: Floats
+    safe_error: Floats
+
+
+@once
+def safe_gaps(context: DriveContext) -> SafeGaps:
+    """The distances that ``safe_gap`` compares."""
     _, _, follows = relations.ahead_in_lane(context)
-    return np.where(follows, relations.gap(context), np.nan), safe_distance(context)
+    cells = follows.nonzero()
+    safe, error = safe_distance(context, cells), safe_distance_error(context, cells)
+    return SafeGaps(cells, relations.gap(context)[cells], safe, error)
 
 
 def _precedes(context: DriveContext) -> SignalColumns:

@@ -18,7 +18,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.tracks import Flags, Floats, Tracks, end_to_end
+from rulec.extraction.tracks.tracks import Flags, Floats, LaidOut, Tracks
 from rulec.scenario.recorded.lane_coordinates import outline_bounds
 from rulec.scenario.recorded.reference_line import turn
 
@@ -140,14 +140,8 @@ class RoadExtents:
             part.__dict__[name] = getattr(self, name)[rows, columns]
         return part
 
-    def end_to_end(
-        self, rows: NDArray[intp], ranges: Sequence[slice], absent: Flags
-    ) -> RoadExtents:
-        """Some participants in several ranges of columns, without who is ``absent`` there."""
-
-        def laid(values: Floats) -> Floats:
-            return end_to_end(values, rows, ranges, absent)
-
+    def end_to_end(self, laid: LaidOut) -> RoadExtents:
+        """Some participants in several ranges of columns."""
         found = RoadExtents(**{name: laid(getattr(self, name)) for name in _FIELDS})
         found.__dict__["s"] = laid(self.s)
         return found

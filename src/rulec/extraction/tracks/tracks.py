@@ -145,9 +145,9 @@ class Tracks:
             **{name: getattr(self, name)[rows, columns] for name in _ARRAYS},
         )
 
-    def end_to_end(self, rows: NDArray[intp], ranges: Sequence[slice], absent: Flags) -> Tracks:
-        """Some participants in several ranges of columns, without who is ``absent`` there."""
-        return _LaidTracks(self, rows, lambda values: end_to_end(values, rows, ranges, absent))
+    def end_to_end(self, laid: LaidOut) -> Tracks:
+        """Some participants in several ranges of columns."""
+        return _LaidTracks(self, laid.rows, laid)
 
     def of_type(self, name: str) -> Flags:
         """Flags of participants of an object type or its subtypes."""
@@ -316,28 +316,57 @@ def _poses(body: Participant) -> tuple[NDArray[intp], Floats]:
     return np.fromiter(outlines, dtype=intp, count=len(poses)), np.array(poses)
 
 
-def end_to_end(
-    values: NDArray[Any], rows: NDArray[intp], ranges: Sequence[slice], absent: Flags
-) -> NDArray[Any]:
-    """Some rows in several ranges of columns, one behind the other.
+@dataclass(frozen=True, eq=False)
+class LaidOut:
+    """Some rows of arrays in several ranges of columns, one behind the other.
 
-    Flags are false, sets empty and measures NaN for who is ``absent`` from a whole range, by row
-    and column; a third axis stays the first in memory.
+    ``absent`` are flags of who is so from a whole range, by row and column of what is laid out.
     """
-    by_lane = np.moveaxis(values, -1, 0) if values.ndim > 2 else values[None]
-    none = values.dtype.type(np.nan if values.dtype.kind == "f" else 0)
-    shape = len(by_lane), *absent.shape
-    if all(own == ranges[0] for own in ranges):
-        # As of candidates, which all begin at the same time
-        part = by_lane[:, :, ranges[0]].take(rows, axis=1)
-        found = np.tile(part, (1, 1, len(ranges)))
-        if absent.any():
-            np.copyto(found, none, where=absent)
+
+    rows: NDArray[intp]
+    ranges: Sequence[slice]
+    absent: Flags
+
+    def __call__(self, values: NDArray[Any]) -> NDArray[Any]:
+        """An array's part.
+
+        Flags are false, sets empty and measures NaN for who is absent; a third axis stays the first
+        in memory.
+        """
+        by_lane = np.moveaxis(values, -1, 0) if values.ndim > 2 else values[None]
+        none = values.dtype.type(np.nan if values.dtype.kind == "f" else 0)
+        if self._columns is not None:
+            found = by_lane.take(self.rows, axis=1).take(self._columns, axis=2)
+            if self._are_absent:
+                np.copyto(found, none, where=self.absent)
+        else:
+            found, begin = np.empty((len(by_lane), *self.absent.shape), dtype=values.dtype), 0
+            for own, (there, whole) in zip(self.ranges, self._there, strict=True):
+                end = begin + own.stop - own.start
+                if len(there) < len(self.rows):
+                    found[:, :, begin:end] = none
+                found[:, there, begin:end] = by_lane[:, whole, own]
+                begin = end
         return np.moveaxis(found, 0, -1) if values.ndim > 2 else found[0]
-    found, begin = np.full(shape, none, dtype=values.dtype), 0
-    for own in ranges:
-        end = begin + own.stop - own.start
-        there = np.flatnonzero(~absent[:, begin])
-        found[:, there, begin:end] = by_lane[:, rows[there], own]
-        begin = end
-    return np.moveaxis(found, 0, -1) if values.ndim > 2 else found[0]
+
+    @cached_property
+    def _columns(self) -> NDArray[intp] | None:
+        """The columns of all ranges, if these are so short that each is not worth it by itself."""
+        if self.absent.shape[1] > _LONG * len(self.ranges):
+            return None
+        return np.concatenate([np.arange(own.start, own.stop) for own in self.ranges])
+
+    @cached_property
+    def _are_absent(self) -> bool:
+        return bool(self.absent.any())
+
+    @cached_property
+    def _there(self) -> list[tuple[NDArray[intp], NDArray[intp]]]:
+        """For each range who is not absent, and their rows in arrays."""
+        begins = np.cumsum([0, *(own.stop - own.start for own in self.ranges)])[:-1]
+        there = [np.flatnonzero(~self.absent[:, begin]) for begin in begins.tolist()]
+        return [(own, self.rows[own]) for own in there]
+
+
+_LONG = 200
+"""Of ranges that are longer each is laid out by itself."""

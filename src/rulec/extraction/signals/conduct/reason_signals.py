@@ -56,19 +56,20 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     stands soon, whose drive ends, or that is beside somebody had perhaps something to do. Where
     not all traffic is recorded it is as far as somebody is recorded ahead.
     """
-    caused = _by_map(context) | _by_others(context)
+    caused = _by_map(context)
+    others = _others(context, np.flatnonzero(~caused))
+    caused[others.states] = _by_others(context, others)
     soon = round(context.thresholds.preparing_s / context.recording.step_s)
     spans, stands = context.spans, ~moves(context)
     perhaps = spans.within(stands, soon) & ~(stands & _shows_no_hazard(context))
     perhaps |= spans.columns + soon // 2 >= spans.end
     # Ego may want to get in behind one beside it, or let it in
-    others = _others(context)
-    away = np.abs(others.left)
-    beside = (away > _IN_WAY_M) & (away <= _COMES_M) & (np.abs(others.ahead) <= _REACH_M)
-    perhaps |= beside.any(axis=0)
+    beside = (others.away > _IN_WAY_M) & (others.away <= _COMES_M)
+    beside &= np.abs(others.ahead) <= _REACH_M
+    perhaps[others.states] |= beside.any(axis=0)
     if "arrivals" not in context.recording.complete:
-        farther = (others.ahead > _reach(context)) & (np.abs(others.left) <= _ROAD_M)
-        perhaps |= ~farther.any(axis=0)
+        farther = (others.ahead > _reach(context)[others.states]) & (others.away <= _ROAD_M)
+        perhaps[others.states] |= ~farther.any(axis=0)
     return caused, perhaps & ~caused
 
 
@@ -103,56 +104,72 @@ def _by_map(context: DriveContext) -> Flags:
     # Beyond its map nobody knows the road
     caused |= (front + reach > road.borders[-1]) | (rear < road.borders[0])
     caused |= speed * KMH > context.limit_mps * KMH + _SLOWER_KMH
-    width = context.existing_lanes.shape[1]
-    lanes, turned = context.ego_lane, np.radians(context.thresholds.turned_deg)
-    before = road.line.headings_at(np.nan_to_num(context.ego_extents.s[0]))
+    rest = np.flatnonzero(~caused)
+    caused[rest] = _by_road(context, rest, reach[rest])
+    return caused
+
+
+def _by_road(context: DriveContext, states: NDArray[intp], reach: Floats) -> Flags:
+    """Flags of these states with a bend, a lower limit or an end of the lane so far (m) ahead."""
+    road, width = context.road, context.existing_lanes.shape[1]
+    front, speed = context.ego_extents.s_max[0, states], context.ego.speed[0, states]
+    lanes, turned = context.ego_lane[states], np.radians(context.thresholds.turned_deg)
+    before = road.line.headings_at(np.nan_to_num(context.ego_extents.s[0, states]))
     # Rows of places ahead, a column for each state
     ahead = np.arange(0.0, float(np.nanmax(reach, initial=0.0)) + _EVERY_M, _EVERY_M)[:, None]
     place = np.nan_to_num(front + ahead)
     bends = np.abs(turn(before, road.line.headings_at(place))) > _BEND_RAD
-    there = road.lanes.existing_at(place)[:, np.arange(context.states), lanes]
+    there = road.lanes.existing_at(place)[:, np.arange(len(states)), lanes]
     codes = road.piece(place) * width + lanes
     different = distinct(codes)
     told = [road.limit_mps(code // width, code % width, turned) for code in different.tolist()]
     known = np.array([np.inf if limit is None else limit for limit in told])
     limits = known[np.searchsorted(different, codes)]
-    lower = (limits < speed) | (limits < context.limit_mps)
-    caused |= ((ahead <= reach) & (bends | ~there | lower)).any(axis=0)
-    return caused
+    lower = (limits < speed) | (limits < context.limit_mps[states])
+    found: Flags = ((ahead <= reach) & (bends | ~there | lower)).any(axis=0)
+    return found
 
 
-def _by_others(context: DriveContext) -> Flags:
-    """Flags of states with somebody ahead in ego's way, who comes into it, or drives across it."""
-    others, reach = _others(context), _reach(context)
+def _by_others(context: DriveContext, others: _Others) -> Flags:
+    """Flags of the others' states with one ahead in ego's way, coming into it, or across it."""
+    states, reach = others.states, _reach(context)[others.states]
     near = (others.ahead > -_REACH_M / 4) & (others.ahead <= reach + _REACH_M)
-    rows, columns = (near & (np.abs(others.left) <= _CROSSES_M)).nonzero()
-    left = others.left[rows, columns]
-    away, motion = np.abs(left), _motion(context, rows, columns)
+    rows, columns = (near & (others.away <= _CROSSES_M)).nonzero()
+    left, away = others.left[rows, columns], others.away[rows, columns]
+    motion = _motion(context, others.rows[rows], states[columns])
     comes = (away <= _COMES_M) & (-motion.sideways * np.sign(left) > _SIDEWAYS_MPS)
     angle = np.abs(motion.turned)
     across = (angle > _ACROSS_RAD) & (angle < np.pi - _ACROSS_RAD)
     # Whom ego may not pass on the near side
     to_far = left * (1 if context.side == "right" else -1)
-    slower = (angle < _ACROSS_RAD) & (motion.along < context.ego.speed[0, columns] + _ALIKE_MPS)
+    speed = context.ego.speed[0, states[columns]]
+    slower = (angle < _ACROSS_RAD) & (motion.along < speed + _ALIKE_MPS)
     not_to_pass = slower & (to_far > 0) & (away <= _COMES_M)
     in_way = (away <= _IN_WAY_M) | comes | (across & motion.moves) | not_to_pass
-    behind = context.relevant & (relations.station(context) == relations.BEHIND)
-    in_lane = behind & context.in_ego_lane & (relations.gap(context) <= reach)
-    found: Flags = in_lane.any(axis=0)
+    found = np.zeros(len(states), dtype=bool)
     found[columns[in_way]] = True
+    rest = np.flatnonzero(~found)
+    at = states[rest]
+    in_lane = relations.station(context)[:, at] == relations.BEHIND
+    in_lane &= context.relevant[:, at] & context.in_ego_lane[:, at]
+    in_lane &= relations.gap(context)[:, at] <= reach[rest]
+    found[rest] = in_lane.any(axis=0)
     return found
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Others:
-    """Where others are, by row and state: ahead of ego and left of it (m), by its heading.
+    """Where others are in some ``states``: ahead of ego and left of it (m), by its heading.
 
-    ``rows`` are theirs among all of the recording.
+    A row for each, whose ``rows`` are those among all of the recording; ``away`` is how far (m)
+    they are from ego's line to either side.
     """
 
+    states: NDArray[intp]
     rows: NDArray[intp]
     ahead: Floats
     left: Floats
+    away: Floats
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -168,32 +185,31 @@ class _Motion:
     moves: Flags
 
 
-@once
-def _others(context: DriveContext) -> _Others:
-    """All others of the recording, also those that are not on ego's road."""
+def _others(context: DriveContext, states: NDArray[intp]) -> _Others:
+    """All others of the recording in some states, also those that are not on ego's road."""
     tracks, own, spans = context.surroundings.tracks, context.ego, context.spans
-    columns: NDArray[intp] | slice = context.columns
-    if spans.n_drives == 1:
-        columns = slice(int(context.columns[0]), int(context.columns[-1]) + 1)
-    rows: Flags = np.any(tracks.present[:, columns], axis=1, keepdims=False)
-    is_among = context.own is context.surroundings
-    if is_among and spans.n_drives == 1:
-        rows[int(own.rows[0])] = False
-    x, y = (values[:, columns][rows] for values in (tracks.x, tracks.y))
-    if is_among and spans.n_drives > 1:
-        places = np.cumsum(rows)[own.rows] - 1
-        x[spans.spread(places), spans.columns] = np.nan
-    cos, sin = np.cos(own.heading[0]), np.sin(own.heading[0])
-    x, y = x - own.x[0], y - own.y[0]
-    return _Others(np.flatnonzero(rows), ahead=x * cos + y * sin, left=y * cos - x * sin)
+    columns = context.columns[states]
+    rows = np.flatnonzero(tracks.present.take(columns, axis=1).any(axis=1))
+    x, y = (values[rows].take(columns, axis=1) for values in (tracks.x, tracks.y))
+    if context.own is context.surroundings:
+        drives = spans.number[states]
+        places = np.searchsorted(rows, own.rows)[drives]
+        there = np.flatnonzero(places < len(rows))
+        there = there[rows[places[there]] == own.rows[drives[there]]]
+        x[places[there], there] = np.nan
+    heading = own.heading[0, states]
+    cos, sin = np.cos(heading), np.sin(heading)
+    x -= own.x[0, states]
+    y -= own.y[0, states]
+    left = y * cos - x * sin
+    return _Others(states, rows, ahead=x * cos + y * sin, left=left, away=np.abs(left))
 
 
-def _motion(context: DriveContext, rows: NDArray[intp], columns: NDArray[intp]) -> _Motion:
-    """How some of the others move, of rows and states."""
+def _motion(context: DriveContext, rows: NDArray[intp], states: NDArray[intp]) -> _Motion:
+    """How some others move, of rows among all of the recording, in as many states."""
     tracks = context.surroundings.tracks
-    at = _others(context).rows[rows], context.columns[columns]
-    own = context.ego.heading[0]
-    cos, sin, own = np.cos(own)[columns], np.sin(own)[columns], own[columns]
+    at, own = (rows, context.columns[states]), context.ego.heading[0]
+    cos, sin, own = np.cos(own)[states], np.sin(own)[states], own[states]
     vx, vy = tracks.vx[at], tracks.vy[at]
     return _Motion(
         along=vx * cos + vy * sin,
