@@ -88,11 +88,18 @@ def lateral_gap_bounds(context: DriveContext) -> Bounds:
 
 def difference_bounds(context: DriveContext) -> Bounds:
     """The bounds of differences of speed (km/h)."""
-    speeds = context.zero_if_standing(context.extents.along * KMH)
-    difference = context.ego_extents.along * KMH - speeds
+    difference, speeds = speed_differences(context)
     their_error = np.where(speeds == 0, 0.0, context.tracks.speed_error)
     wrong = np.hypot(context.ego.speed_error, their_error) * KMH
     return rounded_outward(difference - wrong, difference + wrong)
+
+
+@once
+def speed_differences(context: DriveContext) -> tuple[Floats, Floats]:
+    """By how much (km/h) ego is faster along the road, and the others' speeds, 0 if they stand."""
+    speeds = context.zero_if_standing(context.extents.along * KMH)
+    difference: Floats = context.ego_extents.along * KMH - speeds
+    return difference, speeds
 
 
 def safe_distance(context: DriveContext, cells: Any = ...) -> Floats:

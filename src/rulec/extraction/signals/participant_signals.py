@@ -22,6 +22,7 @@ from rulec.extraction.signals.measured_numbers import (
     own_speed,
     safe_distance,
     safe_distance_error,
+    speed_differences,
 )
 from rulec.extraction.signals.settling import only_when
 from rulec.extraction.signals.signal_columns import (
@@ -105,8 +106,7 @@ def _lateral_gap(context: DriveContext) -> SignalColumns:
 
 
 def _speed_difference(context: DriveContext) -> SignalColumns:
-    speeds = context.zero_if_standing(context.extents.along * KMH)
-    difference = context.ego_extents.along * KMH - speeds
+    difference, _ = speed_differences(context)
     return _measured("speed_difference", difference, difference_bounds(context))
 
 

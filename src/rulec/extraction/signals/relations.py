@@ -52,8 +52,15 @@ def possible_stations(context: DriveContext) -> tuple[Codes, Codes]:
 
 
 def _along(ego: RoadExtents, s_min: Floats, s_max: Floats) -> Codes:
-    level: Codes = np.where(ego.s_min >= s_max, IN_FRONT_OF, BESIDE)
-    return np.where(ego.s_max <= s_min, BEHIND, level)
+    return _coded(ego.s_max <= s_min, ego.s_min >= s_max)
+
+
+def _coded(least: Flags, most: Flags) -> Codes:
+    """The least of three codes, the greatest, where that is not so, and else the one between."""
+    # Arithmetic of bytes is many times as fast as choosing
+    codes: Codes = most.view(int8) + int8(1)
+    codes *= (~least).view(int8)
+    return codes
 
 
 @once
@@ -119,7 +126,7 @@ def _clear(context: DriveContext) -> Floats:
 def _ego_at(context: DriveContext) -> Codes:
     """On which side of others ego is."""
     on_left, on_right = _aside(context)
-    side: Codes = np.where(on_left > on_right, RIGHT_OF, LEFT_OF)
+    side: Codes = (~(on_left > on_right)).view(int8) * LEFT_OF
     return side
 
 
@@ -180,8 +187,10 @@ def _lateral(context: DriveContext, beside: _BesideLane, inward: float, touched:
     sides = _across(beside.own, touched, beside.low, beside.high)
     beside_way = (beside.beyond > reach + inward) & (clear > reach + inward)
     in_the_way = (beside.into > -inward) & (clear < inward - reach)
-    sides = np.where((sides == SAME_LANE) & beside_way, _ego_at(context), sides)
-    return np.where(in_the_way, SAME_LANE, sides)
+    beside_way &= sides == SAME_LANE
+    np.copyto(sides, _ego_at(context), where=beside_way)
+    np.copyto(sides, SAME_LANE, where=in_the_way)
+    return sides
 
 
 def _across(own: RoadExtents, lanes: LaneSets, low: Floats, high: Floats) -> Codes:
@@ -189,14 +198,13 @@ def _across(own: RoadExtents, lanes: LaneSets, low: Floats, high: Floats) -> Cod
 
     ``low`` and ``high`` say how far (m) left of the middle of ego's lane others begin and end.
     """
-    inside, middle = lanes != 0, np.add(*own.from_middle(own.lane)) / 2
+    nowhere, middle = lanes == 0, np.add(*own.from_middle(own.lane)) / 2
     # Bounds ascend to the left: who is right of the first lane is left of the right bound of none
-    not_right_of = (lanes & lane_sets(own.left_of[..., :-1] > 0)) != 0
-    not_left_of = (lanes & lane_sets(own.left_of[..., 1:] < 0)) != 0
-    right_of = np.where(inside, ~not_right_of, middle <= low)
-    left_of_all = np.where(inside, ~not_left_of, middle >= high)
-    in_or_left: Codes = np.where(left_of_all, LEFT_OF, SAME_LANE)
-    return np.where(right_of, RIGHT_OF, in_or_left)
+    right_of = (lanes & lane_sets(own.left_of[..., :-1] > 0)) == 0
+    left_of_all = (lanes & lane_sets(own.left_of[..., 1:] < 0)) == 0
+    right_of &= ~nowhere | (middle <= low)
+    left_of_all &= ~nowhere | (middle >= high)
+    return _coded(right_of, left_of_all)
 
 
 @once

@@ -101,12 +101,20 @@ def nobody(states: int) -> SignalColumn:
 
 def rounded(values: SignalColumn) -> SignalColumn:
     """Round numbers to a hundredth, no better being known, without negative zeros."""
-    return np.round(values, 2) + 0.0
+    found = np.round(values, 2)
+    return np.add(found, 0.0, out=found)
 
 
 def rounded_outward(low: SignalColumn, high: SignalColumn) -> Bounds:
     """Round bounds to a hundredth, so that what lies between them still does."""
-    return np.floor(low * 100 + _HAIR) / 100 + 0.0, np.ceil(high * 100 - _HAIR) / 100 + 0.0
+    least, most = low * 100, high * 100
+    for ends, hair, rounds in ((least, _HAIR, np.floor), (most, -_HAIR, np.ceil)):
+        ends += hair
+        rounds(ends, out=ends)
+        ends /= 100
+        # Without negative zeros
+        ends += 0.0
+    return least, most
 
 
 _HAIR = 1e-6

@@ -143,7 +143,8 @@ class RoadExtents:
     def end_to_end(self, laid: LaidOut) -> RoadExtents:
         """Some participants in several ranges of columns."""
         found = RoadExtents(**{name: laid(getattr(self, name)) for name in _FIELDS})
-        found.__dict__["s"] = laid(self.s)
+        # Without a place the lane is the first one, as for who is absent
+        found.__dict__.update(s=laid(self.s), lane=laid(self.lane))
         return found
 
     def and_one(self, other: RoadExtents, row: int) -> RoadExtents:
