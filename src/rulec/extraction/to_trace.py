@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import count
+from itertools import count, pairwise
 from math import hypot
 from typing import NamedTuple, overload
 
@@ -52,6 +52,7 @@ from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.logic.formula import Relation
 from rulec.monitoring.explain.margins import Margin
 from rulec.trace import Trace, Value
+from rulec.trace.plain_arrays import distinct, in_order
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.vocabulary_projection import known_type
 from rulec.value_display import short_repr
@@ -64,15 +65,28 @@ def presences(context: DriveContext) -> list[list[Presence]]:
     Absences up to ``away_s`` are bridged. Those in which one is not beside the road never are: its
     extents are not known then.
     """
-    found: list[list[Presence]] = [[] for _ in context.spans.slices]
-    ids, before = context.ids, (-1, -1)
-    for drive, row, first, last in _presences(context):
-        name = ids[row]
-        if before == (drive, row):
-            taken = _ids_in(context, drive).union(one.name for one in found[drive])
-            name = next(free for k in count(2) if (free := f"{ids[row]}_{k}") not in taken)
-        before = drive, row
-        found[drive].append(Presence(name, row, first, last))
+    drives, rows, first, last = _presences(context)
+    order = in_order(drives)
+    of_row = rows[order].tolist()
+    own = list(map(context.ids.__getitem__, of_row)), of_row, first[order].tolist()
+    every = list(map(Presence._make, zip(*own, last[order].tolist(), strict=True)))
+    ends = np.searchsorted(drives[order], np.arange(context.spans.n_drives + 1)).tolist()
+    found = [every[begin:end] for begin, end in pairwise(ends)]
+    again = (drives[1:] == drives[:-1]) & (rows[1:] == rows[:-1])
+    for drive in distinct(drives[1:][again]).tolist():
+        found[drive] = _renamed(found[drive], _ids_in(context, drive))
+    return found
+
+
+def _renamed(presences: Sequence[Presence], ids: frozenset[str]) -> list[Presence]:
+    """The presences of a drive, with names of their own for who comes again."""
+    found: list[Presence] = []
+    for one in presences:
+        if found and found[-1].row == one.row:
+            taken = ids.union(other.name for other in found)
+            name = next(free for k in count(2) if (free := f"{one.name}_{k}") not in taken)
+            one = one._replace(name=name)
+        found.append(one)
     return found
 
 
@@ -84,22 +98,24 @@ def _ids_in(context: DriveContext, drive: int) -> frozenset[str]:
     return frozenset(bodies[row].id for row in np.flatnonzero(rows).tolist())
 
 
-def _presences(context: DriveContext) -> Iterator[tuple[int, int, int, int]]:
-    """The drive, and in it the row, first and last state of each presence.
+def _presences(context: DriveContext) -> tuple[NDArray[np.intp], ...]:
+    """The drive, and in it the row, first and last state of each presence, those of a row together.
 
     Who is in sight only, too far away to count, is none.
     """
     longest, spans = round(context.thresholds.away_s / context.recording.step_s), context.spans
     rows, columns = np.nonzero(context.relevant)
-    unknown = np.cumsum(np.isnan(context.extents.s), axis=1)[rows, columns]
-    drives = spans.number[columns]
-    parted = (np.diff(rows) > 0) | (np.diff(columns) > longest + 1) | (np.diff(unknown) > 0)
-    parted |= np.diff(drives) > 0
-    if len(rows):
-        begins, ends = np.append(True, parted), np.append(parted, True)
-        states = columns - spans.first[columns]
-        told = drives[begins], rows[begins], states[begins], states[ends]
-        yield from zip(*[values.tolist() for values in told], strict=True)
+    drives, away, s = spans.number[columns], np.diff(columns), context.extents.s
+    parted = (np.diff(rows) > 0) | (away > longest + 1) | (np.diff(drives) > 0)
+    parted |= np.isnan(s[rows, columns])[1:]
+    gaps = np.flatnonzero(~parted & (away > 1))
+    in_gaps = distinct(rows[gaps])
+    unknown, own = np.cumsum(np.isnan(s[in_gaps]), axis=1), np.searchsorted(in_gaps, rows[gaps])
+    parted[gaps] = unknown[own, columns[gaps]] < unknown[own, columns[gaps + 1]]
+    some = np.ones(min(len(rows), 1), dtype=bool)
+    begins, ends = np.append(some, parted), np.append(parted, some)
+    states = columns - spans.first[columns]
+    return drives[begins], rows[begins], states[begins], states[ends]
 
 
 _SIGNALS: tuple[Callable[[DriveContext, SignalNames], SignalColumns], ...] = (

@@ -45,6 +45,15 @@ def median(values: NDArray[Any]) -> float:
     return float(ascending[(len(ascending) - 1) // 2] + ascending[middle]) / 2
 
 
+def in_order(groups: NDArray[np.intp]) -> NDArray[np.intp]:
+    """The places of whole numbers in ascending order; equal ones stay in theirs."""
+    # Small ones are sorted in linear time
+    numbers = groups if groups.max(initial=0) > _INT16_MAX else groups.astype(np.int16)
+    if bool((numbers[1:] >= numbers[:-1]).all()):
+        return np.arange(len(groups))
+    return np.argsort(numbers, kind="stable")
+
+
 def sorted_in(groups: NDArray[np.intp], values: NDArray[np.float64]) -> NDArray[np.intp]:
     """The order by groups, and by values in each of them; equal ones stay in theirs."""
     order, begins, rows = _in_rows(groups, values)
@@ -86,11 +95,8 @@ def _in_rows(
     Rows end in NaN, which sorts behind everything. They are None where groups are so unlike in
     size that rows would be mostly empty.
     """
-    # Small whole numbers are sorted in linear time
-    numbers = groups if groups.max(initial=0) > _INT16_MAX else groups.astype(np.int16)
-    is_sorted = bool((numbers[1:] >= numbers[:-1]).all())
-    order = np.arange(len(groups)) if is_sorted else np.argsort(numbers, kind="stable")
-    ascending = numbers if is_sorted else numbers[order]
+    order = in_order(groups)
+    ascending = groups[order]
     is_new = np.ones(len(order), dtype=bool)
     np.not_equal(ascending[1:], ascending[:-1], out=is_new[1:])
     begins = np.flatnonzero(is_new)

@@ -7,6 +7,7 @@ queue at ego's speed have room. A lane's vehicles are those whose middle is in i
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy import intp
@@ -16,7 +17,7 @@ from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.trace.plain_arrays import medians, sorted_in
+from rulec.trace.plain_arrays import in_order, medians, sorted_in
 
 _BODY_M = 5.0
 """About how long a vehicle is."""
@@ -135,22 +136,26 @@ class VehiclesAround:
 
 @once
 def vehicles_around(context: DriveContext) -> VehiclesAround:
-    """The traffic around ego, ego first."""
+    """The traffic around ego, by state and lane, ego first in each."""
     rows, states = np.nonzero(close_by(context))
     own, others = context.ego_extents, context.extents
-    s_min, s_max, along, lane = (
-        np.concatenate((getattr(own, name)[0], getattr(others, name)[rows, states]))
-        for name in ("s_min", "s_max", "along", "lane")
+    lane = np.concatenate((own.lane[0], others.lane[rows, states]))
+    state = np.concatenate((context.spans.columns, states))
+    order = in_order(state * context.existing_lanes.shape[1] + lane)
+
+    def ordered(of_ego: NDArray[Any], of_others: NDArray[Any]) -> NDArray[Any]:
+        return np.concatenate((of_ego[0], of_others[rows, states]))[order]
+
+    s_min, s_max, along = (
+        ordered(getattr(own, name), getattr(others, name)) for name in ("s_min", "s_max", "along")
     )
-    error = np.concatenate((context.ego.speed_error[0], context.tracks.speed_error[rows, states]))
-    state = np.concatenate((np.arange(context.states), states))
     return VehiclesAround(
-        state=state,
-        lane=lane,
+        state=state[order],
+        lane=lane[order],
         s_min=s_min,
         s_max=s_max,
         speed=np.maximum(along, 0.0),
-        speed_error=error,
+        speed_error=ordered(context.ego.speed_error, context.tracks.speed_error),
     )
 
 

@@ -81,13 +81,16 @@ def possible_laterals(context: DriveContext) -> tuple[Codes, ...]:
     well be at its side.
     """
     place = context.tolerances.place_m
-    maps = [_beside_lane(context)]
-    if context.map_offset_m.any():
-        maps.append(_beside_lane_shifted(context, context.map_offset_m))
+    reach, offset = context.thresholds.touching_m, context.map_offset_m
+    maps = [(_beside_lane(context), context.lanes_within[1:])]
+    if offset.any():
+        least = reach + place, reach - place
+        sets = lanes_touched(context.extents, context.lanes_there, least, -offset)
+        maps.append((_beside_lane_shifted(context, offset), sets))
     shifted = (
-        _lateral(context, beside, way * place, sets)
-        for beside in maps
-        for way, sets in zip((-1, 1), context.lanes_within[1:], strict=True)
+        _lateral(context, beside, way * place, touched)
+        for beside, both in maps
+        for way, touched in zip((-1, 1), both, strict=True)
     )
     at_side = (station(context) == BEHIND) & ~_in_the_way(context)
     return *shifted, np.where(at_side, _ego_at(context), lateral(context))
@@ -144,12 +147,10 @@ class _BesideLane:
     """Where others are beside ego's lane: how far (m) they reach in it and beyond its bounds.
 
     ``low`` and ``high`` say how far left of its middle they begin and end, ``into`` and ``beyond``
-    how far they reach over the nearer bound and the farther one. ``own`` and ``others`` are the
-    extents.
+    how far they reach over the nearer bound and the farther one. ``own`` are ego's extents.
     """
 
     own: RoadExtents
-    others: RoadExtents
     low: Floats
     high: Floats
     into: Floats
@@ -163,14 +164,15 @@ def _beside_lane(context: DriveContext) -> _BesideLane:
 
 def _beside_lane_shifted(context: DriveContext, shift: Floats) -> _BesideLane:
     """The same with all so much (m), by state, farther right on the map."""
-    own, others = context.ego_extents.moved(-shift), context.extents.moved(-shift)
+    own, others = context.ego_extents.moved(-shift), context.extents
     # How far left of the two bounds of ego's lane they begin and end
     (low_r, high_r), (low_l, high_l) = (
         others.from_bound(bound) for bound in (own.lane, own.lane + 1)
     )
+    if shift.any():
+        low_r, high_r, low_l, high_l = (values - shift for values in (low_r, high_r, low_l, high_l))
     return _BesideLane(
         own=own,
-        others=others,
         low=(low_r + low_l) / 2,
         high=(high_r + high_l) / 2,
         into=np.minimum(high_r, -low_l),
@@ -181,8 +183,6 @@ def _beside_lane_shifted(context: DriveContext, shift: Floats) -> _BesideLane:
 def _lateral(context: DriveContext, beside: _BesideLane, inward: float, touched: LaneSets) -> Codes:
     """Sides, with others so much (m) further in ego's lane; these touch the lanes of sets."""
     reach = context.thresholds.touching_m
-    if beside.others is not context.extents:
-        touched = lane_sets(lanes_touched(beside.others, context.there, reach - inward))
     clear = _clear(context)
     sides = _across(beside.own, touched, beside.low, beside.high)
     beside_way = (beside.beyond > reach + inward) & (clear > reach + inward)

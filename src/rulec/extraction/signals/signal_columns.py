@@ -87,15 +87,19 @@ def end_to_end(parts: Sequence[SignalColumns]) -> SignalColumns:
 def ids_by_state(flags: Flags, ids: Sequence[str]) -> SignalColumn:
     """The ids of the rows that are flagged, a tuple for each state."""
     found = nobody(flags.shape[-1])
-    for state in np.flatnonzero(flags.any(axis=0)).tolist():
-        found[state] = tuple(ids[row] for row in np.flatnonzero(flags[:, state]).tolist())
+    columns = np.flatnonzero(flags.any(axis=0))
+    places, rows = flags[:, columns].T.nonzero()
+    begins = np.flatnonzero(np.diff(places, prepend=-1)).tolist()
+    names = [ids[row] for row in rows.tolist()]
+    for state, begin, end in zip(columns.tolist(), begins, [*begins, len(names)][1:], strict=True):
+        found[state] = tuple(names[begin:end])
     return found
 
 
 def nobody(states: int) -> SignalColumn:
     """No ids in any state."""
     none = np.empty(states, dtype=object)
-    none[:] = [()] * states
+    none.fill(())
     return none
 
 

@@ -12,12 +12,12 @@ from rulec.extraction.tracks.road_extents import (
     LaneSets,
     RoadExtents,
     and_row,
-    any_lane,
     lane_sets,
     lanes_touched,
 )
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
+from rulec.scenario.recorded.reference_line import pieces_at
 
 KMH = 3.6
 """km/h in one m/s."""
@@ -54,7 +54,7 @@ class RoadPlaces:
             fastest=and_row(self.fastest, other.fastest, row),
         )
         # What is known of each need not be derived again
-        for name in ("there", "lanes_there", "touched", "on_lanes", "crosses", "counts", "seen"):
+        for name in ("lanes_there", "touched", "on_lanes", "crosses", "counts", "seen"):
             joined.__dict__[name] = and_row(getattr(self, name), getattr(other, name), row)
         for place_m, own in self._lanes_within.items():
             both = zip(own, other.lanes_within(place_m), strict=True)
@@ -67,18 +67,19 @@ class RoadPlaces:
     @cached_property
     def there(self) -> Flags:
         """Flags of the lanes (last axis) that exist where participants are."""
-        by_lane = np.moveaxis(self.road.lanes.existing_at(self.extents.s), -1, 0)
-        return np.moveaxis(np.ascontiguousarray(by_lane), 0, -1)
+        return self.road.lanes.existing_at(self.extents.s)
 
     @cached_property
     def lanes_there(self) -> LaneSets:
-        """The sets of these lanes."""
-        return lane_sets(self.there)
+        """The sets of the lanes that exist where participants are."""
+        lanes = self.road.lanes
+        return lane_sets(lanes.there)[pieces_at(lanes.s, self.extents.s)]
 
     @cached_property
-    def touched(self) -> Flags:
-        """Flags of the lanes (last axis) that participants reach into."""
-        return lanes_touched(self.extents, self.there, self.thresholds.touching_m)
+    def touched(self) -> LaneSets:
+        """The sets of the lanes that participants reach into."""
+        (sets,) = lanes_touched(self.extents, self.lanes_there, (self.thresholds.touching_m,))
+        return sets
 
     def lanes_within(self, place_m: float) -> tuple[LaneSets, ...]:
         """The sets of those lanes, and of those with all so much (m) less far and farther in them.
@@ -87,11 +88,9 @@ class RoadPlaces:
         """
         if place_m not in self._lanes_within:
             reach = self.thresholds.touching_m
-            others = (
-                lanes_touched(self.extents, self.there, reach - inward)
-                for inward in (-place_m, place_m)
-            )
-            self._lanes_within[place_m] = tuple(map(lane_sets, (self.touched, *others)))
+            least = reach + place_m, reach - place_m
+            others = lanes_touched(self.extents, self.lanes_there, least)
+            self._lanes_within[place_m] = self.touched, *others
         return self._lanes_within[place_m]
 
     @cached_property
@@ -101,7 +100,8 @@ class RoadPlaces:
     @cached_property
     def on_lanes(self) -> Flags:
         """Flags of who reaches into any."""
-        return any_lane(self.touched)
+        flags: Flags = self.touched != 0
+        return flags
 
     @cached_property
     def counts(self) -> Flags:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 import shapely
 
@@ -11,6 +13,7 @@ from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.recording import HEADINGS
+from rulec.scenario.recorded.reference_line import turn
 
 _SIDES = ("own_side", "oncoming_side", "wrong_way")
 
@@ -23,6 +26,7 @@ _ALONG_RAD = np.pi / 4
 _ROUND_RAD, _ROUND_M, _JUMP_RAD = np.radians(150.0), 60.0, np.radians(60.0)
 """Who has turned round has turned by so much on so short a way, and never by the last in a step."""
 
+_HAIR_RAD = 1e-6
 _ACROSS_RAD = np.radians(30.0)
 _LEAST_M = 2.0
 
@@ -175,8 +179,22 @@ def _turning_round(context: DriveContext) -> Flags:
     """Flags of states in which ego's heading is on its way round."""
     tracks = context.own.tracks
     columns = context.steps - tracks.first
-    own = zip(context.ego.rows.tolist(), context.spans.slices, strict=True)
-    return np.concatenate([_goes_round(tracks, row)[columns[part]] for row, part in own])
+    may_turn, turning = _may_go_round(context), np.zeros(context.states, dtype=bool)
+    for row, part in zip(context.ego.rows.tolist(), context.spans.slices, strict=True):
+        if may_turn[row]:
+            turning[part] = _goes_round(tracks, row)[columns[part]]
+    return turning
+
+
+def _may_go_round(context: DriveContext) -> Flags:
+    """Flags of those whose headings change by enough in all, or who are away for a while."""
+    known = context.own.computed
+    if _may_go_round not in known:
+        tracks = context.own.tracks
+        steps = np.abs(turn(tracks.heading[:, :-1], tracks.heading[:, 1:]))
+        turned = np.nansum(steps, axis=1) > _ROUND_RAD - _HAIR_RAD
+        known[_may_go_round] = turned | (np.diff(tracks.present, axis=1).sum(axis=1) > 2)
+    return cast("Flags", known[_may_go_round])
 
 
 def _goes_round(tracks: Tracks, row: int) -> Flags:
