@@ -211,7 +211,8 @@ def _is_partial(state: object) -> bool:
 
 
 def _with_all_said(trace: Trace, vocabulary: Vocabulary) -> Trace:
-    if any(state.get(name) is UNKNOWN for name in vocabulary.constants for state in trace.states):
+    about = [x for x in vocabulary.constants if vocabulary.declarations[x].parameters]
+    if any(state.get(name) is UNKNOWN for name in about for state in trace.states):
         trace = spelled_out(trace, vocabulary)
     return with_all_said(trace, vocabulary)
 

@@ -15,7 +15,7 @@ from rulec.automata.thresholds import EXACT_IN_FLOATS
 from rulec.monitoring.batch.trace_groups import Names
 from rulec.monitoring.state_validation import NUMBERS, TRUTHS
 from rulec.trace.trace_columns import Array, Key, TraceCells, TraceColumns, smallest_unsigned
-from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
+from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, UnknownValue
 
 _NOT_GIVEN = object()
@@ -140,6 +140,10 @@ class _Columnizer:
         cells, key = self._traces.cells, (declaration.name, items)
         kinds = set(map(type, values))
         if UnknownValue in kinds:
+            if Interval not in kinds:
+                column, unknown = _with_unknown(values, kinds, declaration)
+                self.columns[key], self.unknown[key] = column.take(cells), unknown.take(cells)
+                return
             self.unknown[key] = np.array([value is UNKNOWN for value in values]).take(cells)
             anything = one_value(declaration)
             values = [anything if value is UNKNOWN else value for value in values]
@@ -179,6 +183,32 @@ def column_dtype(declaration: Declaration) -> np.dtype[Any]:
     if isinstance(declaration, Enumeration):
         return smallest_unsigned(len(declaration.values))
     return np.dtype(bool if isinstance(declaration, Signal) else np.float64)
+
+
+def _with_unknown(
+    values: Sequence[Any], kinds: Set[type], declaration: Declaration
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Values encoded, and where they are unknown. Raises UnencodableError."""
+    if isinstance(declaration, Quantity):
+        unknown = np.array([value is UNKNOWN for value in values])
+        known = [0.0 if value is UNKNOWN else value for value in values]
+        return encode_values(known, declaration), unknown
+    own: Sequence[bool | str] = (False, True)
+    if isinstance(declaration, Enumeration):
+        own = declaration.values
+    if not kinds <= {type(own[0]), UnknownValue}:
+        raise UnencodableError
+    places: dict[Any, int] = {value: place for place, value in enumerate(own)}
+    places[UNKNOWN] = len(own)
+    try:
+        numbers = np.fromiter(
+            map(places.__getitem__, values), smallest_unsigned(len(places)), len(values)
+        )
+    except KeyError:
+        raise UnencodableError from None
+    unknown = numbers == len(own)
+    numbers[unknown] = 0
+    return numbers.astype(column_dtype(declaration)), unknown
 
 
 def encode_values(values: Sequence[Any], declaration: Declaration) -> Array:

@@ -33,11 +33,13 @@ from rulec.monitoring.uncertainty.judged_rules import JudgedRules
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     EntangledReads,
     NothingKnown,
-    known_parts,
-    local_reads,
 )
 from rulec.monitoring.uncertainty.state_letters.letter_classes import RuleLetters
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
+from rulec.monitoring.uncertainty.state_letters.possible_letters import (
+    bound_letters,
+    letters_of_rule,
+)
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.monitoring.uncertainty.supposed_constants import ConstantsReader
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine
@@ -88,7 +90,7 @@ class _Engine:
         self._reader = PartialReader(columns, vocabulary)
         self._constants = ConstantsReader(rulebook, vocabulary, columns.objects)
         self._everybody = NothingKnown(columns.objects, vocabulary)
-        self._bound: dict[tuple[str, ...], RuleLetters] = {}
+        self._bound = bound_letters(rulebook, columns.objects, vocabulary)
         self._machines: dict[str, SetTables] = {}
         self._rows: dict[object, SupposedRows] = {}
 
@@ -143,19 +145,11 @@ class _Engine:
 
     def _rule_letters(self, binding: RuleBinding, machine: UncertainMachine) -> RuleLetters:
         """The letters of a rule that does not read its values apart from each other."""
-        rule, axioms = binding.rule, self._rulebook.axioms
-        key = rule.name, *binding.objects.values()
-        if key not in self._bound:
-            reads = local_reads(rule, self._rulebook)
-            if reads is not None:
-                self._bound[key] = machine.classes.of_rule(rule, reads)
-            else:
-                reads = EntangledReads(
-                    *(rule, binding.objects, axioms, self._everybody),
-                    counted_parts=known_parts(self._rulebook),
-                )
-                self._bound[key] = RuleLetters(machine.classes, rule, reads)
-        return self._bound[key]
+        return letters_of_rule(
+            *(binding.rule, machine.classes, binding.objects, self._rulebook),
+            everybody=self._everybody,
+            bound=self._bound,
+        )
 
     def _keys(
         self,

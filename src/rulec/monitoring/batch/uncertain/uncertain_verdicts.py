@@ -37,12 +37,17 @@ def uncertain_verdicts(
     for outcomes in uncertain_outcomes(columns, rulebook, judged):
         rule, bound = outcomes.binding.rule, outcomes.binding.objects
         chosen = [(variable, places[item]) for variable, item in bound.items()]
+        known: dict[tuple[str, ...], Mapping[str, str]] = {}
 
         def own(
-            number: int, chosen: Sequence[tuple[str, int]] = tuple(chosen)
+            number: int,
+            chosen: Sequence[tuple[str, int]] = tuple(chosen),
+            known: dict[tuple[str, ...], Mapping[str, str]] = known,
         ) -> Mapping[str, str]:
             names = objects[number]
-            return {variable: names[place] for variable, place in chosen}
+            if names not in known:
+                known[names] = {variable: names[place] for variable, place in chosen}
+            return known[names]
 
         unread.update(outcomes.unread.tolist())
         lost = zip(outcomes.violated.tolist(), outcomes.lost_at.tolist(), strict=True)

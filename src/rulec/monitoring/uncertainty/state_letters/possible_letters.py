@@ -15,6 +15,7 @@ from rulec.monitoring.bindings import Binding
 from rulec.monitoring.letter_reader import missing_value, present_in
 from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
+    MOST_COUNTED,
     EntangledReads,
     NothingKnown,
     known_parts,
@@ -67,6 +68,48 @@ class PossibleWord:
 BoundLetters: TypeAlias = dict[tuple[object, ...], RuleLetters]
 """Letters of rules, by these and their objects."""
 
+_MOST_SCENES = 1 << 4
+"""So many scenes, of few objects, have their letters kept before all are forgotten."""
+
+
+def bound_letters(
+    rulebook: CompiledRulebook, objects: Mapping[str, str], vocabulary: Vocabulary
+) -> BoundLetters:
+    """Letters of a rulebook's rules about these objects, kept from one trace to another."""
+    if len(objects) > MOST_COUNTED:
+        return {}
+    scenes: dict[object, tuple[Vocabulary, BoundLetters]]
+    scenes = rulebook.prepared.setdefault(PossibleLetters, {})
+    key = id(vocabulary), *objects.items()
+    if key not in scenes:
+        if len(scenes) >= _MOST_SCENES:
+            scenes.clear()
+        # Which one it is holds as long as it is there
+        scenes[key] = vocabulary, {}
+    return scenes[key][1]
+
+
+def letters_of_rule(
+    rule: CompiledRule,
+    classes: LetterClasses,
+    objects: Mapping[str, str],
+    rulebook: CompiledRulebook,
+    *,
+    everybody: NothingKnown,
+    bound: BoundLetters,
+) -> RuleLetters:
+    """The letters of a rule for some objects among ``everybody``."""
+    reads = local_reads(rule, rulebook)
+    if reads is not None:
+        return classes.of_rule(rule, reads)
+    key = rule.name, classes, tuple(objects.values())
+    if key not in bound:
+        reads = EntangledReads(
+            *(rule, objects, rulebook.axioms, everybody), counted_parts=known_parts(rulebook)
+        )
+        bound[key] = RuleLetters(classes, rule, reads)
+    return bound[key]
+
 
 @dataclass(frozen=True, slots=True)
 class _About:
@@ -105,7 +148,9 @@ class PossibleLetters:
         self._views: dict[tuple[object, ...], StateView] = {}
         self._given: dict[Subject, list[PartialValue | None]] = {}
         self._columns: dict[tuple[object, ...], list[int]] = {}
-        self._bound = {} if bound is None else bound
+        if bound is None:
+            bound = bound_letters(rulebook, trace.objects, vocabulary)
+        self._bound = bound
 
     def view(self, number: int, supposed: Mapping[Subject, Value] = NOTHING) -> StateView:
         """A state with the objects that are present, in which some values are supposed."""
@@ -160,18 +205,10 @@ class PossibleLetters:
     def _letters_of(
         self, rule: CompiledRule, classes: LetterClasses, objects: Mapping[str, str]
     ) -> RuleLetters:
-        reads = local_reads(rule, self._rulebook)
-        if reads is not None:
-            return classes.of_rule(rule, reads)
-        key = rule.name, classes, tuple(objects.values())
-        if key not in self._bound:
-            everybody = NothingKnown(self._trace.objects, self._vocabulary)
-            parts = known_parts(self._rulebook)
-            reads = EntangledReads(
-                *(rule, objects, self._rulebook.axioms, everybody), counted_parts=parts
-            )
-            self._bound[key] = RuleLetters(classes, rule, reads)
-        return self._bound[key]
+        everybody = NothingKnown(self._trace.objects, self._vocabulary)
+        return letters_of_rule(
+            *(rule, classes, objects, self._rulebook), everybody=everybody, bound=self._bound
+        )
 
     def impossible(self, rule: CompiledRule, objects: Mapping[str, str], number: int) -> RulecError:
         """The error (R0508) about a state that contradicts a fact."""
