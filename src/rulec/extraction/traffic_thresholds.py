@@ -125,9 +125,6 @@ LEAST_S: Mapping[str, float] = MappingProxyType(
             "accelerating",
             "braking_hard",
             "can_stop_at_once",
-            "congested",
-            "CONGESTED",
-            "walking_pace_flow",
             "dense_all_lanes",
             "far_lane_queue",
             "own_lane_queue",
@@ -136,7 +133,9 @@ LEAST_S: Mapping[str, float] = MappingProxyType(
         ),
         0.3,
     )
-    | {"driving_side": 1.0, "reversing": 1.0}
+    | dict.fromkeys(
+        ("driving_side", "reversing", "congested", "CONGESTED", "walking_pace_flow"), 1.0
+    )
 )
 """Word -> how long (s) a value of it lasts at least; a shorter one is noise.
 
