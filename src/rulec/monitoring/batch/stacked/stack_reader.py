@@ -244,8 +244,9 @@ class StackReader:
         def proposition(part: ltl.Proposition) -> Truth:
             if isinstance(part, ltl.Comparison):
                 return self._compared(part, spots, about)
-            arguments = [about] * len(part.arguments)
-            return self._atom(replace(part, arguments=tuple(arguments)), spots)
+            if part.arguments:
+                part = replace(part, arguments=(about,) * len(part.arguments))
+            return self._atom(part, spots)
 
         def identity(_: ltl.Same) -> Truth:
             return known(np.True_)

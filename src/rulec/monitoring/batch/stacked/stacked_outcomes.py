@@ -28,6 +28,9 @@ from rulec.trace import Value
 from rulec.trace.plain_arrays import distinct
 from rulec.vocabulary.partial_values import UNKNOWN
 
+_FEW_WORDS = 1 << 5
+"""Among fewer words those that are the same are not looked for."""
+
 _ODD = np.uint64(0x9E3779B97F4A7C15)
 """Of the golden ratio's digits."""
 
@@ -263,11 +266,13 @@ def _are_surely_kept(
     rule: StackedRule, letters: NDArray[np.intp], bounds: NDArray[np.intp]
 ) -> NDArray[np.bool_]:
     """For each word whether it is kept, whatever its letters are of those that they may be."""
-    kept = np.zeros(len(bounds) - 1, dtype=bool)
-    first_alike = _first_alike([letters], bounds)
+    n_words = len(bounds) - 1
+    kept = np.zeros(n_words, dtype=bool)
+    is_few = n_words <= _FEW_WORDS
+    first_alike = np.arange(n_words) if is_few else _first_alike([letters], bounds)
     rows, ends = _stretches(letters, bounds)
     sets = rule.letters.sets
-    for place in distinct(first_alike).tolist():
+    for place in range(n_words) if is_few else distinct(first_alike).tolist():
         own = rows[ends[place] : ends[place + 1]]
         # What cannot be, because facts exclude it, is never kept
         if all(sets[number] for number in own[:, 0].tolist()):

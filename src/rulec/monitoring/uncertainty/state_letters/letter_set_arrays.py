@@ -72,27 +72,32 @@ class LetterSets:
 
     def looked_up(self, columns: Sequence[Numbers]) -> tuple[NDArray[np.intp], Numbers]:
         """A table of the numbers of letters, and the place of each letter in it."""
-        # One number for all letters may be in an array without an axis, too
-        columns = [
-            own.item() if isinstance(own, np.ndarray) and not own.ndim else own for own in columns
-        ]
-        key = tuple([None if isinstance(own, np.ndarray) else own for own in columns])
+        numbers: list[Numbers] = []
+        given: list[int | None] = []
+        varying: list[tuple[int, NDArray[np.intp]]] = []
         width, n_letters = 1, 1
         for read, own in enumerate(columns):
             if isinstance(own, np.ndarray):
-                width *= len(self._meanings[read])
-                n_letters = len(own)
+                # One number for all letters may be in an array without an axis, too
+                if own.ndim:
+                    width *= len(self._meanings[read])
+                    n_letters = len(own)
+                    varying.append((read, own))
+                else:
+                    own = own.item()
+            numbers.append(own)
+            given.append(None if isinstance(own, np.ndarray) else own)
         if width > MOST_CODES or width > max(_FEW_CODES, n_letters):
-            found = self._one_by_one(columns)
+            found = self._one_by_one(numbers)
             return np.arange(len(self._places[0])), found
         codes: Numbers = 0
-        for read, column in enumerate(columns):
-            if isinstance(column, np.ndarray):
-                if isinstance(codes, int):
-                    codes = column.astype(np.uint16)
-                else:
-                    codes *= np.uint16(len(self._meanings[read]))
-                    np.add(codes, column, out=codes, casting="unsafe")
+        for read, column in varying:
+            if isinstance(codes, int):
+                codes = column.astype(np.uint16)
+            else:
+                codes *= np.uint16(len(self._meanings[read]))
+                np.add(codes, column, out=codes, casting="unsafe")
+        key = tuple(given)
         table = self._together.get(key)
         if table is None:
             self._kept += width
