@@ -94,6 +94,9 @@ hard rule other_parked (v: car) { require always not some c: car (c = v and park
 hard rule one_away { require always (count c: car (far(c) - reach > 5 m) <= 1) }
 hard rule no_truck (v: car) { require always (clear or not some t: truck (t = v)) }
 hard rule in_turn (v: car, w: car) { require always (parked(v) implies not ahead(w)) }
+hard rule calm { require always (speed <= 30 m/s) }
+hard rule near (v: car) { require always (far(v) <= 20 m) }
+hard rule go { require never red }
 hard rule once_only (v: car) { require always (ahead(v) implies next always not ahead(v)) }
 """
 """What is read: the world, one object, both, two of them, whom a rule is about, and others."""
@@ -112,7 +115,15 @@ def found(answer):
     [
         ({"speed": 10}, [], []),
         ({"speed": Interval(10.01, 12)}, [("slow", 1)], []),
-        ({"speed": UNKNOWN}, [], [("slow",)]),
+        ({"speed": UNKNOWN}, [], [("slow",), ("calm",)]),
+        ({"speed": Interval(9, 31)}, [], [("slow",), ("calm",)]),
+        ({"speed": 31}, [("slow", 1), ("calm", 1)], []),
+        ({"far": {"a": 20, "b": 15}}, [], []),
+        ({"far": {"a": 21, "b": 15}}, [("near", "a", 1)], []),
+        ({"far": {"a": UNKNOWN}}, [], [("near", "a")]),
+        ({"far": {"b": Interval(1, 21)}}, [], [("near", "b")]),
+        ({"light": "red"}, [("go", 1)], []),
+        ({"light": UNKNOWN}, [], [("go",)]),
         (
             {"clear": False, "far": {"b": 13.0, "c": 13.01}},
             [("between", "c", 1), ("no_truck", "d", 1)],
