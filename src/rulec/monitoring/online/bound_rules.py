@@ -20,6 +20,7 @@ from rulec.monitoring.implied_values import with_implied_signals
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.online.encoding.encoded_values import Encoded
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
+from rulec.monitoring.online.four_valued import LetterClass
 from rulec.monitoring.online.group_letters import GroupLetters
 from rulec.monitoring.online.prepared_rule import PreparedRule
 from rulec.monitoring.online.rule_group import GroupNode, RuleGroup, RuleGroups, RulesRead
@@ -29,7 +30,7 @@ from rulec.trace import State
 from rulec.vocabulary.vocabulary_model import choices
 
 if TYPE_CHECKING:
-    from rulec.monitoring.online.partial_states import PartialStateReader
+    from rulec.monitoring.online.partial_states import PartialStateReader, RulesOfAll
     from rulec.monitoring.online.uncertain_steps import Edge
     from rulec.monitoring.uncertainty.state_letters.possible_letters import BoundLetters
 
@@ -89,6 +90,7 @@ class BoundRules:
         self._counting = any(counts(axiom.formula) for axiom in rulebook.axioms)
         self._partial: dict[KnownState, Letters] = {}
         self._letters: BoundLetters = {}
+        self._of_all: RulesOfAll | None = None
         self._readers: dict[tuple[str, ...], GroupLetters | None] = {}
         self.lazy: list[RuleGroup] = []
         self._awake: dict[tuple[str, ...], frozenset[Items]] = {}
@@ -162,7 +164,7 @@ class BoundRules:
                 if not self._counting:
                     letters = reader.letters(state, encoded)
                     if self.groups.cache_size.has_holes:
-                        letters = self._filled(letters, state, (number, place), known)
+                        letters = self._filled(letters, state, (number, place))
                     return letters, known
         except (LookupError, TypeError, AttributeError):
             pass
@@ -242,14 +244,13 @@ class BoundRules:
             own if isinstance(own, int) else _letter(group, own)
             for (group, _), own in zip(self._at, found, strict=True)
         ]
-        return self._filled(letters, state, (number, place), known), is_partial
+        return self._filled(letters, state, (number, place)), is_partial
 
     def _filled(
         self,
         letters: Letters,
         state: State,
         where: tuple[int, SourceLocation | None],
-        known: KnownState | None,
     ) -> Letters:
         """The letters, read from the whole state where they have holes.
 
@@ -262,17 +263,23 @@ class BoundRules:
         ]
         if not has_holes:
             return letters
-        before = None if known is None else self._partial.get(known)
-        if before is not None:
-            return before
-        number, place_ = where
-        partial = self._partial_state(state, (f"state {number}", place_))
+        if self._of_all is None:
+            # numpy, as above
+            from rulec.monitoring.online.partial_states import RulesOfAll
+
+            self._of_all = RulesOfAll(self._rulebook, self.objects, self._letters)
+        of_all, number = self._of_all, where[0]
+
+        def read(prepared: PreparedRule, items: Items) -> tuple[LetterClass, bool]:
+            found = of_all.letter_class(prepared, items, state)
+            if found is None:
+                # Something is wrong.
+                reader = self._partial_state(state, (f"state {number}", where[1]))
+                found = reader.letter_class(prepared, items)
+            return found
+
         for at, group, items in has_holes:
-            letters[at] = group.filled(letters[at], partial.reader(items))
-        if known is not None:
-            if len(self._partial) >= MOST_STATES:
-                self._partial.clear()
-            self._partial[known] = letters
+            letters[at] = group.filled(letters[at], items, read)
         return letters
 
     def _known_letters(self, state: State, known: KnownState | None) -> Sequence[int | RulesRead]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import SourceLocation
@@ -10,12 +10,125 @@ from rulec.monitoring.bindings import Binding
 from rulec.monitoring.online.encoding.state_shape import Items
 from rulec.monitoring.online.four_valued import LetterClass
 from rulec.monitoring.online.prepared_rule import PreparedRule
+from rulec.monitoring.state_view import StateView, value_in
 from rulec.monitoring.uncertainty.lazy_bindings import ReadBits
+from rulec.monitoring.uncertainty.state_letters.entangled_reads import NothingKnown
 from rulec.monitoring.uncertainty.state_letters.possible_letters import (
     BoundLetters,
     PossibleLetters,
+    letters_of_rule,
+)
+from rulec.monitoring.uncertainty.state_letters.read_digits import ReadDigits
+from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
+    MissingValueError,
+    Subject,
+    subjects_of_read,
+    unknown_in_read,
 )
 from rulec.trace import State, Trace
+from rulec.vocabulary.partial_values import PartialValue
+
+MOST_KNOWN = 1 << 12
+"""Values of which it is kept what a rule reads before all are forgotten."""
+
+
+class RulesOfAll:
+    """Rules whose letters more than their own objects decides, for the objects that are there.
+
+    What they read is known by what a state says of all that decides it. ``bound`` is as below.
+    """
+
+    def __init__(
+        self, rulebook: CompiledRulebook, objects: Mapping[str, str], bound: BoundLetters
+    ) -> None:
+        self._rulebook, self._bound = rulebook, bound
+        self._everybody = NothingKnown(objects, rulebook.vocabulary)
+        self._rules: dict[tuple[PreparedRule, Items], _RuleOfAll] = {}
+
+    def letter_class(
+        self, prepared: PreparedRule, items: Items, state: State
+    ) -> tuple[LetterClass, bool] | None:
+        """As of a ``PartialStateReader``; None where that is to say what is wrong."""
+        key = prepared, items
+        rule = self._rules.get(key)
+        if rule is None:
+            rule = self._rules[key] = _RuleOfAll(
+                prepared, prepared.bound(items), self._everybody, self._rulebook, self._bound
+            )
+        return rule.letter_class(state)
+
+
+class _RuleOfAll:
+    """One such rule for some objects."""
+
+    def __init__(
+        self,
+        prepared: PreparedRule,
+        objects: Mapping[str, str],
+        everybody: NothingKnown,
+        rulebook: CompiledRulebook,
+        bound: BoundLetters,
+    ) -> None:
+        classes = prepared.uncertain.classes
+        self._letters = letters_of_rule(
+            prepared.rule, classes, objects, rulebook, everybody=everybody, bound=bound
+        )
+        self._prepared, self._objects, self._everybody = prepared, objects, everybody
+        reads = self._letters.reads
+        self._alone = [reads[n] for n in self._letters.independent]
+        self._constants = [x for x in reads if not prepared.constants.isdisjoint(x.names)]
+        entangled = self._letters.entangled
+        self._entangled = entangled.subjects_of(objects) if entangled.numbers else []
+        read = [x for own in self._alone for x in subjects_of_read(own.read, objects, everybody)]
+        self._subjects: list[Subject] = list(dict.fromkeys([*self._entangled, *read]))
+        declarations = everybody.vocabulary.declarations
+        self._asked = [(name, items, declarations[name]) for name, items in self._subjects]
+        self._known: dict[tuple[PartialValue | None, ...], tuple[LetterClass, bool]] = {}
+
+    def letter_class(self, state: State) -> tuple[LetterClass, bool] | None:
+        """The classes that the rule may read, and whether no more are said than are."""
+        values = tuple([value_in(state, *asked) for asked in self._asked])
+        known = self._known.get(values)
+        if known is None:
+            found = self._found(state, values)
+            if found is None:
+                return None
+            if len(self._known) >= MOST_KNOWN:
+                self._known.clear()
+            known = self._known[values] = found
+        return known
+
+    def _found(
+        self, state: State, values: tuple[PartialValue | None, ...]
+    ) -> tuple[LetterClass, bool] | None:
+        entangled = self._letters.entangled
+        view = StateView(state, self._everybody.objects, self._everybody.vocabulary)
+        is_exact = True
+        try:
+            key = [self._digits(read, view) for read in self._alone]
+            if entangled.numbers:
+                there = None if entangled.is_local else self._everybody.objects
+                number = entangled.number(values[: len(self._entangled)], there)
+                is_exact = entangled.found[number][1]
+                key.append(number)
+            is_exact = is_exact and not any(
+                self._has_unknown_constant(own, view) for own in self._constants
+            )
+        except MissingValueError:
+            return None
+        steps = self._prepared.uncertain
+        letter_class = steps.letter_class(self._letters.classes_of(tuple(key)))
+        return None if letter_class is None else (letter_class, is_exact)
+
+    def _digits(self, read: ReadDigits, view: StateView) -> int:
+        return read.in_state(self._objects, view)
+
+    def _has_unknown_constant(self, read: ReadDigits, view: StateView) -> bool:
+        digits = self._digits(read, view)
+        if digits & (digits - 1) == 0:
+            return False
+        unknown = unknown_in_read(read.read, self._objects, view)
+        return any(name in self._prepared.constants for name, _ in unknown)
 
 
 class PartialStateReader:
@@ -42,10 +155,6 @@ class PartialStateReader:
     def bits_of(self, prepared: PreparedRule) -> ReadBits:
         """A reader of the digits, as bits, of a rule's reads one by one."""
         return self._reader.bits_of(prepared.rule)
-
-    def reader(self, items: Items) -> Callable[[PreparedRule], tuple[LetterClass, bool]]:
-        """``letter_class`` of some objects."""
-        return lambda prepared: self.letter_class(prepared, items)
 
     def letter_class(self, prepared: PreparedRule, items: Items) -> tuple[LetterClass, bool]:
         """The classes that a rule may read of objects, and whether no more are said than are.

@@ -17,6 +17,7 @@ from rulec.monitoring.online.encoding.encoded_values import (
     breakpoints_of,
     values_at,
 )
+from rulec.monitoring.online.encoding.state_shape import Items
 from rulec.monitoring.online.four_valued import (
     LetterClass,
     RunningVerdict,
@@ -152,12 +153,17 @@ class RuleGroup:
                 self.inexact[letter] = frozenset(self.rules[number].name for number in inexact)
         return letter
 
-    def filled(self, letter: int, read: Callable[[PreparedRule], tuple[LetterClass, bool]]) -> int:
-        """A letter in whose ``holes`` is what those rules read."""
+    def filled(
+        self,
+        letter: int,
+        items: Items,
+        read: Callable[[PreparedRule, Items], tuple[LetterClass, bool]],
+    ) -> int:
+        """A letter in whose ``holes`` is what those rules read of objects."""
         holes = self.holes[letter]
         classes, inexact = list(self.classes[letter]), set(holes.inexact)
         for number in holes.rules:
-            classes[number], is_exact = read(self.rules[number])
+            classes[number], is_exact = read(self.rules[number], items)
             if not is_exact:
                 inexact.add(number)
         return self.letter(tuple(classes), inexact)
