@@ -360,14 +360,16 @@ def pair_states(
     """The pairs of which some cells, rows and columns, are states; and the cells' places there."""
     (rows, columns), spans = cells, context.spans
     keys = rows * spans.n_drives + spans.number[columns]
-    pairs = distinct(keys)
+    there = np.zeros(len(context.relevant) * spans.n_drives, dtype=bool)
+    there[keys] = True
+    pairs = np.flatnonzero(there)
     begins, lengths = spans.begins, np.diff(spans.bounds)
     drives = pairs % spans.n_drives
     bounds = np.append(0, np.cumsum(lengths[drives]))
     own = EndToEnd(bounds.tolist())
     shift = begins[drives] - bounds[:-1]
     states = PairStates(own.spread(pairs // spans.n_drives), own.columns + own.spread(shift), own)
-    return states, columns - shift[np.searchsorted(pairs, keys)]
+    return states, columns - shift[np.cumsum(there)[keys] - 1]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
