@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rulec.analysis.counterexample import counterexample
+from rulec.analysis.counterexample import Contest, counterexample, said_as_usual
 from rulec.analysis.diff.comparison_matrix import CONVERSE, comparison_matrix, pairs, steps
 from rulec.analysis.diff.rule_comparison import (
     common_types,
@@ -30,13 +30,25 @@ from rulec.analysis.lineage.rule_lineage import (
     LineageStep,
     RuleHistory,
 )
+from rulec.analysis.shared_compilation import compile_shared
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import Atom, Binary, BinaryOperator
 from rulec.rulebook.loader import parse_rulebook
-from rulec.rulebook.rulebook_model import Variable
+from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.trace import Trace
+from rulec.witnesses.undecided import UndecidedError
 from support.builders.rulebooks import always, no
-from support.generators.random_rule_pairs import ALONE, VOCABULARY, X, Y, allows, formulas, sides
+from support.generators.random_rule_pairs import (
+    ALONE,
+    COUNTED,
+    PAIRED,
+    VOCABULARY,
+    X,
+    Y,
+    allows,
+    formulas,
+    sides,
+)
 
 P = Atom("p")
 
@@ -48,18 +60,60 @@ def either(*atoms):
     return whole
 
 
+LEADS = Axiom((X, Y), Binary(BinaryOperator.IMPLIES, Atom("follows", ("x", "y")), P))
+"""Ties `p` to `follows`."""
+
+
+class TestAsUsual:
+    @given(
+        st.sampled_from([ALONE, PAIRED, [*ALONE, *COUNTED]]).flatmap(
+            lambda atoms: st.tuples(formulas(atoms), formulas(atoms))
+        ),
+        st.sampled_from([(), (LEADS,)]),
+        st.lists(st.sets(st.sampled_from(["p", "follows", "speed"]), min_size=1), max_size=4),
+    )
+    def test_it_is_what_a_search_with_these_facts_gives(self, rules, axioms, asked):
+        forbidding, allowing = sides(rules, [X, Y], axioms=axioms)
+        try:
+            contest = Contest(forbidding, [allowing])
+        except UndecidedError:
+            return
+        for names in asked:
+            declared = VOCABULARY.declarations
+            facts = [said_as_usual(name, declared[name]) for name in sorted(names)]
+            try:
+                expected = counterexample(forbidding, [allowing], facts)
+            except UndecidedError:
+                continue
+            assert contest.trace_as_usual(names) == expected
+
+    def test_a_default_that_only_one_of_them_has(self):
+        texts = [
+            f"rulebook {name} signal p default {default} signal q default false"
+            f" hard rule r {{ require never ({rule}) }}"
+            for name, default, rule in (("a", "false", "q and not p"), ("b", "true", "q and p"))
+        ]
+        books = [parse_rulebook(text) for text in texts]
+        ours, theirs = compile_shared(books, [{"r": book.rules[0]} for book in books])
+        contest = Contest(ours["r"], [theirs["r"]])
+        assert contest.trace().states == ({"p": False, "q": True},)
+        assert contest.trace_as_usual({"p"}).states == ({"p": False, "q": True},)
+        assert contest.trace_as_usual({"q"}) is None
+
+
 class TestDiverseWitnesses:
     def test_each_reason_is_found(self):
         reasons = [P, ALONE[3], Atom("follows", ("x", "y"))]
         forbidding, allowing = sides([always(no(either(*reasons))), always(no(no(no(P))))], [X, Y])
         _, allowing = sides([always(P), always(either(P, no(P)))], [X, Y])
-        first = counterexample(forbidding, [allowing])
-        found = diverse_witnesses(forbidding, allowing, first, 5)
+        contest = Contest(forbidding, [allowing])
+        first = contest.trace()
+        found = diverse_witnesses(contest, first, 5)
         names = [non_default_names(one, VOCABULARY) for one in found]
         assert sorted(map(sorted, names)) == [["follows"], ["p"], ["speed"]]
         assert found[0] is first
-        assert diverse_witnesses(forbidding, allowing, first, 2) == found[:2]
-        assert diverse_witnesses(forbidding, allowing, first, 1) == (first,)
+        assert diverse_witnesses(contest, first, 2) == found[:2]
+        assert diverse_witnesses(contest, first, 1) == (first,)
 
     def test_where_nothing_does_without_no_less_is_asked(self, monkeypatch):
         fast, follows = ALONE[3], Atom("follows", ("x", "y"))
@@ -68,13 +122,15 @@ class TestDiverseWitnesses:
         _, allowing = sides([always(P), always(either(P, no(P)))], [X, Y])
         asked = []
 
-        def counted(*question):
-            asked.append(question)
-            return counterexample(*question)
+        contest = Contest(forbidding, [allowing])
+        first, trace_as_usual = contest.trace(), contest.trace_as_usual
 
-        first = counterexample(forbidding, [allowing])
-        monkeypatch.setattr("rulec.analysis.diff.rule_comparison.counterexample", counted)
-        found = diverse_witnesses(forbidding, allowing, first, 5)
+        def counted(names):
+            asked.append(names)
+            return trace_as_usual(names)
+
+        monkeypatch.setattr(contest, "trace_as_usual", counted)
+        found = diverse_witnesses(contest, first, 5)
         names = [sorted(non_default_names(one, VOCABULARY)) for one in found]
         assert sorted(names) == [["follows", "p"], ["p", "speed"]]
         # Without one of the two, without `p`, without both; without one of them and `p` is clear.

@@ -67,9 +67,10 @@ def test_diagrams_are_the_functions(functions):
         for joint_digits in product(*(range(read.size) for read in joint.reads)):
             node = root
             for level, joint_digit in enumerate(joint_digits):
-                assert diagrams.level(node) >= level
-                (node,) = diagrams.children([node], level, joint_digit)
-            assert diagrams.level(node) == float("inf")
+                assert diagrams.level([node]) >= level
+                size = joint.reads[level].size
+                (node,) = diagrams.restricted([node], level, size)[joint_digit]
+            assert diagrams.level([node]) == float("inf")
             assert diagrams.value(node) == function.value(joint.own_digits(index, joint_digits))
             table.append(diagrams.value(node))
         tables.append(table)

@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 
 from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
 from rulec.logic.formula import Atom, Count, QuantityTerm
-from rulec.witnesses.object_universe import ObjectUniverse
 from rulec.witnesses.state_synthesis import (
     are_consistent,
     default_digit,
@@ -22,7 +21,6 @@ from rulec.witnesses.state_synthesis import (
 from support.generators.random_reads import (
     GAP,
     NUMBERS,
-    OBJECTS,
     SPEED,
     VOCABULARY,
     digit,
@@ -30,7 +28,6 @@ from support.generators.random_reads import (
     number_reads,
 )
 
-UNIVERSE = ObjectUniverse(OBJECTS, VOCABULARY)
 described = st.lists(
     st.tuples(number_reads, st.integers(0, 2)), min_size=1, max_size=3, unique_by=lambda one: one[0]
 )
@@ -40,7 +37,7 @@ described = st.lists(
 def test_numbers_have_the_digits_and_none_are_missed(pairs):
     digits = [(read, min(number, read.size - 1)) for read, number in pairs]
     met = any(all(digit(read, state) == wanted for read, wanted in digits) for state in NUMBERS)
-    state = synthesize_state(UNIVERSE, digits)
+    state = synthesize_state(VOCABULARY, digits)
     assert (state is not None) >= met
     assert are_consistent(digits) is (state is not None)
     near = numbers_near_thresholds(digits, VOCABULARY)
@@ -91,21 +88,21 @@ def test_what_no_float_is_cannot_be_near():
 
 def test_defaults_are_taken_where_they_fit():
     read = NumberRead(((Fraction(1), SPEED),), passing(1))
-    assert synthesize_state(UNIVERSE, [(read, 1)]).values == {("speed", ()): 1.0}
-    assert synthesize_state(UNIVERSE, [(read, 0)]).values == {("speed", ()): 0.0}
+    assert synthesize_state(VOCABULARY, [(read, 1)]).values == {("speed", ()): 1.0}
+    assert synthesize_state(VOCABULARY, [(read, 0)]).values == {("speed", ()): 0.0}
     below = NumberRead(((Fraction(1), SPEED),), passing(-3))
-    assert synthesize_state(UNIVERSE, [(below, 0)]).values == {("speed", ()): -4.0}
+    assert synthesize_state(VOCABULARY, [(below, 0)]).values == {("speed", ()): -4.0}
 
 
 def test_counts_are_whole_and_as_many_as_count_already():
     count = Count("o", "thing", Atom("place", ("o",), "near"))
     read = NumberRead(((Fraction(1), count),), passing(2, 4))
-    state = synthesize_state(UNIVERSE, [(read, 1)], ((count, 3),))
+    state = synthesize_state(VOCABULARY, [(read, 1)], ((count, 3),))
     assert required_counts(state, VOCABULARY) == {count: 3}
-    assert synthesize_state(UNIVERSE, [(read, 0)], ((count, 3),)) is None
+    assert synthesize_state(VOCABULARY, [(read, 0)], ((count, 3),)) is None
     assert state.values == {}
     halves = NumberRead(((Fraction(2), count),), passing(1, 2))
-    assert synthesize_state(UNIVERSE, [(halves, 1)], ((count, 0),)) is None
+    assert synthesize_state(VOCABULARY, [(halves, 1)], ((count, 0),)) is None
     assert not are_consistent([(halves, 1)])
     low = NumberRead(((Fraction(1), count),), passing(0))
     assert not are_consistent([(low, 0)])

@@ -8,7 +8,8 @@ these objects in all ways in which they fit its variables.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Sequence, Set
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
@@ -16,11 +17,19 @@ from functools import lru_cache
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import NumberRead
+from rulec.automata.thresholds import exact
+from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
-from rulec.rulebook.rulebook_model import Axiom
+from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.trace import Trace
-from rulec.vocabulary import Declaration, ObjectType, Vocabulary
-from rulec.witnesses.joint_alphabet import JointAlphabet
+from rulec.vocabulary import (
+    Declaration,
+    Enumeration,
+    ObjectType,
+    Signal,
+    Vocabulary,
+)
+from rulec.witnesses.joint_alphabet import JointAlphabet, JointLetter
 from rulec.witnesses.letter_functions import monitor_function
 from rulec.witnesses.object_universe import Itself, ObjectUniverse
 from rulec.witnesses.shortest_traces import shortest_word
@@ -35,28 +44,93 @@ def counterexample(
 
     ``given`` is to hold in its states, besides what is known of any. Raises UndecidedError.
     """
-    universe = _universe(forbidding, allowing, given)
-    own = {variable.name: variable.name for variable in forbidding.rule.variables}
-    bound = [(forbidding.rule.machine, own, False)]
-    bound += [
-        (allowed.rule.machine, binding, True)
-        for allowed in allowing
-        for binding in universe.bindings(allowed.rule.variables)
-    ]
-    monitors, bindings, verdicts = zip(*bound, strict=True)
-    alphabet = JointAlphabet(universe, list(map(monitor_function, monitors, bindings)))
-    word = shortest_word(monitors, verdicts, alphabet.candidates, alphabet.can_be_read)
-    if word is None:
-        return None
+    return Contest(forbidding, allowing, given).trace()
 
-    def shows(trace: Trace) -> bool:
-        return bool(forbidding.violations(trace, universe.vocabulary)) and not any(
-            allowed.violations(trace, universe.vocabulary) for allowed in allowing
-        )
 
-    return synthesize_trace(
-        alphabet.states_of(word), universe, common_step((forbidding, *allowing)), shows
+class Contest:
+    """A rule that forbids, others that allow, and the states in which they may differ.
+
+    Raises UndecidedError.
+    """
+
+    def __init__(
+        self,
+        forbidding: AnalyzedRule,
+        allowing: Sequence[AnalyzedRule],
+        given: Sequence[Axiom] = (),
+    ) -> None:
+        self.forbidding, self._allowing = forbidding, allowing
+        self._universe = _universe(forbidding, allowing, given)
+        own = {variable.name: variable.name for variable in forbidding.rule.variables}
+        bound = [(forbidding.rule.machine, own, False)]
+        bound += [
+            (allowed.rule.machine, binding, True)
+            for allowed in allowing
+            for binding in self._universe.bindings(allowed.rule.variables)
+        ]
+        self._monitors, bindings, self._verdicts = zip(*bound, strict=True)
+        functions = list(map(monitor_function, self._monitors, bindings))
+        self._alphabet = JointAlphabet(self._universe, functions)
+
+    def trace(self) -> Trace | None:
+        """A shortest trace that only the first rule forbids, or None. Raises UndecidedError."""
+        return self._trace(self._alphabet, self._universe)
+
+    def trace_as_usual(self, names: Set[str]) -> Trace | None:
+        """One in which these declarations have their defaults. Raises UndecidedError."""
+        declared = self.forbidding.rulebook.vocabulary.declarations
+        axioms = [said_as_usual(name, declared[name]) for name in sorted(names)]
+        universe = replace(self._universe, axioms=(*self._universe.axioms, *axioms))
+        alphabet = self._alphabet.as_usual(axioms)
+        if self._word(alphabet) is None:
+            return None
+        if not alphabet.is_exact:
+            return counterexample(self.forbidding, self._allowing, axioms)
+        return self._trace(alphabet, universe)
+
+    def _trace(self, alphabet: JointAlphabet, universe: ObjectUniverse) -> Trace | None:
+        word = self._word(alphabet)
+        if word is None:
+            return None
+
+        def shows(trace: Trace) -> bool:
+            return bool(self.forbidding.violations(trace, universe.vocabulary)) and not any(
+                allowed.violations(trace, universe.vocabulary) for allowed in self._allowing
+            )
+
+        step = common_step((self.forbidding, *self._allowing))
+        return synthesize_trace(alphabet.states_of(word), universe, step, shows)
+
+    def _word(self, alphabet: JointAlphabet) -> tuple[JointLetter, ...] | None:
+        letters = alphabet.candidates
+        if alphabet.is_counting:
+            # Mostly no word is left even if all of the letters could be read.
+            with suppress(UndecidedError):
+                if shortest_word(self._monitors, self._verdicts, letters) is None:
+                    return None
+        return shortest_word(self._monitors, self._verdicts, letters, alphabet.can_be_read)
+
+
+def said_as_usual(name: str, declaration: Declaration) -> Axiom:
+    """That a declaration has its default, for all objects."""
+    variables = tuple(
+        Variable(f"o{number}", kind) for number, kind in enumerate(declaration.parameters)
     )
+    arguments = tuple(variable.name for variable in variables)
+    return Axiom(variables, _has_default(name, arguments, declaration))
+
+
+def _has_default(name: str, arguments: tuple[str, ...], declaration: Declaration) -> ltl.Formula:
+    match declaration:
+        case Enumeration(default=str(value)):
+            return ltl.Atom(name, arguments, value)
+        case Signal(default=True):
+            return ltl.Atom(name, arguments)
+        case Signal():
+            return ltl.Unary(ltl.UnaryOperator.NOT, ltl.Atom(name, arguments))
+    assert declaration.default is not None, "only what has a default can be as usual"
+    number = exact(float(declaration.default))
+    return ltl.Comparison(((Fraction(1), ltl.QuantityTerm(name, arguments)),), "=", number)
 
 
 def common_step(rules: Iterable[AnalyzedRule]) -> Fraction:

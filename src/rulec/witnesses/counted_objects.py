@@ -6,9 +6,10 @@ The search is breadth first over how many objects each count has reached.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from functools import lru_cache, reduce
-from itertools import accumulate, product
+from itertools import accumulate, compress, product
 from math import ceil
 from operator import add, and_, mul
 
@@ -123,7 +124,6 @@ class CountedObjectKinds:
     def __init__(self, universe: ObjectUniverse) -> None:
         self.universe = universe
         self._types: dict[object, list[_CountedType]] = {}
-        self._found: dict[object, tuple[CountedObject, ...]] = {}
 
     def of(self, state: JointState, types: Sequence[str] = ()) -> list[CountedObject]:
         """Those of a state, of most general types first.
@@ -154,36 +154,22 @@ class CountedObjectKinds:
                 if vocabulary.is_subtype(kind, count.type)
             }
             axioms = _axioms_about(kind, self.universe, list(bodies.values()))
+            places = len(counts), *bodies
             about = (*bodies.values(), *axioms)
-            reads, truths = _truths_of(about, Itself(vocabulary))
-            letters = dict(zip(bodies, truths, strict=False))
-            counted = tuple(letters.get(place, 0) for place in range(len(counts)))
-            yield _CountedType(kind, reads, counted, tuple(truths[len(bodies) :]))
+            yield _counted_type(kind, places, about, Itself(vocabulary))
 
     def _of_type(self, counted: _CountedType, state: JointState) -> tuple[CountedObject, ...]:
-        universe = self.universe
-        reads = [
-            (_unknown(read, state, universe) if isinstance(read, NumberRead) else read, None)
-            if letter_functions.speaks_of_extra(read)
-            else (read, _digit(read, state, universe))
-            for read in counted.reads
-        ]
-        depends_on = tuple(
-            digit if digit is not None else getattr(read, "thresholds", None)
-            for read, digit in reads
+        vocabulary = self.universe.vocabulary
+        # The digit that the state gives to what is not about the object, and what it gives to sums.
+        known = tuple(
+            [
+                _given(read, state, vocabulary) if is_about_it else _digit(read, state, vocabulary)
+                for read, is_about_it in zip(counted.reads, counted.are_about_it, strict=True)
+            ]
         )
-        key = id(counted), depends_on
-        if key not in self._found:
-            self._found[key] = tuple(_first_of_each(counted, reads, universe))
-        return self._found[key]
-
-
-# Universes of a few objects and one vocabulary have the same additional ones.
-@lru_cache(maxsize=1024)
-def _truths_of(
-    formulas: tuple[Formula, ...], vocabulary: Itself[Vocabulary]
-) -> tuple[letter_functions.Reads, list[int]]:
-    return letter_functions.truths_of(formulas, vocabulary.item)
+        if known not in counted.found:
+            counted.found[known] = tuple(_first_of_each(counted, known, vocabulary))
+        return counted.found[known]
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,25 +177,54 @@ class _CountedType:
     """A type of additional objects, and what decides which counts one adds to.
 
     Letters are those of ``reads``; sets of them are the bits of integers. ``counted`` has for each
-    count those in which it counts, ``allowed`` for each axiom those in which it holds.
+    count those in which it counts, ``allowed`` for each axiom those in which it holds. Objects
+    ``found`` are kept by what a state gives.
     """
 
     type: str
     reads: Sequence[Read | NumberRead]
+    are_about_it: Sequence[bool]
     counted: Sequence[int]
     allowed: Sequence[int]
+    found: dict[object, tuple[CountedObject, ...]] = field(default_factory=dict)
+
+
+# Universes of a few objects and one vocabulary have the same additional ones.
+@lru_cache(maxsize=1024)
+def _counted_type(
+    kind: str,
+    places: tuple[int, ...],
+    about: tuple[Formula, ...],
+    vocabulary: Itself[Vocabulary],
+) -> _CountedType:
+    """What is known of a type, from the bodies of the counts at some places, and axioms.
+
+    The first of the ``places`` is the number of all counts.
+    """
+    reads, truths = letter_functions.truths_of(about, vocabulary.item)
+    n_counts, *counting = places
+    letters = dict(zip(counting, truths, strict=False))
+    counted = tuple(letters.get(place, 0) for place in range(n_counts))
+    are_about_it = [letter_functions.speaks_of_extra(read) for read in reads]
+    return _CountedType(kind, reads, are_about_it, counted, tuple(truths[len(counting) :]))
 
 
 def _first_of_each(
-    counted: _CountedType,
-    reads: Sequence[tuple[Read | NumberRead, int | None]],
-    universe: ObjectUniverse,
+    counted: _CountedType, known: Sequence[int | Fraction], vocabulary: Vocabulary
 ) -> Iterator[CountedObject]:
     """The first object that adds to the same counts, for all that can be.
 
-    The reads are what is to be told of it, or have the digit that the state gives them.
+    ``known`` has for each read the digit that the state gives it, or, of what is to be told of the
+    object, what the state gives to its sum.
     """
-    choices = [range(read.size) if digit is None else (digit,) for read, digit in reads]
+    reads = [
+        _unknown(read, given) if is_about_it and isinstance(read, NumberRead) else read
+        for read, given, is_about_it in zip(counted.reads, known, counted.are_about_it, strict=True)
+    ]
+    choices = [
+        range(read.size) if is_about_it else (int(digit),)
+        for read, digit, is_about_it in zip(reads, known, counted.are_about_it, strict=True)
+    ]
     seen = set()
     allowed = reduce(and_, counted.allowed, -1)
     weights = [*accumulate((read.size for read in counted.reads), mul, initial=1)][:-1]
@@ -220,12 +235,8 @@ def _first_of_each(
         adds = tuple([letters >> letter & 1 for letters in counted.counted])
         if adds in seen:
             continue
-        about_it = [
-            (read, digit)
-            for (read, known), digit in zip(reads, digits, strict=True)
-            if known is None
-        ]
-        added = synthesize_state(universe, about_it)
+        about_it = [*compress(zip(reads, digits, strict=True), counted.are_about_it)]
+        added = synthesize_state(vocabulary, about_it)
         if added is not None:
             seen.add(adds)
             yield CountedObject(counted.type, adds, added.values)
@@ -244,17 +255,25 @@ def _axioms_about(kind: str, universe: ObjectUniverse, bodies: Sequence[Formula]
     return [axiom.formula for axiom in relevant_axioms(axioms, read)]
 
 
-def _digit(read: Read | NumberRead, state: JointState, universe: ObjectUniverse) -> int:
+def _digit(read: Read | NumberRead, state: JointState, vocabulary: Vocabulary) -> int:
     if isinstance(read, Read):
-        return read.digit(state.value((read.name, read.variables), universe.vocabulary))
-    return read.digit(state.total(read.terms, universe.vocabulary, {}))
+        return read.digit(state.value((read.name, read.variables), vocabulary))
+    return read.digit(state.total(read.terms, vocabulary, {}))
 
 
-def _unknown(read: NumberRead, state: JointState, universe: ObjectUniverse) -> NumberRead:
+def _given(read: Read | NumberRead, state: JointState, vocabulary: Vocabulary) -> Fraction:
+    """What a state gives to a sum that is about the object, too."""
+    if isinstance(read, Read):
+        return Fraction(0)
+    rest = [pair for pair in read.terms if EXTRA not in variables_of(pair[1])]
+    return state.total(rest, vocabulary, {})
+
+
+def _unknown(read: NumberRead, known: int | Fraction) -> NumberRead:
     """Sum of the unknown terms, with known ones moved into the thresholds."""
     unknown = tuple(pair for pair in read.terms if EXTRA in variables_of(pair[1]))
-    rest = [pair for pair in read.terms if pair not in unknown]
-    known = state.total(rest, universe.vocabulary, {})
+    if not known and len(unknown) == len(read.terms):
+        return read
     thresholds = tuple(
         replace(threshold, limit=threshold.limit - known) for threshold in read.thresholds
     )

@@ -7,9 +7,10 @@ nodes are equal if and only if their functions are.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import lru_cache
+from collections.abc import Iterable, Sequence
+from functools import lru_cache, reduce
 from math import inf
+from operator import or_
 
 from rulec.witnesses.joint_reads import JointDigits
 from rulec.witnesses.letter_functions import LetterFunction
@@ -35,9 +36,10 @@ class _Nodes:
             self._nodes.append(key)
         return node
 
-    def level(self, node: int) -> float:
-        """Index of the read that a node tests; infinity for leaves."""
-        return self._nodes[node][0]
+    def level(self, nodes: Iterable[int]) -> float:
+        """Index of the first read that one of some nodes tests; infinity for leaves."""
+        known = self._nodes
+        return min([known[node][0] for node in nodes])
 
     def value(self, node: int) -> int:
         """The class of a node that tests nothing any more."""
@@ -79,7 +81,15 @@ def _own_diagram(letters: tuple[int, ...], sizes: tuple[int, ...]) -> _OwnDiagra
 
 
 class DecisionDiagrams(_Nodes):
-    """All nodes of some diagrams over the same joint reads."""
+    """All nodes of some diagrams over the same joint reads.
+
+    ``false`` and ``true`` are the leaves of functions that have no other classes than 0 and 1.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._supports: list[int] = []
+        self.false, self.true = self.add(inf, 0), self.add(inf, 1)
 
     def of(self, function: LetterFunction, views: Sequence[JointDigits]) -> int:
         """The diagram of a function: its class, given the joint digits."""
@@ -106,11 +116,21 @@ class DecisionDiagrams(_Nodes):
 
         return built(own.root, 0)
 
-    def children(self, nodes: Sequence[int], level: float, digit: int) -> list[int]:
-        """Restrictions of nodes to one digit of a joint read."""
+    def restricted(self, nodes: Sequence[int], level: float, size: int) -> list[tuple[int, ...]]:
+        """Restrictions of nodes to each of the digits of a joint read."""
         known = self._nodes
-        return [
-            children[digit] if own == level else node
+        rows = [
+            children if own == level else (node,) * size
             for node in nodes
             for own, children in (known[node],)
         ]
+        return list(zip(*rows, strict=True))
+
+    def support(self, nodes: Iterable[int]) -> int:
+        """The joint reads on which functions of some nodes depend, as the bits of an integer."""
+        supports = self._supports
+        # Children are numbered before their parents.
+        for level, children in self._nodes[len(supports) :]:
+            own = 0 if level == inf else 1 << int(level)
+            supports.append(reduce(or_, [supports[child] for child in children], own) if own else 0)
+        return reduce(or_, [supports[node] for node in nodes], 0)

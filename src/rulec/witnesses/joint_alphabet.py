@@ -7,17 +7,20 @@ depend on each other.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from copy import copy
+from dataclasses import replace
 from heapq import heappop, heappush
 from itertools import count
 
 from rulec.automata.mealy_monitor import NumberRead
 from rulec.resource_limits import SEARCH
+from rulec.rulebook.rulebook_model import Axiom
 from rulec.witnesses import letter_functions, state_synthesis
 from rulec.witnesses.counted_objects import CountedObjectKinds, fewest_counted_objects
 from rulec.witnesses.decision_diagrams import DecisionDiagrams
-from rulec.witnesses.joint_reads import joint_reads
+from rulec.witnesses.joint_reads import joint_reads, merged, subject_of
 from rulec.witnesses.object_universe import ObjectUniverse
-from rulec.witnesses.relevant_axioms import relevant_axioms, said_axioms
+from rulec.witnesses.relevant_axioms import relevant_axioms, said_axioms, subjects_read
 from rulec.witnesses.undecided import UndecidedError
 
 JointLetter = tuple[int, ...]
@@ -48,8 +51,6 @@ class JointAlphabet:
         self, universe: ObjectUniverse, monitors: Sequence[letter_functions.LetterFunction]
     ) -> None:
         self._universe = universe
-        self._object_kinds = CountedObjectKinds(universe)
-        self._steps_left = self._most_steps = SEARCH.value()
         vocabulary = universe.vocabulary
         axioms = list(said_axioms(universe))
         facts = [axiom.function for axiom in axioms]
@@ -62,32 +63,85 @@ class JointAlphabet:
         relevant = relevant_axioms(axioms, [function.reads for function in read])
         functions = [*read, *(axiom.function for axiom in relevant)]
         self._joint = joint_reads(functions, vocabulary)
+        self._n_monitors = len(monitors)
         self._n_keys = len(monitors) + len(self._counts)
         self._n_numbers = sum(isinstance(read, NumberRead) for read in self._joint.reads)
         self._diagrams = DecisionDiagrams()
-        roots = list(map(self._diagrams.of, functions, self._joint.views))
+        roots = tuple(map(self._diagrams.of, functions, self._joint.views))
+        self._root = self._cleared(roots[: self._n_keys], roots[self._n_keys :])
         self._defaults = [
             state_synthesis.default_digit(read, vocabulary) for read in self._joint.reads
         ]
-        self._plain: dict[tuple[int, ...], dict[JointLetter, tuple[int, Steps]]] = {}
-        self._states: dict[JointLetter, state_synthesis.JointState | None] = {}
+        self._sizes = [read.size for read in self._joint.reads]
+        self._digits: list[Sequence[int]] = list(map(range, self._sizes))
+        self._usual = 0
+        self.is_exact = True
+        self._plain: dict[object, dict[JointLetter, tuple[int, Steps]]] = {}
         self._numbers: dict[
             object, dict[state_synthesis.Subject, state_synthesis.Value] | None
         ] = {}
+        self._search()
+
+    def as_usual(self, axioms: Sequence[Axiom]) -> JointAlphabet:
+        """The alphabet of the states in which these axioms hold, too, that say what is as usual.
+
+        Each says of one declaration that it has its default. It shares with this one what is known.
+        ``is_exact`` tells whether every letter comes from such a state, as far as ``candidates`` do
+        otherwise; if not, there are all that do, and maybe more.
+        """
+        usual = copy(self)
+        usual._universe = replace(self._universe, axioms=(*self._universe.axioms, *axioms))
+        usual._defaults, usual._digits = [*self._defaults], [*self._digits]
+        reads = list(self._joint.reads)
+        levels = {subject_of(read): level for level, read in enumerate(reads)}
+        for said in said_axioms(replace(self._universe, axioms=tuple(axioms))):
+            (own,) = said.function.reads
+            level = levels.get(subject_of(own))
+            default = None if level is None else self._defaults[level]
+            if level is None or default is None or not said.holds_by_default:
+                # What nothing reads is as usual, but what only sums read is not known.
+                usual.is_exact &= said.holds_by_default and said.subjects.isdisjoint(
+                    subjects_read(self._joint.reads)
+                )
+                continue
+            usual._digits[level] = (default,)
+            usual._usual |= 1 << level
+            if isinstance(own, NumberRead):
+                # It is told apart from the numbers around it, on the ways that there are already.
+                reads[level] = merged([reads[level], own], self._universe.vocabulary)
+                usual._defaults[level] = state_synthesis.default_digit(
+                    reads[level], self._universe.vocabulary
+                )
+                usual._numbers = {}
+        usual._joint = replace(self._joint, reads=tuple(reads))
+        usual._search()
+        return usual
+
+    def _search(self) -> None:
+        """Find the candidates, and the ways to them."""
+        self._object_kinds = CountedObjectKinds(self._universe)
+        self._steps_left = self._most_steps = SEARCH.value()
+        self._n_nodes = 0
+        self._states: dict[JointLetter, state_synthesis.JointState | None] = {}
         ways_to = self._ways_to = dict[JointLetter, list[tuple[int, int, Steps, JointLetter]]]()
         numbers = count()
-        for number_digits, ways in self._numbered(self._cleared(roots), ()):
+        for number_digits, ways in self._numbered(self._root, ()):
             cost = sum(self._cost(level, digit) for level, digit in number_digits)
             for key, (more, steps) in ways.items():
                 for number_digit in reversed(number_digits):
                     steps = (number_digit, steps)
-                letter, classes = key[: len(monitors)], key[len(monitors) :]
+                letter, classes = key[: self._n_monitors], key[self._n_monitors :]
                 way = (cost + more, next(numbers), steps, classes)
                 heappush(ways_to.setdefault(letter, []), way)
             self._take(len(ways))
             if len(ways_to) > MOST_LETTERS:
                 raise UndecidedError("too many different states of the world have to be told apart")
         self.candidates: Sequence[JointLetter] = tuple(ways_to)
+
+    @property
+    def is_counting(self) -> bool:
+        """True if to tell whether some state gives a letter may take long."""
+        return bool(self._counts)
 
     def state(self, letter: JointLetter) -> state_synthesis.JointState | None:
         """The plainest state that gives a letter, None if there is none. Raises UndecidedError."""
@@ -121,22 +175,27 @@ class JointAlphabet:
         default = self._defaults[level]
         return int(default is not None and digit != default)
 
-    def _cleared(self, nodes: Sequence[int]) -> tuple[int, ...]:
-        keys, axioms = nodes[: self._n_keys], nodes[self._n_keys :]
-        open_axioms = []
-        for axiom in axioms:
-            if self._diagrams.level(axiom) < len(self._joint.reads):
-                open_axioms.append(axiom)
-            elif not self._diagrams.value(axiom):
-                return ()
-        return (*keys, *dict.fromkeys(open_axioms))
+    def _cleared(self, keys: tuple[int, ...], axioms: Iterable[int]) -> tuple[int, ...]:
+        """Nodes without axioms that hold, each other one once; none if an axiom is broken."""
+        left = {*axioms}
+        if self._diagrams.false in left:
+            return ()
+        left.discard(self._diagrams.true)
+        return (*keys, *sorted(left))
 
     def _level(self, nodes: Sequence[int]) -> int:
         """The first joint read that a node tests; the number of them if none does."""
-        return int(min(len(self._joint.reads), *map(self._diagrams.level, nodes)))
+        return int(min(self._diagrams.level(nodes), len(self._joint.reads)))
 
-    def _after(self, nodes: Sequence[int], level: int, digit: int) -> tuple[int, ...]:
-        return self._cleared(self._diagrams.children(nodes, level, digit))
+    def _after(self, nodes: Sequence[int], level: int) -> Iterator[tuple[int, tuple[int, ...]]]:
+        """The digits of a joint read that break no axiom, and the nodes after each."""
+        n_keys = self._n_keys
+        rows = self._diagrams.restricted(nodes, level, self._sizes[level])
+        for digit in self._digits[level]:
+            row = rows[digit]
+            following = self._cleared(row[:n_keys], row[n_keys:])
+            if following:
+                yield digit, following
 
     def _numbered(
         self, nodes: tuple[int, ...], number_digits: tuple[tuple[int, int], ...]
@@ -144,14 +203,20 @@ class JointAlphabet:
         """Possible digits of sums, and the joint letters for each of them."""
         if not nodes:
             return
+        # A number that is as usual is, too, where only sums tell it apart that are chosen later.
+        decided = number_digits[-1][0] + 1 if number_digits else 0
+        usual = self._usual >> decided << decided
         level = self._level(nodes)
+        if usual:
+            level = min(level, (usual & -usual).bit_length() - 1)
         if level >= self._n_numbers:
             yield number_digits, self._ways(nodes)
             return
-        for digit in range(self._joint.reads[level].size):
-            chosen = (*number_digits, (level, digit))
+        for digit, following in self._after(nodes, level):
+            default = self._defaults[level] if usual >> level & 1 else None
+            chosen = (*number_digits, (level, digit if default is None else default))
             if self._fits(chosen):
-                yield from self._numbered(self._after(nodes, level, digit), chosen)
+                yield from self._numbered(following, chosen)
 
     def _fits(self, number_digits: Sequence[tuple[int, int]]) -> bool:
         """Tell whether sums can have these digits, all but the last checked."""
@@ -166,24 +231,25 @@ class JointAlphabet:
 
     def _ways(self, nodes: tuple[int, ...]) -> Mapping[JointLetter, tuple[int, Steps]]:
         """Number of non-defaults and digits with fewest, for each joint letter."""
-        if nodes in self._plain:
-            return self._plain[nodes]
-        if len(self._plain) > MOST_NODES:
+        # What is as usual matters only to nodes that read it; others are known from other searches.
+        usual = self._usual and self._usual & self._diagrams.support(nodes)
+        known = self._plain.get((nodes, usual))
+        if known is not None:
+            return known
+        self._n_nodes += 1
+        if self._n_nodes > MOST_NODES:
             raise UndecidedError("too many different states of the world have to be told apart")
         level = self._level(nodes)
         ways: dict[JointLetter, tuple[int, Steps]] = {}
         if level == len(self._joint.reads):
             ways[tuple(map(self._diagrams.value, nodes))] = 0, None
         else:
-            for digit in range(self._joint.reads[level].size):
-                following = self._after(nodes, level, digit)
-                if not following:
-                    continue
-                own = self._cost(level, digit)
+            for digit, following in self._after(nodes, level):
+                own, step = self._cost(level, digit), (level, digit)
                 for key, (cost, steps) in self._ways(following).items():
                     if key not in ways or own + cost < ways[key][0]:
-                        ways[key] = own + cost, ((level, digit), steps)
-        self._plain[nodes] = ways
+                        ways[key] = own + cost, (step, steps)
+        self._plain[nodes, usual] = ways
         self._take(len(ways))
         return ways
 

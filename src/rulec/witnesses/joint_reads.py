@@ -43,23 +43,24 @@ def joint_reads(functions: Sequence[LetterFunction], vocabulary: Vocabulary) -> 
     together: dict[object, list[Read | NumberRead]] = {}
     for function in functions:
         for read in function.reads:
-            together.setdefault(_subject(read), []).append(read)
+            together.setdefault(subject_of(read), []).append(read)
     # What depends on several numbers at once is settled first, see ``JointAlphabet``.
     subjects = sorted(together, key=lambda joint: not isinstance(together[joint][0], NumberRead))
     position = {subject: number for number, subject in enumerate(subjects)}
-    reads = tuple(_merged(together[subject], vocabulary) for subject in subjects)
+    reads = tuple(merged(together[subject], vocabulary) for subject in subjects)
     views = tuple(
         tuple(
             JointDigits(place, _seen(read, reads[place], vocabulary))
             for read in function.reads
-            for place in [position[_subject(read)]]
+            for place in [position[subject_of(read)]]
         )
         for function in functions
     )
     return JointReads(reads, views)
 
 
-def _subject(read: Read | NumberRead) -> object:
+def subject_of(read: Read | NumberRead) -> object:
+    """What a read is about: of one that others are about, too, there is one joint read."""
     return normal(read)[0] if isinstance(read, NumberRead) else (read.name, read.variables)
 
 
@@ -78,7 +79,8 @@ def normal(read: NumberRead) -> tuple[tuple[tuple[Fraction, Term], ...], Fractio
     return tuple((sums[term] / factor, term) for term in terms), factor
 
 
-def _merged(reads: Sequence[Read | NumberRead], vocabulary: Vocabulary) -> Read | NumberRead:
+def merged(reads: Sequence[Read | NumberRead], vocabulary: Vocabulary) -> Read | NumberRead:
+    """The joint read of reads about one subject."""
     first = reads[0]
     if isinstance(first, NumberRead):
         passed = {

@@ -119,7 +119,7 @@ class LetterWitnesses:
                 self._undecided.add(letter)
         at_least = tuple((count, 0) for count in self._counts)
         reads = list(zip(self._monitor.reads, digits, strict=True))
-        return state_synthesis.synthesize_state(self._universe, reads, at_least)
+        return state_synthesis.synthesize_state(self._universe.vocabulary, reads, at_least)
 
     @cached_property
     def _joint_counts(self) -> tuple[list[letter_functions.CountFunction], JointReads]:
@@ -143,7 +143,7 @@ class LetterWitnesses:
                 for index, count in enumerate(counts, 1)
             )
             reads = list(zip(joint.reads, joint_digits, strict=True))
-            state = state_synthesis.synthesize_state(self._universe, reads, counted)
+            state = state_synthesis.synthesize_state(self._universe.vocabulary, reads, counted)
             if state is not None and fewest_counted_objects(state, self._object_kinds) is not None:
                 return state
         return None

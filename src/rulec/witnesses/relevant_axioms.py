@@ -48,7 +48,7 @@ class SaidAxiom:
     @cached_property
     def subjects(self) -> frozenset[Subject]:
         """What it is about; what its counts read are functions of their own."""
-        return _subjects(self.function.reads)
+        return subjects_read(self.function.reads)
 
     @cached_property
     def holds_by_default(self) -> bool:
@@ -79,7 +79,7 @@ def relevant_axioms(axioms: Sequence[SaidAxiom], read: Iterable[Reads]) -> list[
 
     Those that defaults break are among them, and those that count objects. Raises UndecidedError.
     """
-    reached = {subject for reads in read for subject in _subjects(reads)}
+    reached = {subject for reads in read for subject in subjects_read(reads)}
     waiting = {number: axiom.subjects for number, axiom in enumerate(axioms)}
     taken: set[int] = set()
     while True:
@@ -97,7 +97,7 @@ def relevant_axioms(axioms: Sequence[SaidAxiom], read: Iterable[Reads]) -> list[
             taken.add(number)
 
 
-def _subjects(reads: Reads) -> frozenset[Subject]:
+def subjects_read(reads: Reads) -> frozenset[Subject]:
     """What reads are about; what their counts read are functions of their own."""
     subjects: set[Subject] = set()
     for read in reads:

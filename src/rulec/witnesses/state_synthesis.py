@@ -17,7 +17,6 @@ from rulec.logic.formula import Count, QuantityTerm, Term
 from rulec.vocabulary import Declaration, Enumeration, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
 from rulec.witnesses.fourier_motzkin import LinearBound, solve
-from rulec.witnesses.object_universe import ObjectUniverse
 
 Subject = tuple[str, tuple[str, ...]]
 """A declaration and the objects that it is asked about."""
@@ -67,10 +66,9 @@ class JointState:
 
 
 def synthesize_state(
-    universe: ObjectUniverse, digits: Digits, counted: tuple[tuple[Count, int], ...] = ()
+    vocabulary: Vocabulary, digits: Digits, counted: tuple[tuple[Count, int], ...] = ()
 ) -> JointState | None:
     """Synthesise a state with a given digit for each read, or None."""
-    vocabulary = universe.vocabulary
     number_digits = [(read, digit) for read, digit in digits if isinstance(read, NumberRead)]
     numbers = solve_numbers(number_digits, vocabulary, dict(counted)) if number_digits else {}
     if numbers is None:

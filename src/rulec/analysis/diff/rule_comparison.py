@@ -11,19 +11,16 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from itertools import permutations
 from typing import Literal
 
-from rulec.analysis.counterexample import counterexample
+from rulec.analysis.counterexample import Contest
 from rulec.analysis.shared_compilation import AnalyzedRule
-from rulec.automata.thresholds import exact
-from rulec.logic import formula as ltl
 from rulec.monitoring.state_view import value_in
-from rulec.rulebook.rulebook_model import Axiom, Variable
+from rulec.rulebook.rulebook_model import Variable
 from rulec.trace import Trace
 from rulec.value_display import short_repr
-from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
+from rulec.vocabulary import Vocabulary
 from rulec.witnesses.state_synthesis import subjects_of
 from rulec.witnesses.undecided import UndecidedError
 
@@ -77,13 +74,16 @@ def compare(first: AnalyzedRule, second: AnalyzedRule, most: int = 1) -> RuleCom
 
 def _compare(first: AnalyzedRule, second: AnalyzedRule, most: int) -> RuleComparison:
     try:
-        first_trace, second_trace = counterexample(first, [second]), counterexample(second, [first])
+        contest = Contest(first, [second])
+        first_trace = contest.trace()
+        converse = Contest(second, [first])
+        second_trace = converse.trace()
     except UndecidedError as problem:
         return RuleComparison("undecided", undecided=str(problem))
     return RuleComparison(
         relation_of(first_trace, second_trace),
-        () if first_trace is None else diverse_witnesses(first, second, first_trace, most),
-        () if second_trace is None else diverse_witnesses(second, first, second_trace, most),
+        () if first_trace is None else diverse_witnesses(contest, first_trace, most),
+        () if second_trace is None else diverse_witnesses(converse, second_trace, most),
     )
 
 
@@ -126,14 +126,12 @@ def _narrowed(analyzed: AnalyzedRule, common: tuple[str, ...]) -> AnalyzedRule:
     raise AssertionError("the common types are those of both rules")
 
 
-def diverse_witnesses(
-    forbidding: AnalyzedRule, allowing: AnalyzedRule, first: Trace, most: int
-) -> tuple[Trace, ...]:
+def diverse_witnesses(contest: Contest, first: Trace, most: int) -> tuple[Trace, ...]:
     """At ``most`` so many traces that only one rule forbids, each for another reason.
 
     ``first`` is one of them, the first of the answer.
     """
-    vocabulary = forbidding.rulebook.vocabulary
+    vocabulary = contest.forbidding.rulebook.vocabulary
     traces = [first]
     shown = [non_default_names(first, vocabulary)]
     waiting = deque(frozenset([name]) for name in sorted(shown[0]))
@@ -149,7 +147,7 @@ def diverse_witnesses(
             if any(names <= defaulted for names in hopeless):
                 continue  # there is no trace without less than that either
             try:
-                trace = _without(defaulted, forbidding, allowing)
+                trace = contest.trace_as_usual(defaulted)
             except UndecidedError:
                 continue
             if trace is None:
@@ -173,34 +171,3 @@ def non_default_names(trace: Trace, vocabulary: Vocabulary) -> frozenset[str]:
             for state in trace.states
         )
     )
-
-
-def _without(
-    names: frozenset[str], forbidding: AnalyzedRule, allowing: AnalyzedRule
-) -> Trace | None:
-    """A trace in which these declarations have their defaults, for all objects.
-
-    None if there is none. Raises UndecidedError.
-    """
-    axioms = []
-    for name in sorted(names):
-        declaration = forbidding.rulebook.vocabulary.declarations[name]
-        variables = tuple(
-            Variable(f"o{number}", kind) for number, kind in enumerate(declaration.parameters)
-        )
-        arguments = tuple(variable.name for variable in variables)
-        axioms.append(Axiom(variables, _has_default(name, arguments, declaration)))
-    return counterexample(forbidding, [allowing], axioms)
-
-
-def _has_default(name: str, arguments: tuple[str, ...], declaration: Declaration) -> ltl.Formula:
-    match declaration:
-        case Enumeration(default=str(value)):
-            return ltl.Atom(name, arguments, value)
-        case Signal(default=True):
-            return ltl.Atom(name, arguments)
-        case Signal():
-            return ltl.Unary(ltl.UnaryOperator.NOT, ltl.Atom(name, arguments))
-    assert declaration.default is not None, "only what has a default can be as usual"
-    number = exact(float(declaration.default))
-    return ltl.Comparison(((Fraction(1), ltl.QuantityTerm(name, arguments)),), "=", number)
