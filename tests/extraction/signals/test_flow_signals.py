@@ -52,6 +52,16 @@ def test_two_lanes_that_flow_with_one_on_each_are_no_jam(speed, slow):
     assert first(*line(0, 4), *others, ego=ego, count=3)["walking_pace_flow"] == slow
 
 
+@pytest.mark.parametrize(
+    ("count", "second", "jam"), [(2, False, True), (3, False, False), (3, True, True)]
+)
+def test_a_jam_is_on_half_of_the_lanes(count, second, jam):
+    """Five stand in ego's lane, and nobody, or one, on the next."""
+    ego, beside = steady(7, 0, 0, speed=0), [steady(30, 10, 4.0, speed=0)] if second else []
+    found = first(*line(0, 4), *beside, ego=ego, count=count)
+    assert (found["congested"], found["walking_pace_flow"]) == (jam, jam)
+
+
 def test_a_single_one_that_drives_past_a_jam_is_no_flow():
     ego = steady(7, 0, 0, speed=0)
     assert first(*line(0, 4), steady(30, 10, 4.0, speed=17), ego=ego)["walking_pace_flow"]

@@ -51,7 +51,8 @@ def flow_signals(context: DriveContext, names: SignalNames = None) -> SignalColu
 def _slow_traffic(context: DriveContext) -> SignalColumns:
     """Whether traffic is slow as a whole, and no lane flows beside the others, nor all but ego's.
 
-    Who queues to leave, beside lanes on which traffic flows, is in no jam of the road.
+    Who queues to leave, beside lanes on which traffic flows or nobody is, is in no jam of the road:
+    that is on half of its lanes or more.
     """
     around, limits = vehicles_around(context), context.thresholds
     speeds, counts = medians(around.state, around.speed, context.states)
@@ -66,9 +67,13 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     flows = np.where(others > 1, of_others, 0.0)
     fastest_kmh = np.maximum(fast.max(axis=1, initial=0.0), flows) * KMH
 
+    existing = context.existing_lanes
+
     def slow(below_kmh: float) -> Flags:
         called: Flags = (speed_kmh < below_kmh) & (fastest_kmh < TIMES_AS_FAST * below_kmh)
-        called &= enough
+        there = np.bincount(place[around.speed * KMH < below_kmh], minlength=fast.size) > 0
+        on_lanes = there.reshape(fast.shape) & existing
+        called &= enough & (2 * on_lanes.sum(axis=1) >= existing.sum(axis=1))
         return called
 
     congested = slow(limits.congested_kmh)
