@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations, groupby, product
 from typing import TypeAlias
 
@@ -64,6 +65,7 @@ class RunPairs:
         self._prospects = Prospects(machine)
         self._safe = sum(1 << state for state in machine.safe)
         self._starts: dict[bool, _Pairs] = {}
+        self._below: dict[int, int] = {}
         self._forget()
 
     def _forget(self) -> None:
@@ -204,7 +206,7 @@ class RunPairs:
         if all(others == 1 << one for one, others in rows.items()):
             return frozenset(rows.items())
         machine, found = self._machine, []
-        above, below, lost, safe = machine.above, machine.below, machine.lost, self._safe
+        below, lost, safe = machine.below, machine.lost, self._safe
         rows = {
             one: left
             for one, others in rows.items()
@@ -213,17 +215,47 @@ class RunPairs:
         if len(rows) == 1:
             ((one, others),) = rows.items()
             return frozenset([(one, machine.greatest(others))])
-        firsts = sum(1 << one for one in rows)
-        reach = {one: _reach(others, below) for one, others in rows.items()}
-        for one, others in rows.items():
-            better = below[one] & firsts & ~(1 << one)
-            # Of states that are alike the first one counts.
-            better &= ~above[one] | (1 << one) - 1
-            for other in bits_of(better):
-                others &= ~reach[other]
+        ranks = self._ranks
+        own = {ranks[one]: one for one in rows}
+        firsts = sum(1 << rank for rank in own)
+        # By rank what its own second states reach, and those of all whose first one is no worse
+        reached: dict[int, int] = {}
+        for rank in sorted(own):
+            one = own[rank]
+            others = rows[one]
+            better = self._ranks_below(one) & firsts & (1 << rank) - 1
+            beyond = 0
+            while better:
+                nearest = better.bit_length() - 1
+                beyond |= reached[nearest]
+                better &= ~self._ranks_below(own[nearest])
+            reached[rank] = beyond | _reach(others, below)
+            others &= ~beyond
             if others:
                 found.append((one, machine.greatest(others)))
         return frozenset(found)
+
+    @cached_property
+    def _ranks(self) -> list[int]:
+        """For each state its place among all, behind those that come to no more.
+
+        Of states that are alike the first one comes first, and counts.
+        """
+        below = self._machine.below
+        order = sorted(range(len(below)), key=lambda state: (below[state].bit_count(), state))
+        ranks = [0] * len(order)
+        for rank, state in enumerate(order):
+            ranks[state] = rank
+        return ranks
+
+    def _ranks_below(self, state: int) -> int:
+        """The ranks, as bits, of the states that come to no more than one, and its own."""
+        found = self._below.get(state)
+        if found is None:
+            ranks = self._ranks
+            found = sum([1 << ranks[other] for other in bits_of(self._machine.below[state])])
+            self._below[state] = found
+        return found
 
     def agree(self, pairs: _Pairs, choices: int) -> bool:
         """Whether no first run of pairs comes to less than the second one with a last letter."""
