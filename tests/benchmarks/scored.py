@@ -13,6 +13,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 from statistics import median
+from typing import NamedTuple
 
 import numpy as np
 from figure import Figure, Result
@@ -30,18 +31,22 @@ FEW = 50
 def measure(_rounds: int) -> Iterator[Result]:
     """Once each: it takes so long that a busy moment does not matter."""
     older = [Path(one) for one in os.environ.get("RULEC_OLDER", "").split(":") if one]
-    together, _, alone = in_process(Path.cwd(), N_CANDIDATES)
+    own = in_process(Path.cwd(), N_CANDIDATES)
+    together = own.together
     whole = "1,000 candidates together"
     figures = [Figure(whole, "ms", together, together, WANTED_MS)]
-    figures.append(Figure("one after a past", "ms", median(alone), min(alone), WANTED_ONE_MS))
+    one = "one after a past"
+    figures.append(Figure(one, "ms", median(own.alone), min(own.alone), WANTED_ONE_MS))
+    figures.append(Figure(f"{one}, first in a world", "ms", *[own.in_new_world] * 2))
+    figures.append(Figure(f"{one}, first in a process", "ms", *[own.first] * 2))
     each = Figure("a candidate, of 1,000 together", "ms", *[together / N_CANDIDATES] * 2)
     figures.append(each)
     for checkout in older:
-        then, verified, one = in_process(checkout, FEW)
+        then = in_process(checkout, FEW)
         name = f"commit {checkout.name}"
-        figures.append(Figure(f"a candidate, {name}", "ms", *[then / FEW] * 2))
-        figures.append(Figure(f"a candidate by verify, {name}", "ms", *[verified] * 2))
-        figures.append(Figure(f"one after a past, {name}", "ms", median(one), min(one)))
+        figures.append(Figure(f"a candidate, {name}", "ms", *[then.together / FEW] * 2))
+        figures.append(Figure(f"a candidate by verify, {name}", "ms", *[then.verified] * 2))
+        figures.append(Figure(f"{one}, {name}", "ms", median(then.alone), min(then.alone)))
     yield Result(
         "Scores of futures: de",
         f"candidates of {N_STATES} states among {N_OTHERS} others on two lanes, in a world that is "
@@ -50,8 +55,21 @@ def measure(_rounds: int) -> Iterator[Result]:
     )
 
 
-def in_process(checkout: Path, count: int) -> tuple[float, float, list[float]]:
-    """Milliseconds for so many candidates, for one by ``verify``, and for each of some alone."""
+class Taken(NamedTuple):
+    """Milliseconds for candidates together, for one by ``verify``, and for one after a past.
+
+    For that the first time in a process, the first time in a world, and each of some later ones.
+    """
+
+    together: float
+    verified: float
+    first: float
+    in_new_world: float
+    alone: list[float]
+
+
+def in_process(checkout: Path, count: int) -> Taken:
+    """What a checkout takes for so many candidates."""
     own = checkout / ".venv" / "bin" / "python"
     python = str(own) if own.exists() else sys.executable
     environment = {**os.environ, "PYTHONPATH": str(checkout / "src")}
@@ -62,8 +80,8 @@ def in_process(checkout: Path, count: int) -> tuple[float, float, list[float]]:
         env=environment,
         check=True,
     )
-    together, verified, *alone = map(float, done.stdout.split())
-    return together, verified, alone
+    together, verified, first, in_new_world, *alone = map(float, done.stdout.split())
+    return Taken(together, verified, first, in_new_world, alone)
 
 
 def world() -> rulec.TrafficWorld:
@@ -115,13 +133,17 @@ def main(count: int) -> None:
     """Print how long a checkout takes."""
     book, here = rulec.compile("de"), world()
     candidates = sampled(count, here.past[-1])
-    rulec.score(candidates[:2], here, book, here.past)
 
     def taken(run_it) -> float:  # type: ignore[no-untyped-def]
         start = time.process_time()
         run_it()
         return (time.process_time() - start) * 1e3
 
+    first, in_new_world = (
+        taken(lambda own=own: rulec.score(candidates[:1], own, book, own.past))
+        for own in (world(), here)
+    )
+    rulec.score(candidates[:2], here, book, here.past)
     print(taken(lambda: rulec.score(candidates, here, book)))
     recordings = [here.recording_of(one) for one in candidates[:10]]
     wanted = rulec.RequestedDrives((here.ego,))
@@ -129,7 +151,7 @@ def main(count: int) -> None:
         taken(lambda one=one: list(rulec.verify_recording(one, book, wanted).answers()))
         for one in recordings
     ]
-    print(median(each))
+    print(median(each), first, in_new_world)
     for number in range(20):
         one = candidates[number : number + 1]
         print(taken(lambda one=one: rulec.score(one, here, book, here.past)))
