@@ -19,6 +19,8 @@ def untold_names(vocabulary: Vocabulary, told: frozenset[str] | None) -> frozens
 
 def with_untold(vocabulary: Vocabulary, untold: frozenset[str]) -> Vocabulary:
     """The vocabulary in which untold names are unknown where no state says them."""
+    if not untold:
+        return vocabulary
     unknown: Any = UNKNOWN
     declarations = {
         name: replace(item, default=unknown) if name in untold else item

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -24,10 +24,11 @@ from rulec.monitoring.batch.columns.column_reader import (
     digits_of_count,
     digits_of_sum,
 )
+from rulec.monitoring.uncertainty.number_regions import NumberRegions
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.trace import Value
 from rulec.trace.trace_columns import Array, Key, TraceColumns
-from rulec.vocabulary import Enumeration, Signal, Vocabulary
+from rulec.vocabulary import Enumeration, Quantity, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
 
 
@@ -101,6 +102,49 @@ class PartialReader(ColumnReader):
         unknown = self.columns.unknown.get((name, items))
         numbers = values.astype(np.intp)
         return numbers if unknown is None else np.where(unknown, n_values, numbers)
+
+    def codes(self, key: Key, regions: Mapping[str, NumberRegions]) -> tuple[Numbers, int] | None:
+        """Numbers of what states say of a name, and how many there may be.
+
+        Of quantities it is the region, or the first and the last; None if one has none.
+        """
+        name, declaration = key[0], self._vocabulary.declarations[key[0]]
+        if key not in self.columns.values:
+            return int(self.is_dark(key)), 2
+        if not isinstance(declaration, Quantity):
+            n_values = len(declaration.values) if isinstance(declaration, Enumeration) else 2
+            return self._values(*key), n_values + 1
+        if name not in regions:
+            return None
+        own = regions[name]
+        if (key, own) not in self._numbers:
+            self._numbers[key, own] = self._regions(key, own)
+        return self._numbers[key, own], own.size**2
+
+    def code_of_value(
+        self, key: Key, value: Value, regions: Mapping[str, NumberRegions]
+    ) -> tuple[int, int]:
+        """The number that ``codes`` has for what is unknown, and that for a value."""
+        declaration = self._vocabulary.declarations[key[0]]
+        if isinstance(declaration, Quantity):
+            own = regions[key[0]]
+            return own.size - 1, own.region(exact(value)) * (own.size + 1)  # type: ignore[arg-type]
+        if isinstance(declaration, Enumeration):
+            return len(declaration.values), declaration.values.index(str(value))
+        return 2, int(value)
+
+    def _regions(self, key: Key, regions: NumberRegions) -> Numbers:
+        low, unknown = self.columns.values[key], self.columns.unknown.get(key)
+        first = np.zeros(len(low), dtype=np.intp)
+        for floor in regions.floors:
+            first += low >= floor
+        last = first
+        if key in self.columns.upper:
+            last = np.zeros(len(low), dtype=np.intp)
+            for floor in regions.floors:
+                last += self.columns.upper[key] >= floor
+        codes = first * regions.size + last
+        return codes if unknown is None else np.where(unknown, regions.size - 1, codes)
 
     def values_at(self, key: Key, places: NDArray[np.intp]) -> list[PartialValue | None]:
         """What states at some places say of a name."""

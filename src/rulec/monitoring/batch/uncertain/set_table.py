@@ -18,6 +18,9 @@ from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine
 MOST_ENTRIES = 1 << 18
 """Sets of states times sets of letters; a larger machine is not made."""
 
+_MOST_KINDS = 1 << 6
+"""Kinds of codes of which letters are kept before all are forgotten."""
+
 POSSIBLE, CERTAIN = 1, 2
 """Bits of a verdict: some completion is not violated, every one is kept."""
 
@@ -45,6 +48,7 @@ class SetTables:
         self._meanings = meanings
         self.letters = LetterSets(machine.classes.diagram, meanings)
         self._known: tuple[int, SetTable | None] = 0, None
+        self._by_codes: dict[object, dict[object, int]] = {}
 
     def digits(self, read: int, numbers: Numbers, places: NDArray[np.intp]) -> list[int]:
         """The digits, as bits, that a read may have at some places of a column of its numbers."""
@@ -53,6 +57,18 @@ class SetTables:
             return [own[numbers]] * len(places)
         return [own[number] for number in numbers[places].tolist()]
 
+    def by_codes(self, about: object) -> dict[object, int]:
+        """The numbers of letters that have been found by codes, of one kind each."""
+        known = self._by_codes.setdefault(about, {})
+        if len(self._by_codes) > _MOST_KINDS or len(known) > MOST_ENTRIES:
+            self._by_codes.clear()
+            known = self._by_codes[about] = {}
+        return known
+
+    def width(self, read: int) -> int:
+        """How many numbers a read may have."""
+        return len(self._meanings[read])
+
     def now(self) -> SetTable | None:
         """The machine for all sets met; None if it gets too large, and they are forgotten."""
         sets = self.letters.sets
@@ -60,6 +76,7 @@ class SetTables:
             self._known = len(sets), set_table(self.machine.monitor, sets)
             if self._known[1] is None:
                 self.letters = LetterSets(self.machine.classes.diagram, self._meanings)
+                self._by_codes.clear()
         return self._known[1]
 
 

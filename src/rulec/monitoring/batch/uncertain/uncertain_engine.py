@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +50,12 @@ from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
 
 Places = NDArray[np.intp]
+
+_Told: TypeAlias = tuple[RuleLetters, SupposedRows, Sequence[Numbers]]
+"""A rule's letters, and the numbers of its reads in the states of rows."""
+
+_MOST_CODES = 1 << 62
+"""Whole numbers of NumPy are large enough for so many combinations."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,11 +144,69 @@ class _Engine:
             places = _on_stretch(binding, rows.layout, np.flatnonzero(dark))
             if len(places):
                 letters = letters.copy()
-                digits = [machines.digits(n, numbers[n], places) for n in own.independent]
-                keys = self._keys(binding, own.entangled, (places, digits), rows)
-                letters[places] = [machines.letters.number_of(each) for each in own.classes(keys)]
+                letters[places] = self._joint_letters(
+                    binding, machines, (own, rows, numbers), places
+                )
         cells: Array = letters.astype(smallest_unsigned(len(machines.letters.sets)))
         return cells
+
+    def _joint_letters(
+        self, binding: RuleBinding, machines: SetTables, told: _Told, places: Places
+    ) -> list[int]:
+        """The number of the set of letters at each place, where reads have to do with each other.
+
+        It is found once for all that say the same.
+        """
+        own, rows, numbers = told
+
+        def found_at(places: Places) -> list[int]:
+            digits = [machines.digits(n, numbers[n], places) for n in own.independent]
+            keys = self._keys(binding, own.entangled, (places, digits), rows)
+            return [machines.letters.number_of(each) for each in own.classes(keys)]
+
+        coded = self._codes(binding, machines, told, places)
+        if coded is None:
+            return found_at(places)
+        kind, codes = coded
+        known = machines.by_codes((own, kind))
+        try:
+            return [known[code] for code in codes]
+        except KeyError:
+            here = zip(codes, places.tolist(), strict=True)
+            new = {code: place for code, place in here if code not in known}
+        found = found_at(np.array([*new.values()], dtype=np.intp))
+        known.update(zip(new, found, strict=True))
+        return [known[code] for code in codes]
+
+    def _codes(
+        self, binding: RuleBinding, machines: SetTables, told: _Told, places: Places
+    ) -> tuple[object, Sequence[object]] | None:
+        """For each place what is the same where the same is said; first its kind.
+
+        None if that cannot be told by a few numbers.
+        """
+        own, rows, numbers = told
+        entangled, kinds = own.entangled, []
+        if self._columns.present and not entangled.is_local:
+            return None
+        columns = [(numbers[n], machines.width(n)) for n in own.independent]
+        for subject in entangled.subjects_of(binding.objects):
+            said = self._reader.codes(subject, entangled.regions)
+            where = rows.where_supposed(subject)
+            is_said = subject in self._columns.values
+            if said is None or (where is not None and not is_said):
+                return None
+            column, width = rows.numbers(said[0]), said[1]
+            if where is not None:
+                values, chosen = where
+                regions = entangled.regions
+                of_values = [self._reader.code_of_value(subject, x, regions) for x in values]
+                by_value = np.array([*[code for _, code in of_values], 0], dtype=np.intp)
+                is_unknown = np.equal(column, of_values[0][0]) & (chosen >= 0)
+                column = np.where(is_unknown, by_value.take(chosen), column)
+            columns.append((column, width))
+            kinds.append((width, is_said))
+        return tuple(kinds), _joined_codes(columns, places)
 
     def _rule_letters(self, binding: RuleBinding, machine: UncertainMachine) -> RuleLetters:
         """The letters of a rule that does not read its values apart from each other."""
@@ -267,6 +332,20 @@ class _Engine:
             if subject in columns.upper:
                 odd |= columns.upper[subject][now] != columns.values[subject][now]
         return dark, odd
+
+
+def _joined_codes(columns: Sequence[tuple[Numbers, int]], places: Places) -> Sequence[object]:
+    """One number, or several, for what columns with so many numbers each say at some places."""
+    words, codes, size = [], np.zeros(len(places), dtype=np.int64), 1
+    for column, width in columns:
+        if size * width > _MOST_CODES:
+            words.append(codes.tolist())
+            codes, size = np.zeros(len(places), dtype=np.int64), 1
+        size *= width
+        own = column.take(places) if isinstance(column, np.ndarray) and column.ndim else column
+        codes = codes * width + own
+    every = codes.tolist()
+    return list(zip(*words, every, strict=True)) if words else every
 
 
 def _subject_of(read: Read | NumberRead, binding: RuleBinding) -> Subject:

@@ -18,6 +18,7 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import Unknown, holds
 from rulec.monitoring.state_view import StateView, with_values
+from rulec.monitoring.uncertainty.number_regions import number_regions
 from rulec.monitoring.uncertainty.state_letters.completions import joint_digits
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in, counts, crowd_of
 from rulec.monitoring.uncertainty.state_letters.joint_values import CountsApart
@@ -76,8 +77,9 @@ class EntangledReads:
     ``numbers`` are their places among the rule's reads, ``subjects`` what they depend on. If they
     are local, on the rule's own objects alone, these are asked of variables, which have a
     ``binding`` to themselves. Where none of those that are ``shared`` is unknown, nor another one
-    an interval, each read may have any of its digits whatever the others have. ``found`` has what
-    the reads may be together, as cubes of their digits, and whether no more is said than is.
+    an interval, each read may have any of its digits whatever the others have. Of a number that is
+    only compared by itself no more matters than in which of its ``regions`` it is. ``found`` has
+    what the reads may be together, as cubes of their digits, and whether no more is said than is.
     """
 
     def __init__(
@@ -130,6 +132,9 @@ class EntangledReads:
                     *(self._reads, self.subjects, binding, axioms, everybody),
                     known=counted_parts.together,
                 )
+        self.regions = number_regions(
+            tuple(self._reads), tuple([axiom.formula for axiom in axioms])
+        )
         self.found: list[tuple[Letters, bool]] = []
         self._numbers: dict[tuple[Letters, bool], int] = {}
         self._known: dict[tuple[object, ...], int] = {}

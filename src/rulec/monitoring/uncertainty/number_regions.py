@@ -1,0 +1,86 @@
+"""Numbers as far as comparisons tell them apart: limits, and what lies between them."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property, lru_cache
+
+from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
+from rulec.automata.thresholds import floor_of
+from rulec.logic import formula as ltl
+
+
+@dataclass(frozen=True)
+class NumberRegions:
+    """The regions of numbers that comparisons with these ``limits``, ascending, tell apart.
+
+    Below the first limit is region 0, the limit itself is 1, and so on.
+    """
+
+    limits: tuple[Fraction, ...]
+
+    @cached_property
+    def floors(self) -> tuple[float, ...]:
+        """The smallest float in each region but the first, floats standing for their decimals."""
+        thresholds = [Threshold(x, inclusive) for x in self.limits for inclusive in (True, False)]
+        return tuple(map(floor_of, thresholds))
+
+    def region(self, number: Fraction) -> int:
+        """The region of a number."""
+        below = bisect_left(self.limits, number)
+        return 2 * below + (number in self.limits[below : below + 1])
+
+    @property
+    def size(self) -> int:
+        """How many regions there are."""
+        return 2 * len(self.limits) + 1
+
+
+@lru_cache(maxsize=1 << 10)
+def number_regions(
+    reads: Sequence[Read | NumberRead], facts: Sequence[ltl.Formula]
+) -> Mapping[str, NumberRegions]:
+    """The regions of each quantity that reads and facts compare by itself alone, in no sum."""
+    limits: dict[str, set[Fraction]] = {}
+    added: set[str] = set()
+    for terms, limit in _comparisons(reads, facts):
+        for factor, term in terms:
+            if isinstance(term, ltl.QuantityTerm):
+                limits.setdefault(term.name, set()).add(limit / factor)
+                if len(terms) > 1:
+                    added.add(term.name)
+    return {
+        name: NumberRegions(tuple(sorted(own))) for name, own in limits.items() if name not in added
+    }
+
+
+_Comparison = tuple[Sequence[tuple[Fraction, ltl.Term]], Fraction]
+
+
+def _comparisons(
+    reads: Iterable[Read | NumberRead], facts: Iterable[ltl.Formula]
+) -> Iterator[_Comparison]:
+    """Sums with what they are compared with, those within counts, too."""
+    for read in reads:
+        if isinstance(read, NumberRead):
+            for threshold in read.thresholds:
+                yield read.terms, threshold.limit
+            yield from _in_counts(read.terms)
+    for fact in facts:
+        yield from _in_formula(fact)
+
+
+def _in_formula(formula: ltl.Formula) -> Iterator[_Comparison]:
+    for atom in ltl.atoms_of(formula):
+        if isinstance(atom, ltl.Comparison):
+            yield atom.terms, atom.limit
+            yield from _in_counts(atom.terms)
+
+
+def _in_counts(terms: Iterable[tuple[Fraction, ltl.Term]]) -> Iterator[_Comparison]:
+    for _, term in terms:
+        if isinstance(term, ltl.Count):
+            yield from _in_formula(term.body)
