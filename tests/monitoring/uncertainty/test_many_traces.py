@@ -129,3 +129,42 @@ def test_a_missing_value_is_an_error_beside_unknown_ones():
     assert all(answer.satisfied for answer in judged)
     assert isinstance(lacking, NotJudged)
     assert isinstance(lacking.error, RulecError)
+
+
+NEAR = """\
+rulebook near
+type car
+signal clear default false
+quantity gap(c: car) in m default 9
+hard rule few { require always (count c: car (gap(c) < 5 m and not clear) <= 1 or clear) }
+hard rule all { require always (count c: car (gap(c) = 5 m or clear) >= 1) }
+hard rule own (v: car) { require always not some c: car (c = v and (gap(c) > 5 m or clear)) }
+"""
+GAPS = (3, 3.5, 5, 7, 7.25, UNKNOWN, Interval(3, 4), Interval(4, 6), Interval(5, 8))
+
+
+@given(seeds)
+@settings(phases=[Phase.generate])
+def test_what_is_alike_is_found_again_in_later_traces(chance):
+    compiled = rulec.compile(rulec.parse_rulebook(NEAR))
+    for _ in range(3):
+        # Some say nothing of one name, and of nobody else's numbers there are as many regions
+        names = chance.sample(["clear", "gap"], chance.randint(1, 2))
+        objects = dict(list(OBJECTS.items())[: chance.randint(1, 3)])
+        several = [
+            Trace(
+                *(str(n), 1.0, objects),
+                tuple(
+                    {
+                        name: chance.choice([False, True, UNKNOWN])
+                        if name == "clear"
+                        else {item: chance.choice(GAPS) for item in objects}
+                        for name in names
+                    }
+                    for _ in range(2)
+                ),
+            )
+            for n in range(COPIES)
+        ]
+        for trace, answer in zip(several, verify_many(several, compiled), strict=True):
+            assert answer == verify_or_reason(trace, compiled), trace
