@@ -15,7 +15,7 @@ from operator import add, and_, mul
 
 from rulec.automata.alphabet import reads_of
 from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.logic.formula import Count, Formula
+from rulec.logic.formula import Count, Formula, Term
 from rulec.logic.free_names import variables_of
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses import letter_functions
@@ -161,15 +161,20 @@ class CountedObjectKinds:
     def _of_type(self, counted: _CountedType, state: JointState) -> tuple[CountedObject, ...]:
         vocabulary = self.universe.vocabulary
         # The digit that the state gives to what is not about the object, and what it gives to sums.
-        known = tuple(
+        given = tuple(
             [
-                _given(read, state, vocabulary) if is_about_it else _digit(read, state, vocabulary)
-                for read, is_about_it in zip(counted.reads, counted.are_about_it, strict=True)
+                _digit(counted.reads[place], state, vocabulary)
+                if rest is None
+                else state.total(rest, vocabulary, {})
+                for place, rest in counted.asked
             ]
         )
-        if known not in counted.found:
-            counted.found[known] = tuple(_first_of_each(counted, known, vocabulary))
-        return counted.found[known]
+        if given not in counted.found:
+            known: list[int | Fraction] = [0] * len(counted.reads)
+            for (place, _), value in zip(counted.asked, given, strict=True):
+                known[place] = value
+            counted.found[given] = tuple(_first_of_each(counted, known, vocabulary))
+        return counted.found[given]
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,8 +182,9 @@ class _CountedType:
     """A type of additional objects, and what decides which counts one adds to.
 
     Letters are those of ``reads``; sets of them are the bits of integers. ``counted`` has for each
-    count those in which it counts, ``allowed`` for each axiom those in which it holds. Objects
-    ``found`` are kept by what a state gives.
+    count those in which it counts, ``allowed`` for each axiom those in which it holds. A state is
+    ``asked`` for the digits of reads that are not about the object, and for the sum of such terms
+    in those that are. Objects ``found`` are kept by what a state gives.
     """
 
     type: str
@@ -186,6 +192,7 @@ class _CountedType:
     are_about_it: Sequence[bool]
     counted: Sequence[int]
     allowed: Sequence[int]
+    asked: Sequence[tuple[int, Sequence[tuple[Fraction, Term]] | None]]
     found: dict[object, tuple[CountedObject, ...]] = field(default_factory=dict)
 
 
@@ -206,7 +213,13 @@ def _counted_type(
     letters = dict(zip(counting, truths, strict=False))
     counted = tuple(letters.get(place, 0) for place in range(n_counts))
     are_about_it = [letter_functions.speaks_of_extra(read) for read in reads]
-    return _CountedType(kind, reads, are_about_it, counted, tuple(truths[len(counting) :]))
+    asked = [
+        (place, rest)
+        for place, (read, about_it) in enumerate(zip(reads, are_about_it, strict=True))
+        for rest in (_rest_of(read) if about_it else None,)
+        if rest is None or rest
+    ]
+    return _CountedType(kind, reads, are_about_it, counted, tuple(truths[len(counting) :]), asked)
 
 
 def _first_of_each(
@@ -261,12 +274,10 @@ def _digit(read: Read | NumberRead, state: JointState, vocabulary: Vocabulary) -
     return read.digit(state.total(read.terms, vocabulary, {}))
 
 
-def _given(read: Read | NumberRead, state: JointState, vocabulary: Vocabulary) -> Fraction:
-    """What a state gives to a sum that is about the object, too."""
-    if isinstance(read, Read):
-        return Fraction(0)
-    rest = [pair for pair in read.terms if EXTRA not in variables_of(pair[1])]
-    return state.total(rest, vocabulary, {})
+def _rest_of(read: Read | NumberRead) -> list[tuple[Fraction, Term]]:
+    """The terms of a sum that are not about the object, though others are."""
+    terms = () if isinstance(read, Read) else read.terms
+    return [pair for pair in terms if EXTRA not in variables_of(pair[1])]
 
 
 def _unknown(read: NumberRead, known: int | Fraction) -> NumberRead:

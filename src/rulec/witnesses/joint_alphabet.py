@@ -187,15 +187,17 @@ class JointAlphabet:
         """The first joint read that a node tests; the number of them if none does."""
         return int(min(self._diagrams.level(nodes), len(self._joint.reads)))
 
-    def _after(self, nodes: Sequence[int], level: int) -> Iterator[tuple[int, tuple[int, ...]]]:
+    def _after(self, nodes: Sequence[int], level: int) -> list[tuple[int, tuple[int, ...]]]:
         """The digits of a joint read that break no axiom, and the nodes after each."""
         n_keys = self._n_keys
         rows = self._diagrams.restricted(nodes, level, self._sizes[level])
-        for digit in self._digits[level]:
-            row = rows[digit]
-            following = self._cleared(row[:n_keys], row[n_keys:])
-            if following:
-                yield digit, following
+        if len(nodes) == n_keys:
+            return [(digit, rows[digit]) for digit in self._digits[level]]
+        cleared = (
+            (digit, self._cleared(rows[digit][:n_keys], rows[digit][n_keys:]))
+            for digit in self._digits[level]
+        )
+        return [(digit, following) for digit, following in cleared if following]
 
     def _numbered(
         self, nodes: tuple[int, ...], number_digits: tuple[tuple[int, int], ...]
@@ -233,7 +235,8 @@ class JointAlphabet:
         """Number of non-defaults and digits with fewest, for each joint letter."""
         # What is as usual matters only to nodes that read it; others are known from other searches.
         usual = self._usual and self._usual & self._diagrams.support(nodes)
-        known = self._plain.get((nodes, usual))
+        plain = self._plain
+        known = plain.get((nodes, usual))
         if known is not None:
             return known
         self._n_nodes += 1
@@ -244,12 +247,15 @@ class JointAlphabet:
         if level == len(self._joint.reads):
             ways[tuple(map(self._diagrams.value, nodes))] = 0, None
         else:
+            default = self._defaults[level]
             for digit, following in self._after(nodes, level):
-                own, step = self._cost(level, digit), (level, digit)
-                for key, (cost, steps) in self._ways(following).items():
-                    if key not in ways or own + cost < ways[key][0]:
+                own, step = int(default is not None and digit != default), (level, digit)
+                further = None if usual else plain.get((following, 0))
+                for key, (cost, steps) in (further or self._ways(following)).items():
+                    fewest = ways.get(key)
+                    if fewest is None or own + cost < fewest[0]:
                         ways[key] = own + cost, (step, steps)
-        self._plain[nodes, usual] = ways
+        plain[nodes, usual] = ways
         self._take(len(ways))
         return ways
 
