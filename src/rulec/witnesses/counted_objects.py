@@ -219,7 +219,8 @@ def _counted_type(
         for rest in (_rest_of(read) if about_it else None,)
         if rest is None or rest
     ]
-    return _CountedType(kind, reads, are_about_it, counted, tuple(truths[len(counting) :]), asked)
+    allowed = tuple(truths[len(counting) :])
+    return _CountedType(kind, reads, are_about_it, counted, allowed=allowed, asked=asked)
 
 
 def _first_of_each(
