@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import gzip
 import os
 import stat
@@ -348,3 +349,15 @@ def without_null(source: Source) -> Source:
             help="give a file of plain text in UTF-8",
         )
     return source
+
+
+@contextmanager
+def no_garbage_collection() -> Iterator[None]:
+    """Let no garbage be looked for while much is read, or made of it, that stays: it takes long."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()

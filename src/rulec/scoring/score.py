@@ -22,11 +22,11 @@ from rulec.extraction.recording_verdicts import (
 )
 from rulec.extraction.to_trace import Drive, TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_participant
+from rulec.files import no_garbage_collection
 from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict, Violation
 from rulec.recordings.recording import Participant
 from rulec.scoring.scores import CandidateScore, Scores
 from rulec.scoring.traffic_world import TrafficWorld
-from rulec.trace.no_collection import no_collection
 
 _Key = tuple[str, tuple[str, ...]]
 """A rule, and the objects of its variables."""
@@ -50,7 +50,7 @@ def score(
     """
     paths, past = world.candidates_of(candidates), world.past_of(after)
     # Many candidates have some ten thousand parts, none of which is garbage
-    with no_collection():
+    with no_garbage_collection():
         return _scored(paths, past, world, rules)
 
 

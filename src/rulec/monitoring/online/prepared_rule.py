@@ -11,9 +11,9 @@ from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule,
 from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead, Read
 from rulec.logic.free_names import names_in
 from rulec.monitoring.online.encoding.encoded_values import (
-    DARK,
     MISSING,
     PARTIAL_DIGITS,
+    UNKNOWN_DIGIT,
     DigitWeight,
     MonitorInput,
     monitor_inputs,
@@ -235,7 +235,9 @@ class PreparedRule:
         """Of each value that is an enumeration's what it may be, encoded."""
         declared = [self.vocabulary.declarations[read.names[0]] for read in self.values]
         return [
-            frozenset([*own.values, MISSING, DARK]) if isinstance(own, Enumeration) else None
+            frozenset([*own.values, MISSING, UNKNOWN_DIGIT])
+            if isinstance(own, Enumeration)
+            else None
             for own in declared
         ]
 
@@ -276,7 +278,7 @@ _Decided: TypeAlias = tuple[int, bool, int | None]
 If they can be but one thing its weight. A plain tuple of numbers no garbage collector looks at.
 """
 
-_VALUES: Mapping[object, Any] = {MISSING: None, DARK: UNKNOWN}
+_VALUES: Mapping[object, Any] = {MISSING: None, UNKNOWN_DIGIT: UNKNOWN}
 """What stands for values that are not given, or not known."""
 
 
@@ -296,7 +298,7 @@ class _Masks(dict[Any, int]):
             if isinstance(read, Read):
                 raise LookupError
             return possible_digits(read, digit)
-        if digit is DARK:
+        if digit is UNKNOWN_DIGIT:
             self[digit] = possible_digits(read, UNKNOWN)
             return self[digit]
         self._weight_of(digit)

@@ -6,6 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from rulec.diagnostics import RulecError
+from rulec.files import no_garbage_collection
 from rulec.recordings.commonroad.areas import wanted_of_point
 from rulec.recordings.commonroad.countries import country_in
 from rulec.recordings.commonroad.scenario_content import Content, add, add_step, to_recording
@@ -15,7 +16,6 @@ from rulec.recordings.encodings.xml_element import XmlFormat, short
 from rulec.recordings.encodings.xml_tree import Alike, scan_trees, whole_tree
 from rulec.recordings.recording import Recording
 from rulec.recordings.road_map import RoadMap
-from rulec.trace.no_collection import no_collection
 
 COMMONROAD = XmlFormat(
     "a CommonRoad scenario",
@@ -39,7 +39,7 @@ def read_commonroad(path: Path) -> Recording:
     Raises RulecError R0610 for a file that cannot be read as CommonRoad, R0701 if it cannot be
     opened.
     """
-    with no_collection(), suppress(RulecError):
+    with no_garbage_collection(), suppress(RulecError):
         found = _read_whole(path)
         if found is not None:
             return found

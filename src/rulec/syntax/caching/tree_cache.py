@@ -5,15 +5,14 @@ Anything odd about a file of the cache, and the text is read anew.
 
 from __future__ import annotations
 
-import gc
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 
 from rulec.cache.keeping import is_keeping
 from rulec.cache.kept_bytes import KeptBytes
 from rulec.cache.shipped_bytes import shipped, shipped_key
 from rulec.diagnostics import Diagnostic, Source
+from rulec.files import no_garbage_collection
 from rulec.syntax import tree
 from rulec.syntax.caching.tree_codec import decoded, encoded
 from rulec.syntax.parser import parse
@@ -64,18 +63,6 @@ def as_bytes(file: tree.File, source: Source) -> bytes:
 
 def _recalled(data: bytes | None, source: Source) -> tree.File | None:
     if data is not None:
-        with suppress(ValueError, TypeError, LookupError, RecursionError), _without_collection():
+        with suppress(ValueError, TypeError, LookupError, RecursionError), no_garbage_collection():
             return decoded(json.loads(data), source)
     return None
-
-
-@contextmanager
-def _without_collection() -> Iterator[None]:
-    """What is made in the block stays, so nothing of it has to be looked for as garbage."""
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            gc.enable()

@@ -13,12 +13,12 @@ from typing import IO, TYPE_CHECKING, Any, cast
 import msgspec
 
 from rulec.diagnostics import RulecError, SourceLocation
+from rulec.files import no_garbage_collection
 from rulec.resource_limits import STATES
 from rulec.trace.formats import json_line_problems
 from rulec.trace.formats.json_numbers import as_written, exactly, may_be_no_float
 from rulec.trace.formats.partial_json import BOUNDS, from_json, to_json
 from rulec.trace.formats.stream_lines import foreign, lines_as_they_come, placed
-from rulec.trace.no_collection import no_collection
 from rulec.trace.trace_model import Ending, State, Trace
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def read_chunks(
         alike = _alike([b"" if n in large else one for n, one in enumerate(lines)], together)
         known = set(chain.from_iterable(found.lines.tolist() for found in alike))
         places: dict[int, int] = {}
-        with no_collection():
+        with no_garbage_collection():
             for index, line in enumerate(lines):
                 number += 1
                 place = SourceLocation(file, number)

@@ -205,11 +205,11 @@ def _by_unknown_constants(
     if not constants:
         yield chosen
         return
-    dark = np.zeros((len(constants), len(instances.traces)), dtype=bool)
+    are_unknown = np.zeros((len(constants), len(instances.traces)), dtype=bool)
     for row, place in enumerate(constants):
         own = np.broadcast_to(np.asarray(chosen.numbers[place]), (len(chosen.spots.states),))
-        dark[row] = own[chosen.bounds[:-1]] == rule.reads[place].unknown
-    for members, unknown in _alike(dark):
+        are_unknown[row] = own[chosen.bounds[:-1]] == rule.reads[place].unknown
+    for members, unknown in _alike(are_unknown):
         which = tuple([constants[row] for row in unknown])
         supposed, is_exact = rule.suppositions(which, rulebook)
         own_part = chosen.part(rule, reader, members)

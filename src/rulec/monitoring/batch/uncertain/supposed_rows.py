@@ -104,16 +104,17 @@ class SupposedRows:
 
 def supposed_rows(
     layout: Layout,
-    dark: Mapping[Subject, NDArray[np.bool_]],
+    unknown: Mapping[Subject, NDArray[np.bool_]],
     suppose: Callable[[Sequence[Subject]], Sequence[Mapping[Subject, Value]]],
 ) -> SupposedRows:
     """The rows of traces in which some constants are unknown, of which something is supposed."""
     patterns = np.zeros(layout.n_traces, dtype=np.intp)
-    for flags in dark.values():
+    for flags in unknown.values():
         patterns = places_among(2 * patterns + flags)
     _, examples = np.unique(patterns, return_index=True)
     subjects = [
-        [subject for subject, flags in dark.items() if flags[trace]] for trace in examples.tolist()
+        [subject for subject, flags in unknown.items() if flags[trace]]
+        for trace in examples.tolist()
     ]
     suppositions = [suppose(own) if own else [{}] for own in subjects]
     counts = np.array(list(map(len, suppositions)), dtype=np.intp).take(patterns)
@@ -124,7 +125,7 @@ def supposed_rows(
     rows = np.arange(own_layout.n_states) - np.repeat(own_layout.starts[:-1], of_steps)
     states = np.repeat(layout.starts[:-1], of_steps) + traces.take(rows)
     supposed: dict[Subject, SupposedValues] = {}
-    for subject in dark:
+    for subject in unknown:
         values: dict[Value, int] = {}
         of_rows = np.full(len(traces), NOT_SUPPOSED, dtype=np.intp)
         for pattern, own in enumerate(suppositions):

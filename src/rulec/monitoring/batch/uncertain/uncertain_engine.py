@@ -51,7 +51,7 @@ from rulec.vocabulary.partial_values import UNKNOWN
 
 Places = NDArray[np.intp]
 
-_Told: TypeAlias = tuple[RuleLetters, SupposedRows, Sequence[Numbers]]
+_RuleReads: TypeAlias = tuple[RuleLetters, SupposedRows, Sequence[Numbers]]
 """A rule's letters, and the numbers of its reads in the states of rows."""
 
 _MOST_CODES = 1 << 62
@@ -151,20 +151,20 @@ class _Engine:
         return cells
 
     def _joint_letters(
-        self, binding: RuleBinding, machines: SetTables, told: _Told, places: Places
+        self, binding: RuleBinding, machines: SetTables, rule_reads: _RuleReads, places: Places
     ) -> list[int]:
         """The number of the set of letters at each place, where reads have to do with each other.
 
         It is found once for all that say the same.
         """
-        own, rows, numbers = told
+        own, rows, numbers = rule_reads
 
         def found_at(places: Places) -> list[int]:
             digits = [machines.digits(n, numbers[n], places) for n in own.independent]
             keys = self._keys(binding, own.entangled, (places, digits), rows)
             return [machines.letters.number_of(each) for each in own.classes(keys)]
 
-        coded = self._codes(binding, machines, told, places)
+        coded = self._codes(binding, machines, rule_reads, places)
         if coded is None:
             return found_at(places)
         kind, codes = coded
@@ -179,13 +179,13 @@ class _Engine:
         return [known[code] for code in codes]
 
     def _codes(
-        self, binding: RuleBinding, machines: SetTables, told: _Told, places: Places
+        self, binding: RuleBinding, machines: SetTables, rule_reads: _RuleReads, places: Places
     ) -> tuple[object, Sequence[object]] | None:
         """For each place what is the same where the same is said; first its kind.
 
         None if that cannot be told by a few numbers.
         """
-        own, rows, numbers = told
+        own, rows, numbers = rule_reads
         entangled, kinds = own.entangled, []
         if self._columns.present and not entangled.is_local:
             return None
@@ -272,9 +272,9 @@ class _Engine:
         if where is None:
             return numbers
         values, places = where
-        told = [number_of_value(read, value, self._vocabulary) for value in values]
-        own = np.array([*[number for _, number in told], 0], dtype=np.intp).take(places)
-        is_unknown = np.equal(numbers, told[0][0])
+        of_values = [number_of_value(read, value, self._vocabulary) for value in values]
+        own = np.array([*[number for _, number in of_values], 0], dtype=np.intp).take(places)
+        is_unknown = np.equal(numbers, of_values[0][0])
         return np.where(is_unknown & (places >= 0), own, numbers)
 
     def _rows_of(
@@ -282,15 +282,15 @@ class _Engine:
     ) -> tuple[SupposedRows, Places]:
         """Each trace once for all that its unknown constants may be; which to look at by itself."""
         layout = self._columns.layout
-        dark, odd = self._dark_constants(binding)
-        if not dark:
+        unknown, odd = self._unknown_constants(binding)
+        if not unknown:
             return SupposedRows(layout), np.flatnonzero(odd)
         if self._constants.of_facts and self._rule_letters(binding, machine).entangled.numbers:
-            return SupposedRows(layout), np.flatnonzero(np.any([odd, *dark.values()], axis=0))
-        key = binding.rule.name, binding.first, *dark
+            return SupposedRows(layout), np.flatnonzero(np.any([odd, *unknown.values()], axis=0))
+        key = binding.rule.name, binding.first, *unknown
         if key not in self._rows:
             suppose = partial(self._suppositions, binding, machine)
-            self._rows[key] = supposed_rows(layout, dark, suppose)
+            self._rows[key] = supposed_rows(layout, unknown, suppose)
         return self._rows[key], np.flatnonzero(odd)
 
     def _suppositions(
@@ -314,24 +314,24 @@ class _Engine:
         }
         return list(different.values())
 
-    def _dark_constants(
+    def _unknown_constants(
         self, binding: RuleBinding
     ) -> tuple[Mapping[Subject, NDArray[np.bool_]], NDArray[np.bool_]]:
         """The traces in which each constant is unknown, and those to look at one by one."""
         columns, layout = self._columns, self._columns.layout
-        dark: dict[Subject, NDArray[np.bool_]] = {}
+        found: dict[Subject, NDArray[np.bool_]] = {}
         odd = np.zeros(layout.n_traces, dtype=bool)
         for subject in sorted(self._constants.read_by(binding.rule, binding.objects)):
             first = max((columns.present.get(x, (0, 0))[0] for x in subject[1]), default=0)
             now = slice(layout.starts[first], layout.starts[first] + layout.n_traces)
             unknown = columns.unknown.get(subject)
             if self._reader.is_dark(subject):
-                dark[subject] = ~odd | odd
+                found[subject] = ~odd | odd
             elif unknown is not None and unknown[now].any():
-                dark[subject] = unknown[now]
+                found[subject] = unknown[now]
             if subject in columns.upper:
                 odd |= columns.upper[subject][now] != columns.values[subject][now]
-        return dark, odd
+        return found, odd
 
 
 def _joined_codes(columns: Sequence[tuple[Numbers, int]], places: Places) -> Sequence[object]:

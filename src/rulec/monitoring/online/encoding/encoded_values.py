@@ -39,7 +39,7 @@ PARTIAL_NUMBERS = NUMBERS | UNKNOWN_TYPES
 MISSING: Final = object()
 """In place of an encoded value that is not given and has no default."""
 
-DARK: Final = object()
+UNKNOWN_DIGIT: Final = object()
 """In place of the digit of what is unknown.
 
 Digits are kept as keys, of which the garbage collector would look at those again and again that
@@ -47,7 +47,7 @@ have ``UNKNOWN``, a member of an enumeration, in them. A plain object is no conc
 """
 
 PARTIAL_DIGITS = frozenset({object, Interval})
-"""The types of digits that are not known: of ``DARK``, and of bounds."""
+"""The types of digits that are not known: of ``UNKNOWN_DIGIT``, and of bounds."""
 
 Encoder: TypeAlias = Callable[[tuple[Any, ...]], Encoded]
 """Encodes values.
@@ -161,7 +161,7 @@ class MonitorInput:
 
     ``name`` is the declaration; None if ``number`` is a count or a sum, whose ``variables`` these
     are. A number's digit is how many thresholds it passes; that of anything else is its value.
-    What is unknown is ``DARK``, and what is partly known stands for itself.
+    What is unknown is ``UNKNOWN_DIGIT``, and what is partly known stands for itself.
     """
 
     name: str | None
@@ -176,7 +176,7 @@ class MonitorInput:
         Raises a TypeError where a number is missing.
         """
         if encoded is UNKNOWN:
-            return DARK
+            return UNKNOWN_DIGIT
         if self.name is None or self.number is None or type(encoded) is Interval:
             return encoded
         floors = breakpoints[self.name]
