@@ -1,15 +1,23 @@
 """Of a long recording only a part is looked at at a time, which changes nothing."""
 
+from dataclasses import replace
+
+import numpy as np
+import pytest
 from hypothesis import given
 
+from rulec import read_recording
 from rulec.extraction import drives
 from rulec.extraction.drives import Drives
+from rulec.extraction.traffic_thresholds import USUAL
 from support.generators.random_recordings import scenes
+from support.worlds.stored import StoredWorld
 
 
-def told(found):
-    drives = Drives(found, "right")
-    return [one for ego in drives.egos() for one in drives.of(ego)]
+def told(found, thresholds=USUAL):
+    egos = Drives(found, "right").egos()
+    drives = Drives(found, "right", thresholds, expected=egos)
+    return [one for ego in egos for one in drives.of(ego)]
 
 
 @given(scenes())
@@ -20,3 +28,25 @@ def test_a_part_at_a_time(found):
         assert told(found) == usual
     finally:
         drives.MOST_PLACES = most
+
+
+@pytest.mark.parametrize("world", ["priority", "motorway"])
+def test_who_is_out_of_reach_changes_nothing(world, monkeypatch):
+    # So near that even in a small world some are farther away
+    near = replace(USUAL, near_m=20.0, catching_up_s=1.0)
+    stored = StoredWorld(world)
+    found = read_recording(stored.data, stored.net)
+    monkeypatch.setattr(drives, "MOST_PLACES", 0)
+    rows_in_reach, left_out = drives.rows_in_reach, []
+
+    def noted(tracks, road, ego, columns, limits):
+        flags = rows_in_reach(tracks, road, ego, columns, limits)
+        left_out.append(tracks.present[:, columns].any(axis=1) & ~flags)
+        return flags
+
+    monkeypatch.setattr(drives, "rows_in_reach", noted)
+    some = told(found, near)
+    everybody = np.ones_like(left_out[0])
+    monkeypatch.setattr(drives, "rows_in_reach", lambda *_: everybody)
+    assert told(found, near) == some
+    assert sum(map(np.count_nonzero, left_out)) > len(left_out) > 10

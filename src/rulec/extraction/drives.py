@@ -25,7 +25,7 @@ from rulec.extraction.tracks.road_extents import (
     expected_places,
     road_extents,
 )
-from rulec.extraction.tracks.road_places import RoadPlaces
+from rulec.extraction.tracks.road_places import RoadPlaces, are_on_road, rows_in_reach
 from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import Flags, Tracks, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
@@ -44,9 +44,9 @@ MOST_PLACES = 1 << 17
 """Extents of recordings with more participants times steps are not computed for all of these."""
 
 PART = 4
-"""They are computed for a part that lasts so many times as long as the drive that it begins with.
+"""They are computed for a drive, with those that are expected along its road and end so soon.
 
-The drives of a recording begin one after the other, so most of those in a part lie wholly in it.
+That is in a part that lasts so many times as long as the drive that it begins with.
 """
 
 SHARED_BY = 8
@@ -182,9 +182,9 @@ class Drives:
         elif road.meets_itself:
             places = self._places_of_one(road, first_piece, row, stretch)
         elif self._tracks.present.size <= MOST_PLACES:
-            places = self._places_during(road, columns)
+            places = self._places_during(road, [(row, columns)])
         else:
-            places = self._places_in_part(road, columns)
+            places = self._places_in_part(road, row, columns)
         if (row, stretch.first) not in self._ready and places is self._places.get(road):
             self._look_ahead(road, places, row)
         if (row, stretch.first) in self._ready:
@@ -270,9 +270,9 @@ class Drives:
         """The rows of who is there in some columns."""
         return np.flatnonzero(self._tracks.present[:, columns].any(axis=1))
 
-    def _places_in_part(self, road: DrivenRoad, columns: slice) -> RoadPlaces:
-        """The places on a road of all who are there in some columns, and perhaps in others."""
-        first, n_columns = self._tracks.first, self._tracks.present.shape[1]
+    def _places_in_part(self, road: DrivenRoad, row: int, columns: slice) -> RoadPlaces:
+        """The places on a road during a drive and those on it that come soon."""
+        first = self._tracks.first
         known = self._parts.get(road)
         if known is not None:
             begins = known.tracks.first - first
@@ -280,9 +280,15 @@ class Drives:
             if begins <= columns.start and columns.stop <= ends:
                 return known
         end = columns.start + PART * (columns.stop - columns.start)
-        found = self._places_during(road, slice(columns.start, min(end, n_columns)))
+        soon = [
+            (ego, own)
+            for ego, _, own in self._plans.get(road, [])
+            if columns.start <= own.start and own.stop <= end and (ego, own) != (row, columns)
+        ]
+        found = self._places_during(road, [(row, columns), *soon])
         self._parts.pop(road, None)
-        self._parts[road] = found
+        if soon:
+            self._parts[road] = found
         while len(self._parts) > 1 and self._n_kept() > MOST_KEPT:
             del self._parts[next(iter(self._parts))]
         return found
@@ -290,12 +296,20 @@ class Drives:
     def _n_kept(self) -> int:
         return sum(places.tracks.present.size for places in self._parts.values())
 
-    def _places_during(self, road: DrivenRoad, columns: slice) -> RoadPlaces:
-        """The places on a road of all who are there in some columns."""
-        rows = self._present(columns)
+    def _places_during(self, road: DrivenRoad, egos: Sequence[tuple[int, slice]]) -> RoadPlaces:
+        """The places on a road, during drives along it, of all who may count for one of them."""
+        begin, end = min(own.start for _, own in egos), max(own.stop for _, own in egos)
+        columns = slice(begin, end)
+        near = [rows_in_reach(self._tracks, road, *ego, self._thresholds) for ego in egos]
+        rows = np.flatnonzero(np.logical_or.reduce(near))
         tracks = self._tracks.part(rows, columns)
-        elsewhere = self._elsewhere(road, rows, columns)
-        return self._road_places(road, tracks, road_extents(tracks, road), elsewhere)
+        extents = road_extents(tracks, road)
+        own_rows = np.searchsorted(rows, [row for row, _ in egos])
+        if not are_on_road(extents, road, own_rows, self._thresholds):
+            rows = self._present(columns)
+            tracks = self._tracks.part(rows, columns)
+            extents = road_extents(tracks, road)
+        return self._road_places(road, tracks, extents, self._elsewhere(road, rows, columns))
 
     def _places_of_one(
         self, road: DrivenRoad, first_piece: int, row: int, stretch: RouteStretch

@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
 
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.road_extents import (
@@ -24,6 +26,9 @@ KMH = 3.6
 
 _ACROSS = np.pi / 4
 """The angle to the road from which on who comes from another one drives across."""
+
+_PIECES_M = 20.0
+"""Feet are looked for on whole pieces of a line, of 5 m at most."""
 
 _ONCOMING_COSINE = -0.7
 """The cosine of the angle to the road from which on a vehicle counts as coming towards ego."""
@@ -132,3 +137,37 @@ class RoadPlaces:
     def seen(self) -> Flags:
         """Flags of who is in sight of one that is near enough."""
         return self.on_lanes & ~self.crosses
+
+
+def rows_in_reach(
+    tracks: Tracks, road: DrivenRoad, ego: int, columns: slice, limits: Thresholds
+) -> Flags:
+    """Flags of those of all tracks that may count for, or be in sight of, ego on a road.
+
+    They are so near some time in a range of columns, as the crow flies: somebody's feet on the road
+    are no farther apart than its outline is large, and ego's no farther off than `are_on_road`.
+    """
+    own = slice(ego, ego + 1)
+    x, y, vx, vy = (getattr(tracks, name)[:, columns] for name in ("x", "y", "vx", "vy"))
+    away = np.hypot(x - x[own], y - y[own])
+    # As the gap between them that counts, measured along the road, where nobody is known to turn
+    speed = np.nan_to_num(np.hypot(vx, vy))
+    along = np.maximum(limits.near_m, (speed + speed[own] + 1.0) * limits.catching_up_s)
+    reaches = tracks.reaches
+    off = 2 * _farthest_off(road, limits) + _PIECES_M + reaches + reaches[ego]
+    flags: Flags = (away <= along + off[:, None]).any(axis=1)
+    flags[ego] = True
+    return flags
+
+
+def are_on_road(
+    extents: RoadExtents, road: DrivenRoad, egos: NDArray[intp], limits: Thresholds
+) -> bool:
+    """Whether rows are never farther off a road than who counts on it, wherever they are known."""
+    ends = extents.d_min[egos], extents.d_max[egos]
+    return not any((np.abs(end) > _farthest_off(road, limits)).any() for end in ends)
+
+
+def _farthest_off(road: DrivenRoad, limits: Thresholds) -> float:
+    """How far (m) from the road's line a part of a body may be that counts, and more."""
+    return float(np.abs(road.lanes.bounds).max()) + limits.beside_road_m

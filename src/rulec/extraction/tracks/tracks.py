@@ -106,6 +106,22 @@ class Tracks:
         return fastest
 
     @cached_property
+    def reaches(self) -> Floats:
+        """How far (m) from each participant's centre a corner's foot on a line may be for its sake.
+
+        That is as far as the corners are from it and from each other, whatever the line; 0 for who
+        is nowhere.
+        """
+        bodies, found = self.bodies, np.zeros(len(self.participants))
+        at = bodies.rows, bodies.columns
+        centres = np.stack((self.x[at], self.y[at]), axis=-1)
+        outlines = bodies.outlines
+        away = np.hypot(*(outlines.corners - np.repeat(centres, outlines.counts, axis=0)).T)
+        most = np.maximum.reduceat(away, outlines.starts) if len(away) else away
+        np.maximum.at(found, bodies.rows, 2 * most + 2 * outlines.reach)
+        return found
+
+    @cached_property
     def widths(self) -> Floats:
         """The widths (m) of bodies across their headings, 0 where unknown.
 
