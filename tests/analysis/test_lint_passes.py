@@ -221,11 +221,11 @@ def test_harmless_states(formulas, harmless):
 def test_a_search_that_takes_too_long_leaves_its_question_open():
     analyzed = sides([always(P), always(implies(NEAR, NEXT_FAR))], [X], ["stutter"] * 2)
     rules = ComparedRules(dict(zip("rs", analyzed, strict=True)))
-    with in_force(["search=10"]):
+    with in_force(["search=6"]):
         problem = next(answers_to(rules, Question("kept", ("s",))))
         # The next question, about two states instead of three, has a limit of its own.
         assert next(answers_to(rules, Question("kept", ("r",)))) is True
-    assert "more than 10 steps of search" in str(problem)
+    assert "more than 6 steps of search" in str(problem)
     assert "`rulec --limit search=NUMBER`" in str(problem)
     assert next(answers_to(rules, Question("kept", ("s",)))) is True
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.rulebook.rulebook_model import Axiom, Variable
-from rulec.witnesses.decision_diagrams import DecisionDiagrams
+from rulec.witnesses.diagrams.decision_diagrams import DecisionDiagrams
 from rulec.witnesses.joint_alphabet import JointAlphabet
 from rulec.witnesses.joint_reads import joint_reads, normal
 from rulec.witnesses.object_universe import ObjectUniverse

@@ -6,7 +6,7 @@ depend on each other.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from copy import copy
 from dataclasses import replace
 from heapq import heappop, heappush
@@ -17,7 +17,15 @@ from rulec.resource_limits import SEARCH
 from rulec.rulebook.rulebook_model import Axiom
 from rulec.witnesses import letter_functions, state_synthesis
 from rulec.witnesses.counted_objects import CountedObjectKinds, fewest_counted_objects
-from rulec.witnesses.decision_diagrams import DecisionDiagrams
+from rulec.witnesses.diagrams.decision_diagrams import DecisionDiagrams
+from rulec.witnesses.diagrams.plainest_ways import (
+    Choices,
+    KnownWays,
+    Nodes,
+    WaySearch,
+    chosen_digit,
+    digits_chosen,
+)
 from rulec.witnesses.joint_reads import joint_reads, merged, subject_of
 from rulec.witnesses.object_universe import ObjectUniverse
 from rulec.witnesses.relevant_axioms import relevant_axioms, said_axioms, subjects_read
@@ -26,15 +34,14 @@ from rulec.witnesses.undecided import UndecidedError
 JointLetter = tuple[int, ...]
 """For each monitor the class of the letter that it reads."""
 
+Way = tuple[int, int, int, JointLetter]
+"""Its number of digits that are not the default, its place, the digits, and classes of counts."""
+
 MOST_LETTERS = 20_000
-MOST_NODES = 200_000
 
 _SUMS_TRIED = 20
 _COUNTS_TRIED = 100
 """What it counts as, in steps of search, to solve inequalities and to look for objects to count."""
-
-Steps = tuple["tuple[int, int]", "Steps"] | None
-"""The digits chosen on a way through the diagrams, the first one first."""
 
 
 class JointAlphabet:
@@ -68,7 +75,8 @@ class JointAlphabet:
         self._n_numbers = sum(isinstance(read, NumberRead) for read in self._joint.reads)
         self._diagrams = DecisionDiagrams()
         roots = tuple(map(self._diagrams.of, functions, self._joint.views))
-        self._root = self._cleared(roots[: self._n_keys], roots[self._n_keys :])
+        axiom_roots = self._diagrams.open_axioms(roots[self._n_keys :])
+        self._root = None if axiom_roots is None else roots[: self._n_keys] + axiom_roots
         self._defaults = [
             state_synthesis.default_digit(read, vocabulary) for read in self._joint.reads
         ]
@@ -76,7 +84,7 @@ class JointAlphabet:
         self._digits: list[Sequence[int]] = list(map(range, self._sizes))
         self._usual = 0
         self.is_exact = True
-        self._plain: dict[object, dict[JointLetter, tuple[int, Steps]]] = {}
+        self._plain = KnownWays()
         self._numbers: dict[
             object, dict[state_synthesis.Subject, state_synthesis.Value] | None
         ] = {}
@@ -121,17 +129,18 @@ class JointAlphabet:
         """Find the candidates, and the ways to them."""
         self._object_kinds = CountedObjectKinds(self._universe)
         self._steps_left = self._most_steps = SEARCH.value()
-        self._n_nodes = 0
         self._states: dict[JointLetter, state_synthesis.JointState | None] = {}
-        ways_to = self._ways_to = dict[JointLetter, list[tuple[int, int, Steps, JointLetter]]]()
+        ways_to = self._ways_to = dict[JointLetter, list[Way]]()
+        choices = Choices(self._sizes, self._digits, self._defaults, self._usual)
+        search = WaySearch(self._diagrams, choices, self._take, self._plain)
         numbers = count()
-        for number_digits, ways in self._numbered(self._root, ()):
+        for number_digits, nodes in self._numbered(self._root, ()) if self._root else ():
             cost = sum(self._cost(level, digit) for level, digit in number_digits)
-            for key, (more, steps) in ways.items():
-                for number_digit in reversed(number_digits):
-                    steps = (number_digit, steps)
+            chosen = sum(chosen_digit(level, digit) for level, digit in number_digits)
+            ways = search.ways(nodes[: self._n_keys], nodes[self._n_keys :])
+            for key, (more, digits) in ways.items():
                 letter, classes = key[: self._n_monitors], key[self._n_monitors :]
-                way = (cost + more, next(numbers), steps, classes)
+                way = (cost + more, next(numbers), chosen + digits, classes)
                 heappush(ways_to.setdefault(letter, []), way)
             self._take(len(ways))
             if len(ways_to) > MOST_LETTERS:
@@ -175,36 +184,22 @@ class JointAlphabet:
         default = self._defaults[level]
         return int(default is not None and digit != default)
 
-    def _cleared(self, keys: tuple[int, ...], axioms: Iterable[int]) -> tuple[int, ...]:
-        """Nodes without axioms that hold, each other one once; none if an axiom is broken."""
-        left = {*axioms}
-        if self._diagrams.false in left:
-            return ()
-        left.discard(self._diagrams.true)
-        return (*keys, *sorted(left))
-
     def _level(self, nodes: Sequence[int]) -> int:
         """The first joint read that a node tests; the number of them if none does."""
         return int(min(self._diagrams.level(nodes), len(self._joint.reads)))
 
-    def _after(self, nodes: Sequence[int], level: int) -> list[tuple[int, tuple[int, ...]]]:
+    def _after(self, nodes: Nodes, level: int) -> Iterator[tuple[int, Nodes]]:
         """The digits of a joint read that break no axiom, and the nodes after each."""
-        n_keys = self._n_keys
         rows = self._diagrams.restricted(nodes, level, self._sizes[level])
-        if len(nodes) == n_keys:
-            return [(digit, rows[digit]) for digit in self._digits[level]]
-        cleared = (
-            (digit, self._cleared(rows[digit][:n_keys], rows[digit][n_keys:]))
-            for digit in self._digits[level]
-        )
-        return [(digit, following) for digit, following in cleared if following]
+        for digit in self._digits[level]:
+            axioms = self._diagrams.open_axioms(rows[digit][self._n_keys :])
+            if axioms is not None:
+                yield digit, rows[digit][: self._n_keys] + axioms
 
     def _numbered(
-        self, nodes: tuple[int, ...], number_digits: tuple[tuple[int, int], ...]
-    ) -> Iterator[tuple[tuple[tuple[int, int], ...], Mapping[JointLetter, tuple[int, Steps]]]]:
-        """Possible digits of sums, and the joint letters for each of them."""
-        if not nodes:
-            return
+        self, nodes: Nodes, number_digits: tuple[tuple[int, int], ...]
+    ) -> Iterator[tuple[tuple[tuple[int, int], ...], Nodes]]:
+        """Possible digits of sums, and the nodes after each of them."""
         # A number that is as usual is, too, where only sums tell it apart that are chosen later.
         decided = number_digits[-1][0] + 1 if number_digits else 0
         usual = self._usual >> decided << decided
@@ -212,7 +207,7 @@ class JointAlphabet:
         if usual:
             level = min(level, (usual & -usual).bit_length() - 1)
         if level >= self._n_numbers:
-            yield number_digits, self._ways(nodes)
+            yield number_digits, nodes
             return
         for digit, following in self._after(nodes, level):
             default = self._defaults[level] if usual >> level & 1 else None
@@ -231,45 +226,11 @@ class JointAlphabet:
             return True
         return state_synthesis.solve_numbers(numbers, self._universe.vocabulary, {}) is not None
 
-    def _ways(self, nodes: tuple[int, ...]) -> Mapping[JointLetter, tuple[int, Steps]]:
-        """Number of non-defaults and digits with fewest, for each joint letter."""
-        # What is as usual matters only to nodes that read it; others are known from other searches.
-        usual = self._usual and self._usual & self._diagrams.support(nodes)
-        plain = self._plain
-        known = plain.get((nodes, usual))
-        if known is not None:
-            return known
-        self._n_nodes += 1
-        if self._n_nodes > MOST_NODES:
-            raise UndecidedError("too many different states of the world have to be told apart")
-        level = self._level(nodes)
-        ways: dict[JointLetter, tuple[int, Steps]] = {}
-        if level == len(self._joint.reads):
-            ways[tuple(map(self._diagrams.value, nodes))] = 0, None
-        else:
-            default = self._defaults[level]
-            for digit, following in self._after(nodes, level):
-                own, step = int(default is not None and digit != default), (level, digit)
-                further = None if usual else plain.get((following, 0))
-                for key, (cost, steps) in (further or self._ways(following)).items():
-                    fewest = ways.get(key)
-                    if fewest is None or own + cost < fewest[0]:
-                        ways[key] = own + cost, (step, steps)
-        plain[nodes, usual] = ways
-        self._take(len(ways))
-        return ways
-
-    def _best(
-        self, candidates: list[tuple[int, int, Steps, JointLetter]]
-    ) -> state_synthesis.JointState | None:
+    def _best(self, candidates: list[Way]) -> state_synthesis.JointState | None:
         while candidates:
-            _, _, steps, classes = heappop(candidates)
+            _, _, chosen, classes = heappop(candidates)
             self._take(_COUNTS_TRIED if self._counts else 1)
-            chosen = []
-            while steps is not None:
-                step, steps = steps
-                chosen.append(step)
-            state = self._state(chosen, classes)
+            state = self._state(digits_chosen(chosen), classes)
             if state is not None and fewest_counted_objects(state, self._object_kinds) is not None:
                 return state
         return None

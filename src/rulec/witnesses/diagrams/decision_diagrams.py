@@ -41,6 +41,10 @@ class _Nodes:
         known = self._nodes
         return min([known[node][0] for node in nodes])
 
+    def is_open(self, node: int) -> bool:
+        """True if a node tests something."""
+        return self._nodes[node][0] != inf
+
     def value(self, node: int) -> int:
         """The class of a node that tests nothing any more."""
         return self._nodes[node][1][0]
@@ -125,6 +129,14 @@ class DecisionDiagrams(_Nodes):
             for own, children in (known[node],)
         ]
         return list(zip(*rows, strict=True))
+
+    def open_axioms(self, nodes: Iterable[int]) -> tuple[int, ...] | None:
+        """Those of some functions that are not true yet, each once; None if one is false."""
+        left = {*nodes}
+        if self.false in left:
+            return None
+        left.discard(self.true)
+        return tuple(sorted(left))
 
     def support(self, nodes: Iterable[int]) -> int:
         """The joint reads on which functions of some nodes depend, as the bits of an integer."""

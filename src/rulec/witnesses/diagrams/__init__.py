@@ -1,0 +1,1 @@
+"""Decision diagrams of what is read together, and ways through them."""
