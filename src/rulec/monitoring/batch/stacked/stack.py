@@ -55,7 +55,8 @@ class Stack:
     """Traces that say the same names, end to end; ``vocabulary`` has the defaults of the others.
 
     ``begins`` is where the states of each trace begin, ``starts`` where the cells of each object
-    do, both with the end of all as the last. ``trace_of``, ``firsts`` and ``lasts`` are the trace
+    do, both with the end of all as the last. ``said`` are the names that some state may say, and
+    whether they are about objects. ``trace_of``, ``firsts`` and ``lasts`` are the trace
     and the first and last state of each object, among all.
     """
 
@@ -75,6 +76,8 @@ class Stack:
         self.starts = starts_of(spans)
         self.types = [kind for trace in traces for kind in trace.objects.values()]
         self.names = [name for trace in traces for name in trace.objects]
+        about = dict.fromkeys(traces[0].about, True)
+        self.said = {**dict.fromkeys(traces[0].world, False), **about}
         self._columns: dict[str, StackColumn | None] = {}
         self._of_type: dict[str, Flags] = {}
         self._whole_types: dict[str, bool] = {}
@@ -115,10 +118,6 @@ class Stack:
             self._states_of_type[kind] = self.state_of if is_every else self.state_of[cells]
         return self._states_of_type[kind]
 
-    def says(self, name: str) -> bool:
-        """Whether some state may say a name."""
-        return any(name in own for own in (self.traces[0].world, self.traces[0].about))
-
     def can_tell(self, name: str) -> bool:
         """Whether a name's values can be read from arrays. Raises UnencodableError."""
         column, declaration = self.column(name), self.vocabulary.declarations[name]
@@ -129,13 +128,13 @@ class Stack:
     def odd_traces(self) -> set[int]:
         """Traces in which something is missing, or a constant changes. Raises UnencodableError."""
         odd: set[int] = set()
-        for name in (*self.traces[0].world, *self.traces[0].about):
+        for name, is_about in self.said.items():
             column = self.column(name)
             assert column is not None, "it is said"
             if column.missing is not None:
                 odd.update(self.traces_at(name, np.flatnonzero(column.missing)))
             if self.vocabulary.declarations[name].constant:
-                starts = self.starts if name in self.traces[0].about else self.begins
+                starts = self.starts if is_about else self.begins
                 lengths = np.diff(starts)
                 for values in (column.values, column.unknown):
                     if values is not None:
@@ -145,7 +144,7 @@ class Stack:
 
     def traces_at(self, name: str, places: Places) -> list[int]:
         """The traces of a name's values at some places."""
-        if name in self.traces[0].about:
+        if self.said[name]:
             places = self.state_of[places]
         found: list[int] = distinct(np.searchsorted(self.begins, places, side="right") - 1).tolist()
         return found
@@ -153,7 +152,7 @@ class Stack:
     def column(self, name: str) -> StackColumn | None:
         """The column of a name; None if no state says it. Raises UnencodableError."""
         if name not in self._columns:
-            self._columns[name] = self._column(name) if self.says(name) else None
+            self._columns[name] = self._column(name) if name in self.said else None
         return self._columns[name]
 
     def default(self, name: str) -> Any:
@@ -166,7 +165,7 @@ class Stack:
 
     def _column(self, name: str) -> StackColumn:
         declaration = self.vocabulary.declarations.get(name)
-        is_about = name in self.traces[0].about
+        is_about = self.said[name]
         if declaration is None or len(declaration.parameters) != is_about:
             raise UnencodableError
         parts = [piece.about[name] if is_about else piece.world[name] for piece in self._pieces]

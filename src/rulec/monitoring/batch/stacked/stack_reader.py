@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
-from rulec.automata.thresholds import scale
+from rulec.automata.thresholds import ThresholdScale, scale
 from rulec.logic import formula as ltl
 from rulec.logic.fold import fold
 from rulec.monitoring.batch.columns.column_reader import (
@@ -23,6 +24,7 @@ from rulec.monitoring.batch.columns.column_reader import (
     digits_of_sum,
     known,
 )
+from rulec.monitoring.batch.stacked.met_values import MetValues
 from rulec.monitoring.batch.stacked.stack import Places, Stack, StackColumn
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRead
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
@@ -57,9 +59,10 @@ class StackReader:
 
     def __init__(self, stack: Stack) -> None:
         self.stack = stack
-        self._numbers: dict[object, Array | int] = {}
-        self._of_kind: dict[tuple[object, str], Array] = {}
-        self._digits: dict[object, int] = {}
+        self._numbers: dict[int, Array | int] = {}
+        self._of_kind: dict[tuple[int, str], Array] = {}
+        self._digits: dict[int, int] = {}
+        self._met = MetValues(stack)
         self._every_state = np.arange(stack.n_states)
 
     def numbers(self, read: StackedRead, spots: Spots | None) -> Numbers:
@@ -92,39 +95,33 @@ class StackReader:
         if read.count is not None or len(read.names) > 1:
             return read.every
         # Reads of the same values may take different ones together
-        key = read.key, read.meanings
-        known = self._digits.get(key)
+        known = self._digits.get(read.digits_key)
         if known is None:
-            known = self._digits[key] = self._digits_met(read) or read.every
+            known = self._digits[read.digits_key] = self._digits_met(read) or read.every
         return known
 
     def _digits_met(self, read: StackedRead) -> int:
         (name,) = read.names
-        column = self.stack.column(name)
-        if column is None:
+        ready = read.ready
+        if name not in self.stack.said:
             default = self.stack.default(name)
             if default is UNKNOWN_VALUE:
                 return read.every
-            if isinstance(read.read, Read):
-                return read.meanings[int(default)]
-            return 1 << scale(read.read).digit(float(default))
-        values = column.values
-        if column.unknown is not None or not len(values):
+            return (
+                read.meanings[int(default)] if ready is None else 1 << ready.digit(float(default))
+            )
+        if ready is None:
+            found = 0
+            met = self._met.values(name)
+            for number in range(met.bit_length()):
+                if met >> number & 1:
+                    found |= read.meanings[number]
+            return found
+        ends = None if ready.quantity is None else self._met.ends(name)
+        if ends is None:
             return read.every
-        if isinstance(read.read, NumberRead):
-            ready = scale(read.read)
-            if ready.quantity is None:
-                return read.every
-            upper = values if column.upper is None else column.upper
-            low, high = ready.digit(float(values.min())), ready.digit(float(upper.max()))
-            return (1 << high + 1) - (1 << low)
-        if values.dtype == bool:
-            false, true, _ = read.meanings
-            return (true if values.any() else 0) | (0 if values.all() else false)
-        found = 0
-        for number in np.flatnonzero(np.bincount(values)).tolist():
-            found |= read.meanings[number]
-        return found
+        low, high = map(ready.digit, ends)
+        return (1 << high + 1) - (1 << low)
 
     def _everywhere(self, read: StackedRead) -> Array | int:
         """The numbers in all states, or cells."""
@@ -147,7 +144,8 @@ class StackReader:
             return self._values(read.read, spots)
         if read.count is not None:
             return self._counted(read, read.read, spots)
-        return self._between(read.read, spots)
+        assert read.ready is not None, "it is a number"
+        return self._between(read.ready, spots)
 
     def _values(self, read: Read, spots: Spots) -> Numbers:
         declaration = self.stack.vocabulary.declarations[read.name]
@@ -167,8 +165,8 @@ class StackReader:
             return values
         return values.take(spots.cells[variables[0]] if variables else spots.states)
 
-    def _between(self, read: NumberRead, spots: Spots) -> Numbers:
-        n_spots = len(spots.states)
+    def _between(self, ready: ThresholdScale, spots: Spots) -> Numbers:
+        n_spots, read = len(spots.states), ready.read
         lows: list[Summand] = []
         highs: list[Summand] = []
         unknown: Mask = np.False_
@@ -180,9 +178,9 @@ class StackReader:
             unknown = unknown | dark
         if np.all(unknown):
             return read.size - 1
-        low_digits = _digits(read, lows, n_spots, unknown)
+        low_digits = _digits(ready, lows, n_spots, unknown)
         same = all(low is high for (_, low), (_, high) in zip(lows, highs, strict=True))
-        high_digits = low_digits if same else _digits(read, highs, n_spots, unknown)
+        high_digits = low_digits if same else _digits(ready, highs, n_spots, unknown)
         dtype = smallest_unsigned(read.size**2)
         numbers: Array = low_digits.astype(dtype) * dtype.type(read.size)
         numbers += high_digits.astype(dtype)
@@ -259,18 +257,9 @@ class StackReader:
             assert isinstance(term, ltl.QuantityTerm), "it counts nothing"
             own = (about,) * len(term.arguments)
             terms.append((factor, ltl.QuantityTerm(term.name, own)))
-        at, above = (Threshold(comparison.limit, inclusive) for inclusive in (True, False))
-        read = NumberRead(tuple(terms), (at, above))
-        numbers = self._between(read, spots)
-        sides = SIDES[comparison.relation]
-        every = [
-            {side in sides for side in range(low, high + 1)}
-            for low in range(read.size)
-            for high in range(read.size)
-        ]
-        true = np.array([own == {True} for own in every]).take(numbers)
-        false = np.array([own == {False} for own in every]).take(numbers)
-        return Truth(true, false)
+        ready, true, false = _sides(tuple(terms), comparison.relation, comparison.limit)
+        numbers = self._between(ready, spots)
+        return Truth(true.take(numbers), false.take(numbers))
 
     def _atom(self, atom: ltl.Atom, spots: Spots) -> Truth:
         declaration = self.stack.vocabulary.declarations[atom.name]
@@ -323,14 +312,31 @@ def is_partial(column: StackColumn) -> Flags | None:
     return apart | column.unknown
 
 
-def _digits(read: NumberRead, summands: Sequence[Summand], n_spots: int, ignored: Mask) -> Array:
-    ready = scale(read)
+@lru_cache(maxsize=1 << 8)
+def _sides(
+    terms: tuple[tuple[Fraction, ltl.QuantityTerm], ...], relation: ltl.Relation, limit: Fraction
+) -> tuple[ThresholdScale, Flags, Flags]:
+    """What reads a comparison, and for its numbers whether it is surely true, or surely false."""
+    at, above = (Threshold(limit, inclusive) for inclusive in (True, False))
+    read, sides = NumberRead(terms, (at, above)), SIDES[relation]
+    every = [
+        {side in sides for side in range(low, high + 1)}
+        for low in range(read.size)
+        for high in range(read.size)
+    ]
+    true, false = (np.array([own == {value} for own in every]) for value in (True, False))
+    return scale(read), true, false
+
+
+def _digits(
+    ready: ThresholdScale, summands: Sequence[Summand], n_spots: int, ignored: Mask
+) -> Array:
     if ready.quantity is None:
-        return digits_of_sum(read, summands, n_spots, ignored)
+        return digits_of_sum(ready.read, summands, n_spots, ignored)
     ((_, numbers),) = summands
     if not isinstance(numbers, np.ndarray):
         return np.full(n_spots, ready.digit(numbers), dtype=np.uint8)
-    digits = np.zeros(n_spots, dtype=smallest_unsigned(read.size))
+    digits = np.zeros(n_spots, dtype=smallest_unsigned(ready.read.size))
     for floor in ready.floors:
         digits += numbers >= floor
     return digits

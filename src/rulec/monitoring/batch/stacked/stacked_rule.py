@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.automata.thresholds import scale
+from rulec.automata.thresholds import ThresholdScale, scale
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
 from rulec.logic.kleene import holds
@@ -36,6 +37,9 @@ from rulec.vocabulary.partial_values import UNKNOWN
 NOBODY = NothingKnown({}, Vocabulary("", {}, {}))
 """Nothing is known of anybody."""
 
+ReadKeys: TypeAlias = dict[object, int]
+"""Numbers of reads, by what makes them alike, for all rules that are judged together."""
+
 MOST_SETS = 1 << 14
 """Sets of letters that are kept before all are forgotten."""
 
@@ -49,7 +53,9 @@ class StackedRead:
 
     ``variables`` are those of the rule that it is asked of, ``names`` what it depends on. ``count``
     is what is counted, if it is a count: objects that any variable may stand for, or, if it
-    ``counts_itself``, none but the one that the only variable stands for.
+    ``counts_itself``, none but the one that the only variable stands for. Reads with the same
+    ``key`` have the same numbers, those with the same ``digits_key`` the same digits, too;
+    ``ready`` are the thresholds of a number.
     """
 
     read: Read | NumberRead
@@ -58,7 +64,9 @@ class StackedRead:
     meanings: tuple[int, ...]
     unknown: int
     count: ltl.Count | None
-    key: object
+    ready: ThresholdScale | None
+    key: int
+    digits_key: int
 
     @property
     def every(self) -> int:
@@ -87,12 +95,13 @@ class StackedRule:
         machine: UncertainMachine,
         rulebook: CompiledRulebook,
         vocabulary: Vocabulary,
+        keys: ReadKeys,
     ) -> None:
         self.rule = rule
         self.machine = machine
         self.variables = tuple([variable.name for variable in rule.variables])
         self.types = tuple([variable.type for variable in rule.variables])
-        self.reads = tuple([_stacked(read, vocabulary) for read in rule.machine.reads])
+        self.reads = tuple([_stacked(read, vocabulary, keys) for read in rule.machine.reads])
         read_names = frozenset(name for read in self.reads for name in read.names)
         self.facts = related_facts(read_names, rulebook.axioms)
         self.in_facts = frozenset(name for fact in self.facts for name in names_in(fact.formula))
@@ -199,35 +208,33 @@ class StackedRule:
         return found
 
 
-def _stacked(read: Read | NumberRead, vocabulary: Vocabulary) -> StackedRead:
+def _stacked(read: Read | NumberRead, vocabulary: Vocabulary, keys: ReadKeys) -> StackedRead:
     meanings = tuple(meanings_of(read, vocabulary))
+    count: ltl.Count | None = None
+    key: object
+    names: tuple[str, ...]
     if isinstance(read, Read):
         declaration = vocabulary.declarations[read.name]
         unknown = len(declaration.values) if isinstance(declaration, Enumeration) else 2
-        key: object = read.name, len(read.variables)
-        return StackedRead(
-            read,
-            read.variables,
-            (read.name,),
-            meanings=meanings,
-            unknown=unknown,
-            count=None,
-            key=key,
-        )
-    ready = scale(read)
-    variables = tuple(dict.fromkeys(ready.variables))
-    term = ready.quantity
-    key = id(read) if term is None else (term.name, len(term.arguments), ready.floors)
-    counts = [term for _, term in read.terms if isinstance(term, ltl.Count)]
-    count = counts[0] if len(read.terms) == 1 and counts else None
+        ready, variables, names = None, read.variables, (read.name,)
+        key = read.name, len(read.variables)
+    else:
+        unknown, ready = read.size - 1, scale(read)
+        variables, names = tuple(dict.fromkeys(ready.variables)), ready.names
+        term = ready.quantity
+        key = id(read) if term is None else (term.name, len(term.arguments), ready.floors)
+        counts = [term for _, term in read.terms if isinstance(term, ltl.Count)]
+        count = counts[0] if len(read.terms) == 1 and counts else None
     return StackedRead(
         read,
         variables,
-        ready.names,
+        names,
         meanings=meanings,
-        unknown=read.size - 1,
+        unknown=unknown,
         count=count,
-        key=key,
+        ready=ready,
+        key=keys.setdefault(key, len(keys)),
+        digits_key=keys.setdefault((key, meanings), len(keys)),
     )
 
 

@@ -27,7 +27,7 @@ from rulec.monitoring.batch.stacked.stacked_outcomes import (
     StackedOutcome,
     outcomes,
 )
-from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
+from rulec.monitoring.batch.stacked.stacked_rule import ReadKeys, StackedRule
 from rulec.monitoring.implied_values import with_all_said
 from rulec.monitoring.state_validation import check_objects, check_told
 from rulec.monitoring.uncertainty.judged_rules import JudgedRules, judged_rules
@@ -198,8 +198,10 @@ def _ready_rules(example: TraceArrays, rules: CompiledRulebook) -> _ReadyRules:
         if counts(fact.formula) or not set(constants).isdisjoint(names_in(fact.formula)):
             raise UnencodableError  # what it says of values is looked up state by state
     judged = judged_rules(rules, example.told, cut=example.ends == "cut")
+    keys: ReadKeys = {}
     ready = [
-        StackedRule(rule, machine, rules, judged.vocabulary) for rule, machine in judged.machines
+        StackedRule(rule, machine, rules, judged.vocabulary, keys)
+        for rule, machine in judged.machines
     ]
     names = frozenset().union(*(rule.names for rule in ready if rule.is_simple))
     return _ReadyRules(judged, ready, names, {})

@@ -1,0 +1,81 @@
+"""The values that names take anywhere in traces in arrays, found for many names together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+
+import numpy as np
+
+from rulec.monitoring.batch.stacked.stack import Stack, StackColumn
+from rulec.trace.trace_columns import Array
+from rulec.vocabulary import Quantity
+
+_FEW = 1 << 12
+"""Columns of so many values are laid one upon the other, which takes fewer calls."""
+
+_BITS = {bits: 1 << np.arange(bits, dtype=f"u{bits // 8}") for bits in (8, 64)}
+"""For each number the bit in its place."""
+
+
+class MetValues:
+    """Which values, or between which numbers, what is said of each name is.
+
+    Raises UnencodableError.
+    """
+
+    def __init__(self, stack: Stack) -> None:
+        self._stack = stack
+
+    def values(self, name: str) -> int:
+        """The values of a signal, as bits; none if some are unknown, or there are too many."""
+        return self._values.get(name, 0)
+
+    def ends(self, name: str) -> tuple[float, float] | None:
+        """The least and the greatest number of a quantity; None if some are unknown."""
+        return self._ends.get(name)
+
+    @cached_property
+    def _values(self) -> dict[str, int]:
+        found: dict[str, int] = {}
+        for names, columns in self._known(numbers=False):
+            rows = _laid_out([_as_numbers(column.values) for column in columns])
+            most = int(rows.max())
+            if most < max(_BITS):
+                bits = _BITS[8 if most < 8 else 64].take(rows)
+                found.update(zip(names, np.bitwise_or.reduce(bits, axis=1).tolist(), strict=True))
+        return found
+
+    @cached_property
+    def _ends(self) -> dict[str, tuple[float, float]]:
+        found: dict[str, tuple[float, float]] = {}
+        for names, columns in self._known(numbers=True):
+            lows = _laid_out([column.values for column in columns])
+            uppers = [x.values if x.upper is None else x.upper for x in columns]
+            highs = lows if all(x.upper is None for x in columns) else _laid_out(uppers)
+            ends = zip(lows.min(axis=1).tolist(), highs.max(axis=1).tolist(), strict=True)
+            found.update(zip(names, ends, strict=True))
+        return found
+
+    def _known(self, *, numbers: bool) -> Iterator[tuple[list[str], list[StackColumn]]]:
+        """The columns in which all is known, as many together as may be, with their names."""
+        declarations = self._stack.vocabulary.declarations
+        groups: dict[int | str, tuple[list[str], list[StackColumn]]] = {}
+        for name in self._stack.said:
+            column = self._stack.column(name)
+            if column is None or isinstance(declarations[name], Quantity) != numbers:
+                continue
+            size = len(column.values)
+            if column.unknown is None and size:
+                names, columns = groups.setdefault(size if size <= _FEW else name, ([], []))
+                names.append(name)
+                columns.append(column)
+        yield from groups.values()
+
+
+def _as_numbers(values: Array) -> Array:
+    return values.view(np.uint8) if values.dtype == bool else values
+
+
+def _laid_out(columns: Sequence[Array]) -> Array:
+    return np.array(columns) if len(columns) > 1 else columns[0][None]
