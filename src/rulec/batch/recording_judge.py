@@ -266,13 +266,14 @@ class _RecordingJudge:
         if not chosen:
             return []
         # Explanations, 20 ms: only where something is violated.
-        from rulec.extraction.violation_evidence import whom_of
+        from rulec.extraction.violation_evidence import trace_for, whom_of
         from rulec.monitoring.explain.explanation import explain
 
         self.left -= len(chosen)
         self._judged.n_explained += len(chosen)
         explained = [
-            explain(violation, drive.trace, rules, drive.decided_by) for violation in chosen
+            explain(violation, trace_for(violation, drive, rules), rules, drive.decided_by)
+            for violation in chosen
         ]
         if self._settings.text:
             details = verdict_report.as_text(

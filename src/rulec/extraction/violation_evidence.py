@@ -12,6 +12,7 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.extraction.to_trace import Drive, Place
 from rulec.logic.formula import Comparison, Count, atoms_of
 from rulec.logic.free_names import names_in
+from rulec.monitoring.explain.explained_arrays import explain_arrays
 from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.explain.margins import Margin
 from rulec.monitoring.verdict import Violation
@@ -50,8 +51,12 @@ def evidence_of(
     explanation: Explanation | None = None,
 ) -> ViolationEvidence:
     """The evidence for a violation by a drive; ``explanation`` is its own, if there is one."""
-    explained = explanation or explain(
-        violation, _trace_for(violation, drive, rules), rules, drive.decided_by, repaired=False
+    explained = (
+        explanation
+        or explain_arrays(violation, drive.arrays, rules, drive.decided_by)
+        or explain(
+            violation, trace_for(violation, drive, rules), rules, drive.decided_by, repaired=False
+        )
     )
     read = dict.fromkeys(names_in(explained.rule.formula))
     told = [name for name in read if name in drive.kinds and name not in assumed]
@@ -90,7 +95,7 @@ def whom_of(explained: Explanation, drive: Drive) -> tuple[str, ...]:
     return ()
 
 
-def _trace_for(violation: Violation, drive: Drive, rules: CompiledRulebook) -> Trace:
+def trace_for(violation: Violation, drive: Drive, rules: CompiledRulebook) -> Trace:
     """The drive's trace with what the violated rule reads, of the objects that it is about.
 
     A drive's states say a hundred things of dozens, a rule reads five of one.
@@ -117,7 +122,7 @@ def _is_partial(drive: Drive, name: str) -> bool:
     """Whether a name is unknown in some state, of somebody of whom it is said."""
     arrays = drive.arrays
     unknown = arrays.unknown.get(name)
-    if unknown is None:
+    if unknown is None or not unknown.any():
         return False
     if name in arrays.about and name in arrays.only:
         lengths = np.diff(arrays.starts)

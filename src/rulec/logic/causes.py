@@ -8,7 +8,7 @@ changes. What decides is enough, not all there is: of two false operands of `and
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from itertools import accumulate, compress
 
 from rulec.logic.bounds import PAST, range_of
 from rulec.logic.formula import Binary, BinaryOperator, Formula, Unary, UnaryOperator
@@ -48,13 +48,14 @@ def instants_among(
         if not any(marks[part]):
             result[part] = [False] * n_letters
             continue
-        begun, decides = 0, []
-        for instant, mark in enumerate(marks[part][:length]):
-            begun += mark
-            decides.append(begun > 0)
-            if not begun:
-                continue
-            if isinstance(part, Unary | Binary) and part.operator in PAST:
+        decides = [begun > 0 for begun in accumulate(marks[part][:length])]
+        # What comes after the word's end is its last letter again.
+        result[part] = [*decides[:last], any(decides[last:])]
+        if not isinstance(part, Unary | Binary):
+            continue
+        looks_back = part.operator in PAST
+        for instant in compress(range(length), decides):
+            if looks_back:
                 # The past ends with the first instant.
                 mirrored = _reasons(part, length - 1 - instant, backward, ends=True)
                 reasons = [(one, length - 1 - b, length - 1 - a) for one, a, b in mirrored]
@@ -66,39 +67,32 @@ def instants_among(
                     own = of_operand[id(operand)] = marks[operand]
                 own[start] += 1
                 own[stop + 1] -= 1
-        # What comes after the word's end is its last letter again.
-        result[part] = [*decides[:last], any(decides[last:])]
     return result
 
 
-@dataclass(frozen=True, slots=True)
 class _Column:
-    """A part's values, and the next instant with either value.
+    """A part's values, and the next instant with either value, which is looked for when asked."""
 
-    If there is none it is the number of instants.
-    """
-
-    values: Sequence[bool]
-    next_false: Sequence[int]
-    next_true: Sequence[int]
-
-    @staticmethod
-    def of(values: Sequence[bool]) -> _Column:
-        """The column of these values."""
-        never = len(values)
-        next_false, next_true = [never] * (never + 1), [never] * (never + 1)
-        false = true = never
-        for instant in range(never - 1, -1, -1):
-            if values[instant]:
-                true = instant
-            else:
-                false = instant
-            next_false[instant], next_true[instant] = false, true
-        return _Column(values, next_false, next_true)
+    def __init__(self, values: Sequence[bool]) -> None:
+        self.values = values
+        self._next: dict[bool, list[int]] = {}
 
     def next(self, value: bool, instant: int) -> int:
-        """The next instant with this value."""
-        return (self.next_true if value else self.next_false)[min(instant, len(self.values))]
+        """The next instant with this value; the number of instants if there is none."""
+        found = self._next.get(value)
+        if found is None:
+            found = self._next[value] = self._next_ones(value)
+        return found[min(instant, len(self.values))]
+
+    def _next_ones(self, value: bool) -> list[int]:
+        ahead = never = len(self.values)
+        found = [never]
+        for instant, own in zip(range(never - 1, -1, -1), reversed(self.values), strict=True):
+            if own is value:
+                ahead = instant
+            found.append(ahead)
+        found.reverse()
+        return found
 
 
 class _Columns:
@@ -115,7 +109,7 @@ class _Columns:
         column = self._made.get(id(part))
         if column is None:
             values = self._known[part]
-            column = _Column.of(values[::-1] if self._turned else values)
+            column = _Column(values[::-1] if self._turned else values)
             self._made[id(part)] = column
         return column
 

@@ -11,7 +11,8 @@ real-time properties with metric temporal logic" (1990), on a clock that ticks w
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Set
+from collections.abc import Callable, Mapping, Sequence, Set
+from dataclasses import dataclass
 from typing import Literal
 
 from rulec.logic import formula as ltl
@@ -39,7 +40,7 @@ def truth_values(
 
     Raises ValueError as ``holds`` does.
     """
-    parts = _extended(formula, word, semantics)
+    parts = _extended(formula, _spelled(word), len(word), semantics)
     return parts[id(formula)][1][: len(word)]
 
 
@@ -58,20 +59,59 @@ def extended_values(
 
     Operands come before what they are operands of.
     """
-    return dict(_extended(formula, word, semantics).values())
+    return dict(_extended(formula, _spelled(word), len(word), semantics).values())
+
+
+def extended_by_columns(
+    formula: ltl.Formula,
+    truths: Mapping[ltl.Proposition, Sequence[bool]],
+    n_letters: int,
+    semantics: Semantics,
+) -> dict[ltl.Formula, list[bool]]:
+    """As ``extended_values``, of a word told by whether each proposition is true at each instant.
+
+    Raises ValueError as ``holds`` does.
+    """
+    return dict(_extended(formula, truths.__getitem__, n_letters, semantics).values())
+
+
+_Truths = Callable[[ltl.Proposition], Sequence[bool]]
+"""Whether a proposition is true at each of a word's instants."""
+
+
+def _spelled(word: Sequence[Letter]) -> _Truths:
+    letters = {id(letter): letter for letter in word}
+
+    def truths(proposition: ltl.Proposition) -> list[bool]:
+        true = {key: proposition in letter for key, letter in letters.items()}
+        return [true[id(letter)] for letter in word]
+
+    return truths
 
 
 _Parts = dict[int, tuple[ltl.Formula, list[bool]]]
 """Parts and their values by identity: to hash a formula takes longer than to evaluate it."""
 
 
-def _extended(formula: ltl.Formula, word: Sequence[Letter], semantics: Semantics) -> _Parts:
-    if not word:
+@dataclass(frozen=True, slots=True)
+class _Word:
+    """A word, perhaps with its last letter again while values settle."""
+
+    truths: _Truths
+    n_letters: int
+    n_settling: int
+    ends: bool
+
+
+def _extended(
+    formula: ltl.Formula, truths: _Truths, n_letters: int, semantics: Semantics
+) -> _Parts:
+    if not n_letters:
         raise ValueError("an empty word has no last letter")
     ends = semantics == "finite"
-    settling = [] if ends else [word[-1]] * steps_to_settle(formula)
     parts: _Parts = {}
-    _evaluate(formula, [*word, *settling], ends, parts)
+    word = _Word(truths, n_letters, 0 if ends else steps_to_settle(formula), ends)
+    _evaluate(formula, word, parts)
     return parts
 
 
@@ -97,9 +137,7 @@ def _carried(span: Range) -> int:
     return span.low if span.high is None else span.high
 
 
-def _evaluate(
-    formula: ltl.Formula, word: Sequence[Letter], ends: bool, parts: _Parts
-) -> list[bool]:
+def _evaluate(formula: ltl.Formula, word: _Word, parts: _Parts) -> list[bool]:
     """Truth values on a word that ends, or repeats its last letter.
 
     In the second case it goes on like its last instant for ever.
@@ -108,20 +146,19 @@ def _evaluate(
         return parts[id(formula)][1]
     match formula:
         case ltl.Atom() | ltl.Comparison():
-            letters = {id(letter): letter for letter in word}
-            true = {key: formula in letter for key, letter in letters.items()}
-            values = [true[id(letter)] for letter in word]
+            own = word.truths(formula)
+            values = [*own, *[own[-1]] * word.n_settling]
         case ltl.Same():
             raise ValueError(f"`{formula}` is asked of counted objects, not of a word")
         case ltl.Constant(value):
-            values = [value] * len(word)
+            values = [value] * (word.n_letters + word.n_settling)
         case ltl.Unary(operator, operand):
-            inner = _evaluate(operand, word, ends, parts)
-            values = _unary(operator, inner, range_of(formula), ends)
+            inner = _evaluate(operand, word, parts)
+            values = _unary(operator, inner, range_of(formula), word.ends)
         case ltl.Binary(operator, left, right):
-            first = _evaluate(left, word, ends, parts)
-            second = _evaluate(right, word, ends, parts)
-            values = _binary(operator, first, second, range_of(formula), ends)
+            first = _evaluate(left, word, parts)
+            second = _evaluate(right, word, parts)
+            values = _binary(operator, first, second, range_of(formula), word.ends)
     parts[id(formula)] = formula, values
     return values
 
@@ -186,6 +223,8 @@ def _until(left: list[bool], right: list[bool], span: Range, ends: bool) -> list
 
     ``left`` holds at all instants from here on before that one.
     """
+    if not span.low and span.high is None:
+        return _until_at_all(left, right)
     last = len(right) - 1
     first_right: list[int | None] = [None] * (last + 2)
     """The first instant from here on with ``right``."""
@@ -205,6 +244,16 @@ def _until(left: list[bool], right: list[bool], span: Range, ends: bool) -> list
         within = result is not None and (span.high is None or result <= instant + span.high)
         broken = first_break[instant]
         values.append(within and (broken is None or result is None or broken >= result))
+    return values
+
+
+def _until_at_all(left: Sequence[bool], right: Sequence[bool]) -> list[bool]:
+    """The values of until, be it now or ever: they follow from those of the next instant."""
+    values, after = [], False
+    for a, b in zip(reversed(left), reversed(right), strict=True):
+        after = b or (a and after)
+        values.append(after)
+    values.reverse()
     return values
 
 

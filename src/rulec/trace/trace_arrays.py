@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Set
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -93,6 +93,40 @@ class TraceArrays:
             only={name: flags[there] for name, flags in self.only.items()},
         )
 
+    def at(self, states: Sequence[int]) -> TraceArrays:
+        """The trace of some of its states, ascending, and of who is there in any."""
+        chosen = np.array(states, dtype=np.intp)
+        first = np.searchsorted(chosen, self.spans[:, 0])
+        last = np.searchsorted(chosen, self.spans[:, 1], side="right") - 1
+        there = first <= last
+        begins = (self.starts[:-1] - self.spans[:, 0])[there].tolist()
+        own = zip(begins, first[there].tolist(), last[there].tolist(), strict=True)
+        parts = [begin + chosen[low : high + 1] for begin, low, high in own]
+        cells = np.concatenate([np.empty(0, dtype=np.intp), *parts])
+
+        def part(name: str, values: Array) -> Array:
+            return values[cells if name in self.about else chosen]
+
+        def every(values: Mapping[str, Array]) -> dict[str, Array]:
+            return {name: part(name, column) for name, column in values.items()}
+
+        items = zip(self.objects.items(), there.tolist(), strict=True)
+        return replace(
+            self,
+            n_states=len(states),
+            objects=dict(item for item, is_there in items if is_there),
+            spans=np.stack([first[there], last[there]], axis=1),
+            world=every(self.world),
+            about=every(self.about),
+            unknown=every(self.unknown),
+            absent=every(self.absent),
+            bounds={
+                name: (part(name, low), part(name, high))
+                for name, (low, high) in self.bounds.items()
+            },
+            only={name: flags[there] for name, flags in self.only.items()},
+        )
+
     @property
     def is_partial(self) -> bool:
         """Whether anything that is said is not, or not exactly, known."""
@@ -123,8 +157,8 @@ class TraceArrays:
 
         def of(values: Mapping[str, Array]) -> dict[str, Array]:
             return {
-                name: array if name in self.world else array[said]
-                for name, array in values.items()
+                name: values[name] if name in self.world else values[name][said]
+                for name in values
                 if name in names
             }
 

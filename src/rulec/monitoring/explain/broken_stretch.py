@@ -3,29 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from typing import TypeAlias
 
 from rulec.logic import formula as ltl
-from rulec.logic.semantics import Letter, extended_values
+from rulec.logic.semantics import extended_by_columns
+
+_Truths: TypeAlias = Mapping[ltl.Proposition, Sequence[bool]]
 
 
 def broken_stretch(
     formula: ltl.Formula,
     values: Mapping[ltl.Formula, list[bool]],
-    until: Sequence[Letter],
+    truths: _Truths,
+    decisive: int,
     numbers: Sequence[int],
 ) -> tuple[int, int]:
     """The stretch around a state in which the body of an outermost always or never is broken.
 
-    That state is the last one of ``until``. What never must be and is done in phases, such as
-    passing somebody, lasts from where it begins at the latest up to there. The stretch ends where
-    states, whose ``numbers`` these are, have been left out.
+    ``decisive`` is the index of that state, ``truths`` are those of propositions. What never must
+    be and is done in phases, such as passing somebody, lasts from where it begins at the latest up
+    to there. The stretch ends where states, whose ``numbers`` these are, have been left out.
     """
-    decisive = len(until) - 1
     for part, wanted in _bodies(formula):
         if not wanted and _has_phases(part):
+            until: _Truths = {atom: column[: decisive + 1] for atom, column in truths.items()}
             # The last phase may be no more than that it goes on
-            for word in (until, [*until, frozenset()]):
-                done = extended_values(part, word, "finite")[part]
+            beyond: _Truths = {atom: [*column, False] for atom, column in until.items()}
+            for n_states, word in enumerate((until, beyond), decisive + 1):
+                done = extended_by_columns(part, word, n_states, "finite")[part]
                 begins = [n for n in range(decisive, -1, -1) if done[n]]
                 if begins:
                     return begins[0], decisive

@@ -16,14 +16,14 @@ from rulec.logic.bounds import in_steps
 from rulec.logic.causes import instants_among
 from rulec.logic.kleene import objects_counted
 from rulec.logic.printing import formula_text, term_text
-from rulec.logic.semantics import extended_values
+from rulec.logic.semantics import Semantics, extended_by_columns
 from rulec.monitoring.bindings import Binding, binding_of
 from rulec.monitoring.explain.broken_stretch import broken_stretch
 from rulec.monitoring.explain.explained_states import states_to_explain
 from rulec.monitoring.explain.margins import Margin, choosing_comparisons
 from rulec.monitoring.explain.nearest_satisfying import Repair, nearest_satisfying
 from rulec.monitoring.explain.observed_states import ObservedStates, known_value
-from rulec.monitoring.implied_values import with_implied_values
+from rulec.monitoring.implied_values import with_all_said
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import has_partial_values
@@ -174,7 +174,7 @@ def explain(
     never in a trace of which a window is looked at.
     """
     declared = rulebook.vocabulary
-    given = trace = with_implied_values(trace, declared)
+    given = trace = with_all_said(trace, declared)
     untold = untold_names(declared, trace.told)
     if untold or trace.ends == "cut" or any(map(has_partial_values, trace.states)):
         trace = completed(trace, declared)
@@ -186,7 +186,7 @@ def explain(
     decisive = binding.last if violation.step is None else violation.step
     numbers = _looked_at(reader, rule, binding, decisive)
     place = bisect_left(numbers, decisive)
-    states = tuple(sorted(set(_shown(stretch, decisive)).intersection(numbers)))
+    states = tuple(sorted(set(shown_states(stretch, decisive)).intersection(numbers)))
     declared = with_untold(declared, untold)
     observed = ObservedStates(
         [reader.view(number) for number in numbers],
@@ -195,32 +195,60 @@ def explain(
         place,
         lambda index: StateView(given.states[numbers[index]], {}, declared),
     )
-    truths = {atom: observed.truths(atom) for atom in dict.fromkeys(ltl.atoms_of(rule.formula))}
-    word = _letters(truths, len(numbers))
-    formula = in_steps(rule.formula, exact_step(trace.step_s))
-    known = extended_values(formula, word, rulebook.semantics)
-    values = {part: column[: len(word)] for part, column in known.items()}
-    instants = instants_among(known, formula, len(word), rulebook.semantics)
-    deciding = {part for part, at in instants.items() if True in at}
-    first, last = broken_stretch(formula, values, word[: place + 1], numbers)
     whole = len(numbers) == len(stretch)
     repair = None
     if whole and repaired:
         repair = nearest_satisfying(rule.machine, observed.word(rule.machine))
+    subject = Explained(violation, rule, rulebook.vocabulary, rulebook.semantics, trace.step_s)
+    found = explanation_of(subject, observed, numbers, decided_by)
+    return replace(
+        found,
+        repair=repair
+        and tuple([replace(change, place=binding.first + change.place) for change in repair]),
+        looked_at=None if whole else _window(numbers, place),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Explained:
+    """What is explained: a violation of a rule, in a trace of such steps (s)."""
+
+    violation: Violation
+    rule: CompiledRule
+    vocabulary: Vocabulary
+    semantics: Semantics
+    step_s: float
+
+
+def explanation_of(
+    subject: Explained,
+    observed: ObservedStates,
+    numbers: Sequence[int],
+    decided_by: Mapping[str, Deciding],
+) -> Explanation:
+    """The explanation by observed states with these ``numbers``, without a repair."""
+    rule, semantics = subject.rule, subject.semantics
+    place, n_states = observed.decisive, len(numbers)
+    truths = {atom: observed.truths(atom) for atom in dict.fromkeys(ltl.atoms_of(rule.formula))}
+    formula = in_steps(rule.formula, exact_step(subject.step_s))
+    known = extended_by_columns(formula, truths, n_states, semantics)
+    values = {part: column[:n_states] for part, column in known.items()}
+    instants = instants_among(known, formula, n_states, semantics)
+    deciding = {part for part, at in instants.items() if True in at}
+    first, last = broken_stretch(formula, values, truths, place, numbers)
+    states = tuple([numbers[index] for index in observed.shown])
     return Explanation(
         rule=rule,
-        violation=violation,
+        violation=subject.violation,
         states=states,
-        decisive=decisive,
+        decisive=numbers[place],
         facts=tuple(
             _with_margins(fact, decided_by, states) for fact in _facts(truths, deciding, observed)
         ),
         parts=tuple(_parts((rule.formula, formula), values, deciding, observed)),
-        repair=repair
-        and tuple([replace(change, place=binding.first + change.place) for change in repair]),
-        vocabulary=rulebook.vocabulary,
+        repair=None,
+        vocabulary=subject.vocabulary,
         lasts=(numbers[first], numbers[last]),
-        looked_at=None if whole else _window(numbers, place),
     )
 
 
@@ -248,17 +276,6 @@ def _window(numbers: Sequence[int], place: int) -> tuple[int, int]:
     return numbers[first], numbers[-1]
 
 
-def _letters(
-    truths: Mapping[ltl.Proposition, Sequence[bool]], n_states: int
-) -> list[frozenset[ltl.Proposition]]:
-    """What is true in each state; equal sets are one."""
-    known: dict[tuple[bool, ...], frozenset[ltl.Proposition]] = {}
-    rows = list(zip(*truths.values(), strict=True)) if truths else [()] * n_states
-    for row in set(rows):
-        known[row] = frozenset(atom for atom, is_true in zip(truths, row, strict=True) if is_true)
-    return [known[row] for row in rows]
-
-
 def _with_margins(
     fact: Observation, decided_by: Mapping[str, Deciding], states: Sequence[int]
 ) -> Observation:
@@ -270,7 +287,8 @@ def _with_margins(
     return replace(fact, margins=margins)
 
 
-def _shown(stretch: range, decisive: int) -> tuple[int, ...]:
+def shown_states(stretch: range, decisive: int) -> tuple[int, ...]:
+    """The numbers of the states of a stretch that an explanation shows."""
     if len(stretch) <= LIMITS.states_shown:
         return tuple(stretch)
     last = min(decisive + 1, stretch[-1])

@@ -1,0 +1,182 @@
+"""Explanations of violations by traces in arrays: what is shown alone is made into states."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass
+from typing import overload
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.logic import formula as ltl
+from rulec.logic.free_names import names_in
+from rulec.monitoring.bindings import Binding, binding_of
+from rulec.monitoring.explain.column_truths import ColumnTruths
+from rulec.monitoring.explain.explanation import (
+    Deciding,
+    Explained,
+    Explanation,
+    explanation_of,
+    shown_states,
+)
+from rulec.monitoring.explain.observed_states import ObservedStates
+from rulec.monitoring.implied_values import with_implied_values
+from rulec.monitoring.letter_reader import present_in
+from rulec.monitoring.limits import LIMITS
+from rulec.monitoring.state_view import StateView
+from rulec.monitoring.uncertainty.one_completion import completed, with_all_defaults
+from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
+from rulec.monitoring.verdict import Violation
+from rulec.trace.trace_arrays import Flags, TraceArrays
+from rulec.vocabulary import Vocabulary
+
+
+def explain_arrays(
+    violation: Violation,
+    arrays: TraceArrays,
+    rulebook: CompiledRulebook,
+    decided_by: Mapping[str, Deciding],
+) -> Explanation | None:
+    """What ``explain`` says of a cut trace, without a repair.
+
+    None where it takes all states: of very long traces, of values that follow from others or from
+    other states.
+    """
+    rule = next(rule for rule in rulebook.rules if rule.name == violation.rule)
+    spans = zip(arrays.objects, arrays.spans.tolist(), strict=True)
+    present = {item: (first, last) for item, (first, last) in spans}
+    binding = binding_of(violation.binding, present, arrays.n_states)
+    stretch = range(binding.first, binding.last + 1)
+    truths = ColumnTruths(arrays, rulebook.vocabulary, binding)
+    is_long = len(stretch) > 2 * LIMITS.states_explained
+    if is_long or arrays.ends != "cut" or not _is_plain(rule.formula, truths):
+        return None
+    told = _Vocabularies.of(rulebook, arrays.told)
+    decisive = binding.last if violation.step is None else violation.step
+    shown = [number - binding.first for number in shown_states(stretch, decisive)]
+    views = _Views(arrays, binding, rule.formula, told)
+    observed = _ObservedColumns(
+        views=views,
+        bound=binding.objects,
+        shown=shown,
+        decisive=decisive - binding.first,
+        given=views.given,
+        find_truths=truths.of,
+    )
+    views.look_at({*observed.looked_up, 0})
+    subject = Explained(violation, rule, told.completed, rulebook.semantics, arrays.step_s)
+    return explanation_of(subject, observed, stretch, decided_by)
+
+
+def _is_plain(formula: ltl.Formula, truths: ColumnTruths) -> bool:
+    """Whether each state tells by itself what a formula reads."""
+    vocabulary = truths.vocabulary
+    effects: set[str] = set()
+    ahead = [name for name in vocabulary.implied if truths.says(name)]
+    while ahead:
+        found = {*vocabulary.implied.get(ahead.pop(), ())} - effects
+        effects |= found
+        ahead += found
+    return not any(
+        (name in effects and not own.says_all(name, arguments))
+        or (name in vocabulary.constants and not own.is_steady(name, arguments))
+        for own, name, arguments in _read_by(formula, truths)
+    )
+
+
+def _read_by(
+    formula: ltl.Formula, truths: ColumnTruths
+) -> Iterator[tuple[ColumnTruths, str, tuple[str, ...]]]:
+    """The names that a formula reads, of which variables, and of what these stand for."""
+    for atom in ltl.atoms_of(formula):
+        if isinstance(atom, ltl.Atom):
+            yield truths, atom.name, atom.arguments
+            continue
+        for _, term in atom.terms:
+            if isinstance(term, ltl.Count):
+                for _, own in truths.of_counted(term):
+                    yield from _read_by(term.body, own)
+            else:
+                yield truths, term.name, term.arguments
+
+
+@dataclass(frozen=True, slots=True)
+class _Vocabularies:
+    """A rulebook's words where all are known, and where what nobody tells is unknown."""
+
+    declared: Vocabulary
+    completed: Vocabulary
+    given: Vocabulary
+
+    @staticmethod
+    def of(rulebook: CompiledRulebook, told: frozenset[str] | None) -> _Vocabularies:
+        """Those of traces from sources that tell the same."""
+        key = _Vocabularies, told
+        found: _Vocabularies | None = rulebook.prepared.get(key)
+        if found is None:
+            declared = rulebook.vocabulary
+            given = with_untold(declared, untold_names(declared, told))
+            found = _Vocabularies(declared, with_all_defaults(declared), given)
+            rulebook.prepared[key] = found
+        return found
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _ObservedColumns(ObservedStates):
+    """States of which truths are told by columns."""
+
+    find_truths: Callable[[ltl.Proposition], Flags]
+
+    def truths(self, proposition: ltl.Proposition) -> list[bool]:
+        """Truth of a proposition in each state."""
+        found: list[bool] = self.find_truths(proposition).tolist()
+        return found
+
+
+class _Views(Sequence[StateView]):
+    """Views of the states of a binding, those that have been looked at being made together."""
+
+    def __init__(
+        self, arrays: TraceArrays, binding: Binding, formula: ltl.Formula, told: _Vocabularies
+    ) -> None:
+        comparisons = [atom for atom in ltl.atoms_of(formula) if isinstance(atom, ltl.Comparison)]
+        counts = any(isinstance(term, ltl.Count) for own in comparisons for _, term in own.terms)
+        whom = arrays.objects.keys() if counts else {*binding.objects.values()}
+        self._arrays = arrays.part({*names_in(formula)}, whom)
+        self._binding, self._told = binding, told
+        self._made: dict[int, tuple[StateView, StateView]] = {}
+
+    def look_at(self, indices: Set[int]) -> None:
+        """Make the views of some states."""
+        chosen, told = sorted(indices), self._told
+        part = self._arrays.at([self._binding.first + index for index in chosen])
+        given = with_implied_values(part.trace(), told.declared)
+        known = completed(given, told.declared)
+        for number, index in enumerate(chosen):
+            present = present_in(number, known.objects, known.present)
+            self._made[index] = (
+                StateView(known.states[number], present, told.completed),
+                StateView(given.states[number], {}, told.given),
+            )
+
+    def given(self, index: int) -> StateView:
+        """A state as it is given, whose values may be unknown."""
+        return self._both(index)[1]
+
+    def _both(self, index: int) -> tuple[StateView, StateView]:
+        if index not in self._made:
+            self.look_at({index})
+        return self._made[index]
+
+    def __len__(self) -> int:
+        return self._binding.last - self._binding.first + 1
+
+    @overload
+    def __getitem__(self, index: int) -> StateView: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[StateView, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> StateView | tuple[StateView, ...]:
+        if isinstance(index, slice):
+            return tuple([self[k] for k in range(*index.indices(len(self)))])
+        return self._both(index)[0]
