@@ -1,8 +1,11 @@
 """Help and completion of a verb wait for nothing that only its run needs."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
+
+import pytest
 
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.verb_table import VERBS
@@ -134,6 +137,22 @@ def test_what_lives_until_the_end_is_not_looked_through_then():
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True)
     assert done.stdout.split()[-1] == b"True"
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="says what threads there are")
+@pytest.mark.parametrize(("given", "expected"), [({}, "1"), ({"OPENBLAS_NUM_THREADS": "3"}, "3")])
+def test_products_of_matrices_have_one_thread_unless_somebody_says_otherwise(given, expected):
+    usual = {name: value for name, value in os.environ.items() if name != "OPENBLAS_NUM_THREADS"}
+    program = (
+        "import os, rulec.cli.entry_point, numpy as np\n"
+        "a = np.ones((500, 500)); a @ a\n"
+        "print(os.environ['OPENBLAS_NUM_THREADS'], len(os.listdir('/proc/self/task')))"
+    )
+    call = [sys.executable, "-c", program]
+    done = subprocess.run(call, capture_output=True, check=True, env=usual | given)
+    said, threads = done.stdout.decode().split()
+    assert said == expected
+    assert threads == "1" or given
 
 
 def test_there_is_room_for_the_frames_of_all_that_the_program_calls():

@@ -15,6 +15,10 @@ if _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler:
     # Wherever Ctrl-C comes while modules are imported: no traceback.
     _signal.signal(_signal.SIGINT, _interrupted)
 
+# Products of matrices are small here, and processes take the processors: threads of numpy's library
+# for them would take 20 ms of each start, and wait for each other ever after.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 # ruff: noqa: E402 - what is above comes first
 import atexit
 import gc
