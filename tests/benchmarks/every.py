@@ -28,6 +28,7 @@ NAMES = (
     "world",
     "recordings",
     "drives",
+    "hour",
     "scored",
     "compiling",
     "starting",

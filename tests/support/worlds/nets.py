@@ -88,7 +88,17 @@ def _spider(pick):
     return [*shape, "--default-junction-type", "traffic_light", *_lights()]
 
 
+def _town(pick):
+    """Five by five junctions with lights, on roads of two lanes."""
+    size = ["--grid", "--grid.number", "5", "--grid.length", "200", "--grid.attach-length", "150"]
+    return [
+        *(*size, "--default.lanenumber", "2"),
+        *("--default-junction-type", "traffic_light", *_lights()),
+    ]
+
+
 _GENERATORS = {
+    "town": _town,
     "lights": _grid("traffic_light", *_lights()),
     "wide_lights": _grid("traffic_light", "--default.lanenumber", "2", *_lights()),
     "right_before_left": _grid("right_before_left"),
