@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.trace.plain_arrays import distinct, median, medians, sorted_in
+from rulec.trace.plain_arrays import distinct, median, medians, medians_hold, sorted_in
 
 
 @pytest.mark.parametrize("numbers", [[], [3], [2, 1, 2], [[5, 1], [1, 5]], [0.5, -0.0, 0.0]])
@@ -33,3 +33,13 @@ def test_groups_are_sorted_and_halved(entries, lonely):
         own = [value for number, value in entries if number == group]
         assert sizes[group] == len(own)
         assert found[group] == statistics.median(own) if own else np.isnan(found[group])
+
+
+@given(st.lists(st.tuples(st.integers(0, 4), st.integers(-2, 2)), max_size=30), st.integers(-2, 2))
+def test_what_holds_of_small_numbers_holds_of_medians_as_small(entries, limit):
+    groups = np.array([group for group, _ in entries], dtype=np.intp)
+    values = np.array([value for _, value in entries], dtype=float)
+    found = medians_hold(groups, values, 5, lambda numbers: numbers < limit - 0.25)
+    for group in range(5):
+        own = [value for number, value in entries if number == group]
+        assert found[group] == (bool(own) and statistics.median(own) < limit - 0.25)

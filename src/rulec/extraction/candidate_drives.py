@@ -11,7 +11,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import EgosOnRoad, drives_context
-from rulec.extraction.drives import MOST_CELLS, Drives, LaidOutMap, NoDrive
+from rulec.extraction.drives import Drives, LaidOutMap, NoDrive
 from rulec.extraction.to_trace import Drive, TraceWriter, to_traces
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.driven_route import RouteStretch
@@ -23,6 +23,9 @@ from rulec.extraction.tracks.tracks import ObjectTypes, tracks_of
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Participant, Recording, Side
 from rulec.trace.end_to_end import UnlikeDrivesError
+
+MOST_CELLS = 1 << 18
+"""Drives are laid end to end up to so many cells; fewer at a time take more calls, more memory."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

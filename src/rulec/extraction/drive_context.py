@@ -231,15 +231,12 @@ class DriveContext:
         ``_ENOUGH_TRACKS`` in all lanes, 0 up to ``_LEAST_OFFSET_M``. Drivers keep to the middle on
         the whole: by so much the map may be off the tracks.
         """
-        rows, columns = self.driving_along.nonzero()
-        lane = self.extents.lane[rows, columns]
-        left_of = self.extents.left_of_min, self.extents.left_of_max
-        low, high = (
-            (bounds[rows, columns, lane] + bounds[rows, columns, lane + 1]) / 2
-            for bounds in left_of
-        )
-        away, drive = (low + high) / 2, self.spans.number[columns]
         by_state = np.zeros(self.states)
+        if self.extents.most_off_middle <= _LEAST_OFFSET_M:
+            return by_state
+        rows, columns = self.driving_along.nonzero()
+        lane, drive = self.extents.lane[rows, columns], self.spans.number[columns]
+        away = self.extents.off_middle[rows, columns]
         of_all: Floats | None = None
         for number in distinct(self.ego_lane).tolist():
             inside = np.flatnonzero(lane == number)
@@ -326,9 +323,10 @@ def _near(places: RoadPlaces, ranges: Sequence[slice], ego: RoadExtents) -> tupl
     """
     limits, extents = places.thresholds, places.extents
 
+    columns = np.concatenate([np.arange(own.start, own.stop) for own in ranges])
+
     def laid(values: NDArray[Any]) -> NDArray[Any]:
-        parts = [values[:, own] for own in ranges]
-        return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)
+        return values[:, ranges[0]] if len(ranges) == 1 else values.take(columns, axis=1)
 
     gap = laid(extents.s_min) - ego.s_max
     np.maximum(gap, ego.s_min - laid(extents.s_max), out=gap)

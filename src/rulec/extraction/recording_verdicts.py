@@ -152,6 +152,8 @@ def agreed_answers(
 
 
 def _agreed(answers: Sequence[Verdict | NotJudged]) -> Verdict | NotJudged:
+    if len(answers) == 1:
+        return answers[0]
     verdicts = [answer for answer in answers if isinstance(answer, Verdict)]
     return agreed(verdicts) if len(verdicts) == len(answers) else answers[0]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, TypeVar
 
 import numpy as np
@@ -85,6 +86,27 @@ def medians(
         numbers, middle = np.arange(len(own)), sizes[own]
         found[own] = (rows[numbers, (middle - 1) // 2] + rows[numbers, middle // 2]) / 2
     return found, sizes
+
+
+def medians_hold(
+    groups: NDArray[np.intp],
+    values: NDArray[np.float64],
+    count: int,
+    holds: Callable[[NDArray[np.float64]], NDArray[np.bool_]],
+) -> NDArray[np.bool_]:
+    """Whether something holds of the median of each of so many groups; not of an empty one.
+
+    It ``holds`` of all numbers below one, so that it is enough to count those of which it does.
+    """
+    sizes = np.bincount(groups, minlength=count)
+    twice = 2 * np.bincount(groups[holds(values)], minlength=count)
+    found = twice > sizes
+    # Where it holds of one half the median is between that and the other one
+    halves = (twice == sizes) & (sizes > 0)
+    if halves.any():
+        own = np.flatnonzero(halves[groups])
+        found[halves] = holds(medians(groups[own], values[own], count)[0][halves])
+    return found
 
 
 def _in_rows(

@@ -251,9 +251,9 @@ def _of_no_use(context: DriveContext) -> Flags:
     lane, there = _next_lane(context, context.side)
     states = np.arange(context.states)
     side_lane = ~lanes_that_go_on(context)[states, lane]
-    queues, speed_kmh = queues_by_lane(context)
+    queues, are_slow = queues_by_lane(context)
     full, own = (queues[LOOSE, states, number] for number in (lane, context.ego_lane))
-    slow = speed_kmh[states, context.ego_lane] < context.thresholds.slow_queue_kmh
+    slow = are_slow[states, context.ego_lane]
     _, sorting = _sorted_ahead(context)
     map_ends = (
         context.road.borders[-1] - context.ego_extents.s_max[0] < context.thresholds.approach_m

@@ -17,6 +17,7 @@ from rulec.extraction.signals.queues import (
     MEASURED,
     READINGS,
     STRICT,
+    VehiclesAround,
     close_by,
     lanes_that_decide,
     longest_gaps,
@@ -28,7 +29,7 @@ from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.road_extents import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import JOINING
-from rulec.trace.plain_arrays import distinct, medians
+from rulec.trace.plain_arrays import distinct, medians_hold
 
 _DRIFT_MPS = 0.2
 """Who moves sideways by less keeps its lane."""
@@ -54,26 +55,19 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     Who queues to leave, beside lanes on which traffic flows or nobody is, is in no jam of the road:
     that is on half of its lanes or more.
     """
-    around, limits = vehicles_around(context), context.thresholds
-    speeds, counts = medians(around.state, around.speed, context.states)
-    enough, speed_kmh = counts >= limits.fewest, speeds * KMH
-    lanes = context.existing_lanes.shape[1]
-    place = around.state * lanes + around.lane
-    of_lane, on_lane = medians(place, around.speed, context.states * lanes)
-    fast = np.where(on_lane > 1, of_lane, 0.0).reshape(context.states, lanes)
-    # Where traffic flows freely each lane may have one alone
-    beside = around.lane != context.ego_lane[around.state]
-    of_others, others = medians(around.state[beside], around.speed[beside], context.states)
-    flows = np.where(others > 1, of_others, 0.0)
-    fastest_kmh = np.maximum(fast.max(axis=1, initial=0.0), flows) * KMH
-
+    around, limits, states = vehicles_around(context), context.thresholds, context.states
     existing = context.existing_lanes
+    shape, size = existing.shape, existing.size
+    place = around.state * shape[1] + around.lane
+    enough = np.bincount(around.state, minlength=states) >= limits.fewest
 
     def slow(below_kmh: float) -> Flags:
-        called: Flags = (speed_kmh < below_kmh) & (fastest_kmh < TIMES_AS_FAST * below_kmh)
-        there = np.bincount(place[around.speed * KMH < below_kmh], minlength=fast.size) > 0
-        on_lanes = there.reshape(fast.shape) & existing
-        called &= enough & (2 * on_lanes.sum(axis=1) >= existing.sum(axis=1))
+        own = around.speed * KMH < below_kmh
+        there = (np.bincount(place[own], minlength=size) > 0).reshape(shape) & existing
+        called: Flags = enough & (2 * there.sum(axis=1) >= existing.sum(axis=1))
+        asked = np.flatnonzero(called[around.state])
+        if len(asked):
+            called &= _is_slow(context, around.part(asked), below_kmh)
         return called
 
     congested = slow(limits.congested_kmh)
@@ -86,14 +80,36 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     )
 
 
+def _is_slow(context: DriveContext, around: VehiclesAround, below_kmh: float) -> Flags:
+    """Flags of states in which traffic is slower than so much, and nowhere so many times as fast.
+
+    Nobody is on no lane, nor one alone where traffic flows freely.
+    """
+    states, lanes = context.states, context.existing_lanes.shape[1]
+
+    def are_below(limit_kmh: float, chosen: Flags | None, *, by_lane: bool = False) -> Flags:
+        own = around if chosen is None else around.part(np.flatnonzero(chosen))
+        groups = own.state * lanes + own.lane if by_lane else own.state
+        count = states * lanes if by_lane else states
+        below = medians_hold(groups, own.speed, count, lambda speed: speed * KMH < limit_kmh)
+        return below if chosen is None else below | (np.bincount(groups, minlength=count) <= 1)
+
+    fast_kmh = TIMES_AS_FAST * below_kmh
+    everybody = np.ones(len(around.state), dtype=bool)
+    beside = around.lane != context.ego_lane[around.state]
+    on_lanes = are_below(fast_kmh, everybody, by_lane=True).reshape(states, lanes).all(axis=1)
+    slow: Flags = are_below(below_kmh, None) & on_lanes & are_below(fast_kmh, beside)
+    return slow
+
+
 def _dense_all_lanes(context: DriveContext) -> SignalColumns:
     dense, _, not_told = _dense_lines(context)
     return SignalColumns({"dense_all_lanes": dense}, unknown={"dense_all_lanes": not_told})
 
 
 def _far_lane_queue(context: DriveContext) -> SignalColumns:
-    queues, speed_kmh = queues_by_lane(context)
-    slow = queues & (speed_kmh < context.thresholds.slow_queue_kmh)
+    queues, are_slow = queues_by_lane(context)
+    slow = queues & are_slow
     queue, fewer = (_beside(context, slow[reading]) for reading in (MEASURED, STRICT))
     # Whether one farther out is the queue beside ego's lane depends on who is passed
     more = _at_far_side(context, slow[LOOSE])
@@ -102,8 +118,8 @@ def _far_lane_queue(context: DriveContext) -> SignalColumns:
 
 def _own_lane_queue(context: DriveContext) -> SignalColumns:
     """Whether ego is in a slow queue, by its lane; for all that is as wrong as may be, too."""
-    queues, speed_kmh = queues_by_lane(context)
-    slow = queues & (speed_kmh < context.thresholds.slow_queue_kmh)
+    queues, are_slow = queues_by_lane(context)
+    slow = queues & are_slow
     queue, fewer, more = (
         slow[reading][np.arange(context.states), context.ego_lane] for reading in READINGS
     )

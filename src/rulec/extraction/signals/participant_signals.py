@@ -36,6 +36,7 @@ from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.paper_words import LATERALS, STATIONS
+from rulec.trace.plain_arrays import distinct
 
 _ALONG = 0.5
 """The sine of the angle to the road up to which one heads along it."""
@@ -150,20 +151,33 @@ def _safe_gap(context: DriveContext) -> SignalColumns:
     aside = relations.way_across(context)[cells] - limits.touching_m
     room = np.where(stands, aside, -np.inf)
     may_pass_by, follows = np.abs(room) < place, room <= 0
-    moot = may_pass_by | (follows & parts_soon(context, cells))
-    speed = np.maximum(context.ego_extents.along[0], 0.0)
-    react_m = speed[cells[1]] * limits.reaction_s
-    ahead = np.flatnonzero(may_follow.any(axis=1))
-    stops = _stood_before(context, ahead)[cells] & (short - react_m <= 0)
-    moot |= follows & stops
+    # Elsewhere the distance is long enough, whoever that is
+    perhaps_short = short > -wrong
+    moot = may_pass_by & perhaps_short
+    asked = np.flatnonzero(follows & perhaps_short)
+    moot[asked] |= _need_not_follow(context, (cells[0][asked], cells[1][asked]), short[asked])
     safe, unknown = np.ones(may_follow.shape, dtype=bool), np.zeros(may_follow.shape, dtype=bool)
     safe[cells] = ~follows | (short <= 0)
-    unknown[cells] = (follows & (np.abs(short) < wrong)) | (moot & (short > -wrong))
+    unknown[cells] = (follows & (np.abs(short) < wrong)) | moot
     late, far_too_late = np.zeros((2, *may_follow.shape), dtype=bool)
     late[cells] = follows & (short >= wrong)
     far_too_late[cells] = follows & (short > _OUTLIERS * wrong)
     unknown |= _brief_and_slight(context, late, far_too_late)
     return SignalColumns(about={"safe_gap": safe}, unknown={"safe_gap": unknown})
+
+
+def _need_not_follow(
+    context: DriveContext, cells: tuple[NDArray[intp], ...], short: Floats
+) -> Flags:
+    """Flags of cells in which who is ahead parts soon, or has stood for long enough to be seen.
+
+    ``short`` is by how much (m) the distance is too short if ego reacts first.
+    """
+    speed = np.maximum(context.ego_extents.along[0], 0.0)
+    react_m = speed[cells[1]] * context.thresholds.reaction_s
+    stood = _stood_before(context, distinct(cells[0]))[cells]
+    moot: Flags = parts_soon(context, cells) | (stood & (short - react_m <= 0))
+    return moot
 
 
 def _brief_and_slight(context: DriveContext, late: Flags, far_too_late: Flags) -> Flags:

@@ -17,7 +17,7 @@ from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.trace.plain_arrays import in_order, medians, sorted_in
+from rulec.trace.plain_arrays import in_order, medians_hold, sorted_in
 
 _BODY_M = 5.0
 """About how long a vehicle is."""
@@ -160,10 +160,10 @@ def vehicles_around(context: DriveContext) -> VehiclesAround:
 
 
 @once
-def queues_by_lane(context: DriveContext) -> tuple[Flags, Floats]:
-    """Flags and median speeds (km/h) of queues, by state and lane.
+def queues_by_lane(context: DriveContext) -> tuple[Flags, Flags]:
+    """Flags of queues, and of lanes whose median speed is that of slow ones, by state and lane.
 
-    In a queue more than half of the gaps are short. The flags are by what counts as short, a first
+    In a queue more than half of the gaps are short. Its flags are by what counts as short, a first
     axis.
     """
     lanes = context.existing_lanes.shape[1]
@@ -172,7 +172,12 @@ def queues_by_lane(context: DriveContext) -> tuple[Flags, Floats]:
     enough = np.bincount(place, minlength=context.states * lanes) >= context.thresholds.fewest
     several = np.flatnonzero(enough[place])
     around, place = around.part(several), place[several]
-    middle, _ = medians(place, around.speed, context.states * lanes)
+    slow = medians_hold(
+        place,
+        around.speed,
+        context.states * lanes,
+        lambda speed: speed * KMH < context.thresholds.slow_queue_kmh,
+    )
     order = sorted_in(place, around.s_min)
     around, place = around.part(order), place[order]
     next_to = np.flatnonzero(place[1:] == place[:-1])
@@ -185,4 +190,4 @@ def queues_by_lane(context: DriveContext) -> tuple[Flags, Floats]:
         begins = np.flatnonzero(np.diff(place, prepend=-1))
         n_short = np.add.reduceat(short, begins, axis=1, dtype=np.intp)
         queues[:, place[begins]] = n_short > _MOST * np.diff(begins, append=len(place))
-    return queues.reshape(len(READINGS), *shape), middle.reshape(shape) * KMH
+    return queues.reshape(len(READINGS), *shape), slow.reshape(shape)

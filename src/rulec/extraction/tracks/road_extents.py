@@ -82,6 +82,22 @@ class RoadExtents:
         return lane
 
     @cached_property
+    def off_middle(self) -> Floats:
+        """How far (m) left of the middle of its lane the middle of each is."""
+        at = *np.ogrid[: len(self.lane), : self.lane.shape[1]], self.lane
+        beyond = *at[:2], self.lane + 1
+        low, high = (
+            (bounds[at] + bounds[beyond]) / 2 for bounds in (self.left_of_min, self.left_of_max)
+        )
+        off: Floats = (low + high) / 2
+        return off
+
+    @cached_property
+    def most_off_middle(self) -> float:
+        """The greatest of these distances (m) to either side, or more."""
+        return float(np.abs(np.nan_to_num(self.off_middle)).max(initial=0.0))
+
+    @cached_property
     def breadth(self) -> Floats:
         """How far (m) bodies reach across each lane (last axis)."""
         return self.left_of_max[..., :-1] - self.left_of_min[..., :-1]
@@ -142,10 +158,7 @@ class RoadExtents:
 
     def end_to_end(self, laid: LaidOut) -> RoadExtents:
         """Some participants in several ranges of columns."""
-        found = RoadExtents(**{name: laid(getattr(self, name)) for name in _FIELDS})
-        # Without a place the lane is the first one, as for who is absent
-        found.__dict__.update(s=laid(self.s), lane=laid(self.lane))
-        return found
+        return _LaidExtents(self, laid)
 
     def and_one(self, other: RoadExtents, row: int) -> RoadExtents:
         """These extents, and behind them a row of others in the same steps."""
@@ -158,6 +171,27 @@ class RoadExtents:
 
 
 _FIELDS = tuple(field.name for field in fields(RoadExtents))
+
+_LAID = frozenset((*_FIELDS, "s", "lane", "off_middle"))
+
+
+class _LaidExtents(RoadExtents):
+    """Extents of a ``whole`` in several ranges, with each array laid out when it is asked for.
+
+    What is derived of a single place is so once for the whole. Without a place the lane is the
+    first one, as for who is absent.
+    """
+
+    def __init__(self, whole: RoadExtents, laid: LaidOut) -> None:
+        self.__dict__.update(_whole=whole, _laid=laid, most_off_middle=whole.most_off_middle)
+
+    def __getattribute__(self, name: str) -> Any:
+        if name in _LAID:
+            own = object.__getattribute__(self, "__dict__")
+            if name not in own:
+                own[name] = own["_laid"](getattr(own["_whole"], name))
+            return own[name]
+        return object.__getattribute__(self, name)
 
 
 def at_columns(values: NDArray[Any], rows: NDArray[intp], columns: NDArray[intp]) -> NDArray[Any]:
