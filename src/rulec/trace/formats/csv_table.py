@@ -18,7 +18,7 @@ from rulec.trace.trace_model import Trace
 from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
 from rulec.vocabulary.written_numbers import WrittenNumber, number_written
 
-LARGE_BYTES = 1 << 22
+LARGE_BYTES = 1 << 19
 """Of a smaller file the rows are read sooner than Arrow is."""
 
 _LONGEST_HEAD_BYTES = 1 << 16
