@@ -36,6 +36,7 @@ from rulec.logic.formula import Atom, Binary, BinaryOperator
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.trace import Trace
+from rulec.witnesses.object_universe import Itself
 from rulec.witnesses.undecided import UndecidedError
 from support.builders.rulebooks import always, no
 from support.generators.random_rule_pairs import (
@@ -80,7 +81,7 @@ class TestAsUsual:
             return
         for names in asked:
             declared = VOCABULARY.declarations
-            facts = [said_as_usual(name, declared[name]) for name in sorted(names)]
+            facts = [said_as_usual(name, Itself(declared[name])) for name in sorted(names)]
             try:
                 expected = counterexample(forbidding, [allowing], facts)
             except UndecidedError:

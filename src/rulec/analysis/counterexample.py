@@ -79,7 +79,7 @@ class Contest:
     def trace_as_usual(self, names: Set[str]) -> Trace | None:
         """One in which these declarations have their defaults. Raises UndecidedError."""
         declared = self.forbidding.rulebook.vocabulary.declarations
-        axioms = [said_as_usual(name, declared[name]) for name in sorted(names)]
+        axioms = [said_as_usual(name, Itself(declared[name])) for name in sorted(names)]
         universe = replace(self._universe, axioms=(*self._universe.axioms, *axioms))
         alphabet = self._alphabet.as_usual(axioms)
         if self._word(alphabet) is None:
@@ -111,8 +111,11 @@ class Contest:
         return shortest_word(self._monitors, self._verdicts, letters, alphabet.can_be_read)
 
 
-def said_as_usual(name: str, declaration: Declaration) -> Axiom:
+# What is known of an axiom is kept beside it, and many rules are asked about the same words.
+@lru_cache(maxsize=1024)
+def said_as_usual(name: str, declared: Itself[Declaration]) -> Axiom:
     """That a declaration has its default, for all objects."""
+    declaration = declared.item
     variables = tuple(
         Variable(f"o{number}", kind) for number, kind in enumerate(declaration.parameters)
     )

@@ -5,7 +5,7 @@ The search is breadth first over how many objects each count has reached.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import lru_cache, reduce
@@ -20,7 +20,12 @@ from rulec.logic.free_names import variables_of
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses import letter_functions
 from rulec.witnesses.object_universe import EXTRA, Itself, ObjectUniverse
-from rulec.witnesses.relevant_axioms import relevant_axioms, said_axioms
+from rulec.witnesses.relevant_axioms import (
+    SaidAxiom,
+    axioms_about,
+    relevant_axioms,
+    subjects_read,
+)
 from rulec.witnesses.state_synthesis import JointState, Subject, Value, synthesize_state
 from rulec.witnesses.undecided import UndecidedError
 
@@ -118,29 +123,39 @@ def _comes_out(state: JointState, universe: ObjectUniverse, counted: Mapping[Cou
 class CountedObjectKinds:
     """Additional objects of a universe that counts distinguish.
 
-    What they depend on in a state, mostly nothing, is told once, for states are many.
+    What they depend on in a state, mostly nothing, is told once, for states are many. They are told
+    from those of another universe ``before`` where that had no axioms but the first ones of this.
     """
 
-    def __init__(self, universe: ObjectUniverse) -> None:
+    def __init__(self, universe: ObjectUniverse, before: CountedObjectKinds | None = None) -> None:
         self.universe = universe
-        self._types: dict[object, list[_CountedType]] = {}
+        self._before = before
+        first = len(before.universe.axioms) if before else 0
+        self._own = replace(universe, axioms=universe.axioms[first:])
+        self._fitting: dict[object, list[_FittingType]] = {}
 
     def of(self, state: JointState, types: Sequence[str] = ()) -> list[CountedObject]:
         """Those of a state, of most general types first.
 
         Their types are those that are counted, and ``types``, which another state may need.
         """
-        counts = tuple(_counts_of(state))
-        key = counts, tuple(types)
-        if key not in self._types:
-            self._types[key] = list(self._counted_types(counts, types))
         return [
-            candidate for counted in self._types[key] for candidate in self._of_type(counted, state)
+            candidate
+            for fitting in self._types(tuple(_counts_of(state)), tuple(types))
+            for candidate in self._of_type(fitting.counted, state)
         ]
 
-    def _counted_types(
-        self, counts: Sequence[Count], types: Sequence[str]
-    ) -> Iterator[_CountedType]:
+    def _types(self, counts: tuple[Count, ...], types: tuple[str, ...]) -> Sequence[_FittingType]:
+        key = counts, types
+        if key not in self._fitting:
+            self._fitting[key] = (
+                [self._with_own(known) for known in self._before._types(counts, types)]
+                if self._before
+                else list(self._first_types(counts, types))
+            )
+        return self._fitting[key]
+
+    def _first_types(self, counts: Sequence[Count], types: Sequence[str]) -> Iterator[_FittingType]:
         vocabulary = self.universe.vocabulary
         fitting = [
             kind
@@ -153,10 +168,25 @@ class CountedObjectKinds:
                 for place, count in enumerate(counts)
                 if vocabulary.is_subtype(kind, count.type)
             }
-            axioms = _axioms_about(kind, self.universe, list(bodies.values()))
             places = len(counts), *bodies
-            about = (*bodies.values(), *axioms)
-            yield _counted_type(kind, places, about, Itself(vocabulary))
+            yield _fitting_type(
+                kind,
+                places,
+                tuple(bodies.values()),
+                axioms_about(EXTRA, kind, self._own),
+                Itself(vocabulary),
+            )
+
+    def _with_own(self, known: _FittingType) -> _FittingType:
+        """A type that is known from the universe before, and what the own axioms make of it."""
+        own = axioms_about(EXTRA, known.counted.type, self._own)
+        if all(
+            axiom.holds_by_default and known.reached.isdisjoint(axiom.subjects) for axiom in own
+        ):
+            return known  # they are about what nothing asks
+        said = (*known.said, *own)
+        vocabulary = Itself(self.universe.vocabulary)
+        return _fitting_type(known.counted.type, known.places, known.bodies, said, vocabulary)
 
     def _of_type(self, counted: _CountedType, state: JointState) -> tuple[CountedObject, ...]:
         vocabulary = self.universe.vocabulary
@@ -194,6 +224,40 @@ class _CountedType:
     allowed: Sequence[int]
     asked: Sequence[tuple[int, Sequence[tuple[Fraction, Term]] | None]]
     found: dict[object, tuple[CountedObject, ...]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class _FittingType:
+    """A type of additional objects, with what decides which of the axioms matter to it.
+
+    The first of the ``places`` is the number of all counts, the others are those of the ``bodies``.
+    ``said`` are the axioms about such an object, ``reached`` is what those that can tell anything
+    about the bodies are about, and these.
+    """
+
+    counted: _CountedType
+    places: tuple[int, ...]
+    bodies: tuple[Formula, ...]
+    said: tuple[SaidAxiom, ...]
+    reached: Set[Subject]
+
+
+# Most rules of two rulebooks are asked about with the same objects and axioms.
+@lru_cache(maxsize=1024)
+def _fitting_type(
+    kind: str,
+    places: tuple[int, ...],
+    bodies: tuple[Formula, ...],
+    said: tuple[SaidAxiom, ...],
+    vocabulary: Itself[Vocabulary],
+) -> _FittingType:
+    read = [reads_of(body, vocabulary.item) for body in bodies]
+    # Others would multiply the states to go through, and its words in them have their defaults.
+    relevant = relevant_axioms(said, read)
+    about = (*bodies, *(axiom.formula for axiom in relevant))
+    counted = _counted_type(kind, places, about, vocabulary)
+    reached = frozenset().union(*map(subjects_read, read), *(axiom.subjects for axiom in relevant))
+    return _FittingType(counted, places, bodies, said=said, reached=reached)
 
 
 # Universes of a few objects and one vocabulary have the same additional ones.
@@ -254,19 +318,6 @@ def _first_of_each(
         if added is not None:
             seen.add(adds)
             yield CountedObject(counted.type, adds, added.values)
-
-
-def _axioms_about(kind: str, universe: ObjectUniverse, bodies: Sequence[Formula]) -> list[Formula]:
-    """The axioms about an additional object that can tell anything about the counts' bodies.
-
-    Others would multiply the states to go through, and its words in them have their defaults.
-    """
-    with_it = replace(universe, objects={**universe.objects, EXTRA: kind})
-    axioms = [
-        axiom for axiom in said_axioms(with_it) if not axiom.is_counting and EXTRA in axiom.objects
-    ]
-    read = [reads_of(body, universe.vocabulary) for body in bodies]
-    return [axiom.formula for axiom in relevant_axioms(axioms, read)]
 
 
 def _digit(read: Read | NumberRead, state: JointState, vocabulary: Vocabulary) -> int:

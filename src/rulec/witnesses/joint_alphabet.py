@@ -85,6 +85,7 @@ class JointAlphabet:
         self._usual = 0
         self.is_exact = True
         self._plain = KnownWays()
+        self._object_kinds = CountedObjectKinds(universe)
         self._numbers: dict[
             object, dict[state_synthesis.Subject, state_synthesis.Value] | None
         ] = {}
@@ -99,6 +100,7 @@ class JointAlphabet:
         """
         usual = copy(self)
         usual._universe = replace(self._universe, axioms=(*self._universe.axioms, *axioms))
+        usual._object_kinds = CountedObjectKinds(usual._universe, self._object_kinds)
         usual._defaults, usual._digits = [*self._defaults], [*self._digits]
         reads = list(self._joint.reads)
         levels = {subject_of(read): level for level, read in enumerate(reads)}
@@ -127,7 +129,6 @@ class JointAlphabet:
 
     def _search(self) -> None:
         """Find the candidates, and the ways to them."""
-        self._object_kinds = CountedObjectKinds(self._universe)
         self._steps_left = self._most_steps = SEARCH.value()
         self._states: dict[JointLetter, state_synthesis.JointState | None] = {}
         ways_to = self._ways_to = dict[JointLetter, list[Way]]()

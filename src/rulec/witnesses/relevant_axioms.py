@@ -7,7 +7,7 @@ read; so in any state their part can be as by default, and they decide nothing.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 from rulec.automata.mealy_monitor import Read
@@ -67,6 +67,32 @@ def said_axioms(universe: ObjectUniverse) -> Iterator[SaidAxiom]:
             # It is kept beside it, so that no other one can have its number.
             known[key] = axiom, SaidAxiom(said_of(axiom, names), universe.vocabulary)
         yield known[key][1]
+
+
+def axioms_about(name: str, kind: str, universe: ObjectUniverse) -> tuple[SaidAxiom, ...]:
+    """The axioms that count nothing, said of one more object beside the universe's."""
+    known = _about(Itself(universe.vocabulary))
+    key = name, kind, tuple(universe.objects.items()), tuple(map(id, universe.axioms))
+    if key not in known:
+        if len(known) > MOST_KEPT:
+            known.clear()
+        with_it = replace(universe, objects={**universe.objects, name: kind})
+        said = tuple(
+            [
+                axiom
+                for axiom in said_axioms(with_it)
+                if not axiom.is_counting and name in axiom.objects
+            ]
+        )
+        known[key] = universe.axioms, said
+    return known[key][1]
+
+
+@lru_cache(maxsize=8)
+def _about(
+    _: Itself[Vocabulary],
+) -> dict[tuple[object, ...], tuple[Sequence[Axiom], tuple[SaidAxiom, ...]]]:
+    return {}
 
 
 @lru_cache(maxsize=8)
