@@ -89,7 +89,7 @@ class BoundRules:
         self._rulebook = rulebook
         self._counting = any(counts(axiom.formula) for axiom in rulebook.axioms)
         self._partial: dict[KnownState, Letters] = {}
-        self._letters: BoundLetters = {}
+        self._letters: BoundLetters | None = None
         self._of_all: RulesOfAll | None = None
         self._readers: dict[tuple[str, ...], GroupLetters | None] = {}
         self.lazy: list[RuleGroup] = []
@@ -196,7 +196,11 @@ class BoundRules:
     ) -> PartialStateReader:
         # numpy, a tenth of a second, is loaded only where something is unknown.
         from rulec.monitoring.online.partial_states import PartialStateReader
+        from rulec.monitoring.uncertainty.state_letters.possible_letters import bound_letters
 
+        if self._letters is None:
+            rulebook = self._rulebook
+            self._letters = bound_letters(rulebook, self.objects, rulebook.vocabulary)
         return PartialStateReader(state, self._rulebook, self.objects, where, self._letters)
 
     def inexact(self, letters: Letters) -> frozenset[str]:
@@ -265,9 +269,9 @@ class BoundRules:
             return letters
         if self._of_all is None:
             # numpy, as above
-            from rulec.monitoring.online.partial_states import RulesOfAll
+            from rulec.monitoring.online.partial_states import rules_of_all
 
-            self._of_all = RulesOfAll(self._rulebook, self.objects, self._letters)
+            self._of_all = rules_of_all(self._rulebook, self.objects)
         of_all, number = self._of_all, where[0]
 
         def read(prepared: PreparedRule, items: Items) -> tuple[LetterClass, bool]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from operator import itemgetter
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, TypeAlias
 
 from rulec.monitoring.online.encoding import encoded_values
 from rulec.monitoring.online.encoding.encoded_values import Encoded, MonitorInput
@@ -27,15 +27,8 @@ MOST = 1 << 12
 _ReadColumn: TypeAlias = Callable[[State, Sequence[Encoded]], Sequence[Any]]
 """From a state and its parts the encoded values of an input, for each of several bindings."""
 
-_ReadLetters: TypeAlias = Callable[[State, Sequence[Encoded]], Iterable[int]]
-"""From a state and its parts the letter of each of several bindings. Raises as ``letters``."""
-
-
-class _WorldReader(NamedTuple):
-    """Reader of a group's letters in one state of the world, and the letters known there."""
-
-    read: _ReadLetters
-    letters: _LetterTable
+_ReadKeys: TypeAlias = Callable[[State, Sequence[Encoded]], Iterable[Any]]
+"""From a state and its parts for each of several bindings by what its letter is known."""
 
 
 class GroupLetters:
@@ -57,7 +50,8 @@ class GroupLetters:
             if isinstance(declaration, Enumeration) and (name, items) not in read:
                 values = frozenset([*declaration.values, encoded_values.MISSING, UNKNOWN])
                 self._unread.append((part, slice(place, place + 1), values))
-        self._by_world: dict[tuple[Encoded, ...], list[_WorldReader]] = {}
+        self._keys = [reader.keys for reader in self._readers]
+        self._by_world: dict[tuple[Encoded, ...], list[_LetterTable]] = {}
 
     def letters(self, state: State, parts: tuple[Encoded, ...]) -> list[int]:
         """The letter of each binding of each group, one after the other.
@@ -69,8 +63,9 @@ class GroupLetters:
                 raise LookupError
         world = parts[: self.shape.n_world]
         letters: list[int] = []
-        for read, _ in self._by_world.get(world) or self._in_world(world):
-            letters += read(state, parts)
+        tables = self._by_world.get(world) or self._in_world(world)
+        for keys, known in zip(self._keys, tables, strict=True):
+            letters += map(known.__getitem__, keys(state, parts))
         return letters
 
     def known_letters(self, state: State, parts: tuple[Encoded, ...]) -> Sequence[int | RulesRead]:
@@ -85,11 +80,11 @@ class GroupLetters:
     ) -> list[int | RulesRead]:
         reader = self._readers[number]
         with suppress(LookupError, TypeError):
-            _, letters = self._in_world(parts[: self.shape.n_world])[number]
+            letters = self._in_world(parts[: self.shape.n_world])[number]
             return [letters.as_far_as_known(key) for key in reader.keys(state, parts)]
         return [reader.nothing_read() for _ in range(reader.n_bindings)]
 
-    def _in_world(self, world: tuple[Encoded, ...]) -> list[_WorldReader]:
+    def _in_world(self, world: tuple[Encoded, ...]) -> list[_LetterTable]:
         in_world = self._by_world.get(world)
         if in_world is None:
             if len(self._by_world) >= MOST:
@@ -104,6 +99,8 @@ class _LetterTable(dict[Any, int]):
 
     The encoded value of a single input stands for itself, those of several are a tuple.
     """
+
+    __slots__ = ("_breakpoints", "_group", "_others", "_own")
 
     def __init__(
         self,
@@ -143,7 +140,10 @@ class _LetterTable(dict[Any, int]):
 
 
 class _GroupReader:
-    """Reader of a group's letters for ``n_bindings``; ``read`` are the values it looks at."""
+    """Reader of a group's letters for ``n_bindings``; ``read`` are the values it looks at.
+
+    ``keys`` are by what the letters are known, and raise as ``letters``.
+    """
 
     def __init__(self, group: RuleGroup, bindings: Sequence[Items], shape: StateShape) -> None:
         self.read = set[tuple[str, Items]]()
@@ -177,41 +177,31 @@ class _GroupReader:
                 whole.append(part)
             else:
                 self._world.append((read, *places[0]))
-        self._whole = None if None in whole else [part for part in whole if part is not None]
+        self.keys = self._read_keys(whole)
 
-    def in_world(self, world: Sequence[Encoded]) -> _WorldReader:
-        """Reader of the letters of all bindings, for one world state."""
+    def in_world(self, world: Sequence[Encoded]) -> _LetterTable:
+        """The letters of all bindings, for one world state."""
         digits = {
             read: read.digit(world[part][place], self._breakpoints)
             for read, part, place in self._world
         }
         others = {**self._not_given, **digits}
-        letters = _LetterTable(self._group, self._own, others, self._breakpoints)
-        return _WorldReader(self._reader_with(letters.__getitem__), letters)
-
-    def _reader_with(self, letter: Callable[[Any], int]) -> _ReadLetters:
-        if not self._columns:
-            return lambda *_: (letter(()),) * self.n_bindings
-        if len(self._columns) == 1:
-            (column,) = self._columns
-            return lambda state, parts: map(letter, column(state, parts))
-        if self._whole is not None:
-            pick = itemgetter(*self._whole)
-            return lambda _, parts: map(letter, zip(*pick(parts), strict=True))
-        return lambda state, parts: map(
-            letter, zip(*[column(state, parts) for column in self._columns], strict=True)
-        )
+        return _LetterTable(self._group, self._own, others, self._breakpoints)
 
     def nothing_read(self) -> RulesRead:
         """What is read of a binding that takes a closer look for each rule."""
         return [None] * len(self._group.rules)
 
-    def keys(self, state: State, parts: Sequence[Encoded]) -> Sequence[Any]:
-        """By what the letter of each binding is known."""
-        columns = [column(state, parts) for column in self._columns]
+    def _read_keys(self, whole: Sequence[int | None]) -> _ReadKeys:
+        columns, n_bindings = self._columns, self.n_bindings
         if not columns:
-            return [()] * self.n_bindings
-        return columns[0] if len(columns) == 1 else list(zip(*columns, strict=True))
+            return lambda *_: [()] * n_bindings
+        if len(columns) == 1:
+            return columns[0]
+        if None not in whole:
+            pick = itemgetter(*whole)
+            return lambda _, parts: zip(*pick(parts), strict=True)
+        return lambda state, parts: zip(*[column(state, parts) for column in columns], strict=True)
 
 
 def _whole_part(places: Sequence[tuple[int, int]], shape: StateShape) -> int | None:

@@ -44,9 +44,9 @@ class WalkedRead(NamedTuple):
 
 
 class _Node(dict[Any, "_Node"]):
-    """What some digits may lead to; behind the last one ``classes``, and if no more than that."""
+    """What some digits may lead to; behind the last one the classes, and if no more than that."""
 
-    __slots__ = ("begin", "classes", "is_exact", "level", "sets", "walk")
+    __slots__ = ("answer", "begin", "is_exact", "level", "sets", "walk")
 
     def __init__(
         self,
@@ -59,7 +59,7 @@ class _Node(dict[Any, "_Node"]):
     ) -> None:
         self.walk, self.level, self.begin, self.sets = walk, level, begin, sets
         self.is_exact = is_exact
-        self.classes: LetterClass | None = None
+        self.answer: tuple[LetterClass, bool] | None = None
 
     def __missing__(self, digit: Any) -> _Node:
         node = self.walk.step(self, digit)
@@ -71,9 +71,9 @@ class _Node(dict[Any, "_Node"]):
 class LetterWalk:
     """The walks through one rule's diagram.
 
-    ``reads`` have digits of their own; the others have for each of the cubes that a walk begins
-    with the digits, as bits, that stand there. ``class_of`` is the class, or several, that bits
-    stand for.
+    ``reads`` have digits of their own; the ``others`` have for each of the cubes that a walk begins
+    with, which ``cubes_at`` has by number, the digits, as bits, that stand there. ``class_of`` is
+    the class, or several, that bits stand for.
     """
 
     def __init__(
@@ -81,6 +81,7 @@ class LetterWalk:
         diagram: LetterDiagram,
         reads: Sequence[WalkedRead],
         others: Sequence[int],
+        cubes_at: Callable[[int], Sequence[Cube]],
         class_of: Callable[[int], LetterClass | None],
     ) -> None:
         self._diagram = diagram
@@ -91,27 +92,22 @@ class LetterWalk:
         self._order = range(len(reads) + len(others) - 1, -1, -1)
         # Behind this level no cube has a digit.
         self._n_begun = len(self._order) - min(others, default=len(self._order))
+        self._cubes_at = cubes_at
         self._nodes: dict[Hashable, _Node] = {}
-        self._start: _Node | None = None
+        self._starts: dict[int, _Node] = {}
 
     def classes(
-        self, digits: Sequence[Any], begin: tuple[int, Sequence[Cube]], *, is_exact: bool
+        self, digits: Sequence[Any], begin: int = 0, *, is_exact: bool = True
     ) -> tuple[LetterClass, bool]:
         """The classes of the letters with these digits, and whether no more are said than are.
 
-        ``digits`` are in the order of the reads, what they ``begin`` with are cubes, with a number
-        by which these are known. Raises LookupError if a digit is wrong, if facts exclude all these
-        letters, as WholeStateError if more than the rule's own objects decides.
+        ``digits`` are in the order of the reads; ``begin`` is the number of the cubes of the
+        others. Raises LookupError if a digit is wrong, if facts exclude all these letters, as
+        WholeStateError if more than the rule's own objects decides.
         """
-        return self._walked(self._begun(begin, is_exact), digits)
-
-    def classes_alone(self, digits: Sequence[Any]) -> tuple[LetterClass, bool]:
-        """The same of a rule whose reads all have digits of their own. Raises as ``classes``."""
-        if self._start is None or len(self._nodes) >= MOST_NODES:
-            self._start = self._begun((0, ((),)), True)
-        return self._walked(self._start, digits)
-
-    def _walked(self, node: _Node, digits: Sequence[Any]) -> tuple[LetterClass, bool]:
+        node = self._starts.get(2 * begin + is_exact)
+        if node is None:
+            node = self._begun(begin, is_exact)
         try:
             for digit in reversed(digits):
                 node = node[digit]
@@ -120,9 +116,9 @@ class LetterWalk:
             for place, digit in zip(sorted(self._reads), digits, strict=True):
                 self._reads[place].masks[digit]
             raise
-        if node.classes is None:
+        if node.answer is None:
             raise LookupError
-        return node.classes, node.is_exact
+        return node.answer
 
     def step(self, node: _Node, digit: Any) -> _Node:
         """The node behind a digit of the next read that has its own. Raises as ``classes``."""
@@ -135,16 +131,11 @@ class LetterWalk:
         sets = tuple([self._diagram.step(place, here, mask) for here in node.sets])
         return self._node(node.level + 1, node.begin, sets, is_exact)
 
-    def _begun(self, begin: tuple[int, Sequence[Cube]], is_exact: bool) -> _Node:
-        if len(self._nodes) >= MOST_NODES:
-            self._nodes.clear()
-        number, cubes = begin
-        key = number, is_exact
-        known = self._nodes.get(key)
-        if known is None:
-            start = (self._diagram.start,) * len(cubes)
-            known = self._nodes[key] = self._node(0, begin, start, is_exact)
-        return known
+    def _begun(self, number: int, is_exact: bool) -> _Node:
+        cubes = self._cubes_at(number)
+        node = self._node(0, (number, cubes), (self._diagram.start,) * len(cubes), is_exact)
+        self._starts[2 * number + is_exact] = node
+        return node
 
     def _node(
         self,
@@ -171,8 +162,14 @@ class LetterWalk:
                 whole |= here
             sets, number, begin = (whole,), -1, _NOTHING
         key = level, number, sets, is_exact
-        if key not in self._nodes:
-            node = self._nodes[key] = _Node(self, level, begin, sets, is_exact=is_exact)
-            if level == len(self._order) and (found := self._class_of(sets[0] >> 1)) != IMPOSSIBLE:
-                node.classes = found
-        return self._nodes[key]
+        known = self._nodes.get(key)
+        if known is None:
+            if len(self._nodes) >= MOST_NODES:
+                self._nodes.clear()
+                self._starts.clear()
+            known = self._nodes[key] = _Node(self, level, begin, sets, is_exact=is_exact)
+            if level == len(self._order):
+                found = self._class_of(sets[0] >> 1)
+                if found is not None and found != IMPOSSIBLE:
+                    known.answer = found, is_exact
+        return known

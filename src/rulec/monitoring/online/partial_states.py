@@ -12,10 +12,12 @@ from rulec.monitoring.online.four_valued import LetterClass
 from rulec.monitoring.online.prepared_rule import PreparedRule
 from rulec.monitoring.state_view import StateView, value_in
 from rulec.monitoring.uncertainty.lazy_bindings import ReadBits
-from rulec.monitoring.uncertainty.state_letters.entangled_reads import NothingKnown
+from rulec.monitoring.uncertainty.state_letters.entangled_reads import MOST_COUNTED, NothingKnown
 from rulec.monitoring.uncertainty.state_letters.possible_letters import (
+    MOST_SCENES,
     BoundLetters,
     PossibleLetters,
+    bound_letters,
     letters_of_rule,
 )
 from rulec.monitoring.uncertainty.state_letters.read_digits import ReadDigits
@@ -35,13 +37,12 @@ MOST_KNOWN = 1 << 12
 class RulesOfAll:
     """Rules whose letters more than their own objects decides, for the objects that are there.
 
-    What they read is known by what a state says of all that decides it. ``bound`` is as below.
+    What they read is known by what a state says of all that decides it.
     """
 
-    def __init__(
-        self, rulebook: CompiledRulebook, objects: Mapping[str, str], bound: BoundLetters
-    ) -> None:
-        self._rulebook, self._bound = rulebook, bound
+    def __init__(self, rulebook: CompiledRulebook, objects: Mapping[str, str]) -> None:
+        self._rulebook = rulebook
+        self._bound = bound_letters(rulebook, objects, rulebook.vocabulary)
         self._everybody = NothingKnown(objects, rulebook.vocabulary)
         self._rules: dict[tuple[PreparedRule, Items], _RuleOfAll] = {}
 
@@ -56,6 +57,19 @@ class RulesOfAll:
                 prepared, prepared.bound(items), self._everybody, self._rulebook, self._bound
             )
         return rule.letter_class(state)
+
+
+def rules_of_all(rulebook: CompiledRulebook, objects: Mapping[str, str]) -> RulesOfAll:
+    """Those rules for these objects, kept from one monitor to another if they are few."""
+    if len(objects) > MOST_COUNTED:
+        return RulesOfAll(rulebook, objects)
+    known: dict[object, RulesOfAll] = rulebook.prepared.setdefault(RulesOfAll, {})
+    key = tuple(objects.items())
+    if key not in known:
+        if len(known) >= MOST_SCENES:
+            known.clear()
+        known[key] = RulesOfAll(rulebook, objects)
+    return known[key]
 
 
 class _RuleOfAll:
@@ -81,6 +95,8 @@ class _RuleOfAll:
         self._entangled = entangled.subjects_of(objects) if entangled.numbers else []
         read = [x for own in self._alone for x in subjects_of_read(own.read, objects, everybody)]
         self._subjects: list[Subject] = list(dict.fromkeys([*self._entangled, *read]))
+        # Of most reads no more is looked at than one value.
+        self._places = [self._place_of(read) for read in self._alone]
         declarations = everybody.vocabulary.declarations
         self._asked = [(name, items, declarations[name]) for name, items in self._subjects]
         self._known: dict[tuple[PartialValue | None, ...], tuple[LetterClass, bool]] = {}
@@ -105,7 +121,12 @@ class _RuleOfAll:
         view = StateView(state, self._everybody.objects, self._everybody.vocabulary)
         is_exact = True
         try:
-            key = [self._digits(read, view) for read in self._alone]
+            key = [
+                self._digits(read, view) if place is None else read.of_values([values[place]])[0]
+                for read, place in zip(self._alone, self._places, strict=True)
+            ]
+            if 0 in key:
+                return None
             if entangled.numbers:
                 there = None if entangled.is_local else self._everybody.objects
                 number = entangled.number(values[: len(self._entangled)], there)
@@ -119,6 +140,13 @@ class _RuleOfAll:
         steps = self._prepared.uncertain
         letter_class = steps.letter_class(self._letters.classes_of(tuple(key)))
         return None if letter_class is None else (letter_class, is_exact)
+
+    def _place_of(self, read: ReadDigits) -> int | None:
+        if read.subject is None:
+            return None
+        name, variables = read.subject
+        items = tuple([self._objects[variable] for variable in variables])
+        return self._subjects.index((name, items))
 
     def _digits(self, read: ReadDigits, view: StateView) -> int:
         return read.in_state(self._objects, view)

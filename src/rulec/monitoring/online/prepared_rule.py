@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
-from rulec.automata.mealy_monitor import IMPOSSIBLE, NumberRead, Read
+from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.logic.free_names import names_in
+from rulec.monitoring.online.encoding.digit_tables import DigitMasks, PartNumbers
 from rulec.monitoring.online.encoding.encoded_values import (
     MISSING,
     PARTIAL_DIGITS,
@@ -31,11 +32,8 @@ from rulec.monitoring.uncertainty.state_letters.entangled_reads import Entangled
 from rulec.monitoring.uncertainty.state_letters.read_digits import (
     Letters,
     names_of_read,
-    possible_digits,
 )
-from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.vocabulary import Enumeration, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
 MOST_CLASSES = 1 << 12
 """Classes of a rule's letters that are kept before all are forgotten."""
@@ -104,6 +102,11 @@ class PreparedRule:
             strides.append(strides[-1] * read.size)
         return tuple(strides)
 
+    @cached_property
+    def n_classes(self) -> int:
+        """How many classes its letters have; beyond are sets of them."""
+        return max(map(len, [edge.successors for edge in self.edges.values()]), default=0)
+
     @property
     def name(self) -> str:
         """The rule's name."""
@@ -137,13 +140,12 @@ class PreparedRule:
         """
         if self._is_simple and not PARTIAL_DIGITS.isdisjoint(map(type, digits)):
             # The usual case where something is not known
-            return self._walk.classes_alone(digits)
+            return self._walk.classes(digits)
         n_alone = len(self._weights)
         own, values = digits[:n_alone], digits[n_alone:]
         place, is_exact, letter = self._decided.get(values) or self._decided_by(values)
         if letter is None or not PARTIAL_DIGITS.isdisjoint(map(type, own)):
-            cubes = self._cubes_at(place)
-            return self._walk.classes(own, (place, cubes), is_exact=is_exact)
+            return self._walk.classes(own, place, is_exact=is_exact)
         for weight_of, digit in zip(self._weights, own, strict=True):
             letter += weight_of(digit)
         letter_class = self.letters[letter]
@@ -161,31 +163,46 @@ class PreparedRule:
 
     def _decided_by(self, values: tuple[Any, ...]) -> _Decided:
         """What these values decide, which are often the same while others change."""
-        (cubes, is_exact), place, weight = _NO_CUBES, 0, 0
+        decided: _Decided = 0, True, 0
         if self.entangled is not None and self.entangled.numbers:
-            place = self._place(self.entangled, values)
-            cubes, is_exact = self.entangled.found[place]
-            is_exact = is_exact and not self._has_unknown_constant(values)
-            if len(cubes) == 1:
-                strides = [self._strides[n] for n in self.entangled.numbers]
-                digits = [x.bit_length() - 1 for x in cubes[0]]
-                weight = sum([x * y for x, y in zip(strides, digits, strict=True)])
-        is_known = len(cubes) == 1 and not any(x & (x - 1) for x in cubes[0])
-        decided = place, is_exact, weight if is_known else None
+            for at, allowed in self._elsewhere:
+                if values[at] not in allowed:
+                    raise LookupError
+            key = tuple([numbers[pick(values)] for pick, numbers in self._parts])
+            place = self.entangled.place_of_parts(key)
+            decided = self._decided_at.get(place) or self._decided_by_place(place)
+            if any(type(values[at]) in PARTIAL_DIGITS for at in self._constant_places):
+                decided = place, False, decided[2]
         if len(self._decided) >= MOST_CLASSES:
             self._decided.clear()
         self._decided[values] = decided
         return decided
 
+    def _decided_by_place(self, place: int) -> _Decided:
+        assert self.entangled is not None
+        cubes, is_exact = self.entangled.found[place]
+        weight: int | None = None
+        if len(cubes) == 1 and not any(x & (x - 1) for x in cubes[0]):
+            strides = [self._strides[n] for n in self.entangled.numbers]
+            digits = [x.bit_length() - 1 for x in cubes[0]]
+            weight = sum([x * y for x, y in zip(strides, digits, strict=True)])
+        decided = self._decided_at[place] = place, is_exact, weight
+        return decided
+
+    @cached_property
+    def _decided_at(self) -> dict[int, _Decided]:
+        return {}
+
     def _cubes_at(self, place: int) -> Letters:
         if self.entangled is None or not self.entangled.numbers:
-            return _NO_CUBES[0]
+            return _NO_CUBES
         return self.entangled.found[place][0]
 
-    def _has_unknown_constant(self, values: Sequence[Any]) -> bool:
-        return bool(self.constants) and any(
-            type(value) in PARTIAL_DIGITS and not self.constants.isdisjoint(read.names)
-            for read, value in zip(self.values, values, strict=True)
+    @cached_property
+    def _constant_places(self) -> tuple[int, ...]:
+        """The places of the values that never change."""
+        return tuple(
+            [n for n, read in enumerate(self.values) if not self.constants.isdisjoint(read.names)]
         )
 
     @cached_property
@@ -199,7 +216,7 @@ class PreparedRule:
         walked = [
             WalkedRead(
                 place,
-                _Masks(reads[place], weight_of),
+                DigitMasks(reads[place], weight_of),
                 self.entangled is not None or place not in self._perhaps_entangled,
                 not self.constants.isdisjoint(own.names),
             )
@@ -207,7 +224,8 @@ class PreparedRule:
         ]
         others = () if self.entangled is None else self.entangled.numbers
         steps = self.uncertain
-        return LetterWalk(steps.classes.diagram, walked, others, steps.letter_class)
+        diagram = steps.classes.diagram
+        return LetterWalk(diagram, walked, others, self._cubes_at, steps.letter_class)
 
     @cached_property
     def _perhaps_entangled(self) -> frozenset[int]:
@@ -221,14 +239,26 @@ class PreparedRule:
             or any(not own.isdisjoint(other) for other in (*names[:n], *names[n + 1 :], *facts))
         )
 
-    def _place(self, entangled: EntangledReads, encoded: Sequence[Any]) -> int:
-        for allowed, value in zip(self._allowed, encoded, strict=True):
-            if allowed is not None and value not in allowed:
-                raise LookupError
-        try:
-            return entangled.fresh_number(tuple([_VALUES.get(x, x) for x in encoded]))
-        except MissingValueError:
-            raise LookupError from None
+    @cached_property
+    def _parts(self) -> Sequence[tuple[Callable[[Any], tuple[Any, ...]], PartNumbers]]:
+        """The parts of the entangled reads."""
+        parts = () if self.entangled is None else self.entangled.parts
+        places = range(len(self.values))
+        return [
+            (pick, PartNumbers(number, [self._allowed[n] for n in pick(places)]))
+            for pick, number in parts
+        ]
+
+    @cached_property
+    def _elsewhere(self) -> Sequence[tuple[int, frozenset[object]]]:
+        """The places of enumerations that no part looks at, with what these may be, encoded."""
+        places = range(len(self.values))
+        seen = {place for pick, _ in self._parts for place in pick(places)}
+        return [
+            (place, allowed)
+            for place, allowed in enumerate(self._allowed)
+            if allowed is not None and place not in seen
+        ]
 
     @cached_property
     def _allowed(self) -> Sequence[frozenset[object] | None]:
@@ -278,35 +308,7 @@ _Decided: TypeAlias = tuple[int, bool, int | None]
 If they can be but one thing its weight. A plain tuple of numbers no garbage collector looks at.
 """
 
-_VALUES: Mapping[object, Any] = {MISSING: None, UNKNOWN_DIGIT: UNKNOWN}
-"""What stands for values that are not given, or not known."""
-
-
-class _Masks(dict[Any, int]):
-    """The possible digits, as bits, of a read whose digit, or value if partly known, is given.
-
-    Raises LookupError if that is wrong.
-    """
-
-    def __init__(self, read: Read | NumberRead, weight_of: DigitWeight) -> None:
-        self._read = read
-        self._weight_of = weight_of
-
-    def __missing__(self, digit: Any) -> int:
-        read = self._read
-        if type(digit) is Interval:
-            if isinstance(read, Read):
-                raise LookupError
-            return possible_digits(read, digit)
-        if digit is UNKNOWN_DIGIT:
-            self[digit] = possible_digits(read, UNKNOWN)
-            return self[digit]
-        self._weight_of(digit)
-        self[digit] = 1 << digit if isinstance(read, NumberRead) else possible_digits(read, digit)
-        return self[digit]
-
-
-_NO_CUBES: tuple[Letters, bool] = ((),), True
+_NO_CUBES: Letters = ((),)
 
 
 def prepared_rule(

@@ -38,6 +38,9 @@ RulesRead: TypeAlias = "list[tuple[LetterClass, bool] | None]"
 None where that takes a closer look at a state.
 """
 
+_SetsOfClasses: TypeAlias = tuple[tuple[LetterClass, ...], tuple[int, ...]]
+"""For each rule its class, and the numbers of the rules that read sets of them."""
+
 
 class OtherVerdictError(Exception):
     """Behind this letter a rule's verdict is another one."""
@@ -75,14 +78,15 @@ class GroupNode(dict[int, "GroupNode"]):
                 for edge, letter_class in zip(self.edges, classes, strict=True)
             ]
         except IndexError:
-            # Sets of classes are beyond all classes, and several edges have no successors.
-            rules = zip(self.group.rules, self.edges, classes, strict=True)
+            # Sets of classes are beyond all classes.
+            single, sets = self.group.sets_in(letter)
             edges = [
                 edge.successors[letter_class]
-                if letter_class < len(edge.successors)
-                else prepared.uncertain.rows[edge][letter_class]
-                for prepared, edge, letter_class in rules
+                for edge, letter_class in zip(self.edges, single, strict=True)
             ]
+            rules = self.group.rules
+            for place in sets:
+                edges[place] = rules[place].uncertain.rows[self.edges[place]][classes[place]]
         return self.group.node(tuple(edges))
 
 
@@ -122,6 +126,7 @@ class RuleGroup:
         self.holes: dict[int, Holes] = {}
         self._letters: dict[tuple[object, ...], int] = {}
         self._nodes: dict[tuple[Edge, ...], GroupNode] = {}
+        self._sets: dict[int, _SetsOfClasses] = {}
         self._tables = [(prepared.classes, values_at(prepared.all_inputs)) for prepared in rules]
         self._all_inexact = [table.inexact for table, _ in self._tables]
 
@@ -131,6 +136,18 @@ class RuleGroup:
             self._nodes[edges] = GroupNode(self, edges)
             self.cache_size.n += 1
         return self._nodes[edges]
+
+    def sets_in(self, letter: int) -> _SetsOfClasses:
+        """A letter's single classes, any in place of sets of them, and where these are."""
+        known = self._sets.get(letter)
+        if known is None:
+            classes, rules = self.classes[letter], self.rules
+            sets = tuple([n for n, own in enumerate(classes) if own >= rules[n].n_classes])
+            single = list(classes)
+            for place in sets:
+                single[place] = 0
+            known = self._sets[letter] = tuple(single), sets
+        return known
 
     def letter(self, classes: tuple[LetterClass, ...], inexact: Set[int] = frozenset()) -> int:
         """The letter that has these classes, one for each rule.

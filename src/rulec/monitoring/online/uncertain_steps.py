@@ -5,9 +5,9 @@ A set of edges stands for all that completions of what has been seen may have co
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from rulec.automata.outcome_machine import KEPT, VIOLATED, OutcomeMachine, bits_of
 from rulec.monitoring.online.four_valued import (
@@ -25,18 +25,31 @@ MOST_STEPS = 1 << 16
 """Steps that are kept before all are forgotten."""
 
 
+class _Row(dict[LetterClass, "Edge"]):
+    __slots__ = ("_steps", "edge")
+
+    edge: Edge
+
+    def __init__(self, steps: UncertainSteps) -> None:
+        self._steps = steps
+
+    def __missing__(self, letters: LetterClass) -> Edge:
+        after = self[letters] = self._steps.step(self.edge, letters)
+        return after
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class UncertainEdge:
     """Several edges of a monitor: the states that may be reached, and the verdicts.
 
     Of the states those are left out that lie between two others in what they can still come to,
     of those from which nothing is kept all but one.
-    It has no ``successors``, since these depend on more than a letter.
+    ``successors`` has the edge or the edges behind each class, or set of classes, as they are met.
     """
 
     states: tuple[int, ...]
     verdict: RunningVerdict
-    successors: Sequence[Any] = ()
+    successors: _Row
 
 
 Edge: TypeAlias = MonitorEdge | UncertainEdge
@@ -89,7 +102,9 @@ class UncertainSteps:
             return single
         key = members, verdict
         if key not in self._edges:
-            self._edges[key] = UncertainEdge(tuple(sorted(members)), verdict)
+            row = _Row(self)
+            row.edge = self._edges[key] = UncertainEdge(tuple(sorted(members)), verdict, row)
+            self.rows[row.edge] = row
         return self._edges[key]
 
     def letter_class(self, mask: int) -> LetterClass | None:
@@ -106,26 +121,16 @@ class UncertainSteps:
         return _four_valued(self._machine, state, symbol)
 
 
-class _Rows(dict[Edge, "_Row"]):
+class _Rows(dict["Edge", "_Row"]):
     __slots__ = ("_steps",)
 
     def __init__(self, steps: UncertainSteps) -> None:
         self._steps = steps
 
     def __missing__(self, edge: Edge) -> _Row:
-        row = self[edge] = _Row(self._steps, edge)
+        row = self[edge] = _Row(self._steps)
+        row.edge = edge
         return row
-
-
-class _Row(dict[LetterClass, Edge]):
-    __slots__ = ("_edge", "_steps")
-
-    def __init__(self, steps: UncertainSteps, edge: Edge) -> None:
-        self._steps, self._edge = steps, edge
-
-    def __missing__(self, letters: LetterClass) -> Edge:
-        after = self[letters] = self._steps.step(self._edge, letters)
-        return after
 
 
 def cut_edges(

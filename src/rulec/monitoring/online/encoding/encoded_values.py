@@ -30,7 +30,8 @@ Encoded: TypeAlias = tuple[Any, ...]
 """Values of an enumeration or a signal as they are, and of a quantity their digits.
 
 The digit of a number is how many of the ``Breakpoints`` it reaches; where every value matters, it
-is the number itself. What is unknown, or an interval, stands for itself.
+is the number itself. An interval stands for itself, as does what is unknown of an enumeration;
+else that is ``UNKNOWN_DIGIT``.
 """
 
 PARTIAL_NUMBERS = NUMBERS | UNKNOWN_TYPES
@@ -118,19 +119,32 @@ def values_at(names: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:
 def _encode_truths(values: tuple[Any, ...]) -> Encoded:
     # As keys 1 and true are the same; as values of a signal they are not.
     for value in values:
+        if value is not True and value is not False:
+            return _encode_some_truths(values)
+    return values
+
+
+def _encode_some_truths(values: tuple[Any, ...]) -> Encoded:
+    for value in values:
         if value is not True and value is not False and value is not UNKNOWN:
             raise LookupError
-    return values
+    return _with_unknown_digits(values)
+
+
+def _with_unknown_digits(values: tuple[Any, ...]) -> Encoded:
+    return tuple([UNKNOWN_DIGIT if value is UNKNOWN else value for value in values])
 
 
 def _encode_numbers(values: tuple[Any, ...]) -> Encoded:
     # Whole numbers and floats of this size that are equal have the same decimals. nan has no size.
+    encode: Encoder = tuple
     for value in values:
         if type(value) in UNKNOWN_TYPES:
+            encode = _with_unknown_digits
             continue
         if not -EXACT_IN_FLOATS <= value <= EXACT_IN_FLOATS or type(value) not in NUMBERS:
             raise LookupError
-    return values
+    return encode(values)
 
 
 def _encode_digits(floors: Sequence[float], values: tuple[Any, ...]) -> Encoded:
@@ -139,11 +153,13 @@ def _encode_digits(floors: Sequence[float], values: tuple[Any, ...]) -> Encoded:
         digits: Encoded = tuple([bisect_right(floors, value) for value in values])
     except TypeError:
         types = PARTIAL_NUMBERS
-        digits = tuple(
-            [
-                value if type(value) in UNKNOWN_TYPES else bisect_right(floors, value)
-                for value in values
-            ]
+        digits = _with_unknown_digits(
+            tuple(
+                [
+                    value if type(value) in UNKNOWN_TYPES else bisect_right(floors, value)
+                    for value in values
+                ]
+            )
         )
     # nan is above all floors.
     if 0 in digits or len(floors) in digits or not types.issuperset(map(type, values)):
@@ -175,7 +191,7 @@ class MonitorInput:
 
         Raises a TypeError where a number is missing.
         """
-        if encoded is UNKNOWN:
+        if encoded is UNKNOWN or encoded is UNKNOWN_DIGIT:
             return UNKNOWN_DIGIT
         if self.name is None or self.number is None or type(encoded) is Interval:
             return encoded

@@ -27,7 +27,11 @@ from rulec.monitoring.uncertainty.state_letters.read_digits import (
     names_of_read,
     read_digits,
 )
-from rulec.monitoring.uncertainty.state_letters.reads_apart import KnownParts, ReadsApart
+from rulec.monitoring.uncertainty.state_letters.reads_apart import (
+    KnownParts,
+    PartNumber,
+    ReadsApart,
+)
 from rulec.monitoring.uncertainty.state_letters.related_facts import (
     fits_or_not,
     is_of_one,
@@ -170,17 +174,18 @@ class EntangledReads:
             known = self._known[key] = self._place(found)
         return known
 
-    def fresh_number(self, values: tuple[PartialValue | None, ...]) -> int:
-        """``number`` of local reads, for who keeps it himself."""
-        if self._apart is not None:
-            # What is missing first is found below.
-            with suppress(MissingValueError):
-                key = self._apart.key(values)
-                place = self._places.get(key)
-                if place is None:
-                    place = self._places[key] = self._place(self._apart.letters(key))
-                return place
-        return self._place(self._letters(values, self._everybody.objects))
+    @property
+    def parts(self) -> Sequence[PartNumber]:
+        """Of local reads for each part a getter of its values among all, and their number."""
+        return () if self._apart is None else self._apart.numbers
+
+    def place_of_parts(self, key: tuple[int, ...]) -> int:
+        """The place of what is found for these numbers of the ``parts``."""
+        place = self._places.get(key)
+        if place is None:
+            assert self._apart is not None
+            place = self._places[key] = self._place(self._apart.letters(key))
+        return place
 
     def _place(self, found: tuple[Letters, bool]) -> int:
         place = self._numbers.setdefault(found, len(self.found))

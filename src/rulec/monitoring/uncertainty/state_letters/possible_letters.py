@@ -68,7 +68,7 @@ class PossibleWord:
 BoundLetters: TypeAlias = dict[tuple[object, ...], RuleLetters]
 """Letters of rules, by these and their objects."""
 
-_MOST_SCENES = 1 << 4
+MOST_SCENES = 1 << 4
 """So many scenes, of few objects, have their letters kept before all are forgotten."""
 
 
@@ -82,7 +82,7 @@ def bound_letters(
     scenes = rulebook.prepared.setdefault(PossibleLetters, {})
     key = id(vocabulary), *objects.items()
     if key not in scenes:
-        if len(scenes) >= _MOST_SCENES:
+        if len(scenes) >= MOST_SCENES:
             scenes.clear()
         # Which one it is holds as long as it is there
         scenes[key] = vocabulary, {}

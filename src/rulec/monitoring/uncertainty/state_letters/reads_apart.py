@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property
 from itertools import product
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read
@@ -129,6 +129,13 @@ class _Part(NamedTuple):
     table: _PartTable
 
 
+PartNumber: TypeAlias = "tuple[Callable[[Any], tuple[Any, ...]], Callable[[tuple[Any, ...]], int]]"
+"""A getter of a part's values among all, and what gives these their number.
+
+Raises MissingValueError.
+"""
+
+
 class KnownParts:
     """What is known of parts of all rules, by what they are.
 
@@ -144,7 +151,8 @@ class ReadsApart:
     """Reads of one rule that depend on these ``subjects``, in parts.
 
     They are asked of the objects of a ``binding``, where only ``everybody`` may be there. Rules
-    that have a part in common share what is ``known`` of it.
+    that have a part in common share what is ``known`` of it. ``numbers`` are for each part a getter
+    of its subjects' values, and what gives these their number in a ``key``.
     """
 
     def __init__(
@@ -160,7 +168,7 @@ class ReadsApart:
         self._binding, self._everybody = binding, everybody
         self._n_reads = len(reads)
         self._parts = tuple(self._apart(reads, subjects, axioms, known))
-        self._tables = [(part.values, part.table) for part in self._parts]
+        self.numbers = tuple([(part.values, part.table.number) for part in self._parts])
         self._letters: dict[tuple[int, ...], tuple[Letters, bool]] = {}
 
     def key(self, values: Sequence[PartialValue | None]) -> tuple[int, ...]:
@@ -168,7 +176,7 @@ class ReadsApart:
 
         Raises MissingValueError, not always about the value that is missing first.
         """
-        return tuple([table.number(pick(values)) for pick, table in self._tables])
+        return tuple([number(pick(values)) for pick, number in self.numbers])
 
     def letters(self, key: tuple[int, ...]) -> tuple[Letters, bool]:
         """What the reads may be together, and whether no more is said than is."""

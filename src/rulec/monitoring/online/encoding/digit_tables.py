@@ -1,0 +1,69 @@
+"""What reads may be, by encoded values of which some may not be known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.monitoring.online.encoding.encoded_values import MISSING, UNKNOWN_DIGIT, DigitWeight
+from rulec.monitoring.uncertainty.state_letters.read_digits import possible_digits
+from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
+
+MOST_KNOWN = 1 << 12
+"""Values of a part that are kept before all are forgotten."""
+
+_VALUES: Mapping[object, Any] = {MISSING: None, UNKNOWN_DIGIT: UNKNOWN}
+"""What stands for values that are not given, or not known."""
+
+
+class PartNumbers(dict[tuple[Any, ...], int]):
+    """The numbers of a part of entangled reads, by its values as encoded.
+
+    Raises LookupError if one is missing, or is none of those that are ``allowed``.
+    """
+
+    def __init__(
+        self,
+        number: Callable[[tuple[Any, ...]], int],
+        allowed: Sequence[frozenset[object] | None],
+    ) -> None:
+        self._number, self._allowed = number, allowed
+
+    def __missing__(self, encoded: tuple[Any, ...]) -> int:
+        for allowed, value in zip(self._allowed, encoded, strict=True):
+            if allowed is not None and value not in allowed:
+                raise LookupError
+        if len(self) >= MOST_KNOWN:
+            self.clear()
+        try:
+            number = self._number(tuple([_VALUES.get(x, x) for x in encoded]))
+        except MissingValueError:
+            raise LookupError from None
+        self[encoded] = number
+        return number
+
+
+class DigitMasks(dict[Any, int]):
+    """The possible digits, as bits, of a read whose digit, or value if partly known, is given.
+
+    Raises LookupError if that is wrong.
+    """
+
+    def __init__(self, read: Read | NumberRead, weight_of: DigitWeight) -> None:
+        self._read = read
+        self._weight_of = weight_of
+
+    def __missing__(self, digit: Any) -> int:
+        read = self._read
+        if type(digit) is Interval:
+            if isinstance(read, Read):
+                raise LookupError
+            return possible_digits(read, digit)
+        if digit is UNKNOWN_DIGIT:
+            self[digit] = possible_digits(read, UNKNOWN)
+            return self[digit]
+        self._weight_of(digit)
+        self[digit] = 1 << digit if isinstance(read, NumberRead) else possible_digits(read, digit)
+        return self[digit]
