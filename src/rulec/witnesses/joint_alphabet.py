@@ -89,6 +89,7 @@ class JointAlphabet:
         self._numbers: dict[
             object, dict[state_synthesis.Subject, state_synthesis.Value] | None
         ] = {}
+        self._fitting: dict[tuple[tuple[int, int], ...], bool] = {}
         self._search()
 
     def as_usual(self, axioms: Sequence[Axiom]) -> JointAlphabet:
@@ -122,7 +123,7 @@ class JointAlphabet:
                 usual._defaults[level] = state_synthesis.default_digit(
                     reads[level], self._universe.vocabulary
                 )
-                usual._numbers = {}
+                usual._numbers, usual._fitting = {}, {}
         usual._joint = replace(self._joint, reads=tuple(reads))
         usual._search()
         return usual
@@ -216,16 +217,19 @@ class JointAlphabet:
             if self._fits(chosen):
                 yield from self._numbered(following, chosen)
 
-    def _fits(self, number_digits: Sequence[tuple[int, int]]) -> bool:
+    def _fits(self, number_digits: tuple[tuple[int, int], ...]) -> bool:
         """Tell whether sums can have these digits, all but the last checked."""
-        reads = [(self._joint.reads[level], digit) for level, digit in number_digits]
-        numbers = [(read, digit) for read, digit in reads if isinstance(read, NumberRead)]
-        *earlier, (last, _) = numbers
         self._take(_SUMS_TRIED)
-        known = {term for read, _ in earlier for _, term in read.terms}
-        if known.isdisjoint(term for _, term in last.terms):
-            return True
-        return state_synthesis.solve_numbers(numbers, self._universe.vocabulary, {}) is not None
+        if number_digits not in self._fitting:
+            reads = [(self._joint.reads[level], digit) for level, digit in number_digits]
+            numbers = [(read, digit) for read, digit in reads if isinstance(read, NumberRead)]
+            *earlier, (last, _) = numbers
+            known = {term for read, _ in earlier for _, term in read.terms}
+            self._fitting[number_digits] = (
+                known.isdisjoint(term for _, term in last.terms)
+                or state_synthesis.solve_numbers(numbers, self._universe.vocabulary, {}) is not None
+            )
+        return self._fitting[number_digits]
 
     def _best(self, candidates: list[Way]) -> state_synthesis.JointState | None:
         while candidates:

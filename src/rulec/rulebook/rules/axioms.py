@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.diagnostic import at
-from rulec.logic.free_names import rename_variables, required_inputs
+from rulec.logic import formula as ltl
+from rulec.logic.free_names import names_in, rename_variables, required_inputs
 from rulec.logic.kleene import Unknown, holds
 from rulec.logic.printing import formula_text
 from rulec.rulebook.elaborate.elaboration import truth
@@ -138,12 +140,16 @@ def contradicted(
     rule: Rule, axioms: Sequence[Axiom], vocabulary: Vocabulary
 ) -> Iterator[Diagnostic]:
     """Mistakes (R0306), one per state of examples that contradicts an axiom."""
+    read_of: dict[tuple[tuple[str, str], ...], frozenset[tuple[str, tuple[str, ...]]]] = {}
     for example in rule.examples if axioms else ():
         objects = {item.name: item.type for item in (*rule.variables, *example.objects)}
-        read = frozenset(
-            (term.name, term.arguments)
-            for term in required_inputs(rule.formula, objects, vocabulary.is_subtype)
-        )
+        there = tuple(objects.items())
+        if there not in read_of:
+            read_of[there] = frozenset(
+                (term.name, term.arguments)
+                for term in required_inputs(rule.formula, objects, vocabulary.is_subtype)
+            )
+        read = read_of[there]
         for number, state in enumerate(example.states):
             said = with_what_follows(state, vocabulary)
             violated = _violated(ExampleValues(said, read, objects, vocabulary), axioms)
@@ -161,7 +167,11 @@ def contradicted(
 
 
 def _violated(state: ExampleValues, axioms: Sequence[Axiom]) -> tuple[Axiom, str] | None:
+    known = {name for name, _ in (*state.said, *state.read)}
     for axiom in axioms:
+        names_decide = _deciding_names(axiom.formula)
+        if names_decide is not None and known.isdisjoint(names_decide):
+            continue
         types = [variable.type for variable in axiom.variables]
         for chosen in choices(types, state.objects, state.vocabulary):
             names = (variable.name for variable in axiom.variables)
@@ -169,3 +179,26 @@ def _violated(state: ExampleValues, axioms: Sequence[Axiom]) -> tuple[Axiom, str
             if holds(axiom.formula, binding, state) is False:
                 return axiom, formula_text(rename_variables(axiom.formula, binding))
     return None
+
+
+# Each is asked about for every state of every example.
+@lru_cache(maxsize=1024)
+def _deciding_names(formula: ltl.Formula) -> frozenset[str] | None:
+    """The names of which something must be known for a fact to be broken; None if nothing must.
+
+    A count may be zero, and objects the same, whatever is known.
+    """
+    parts = [formula]
+    while parts:
+        match parts.pop():
+            case ltl.Unary(_, operand):
+                parts.append(operand)
+            case ltl.Binary(_, left, right):
+                parts += (left, right)
+            case ltl.Atom():
+                pass
+            case ltl.Comparison(terms) if not any(isinstance(one, ltl.Count) for _, one in terms):
+                pass
+            case _:
+                return None
+    return frozenset(names_in(formula))
