@@ -19,7 +19,7 @@ from rulec.extraction.whole_recordings import span_of, whole_recording
 from rulec.recordings.recording import Recording
 from rulec.value_display import short_repr
 
-MOST_CELLS = 1 << 18
+MOST_CELLS = 3 << 17
 """A part has about so many participants times steps, unless a single drive takes more."""
 
 _DRIVERS = frozenset({"vehicle", "light_rider"})

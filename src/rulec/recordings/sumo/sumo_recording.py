@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import lru_cache
 from itertools import pairwise
 from math import gcd
 from pathlib import Path
@@ -289,5 +290,7 @@ def _accelerations(
 _SHOWN = frozenset(lamp for _, lamps in _LAMPS for lamp in lamps)
 
 
+@lru_cache(maxsize=1 << 10)
 def _lit(bits: int) -> frozenset[Lamp]:
+    # Most states of all vehicles share a few of these sets
     return frozenset(lamp for bit, lamps in _LAMPS if bits & bit for lamp in lamps)

@@ -13,6 +13,8 @@ from math import ceil
 
 import numpy as np
 import shapely
+from numpy import intp
+from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.ego_lanelets import map_contents
@@ -26,7 +28,7 @@ from rulec.extraction.signals.signal_columns import (
     end_to_end,
     nobody,
 )
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_passes import Passes, once_a_recording, signals_by
 from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.junctions import Junction, approaches, before_joining
 from rulec.extraction.tracks.tracks import Flags
@@ -260,12 +262,10 @@ def _might_come(context: DriveContext, own: Passage) -> Iterator[str]:
         if row != own.row and last >= own.first and first <= latest:
             through.add(row)
             yield _side(float(np.degrees(turn(own.heading, tracks.heading[row, first]))))
-    simulated = "arrivals" in context.recording.complete
-    for row, body in enumerate(tracks.participants):
-        if body.standing or row in through or "pedestrian" in body.object_types:
-            continue
-        end = int(np.flatnonzero(tracks.present[row])[-1])
-        if end < shift or (simulated and end + 1 < tracks.present.shape[1]):
+    rows, ends = _may_go_on(context)
+    in_time = (ends >= shift) & (ends <= latest)
+    for row, end in zip(rows[in_time].tolist(), ends[in_time].tolist(), strict=True):
+        if row in through:
             continue
         x, y = float(tracks.x[row, end]), float(tracks.y[row, end])
         place = shapely.Point(x, y)
@@ -278,6 +278,19 @@ def _might_come(context: DriveContext, own: Passage) -> Iterator[str]:
         heading = float(tracks.heading[row, end])
         if abs(turn(towards, heading)) < np.pi / 3:
             yield _side(float(np.degrees(turn(own.heading, heading))))
+
+
+@once_a_recording
+def _may_go_on(context: DriveContext) -> tuple[NDArray[intp], NDArray[intp]]:
+    """The rows of all who may go on when their tracks have ended, and the last columns of these."""
+    tracks = context.surroundings.passages.tracks
+    last = tracks.present.shape[1] - 1
+    ends = last - tracks.present[:, ::-1].argmax(axis=1)
+    stand = np.array([body.standing for body in tracks.participants], dtype=bool)
+    go_on = tracks.present.any(axis=1) & ~stand & ~tracks.of_type("pedestrian")
+    if "arrivals" in context.recording.complete:
+        go_on &= ends == last
+    return go_on.nonzero()[0], ends[go_on]
 
 
 def _leaves_at_latest(context: DriveContext, own: Passage) -> float:
