@@ -25,6 +25,9 @@ MOST_REMEMBERED = 1 << 14
 MOST_WORDS = 1 << 9
 """Words whose prospects are kept before all is forgotten."""
 
+MOST_TRIED = 4
+"""Pairs that are followed first: that some run comes to less than another is mostly told by few."""
+
 BEFORE = ""
 """Stands among names for what was before the first state."""
 
@@ -81,7 +84,7 @@ class RunPairs:
         self._greatest: dict[tuple[int, int], int] = {}
         self._ends: dict[tuple[_Pairs, int], bool] = {}
         self._along: dict[_Word, list[bytes]] = {}
-        self._undecided: dict[tuple[_Pairs, bytes], _Pairs | None] = {}
+        self._undecided: dict[tuple[_Pairs, bytes, bytes], _Pairs | None] = {}
 
     def starts(self, *, same: bool) -> _Pairs:
         """The pairs of states that runs begin in, optionally only in the same."""
@@ -128,15 +131,15 @@ class RunPairs:
             self._along[word] = found
         return found
 
-    def undecided(self, pairs: _Pairs, outcomes: bytes) -> _Pairs | None:
+    def undecided(self, pairs: _Pairs, first: bytes, second: bytes) -> _Pairs | None:
         """The pairs of which it is open whether the first run comes to less than the second one.
 
-        None if it surely does for some. ``outcomes`` are those, as bits, that the rest of the word
-        may have, by state.
+        None if it surely does for some. ``first`` and ``second`` are the outcomes, as bits, that
+        the rest of each run's word may have, by state.
         """
-        key = pairs, outcomes
+        key = pairs, first, second
         if key not in self._undecided:
-            self._undecided[key] = _undecided(pairs, outcomes)
+            self._undecided[key] = _undecided(pairs, first, second)
         return self._undecided[key]
 
     def choices(self, one: int, other: int, fixed: tuple[int, ...]) -> int:
@@ -271,14 +274,19 @@ class RunPairs:
         return found
 
 
-def _undecided(pairs: _Pairs, outcomes: bytes) -> _Pairs | None:
+def _some(pairs: _Pairs, number: int) -> list[tuple[int, int]]:
+    """Some pairs, those with the most second states."""
+    return sorted(pairs, key=lambda pair: (-pair[1].bit_count(), pair[0]))[:number]
+
+
+def _undecided(pairs: _Pairs, first: bytes, second: bytes) -> _Pairs | None:
     found = []
     for one, others in pairs:
-        own, left = outcomes[one], 0
+        own, left = first[one], 0
         # A lower bit is a better outcome.
         most = 2 * (own & -own)
         for other in bits_of(others):
-            theirs = outcomes[other]
+            theirs = second[other]
             if theirs & -theirs > own:
                 return None
             if theirs >= most:
@@ -350,18 +358,16 @@ class Dependence:
     def decides(self, names: frozenset[str]) -> bool:
         """Whether completions that agree on these names agree on the outcome."""
         fixed = tuple([n for n, about in enumerate(self._unknown) if about and about <= names])
-        groups = list(self._groups(names))
         is_same = BEFORE in names
-        if (is_same or self._runs.n_starts == 1) and all(
-            len(group) == 1 and self._runs.are_settled(group[0], set(fixed)) for group in groups
-        ):
-            # There is one run for each group
-            return True
+        is_one = is_same or self._runs.n_starts == 1
         starts = self._runs.starts(same=is_same)
         return all(
-            self._agree(one, other, fixed, starts)
-            for group in groups
-            for one, other in product(group, repeat=2)
+            # There is one run of a word all of whose reads are fixed
+            (one is other and is_one and self._runs.are_settled(one, set(fixed)))
+            or self._agree(one, other, fixed, starts)
+            for group in self._groups(names)
+            # Different words come to something else more often than one does
+            for one, other in sorted(product(group, repeat=2), key=lambda both: both[0] is both[1])
         )
 
     def _groups(self, names: frozenset[str]) -> Iterator[list[_Word]]:
@@ -373,26 +379,45 @@ class Dependence:
         yield from groups.values()
 
     def _agree(self, one: _Word, other: _Word, fixed: tuple[int, ...], pairs: _Pairs) -> bool:
-        """Whether runs on two words, from pairs of states, cannot come to less and to more."""
+        """Whether runs on two words, from pairs of states, cannot come to less and to more.
+
+        That they can is often told by few pairs.
+        """
+        found = self._agree_by(MOST_TRIED, one, other, fixed=fixed, pairs=pairs)
+        if found is None:
+            found = self._agree_by(None, one, other, fixed=fixed, pairs=pairs)
+        assert found is not None, "all pairs were followed"
+        return found
+
+    def _agree_by(
+        self, most: int | None, one: _Word, other: _Word, *, fixed: tuple[int, ...], pairs: _Pairs
+    ) -> bool | None:
+        """The same by so many pairs after each letter; None if these do not tell."""
         runs, stretches = self._runs, self._alike(one, other)
-        prospects = runs.prospects(one) if one is other else None
-        begin = 0
+        first, second = runs.prospects(one), runs.prospects(other)
+        begin, all_followed = 0, True
         for letters, length in stretches:
             choices, look = runs.choices(*letters, fixed), 0
             for place in range(length):
-                if place == look and prospects is not None:
+                if place == look:
                     # To look is worth while now and then
-                    look = 2 * look + 1
-                    undecided = runs.undecided(pairs, prospects[begin + place])
+                    look = 2 * look + 1 if most is None else look + 1
+                    at = begin + place
+                    undecided = runs.undecided(pairs, first[at], second[at])
+                    if undecided is None:
+                        return False
                     if not undecided:
-                        return undecided is not None
+                        return True if all_followed else None
                     pairs = undecided
                 after = runs.after(pairs, choices)
+                if most is not None and len(after) > most:
+                    after, all_followed = frozenset(_some(after, most)), False
                 if after == pairs:
                     break  # the same again, however often
                 pairs = after
             begin += length
-        return runs.agree(pairs, runs.choices(one[-1], other[-1], fixed))
+        agree = runs.agree(pairs, runs.choices(one[-1], other[-1], fixed))
+        return agree if all_followed or not agree else None
 
     def _alike(self, one: _Word, other: _Word) -> list[_Stretch]:
         """What two words have for a while, without their last letters."""
