@@ -44,7 +44,8 @@ MOST_TIMES = 2
 NOTE = (
     f"One by one, and where it is asked on what open verdicts depend, {N_ALONE} of the drives are "
     "judged; monitors go on from round to round, and where they meet new states, those of no round "
-    "before (under `esterle2019` there are few)."
+    "before (under `esterle2019` there are few). A new monitor's are its first "
+    f"{N_WATCHED} states, of a drive of its own each round."
 )
 
 
@@ -81,6 +82,12 @@ def paired(name: str, rules: CompiledRulebook, rounds: int) -> Result:
         for label, trace in (engine, drive), (in_part(engine), blurred(rules, drive, 1)):
             work = partial(watched, Monitor(rules, STEP_S), cycle(trace.states), trace.objects)
             tasks[label] = processor_time(work, N_WATCHED * 1e3)
+        engine = f"new {engine}".removesuffix(", new states")
+        engines[engine] = begun, (), ()
+        drives = [drawn(rules, 2 + n, n_vehicles, N_WATCHED) for n in range(rounds + 1)]
+        darker = [blurred(rules, trace, n) for n, trace in enumerate(drives)]
+        for label, traces in (engine, drives), (in_part(engine), darker):
+            tasks[label] = processor_time(partial(begun, rules, cycle(traces)), N_WATCHED * 1e3)
     tasks[doubts] = processor_time(
         partial(explained, rules, partial_[:N_ALONE]), N_ALONE * N_STATES * 1e3
     )
@@ -132,6 +139,12 @@ def watched(monitor: Monitor, states: Iterator[Any], objects: Mapping[str, str])
     """The next states of a drive."""
     for state in islice(states, N_WATCHED):
         monitor.step(state, objects)
+
+
+def begun(rules: CompiledRulebook, traces: Iterator[Trace]) -> None:
+    """A new monitor on the first states of the next drive."""
+    trace = next(traces)
+    watched(Monitor(rules, STEP_S), iter(trace.states), trace.objects)
 
 
 def drawn(rules: CompiledRulebook, seed: int, n_vehicles: int, n_states: int = N_STATES) -> Trace:
