@@ -9,6 +9,7 @@ import numpy as np
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.logic.free_names import names_in
+from rulec.monitoring.batch.columns.column_reader import Mask
 from rulec.monitoring.batch.stacked.stack import Places, Stack
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.state_view import StateView, with_values
@@ -71,10 +72,10 @@ def _contradicted_states(
     facts: Sequence[CompiledAxiom], reader: StackReader, spots: Spots, objects: Mapping[str, str]
 ) -> Places:
     """The states of those spots at which not all of some linked facts can be kept."""
-    holds = np.ones(len(spots.states), dtype=bool)
+    holds: Mask = np.True_
     for fact in facts:
-        holds &= reader.truth(fact.formula, spots, _OBJECT).true
-    doubtful = np.flatnonzero(~holds)
+        holds = holds & reader.truth(fact.formula, spots, _OBJECT).true
+    doubtful = np.flatnonzero(~np.broadcast_to(holds, len(spots.states)))
     if not len(doubtful):
         return doubtful
     spots = spots.part(doubtful)

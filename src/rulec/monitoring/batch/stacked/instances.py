@@ -14,6 +14,7 @@ from typing import overload
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.monitoring.batch.columns.column_reader import Mask
 from rulec.monitoring.batch.stacked.stack import Places, Stack
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
@@ -24,21 +25,6 @@ _MOST_TOGETHER = 1 << 20
 """So many states of pairs are looked at together."""
 
 _NONE = np.empty(0, dtype=np.intp)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class KnownLetters:
-    """The numbers of letters in a table, and the place of the letter of each state, or cell."""
-
-    table: Places
-    codes: Numbers
-
-    def at(self, spots: Spots, variables: Sequence[str]) -> Numbers:
-        """The numbers of the letters at some spots."""
-        if not isinstance(self.codes, np.ndarray):
-            return self.table.item(self.codes)
-        (where,) = [spots.cells[variable] for variable in variables] or [spots.states]
-        return self.table.take(self.codes.take(where))
 
 
 class NumbersAt(Sequence[Numbers]):
@@ -78,7 +64,7 @@ class Instances:
     objects: tuple[Places, ...]
     firsts: Places
     lasts: Places
-    letters: KnownLetters | None = None
+    letters: Numbers | None = None
 
     def part(self, members: Places) -> Instances:
         """Some of them."""
@@ -90,20 +76,20 @@ class Instances:
             self.letters,
         )
 
-    def bounds(self) -> Places:
-        """Where the states of each begin if they stand one after the other, and all end."""
-        return np.concatenate([np.zeros(1, dtype=np.intp), np.cumsum(self.lasts - self.firsts + 1)])
+    def spots(self, rule: StackedRule, stack: Stack) -> tuple[Places, Spots]:
+        """The states of each, one after the other, with the cells of its objects.
 
-    def spots(self, rule: StackedRule, stack: Stack) -> Spots:
-        """The states of each, one after the other, with the cells of its objects."""
-        bounds = self.bounds()
-        lengths = np.diff(bounds)
-        states = np.arange(bounds[-1]) + np.repeat(self.firsts - bounds[:-1], lengths)
+        With where those of each begin, and where all end.
+        """
+        lengths = self.lasts - self.firsts + 1
+        bounds = np.zeros(len(lengths) + 1, dtype=np.intp)
+        lengths.cumsum(out=bounds[1:])
+        states = np.arange(bounds[-1]) + (self.firsts - bounds[:-1]).repeat(lengths)
         cells = {
-            variable: states + np.repeat(stack.starts[own] - stack.firsts[own], lengths)
+            variable: states + (stack.starts[own] - stack.firsts[own]).repeat(lengths)
             for variable, own in zip(rule.variables, self.objects, strict=True)
         }
-        return Spots(states, cells)
+        return bounds, Spots(states, cells)
 
 
 def numbers_at(
@@ -125,12 +111,12 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
     stack = reader.stack
     if rule.does_nothing([reader.digits(read) for read in rule.reads]):
         return Instances(_NONE, (_NONE,) * len(rule.variables), _NONE, _NONE)
-    every = KnownLetters(*rule.letters.looked_up(numbers_at(rule, reader, None)))
-    busy = ~_are_idle(rule, every, stack.n_states)
+    every = rule.letters.numbers(numbers_at(rule, reader, None))
+    busy = _are_busy(rule, every)
     if not busy.any():
         return Instances(_NONE, (_NONE,) * len(rule.variables), _NONE, _NONE)
     if not rule.variables:
-        traces = distinct(np.searchsorted(stack.begins, np.flatnonzero(busy), side="right") - 1)
+        traces = _traces_in(stack, busy)
         firsts, lasts = stack.begins[traces], stack.begins[traces + 1] - 1
         return Instances(traces, (), firsts, lasts, every)
     found = [
@@ -139,7 +125,7 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
     ]
     chosen = [cells for cells, _ in found]
     objects: tuple[Places, ...]
-    letters: KnownLetters | None = None
+    letters: Numbers | None = None
     if len(chosen) == 1:
         ((_, letters),) = found
         is_busy = np.zeros(len(stack.types), dtype=bool)
@@ -152,22 +138,26 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
     return Instances(stack.trace_of[objects[0]], objects, firsts, lasts, letters)
 
 
-def _are_idle(rule: StackedRule, letters: KnownLetters, n_spots: int) -> NDArray[np.bool_]:
-    table, codes, flags = letters.table, letters.codes, rule.idle_flags()
-    if not isinstance(codes, np.ndarray):
-        return np.full(n_spots, flags[table.item(codes)])
-    if len(codes) < len(table):
-        return flags.take(table.take(codes))
-    # What has not been met has no number
-    return flags.take(table, mode="clip").take(codes)
+def _traces_in(stack: Stack, busy: Mask) -> Places:
+    """The traces with a busy state."""
+    if isinstance(busy, np.ndarray) and len(stack.traces) > 1:
+        places = np.searchsorted(stack.begins, busy.nonzero()[0], side="right") - 1
+        return distinct(places)
+    return np.arange(len(stack.traces))
+
+
+def _are_busy(rule: StackedRule, letters: Numbers) -> Mask:
+    """Where letters might do something, or whether the one of all places might."""
+    flags: NDArray[np.bool_] = rule.busy_flags()
+    return flags.take(letters) if isinstance(letters, np.ndarray) else flags[letters]
 
 
 def _busy_cells(
     rule: StackedRule,
     reader: StackReader,
-    busy: NDArray[np.bool_],
+    busy: Mask,
     about: tuple[str, str],
-) -> tuple[Places, KnownLetters | None]:
+) -> tuple[Places, Numbers | None]:
     """The cells of objects for a variable in which a letter might do something.
 
     With the letters of all cells if these have been looked at.
@@ -175,15 +165,17 @@ def _busy_cells(
     (variable, kind), stack = about, reader.stack
     cells, states = stack.cells_of_type(kind), stack.states_of_type(kind)
     is_every = bool(busy.all())
-    if not is_every:
+    if isinstance(busy, np.ndarray) and not is_every:
         there = busy[states]
         cells, states = cells[there], states[there]
     if not len(cells):
         return cells, None
     spots = Spots(states, {variable: cells}, kind=kind if is_every else None)
-    letters = KnownLetters(*rule.letters.looked_up(numbers_at(rule, reader, spots, (variable,))))
+    letters = rule.letters.numbers(numbers_at(rule, reader, spots, (variable,)))
     is_whole = len(cells) == stack.starts[-1]
-    return cells[~_are_idle(rule, letters, len(cells))], letters if is_whole else None
+    are_busy = _are_busy(rule, letters)
+    found = cells[are_busy] if isinstance(are_busy, np.ndarray) else cells if are_busy else _NONE
+    return found, letters if is_whole else None
 
 
 def _pairs(
@@ -198,7 +190,7 @@ def _pairs(
         one, other = one[differ], other[differ]
         cells = dict(zip(rule.variables, (one, other), strict=True))
         numbers = numbers_at(rule, reader, Spots(stack.state_of[one], cells), rule.variables)
-        busy = ~_are_idle(rule, KnownLetters(*rule.letters.looked_up(numbers)), len(one))
+        busy = np.broadcast_to(_are_busy(rule, rule.letters.numbers(numbers)), len(one))
         pairs = stack.object_of[one[busy]] * n_objects + stack.object_of[other[busy]]
         found.append(distinct(pairs))
     every = distinct(np.concatenate(found))

@@ -7,12 +7,9 @@ from functools import cached_property
 
 import numpy as np
 
-from rulec.monitoring.batch.stacked.stack import Stack, StackColumn
+from rulec.monitoring.batch.stacked.stack import FEW, Stack, StackColumn
 from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Quantity
-
-_FEW = 1 << 12
-"""Columns of so many values are laid one upon the other, which takes fewer calls."""
 
 _BITS = {bits: 1 << np.arange(bits, dtype=f"u{bits // 8}") for bits in (8, 64)}
 """For each number the bit in its place."""
@@ -67,7 +64,7 @@ class MetValues:
                 continue
             size = len(column.values)
             if column.unknown is None and size:
-                names, columns = groups.setdefault(size if size <= _FEW else name, ([], []))
+                names, columns = groups.setdefault(size if size <= FEW else name, ([], []))
                 names.append(name)
                 columns.append(column)
         yield from groups.values()

@@ -6,7 +6,7 @@ stands in *cells*, one for each state in which an object is there, object by obj
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -29,6 +29,9 @@ from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
 
 Places = NDArray[np.intp]
+
+FEW = 1 << 12
+"""Columns of so many values are laid one upon the other, which takes fewer calls."""
 
 _NOWHERE = np.zeros(0, dtype=bool)
 
@@ -155,6 +158,20 @@ class Stack:
             self._columns[name] = self._column(name) if name in self.said else None
         return self._columns[name]
 
+    @cached_property
+    def _flagged(self) -> tuple[set[str], set[str]]:
+        """The names of which something is unknown, or absent, if all is in one piece."""
+        if len(self._pieces) != 1:
+            return set(), set()
+        (piece,) = self._pieces
+        return _names(piece.unknown, np.any), _names(piece.absent, np.any)
+
+    @cached_property
+    def _partly(self) -> set[str]:
+        """The names that are not said of all objects in the only piece."""
+        (piece,) = self._pieces
+        return piece.only.keys() - _names(piece.only, np.all)
+
     def default(self, name: str) -> Any:
         """What holds where nothing is said, as columns have it; None if there is nothing."""
         declaration = self.vocabulary.declarations[name]
@@ -169,8 +186,9 @@ class Stack:
         if declaration is None or len(declaration.parameters) != is_about:
             raise UnencodableError
         parts = [piece.about[name] if is_about else piece.world[name] for piece in self._pieces]
-        unknown = self._joined(name, [piece.unknown for piece in self._pieces], parts)
-        unsaid = self._joined(name, [piece.absent for piece in self._pieces], parts)
+        dark, absent = self._flagged
+        unknown = _joined(name, [piece.unknown for piece in self._pieces], parts, dark)
+        unsaid = _joined(name, [piece.absent for piece in self._pieces], parts, absent)
         if is_about:
             unsaid = _either(unsaid, self._not_about(name, declaration))
         upper = None
@@ -244,12 +262,14 @@ class Stack:
 
     def _not_about(self, name: str, declaration: Declaration) -> Flags | None:
         """The cells of the objects that a name is not said of."""
+        (kind,) = declaration.parameters
+        if len(self._pieces) == 1 and name not in self._partly and self._all_are(kind):
+            return None
         every = [
             piece.only[name] if name in piece.only else np.ones(piece.n_objects, dtype=bool)
             for piece in self._pieces
         ]
         said = _end_to_end(every)
-        (kind,) = declaration.parameters
         if not self._all_are(kind) and (said & ~self.of_type(kind)).any():
             raise UnencodableError
         return None if said.all() else np.repeat(~said, np.diff(self.starts))
@@ -259,24 +279,6 @@ class Stack:
         if kind not in self._whole_types:
             self._whole_types[kind] = bool(self.of_type(kind).all())
         return self._whole_types[kind]
-
-    def _joined(
-        self, name: str, flags: Sequence[Mapping[str, Flags]], parts: Sequence[Array]
-    ) -> Flags | None:
-        if len(flags) == 1:
-            if name not in flags[0]:
-                return None
-            own = flags[0][name]
-            return own if own.any() else None
-        if not any(name in own for own in flags):
-            return None
-        joined = _end_to_end(
-            [
-                own.get(name, np.zeros(len(part), dtype=bool))
-                for own, part in zip(flags, parts, strict=True)
-            ]
-        )
-        return joined if joined.any() else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -352,6 +354,34 @@ def _pieces(traces: Sequence[TraceArrays]) -> Iterator[_Piece]:
         last = piece if joined is None else joined
     if last is not None:
         yield last
+
+
+def _joined(
+    name: str, flags: Sequence[Mapping[str, Flags]], parts: Sequence[Array], flagged: Set[str]
+) -> Flags | None:
+    """The flags of all pieces, None if there are none; ``flagged`` are the names in one alone."""
+    if len(flags) == 1:
+        return flags[0][name] if name in flagged else None
+    if not any(name in own for own in flags):
+        return None
+    nowhere = [np.zeros(len(part), dtype=bool) for part in parts]
+    joined = _end_to_end([own.get(name, x) for own, x in zip(flags, nowhere, strict=True)])
+    return joined if joined.any() else None
+
+
+def _names(flags: Mapping[str, Flags], some: Callable[..., Flags]) -> set[str]:
+    """The names of which all or any flags are set."""
+    found: set[str] = set()
+    by_length: dict[int, list[str]] = {}
+    for name, own in flags.items():
+        if len(own) > FEW:
+            found |= {name} if some(own) else set()
+        else:
+            by_length.setdefault(len(own), []).append(name)
+    for names in by_length.values():
+        are_set = some(np.array([flags[name] for name in names]), axis=1).tolist()
+        found.update(name for name, is_set in zip(names, are_set, strict=True) if is_set)
+    return found
 
 
 def _end_to_end(parts: Sequence[Array]) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -65,17 +65,21 @@ class StackReader:
         self._met = MetValues(stack)
         self._every_state = np.arange(stack.n_states)
 
+    @cached_property
+    def _every_cell(self) -> Places:
+        return np.arange(self.stack.starts[-1])
+
     def numbers(self, read: StackedRead, spots: Spots | None) -> Numbers:
         """The numbers of a read at some spots, or in all states; one if they are all the same.
 
         Raises UnencodableError.
         """
-        if len(read.variables) > 1:
-            assert spots is not None, "it is about objects"
-            return self._of(read, spots)
-        if read.key not in self._numbers:
-            self._numbers[read.key] = self._everywhere(read)
-        found = self._numbers[read.key]
+        found = self._numbers.get(read.key)
+        if found is None:
+            if len(read.variables) > 1:
+                assert spots is not None, "it is about objects"
+                return self._of(read, spots)
+            found = self._numbers[read.key] = self._everywhere(read)
         if spots is None or not isinstance(found, np.ndarray):
             return found
         if spots.kind is None:
@@ -92,15 +96,14 @@ class StackReader:
 
         Raises UnencodableError.
         """
-        if read.count is not None or len(read.names) > 1:
-            return read.every
-        # Reads of the same values may take different ones together
         known = self._digits.get(read.digits_key)
         if known is None:
             known = self._digits[read.digits_key] = self._digits_met(read) or read.every
         return known
 
     def _digits_met(self, read: StackedRead) -> int:
+        if read.count is not None or len(read.names) > 1:
+            return read.every
         (name,) = read.names
         ready = read.ready
         if name not in self.stack.said:
@@ -132,9 +135,12 @@ class StackReader:
                 return read.meanings.index(digits)
         every = Spots(self._every_state, {}, whole=True)
         if read.variables:
-            cells = np.arange(stack.starts[-1])
-            every = Spots(stack.state_of, {read.variables[0]: cells}, whole=True)
+            every = Spots(stack.state_of, {read.variables[0]: self._every_cell}, whole=True)
         found = self._of(read, every)
+        if isinstance(read.read, Read):
+            met = self._met.values(read.names[0])
+            if met & (met - 1):
+                return found
         if isinstance(found, np.ndarray) and len(found) and (found == found[0]).all():
             return int(found[0])
         return found
@@ -242,9 +248,7 @@ class StackReader:
         def proposition(part: ltl.Proposition) -> Truth:
             if isinstance(part, ltl.Comparison):
                 return self._compared(part, spots, about)
-            if part.arguments:
-                part = replace(part, arguments=(about,) * len(part.arguments))
-            return self._atom(part, spots)
+            return self._atom(part, spots, (about,) * len(part.arguments))
 
         def identity(_: ltl.Same) -> Truth:
             return known(np.True_)
@@ -261,16 +265,19 @@ class StackReader:
         numbers = self._between(ready, spots)
         return Truth(true.take(numbers), false.take(numbers))
 
-    def _atom(self, atom: ltl.Atom, spots: Spots) -> Truth:
+    def _atom(self, atom: ltl.Atom, spots: Spots, arguments: tuple[str, ...]) -> Truth:
         declaration = self.stack.vocabulary.declarations[atom.name]
         column = self.stack.column(atom.name)
+        met = self._met.values(atom.name)
         values: Any
         if column is None:
             values, dark = self.stack.default(atom.name), None
             if values is UNKNOWN_VALUE:
                 return UNKNOWN
+        elif met and not met & (met - 1):
+            values, dark = np.intp(met.bit_length() - 1), None
         else:
-            values = self._taken(column.values, atom.arguments, spots)
+            values = self._taken(column.values, arguments, spots)
             dark = column.unknown
         if isinstance(declaration, Enumeration):
             assert atom.value is not None, "the rulebook has been checked"
@@ -279,7 +286,7 @@ class StackReader:
             holds = np.asarray(values, dtype=bool)
         if dark is None:
             return known(holds)
-        here = self._taken(dark, atom.arguments, spots)
+        here = self._taken(dark, arguments, spots)
         return Truth(holds & ~here, ~holds & ~here)
 
     def values_at(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TypeAlias
 
 import numpy as np
@@ -19,7 +20,7 @@ from rulec.monitoring.batch.stacked.instances import (
     doubtful_instances,
 )
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
-from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
+from rulec.monitoring.batch.stacked.stacked_rule import StackedRule, stretches
 from rulec.monitoring.batch.uncertain.partial_reader import number_of_value
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
@@ -29,7 +30,7 @@ from rulec.trace.plain_arrays import distinct
 from rulec.vocabulary.partial_values import UNKNOWN
 
 _FEW_WORDS = 1 << 5
-"""Among fewer words those that are the same are not looked for."""
+"""Fewer words are looked at one by one, and those that are the same not looked for."""
 
 _ODD = np.uint64(0x9E3779B97F4A7C15)
 """Of the golden ratio's digits."""
@@ -76,8 +77,11 @@ def outcomes(
         words = _doubtful_words(rule, reader, chosen)
         if words is None:
             continue
+        if len(words.bounds) <= _FEW_WORDS:
+            yield from _few(words)
+            continue
         is_odd = np.logical_or.reduceat(words.odd, words.bounds[:-1])
-        alternatives = [_stretches(letters, words.bounds) for letters in words.letters]
+        alternatives = [stretches(letters, words.bounds) for letters in words.letters]
         first_alike = _first_alike(words.letters, words.bounds)
         # What is odd has a word of its own
         first_alike = np.where(is_odd[first_alike], np.arange(len(is_odd)), first_alike)
@@ -94,6 +98,19 @@ def outcomes(
             yield StackedOutcome(words, place, found)
 
 
+def _few(words: StackedWords) -> Iterator[StackedOutcome]:
+    """What is not kept of few words, each looked at by itself."""
+    ends = words.bounds.tolist()
+    any_odd = bool(words.odd.any())
+    for place, (begin, end) in enumerate(pairwise(ends)):
+        if any_odd and words.odd[begin:end].any():
+            yield StackedOutcome(words, place, None)
+            continue
+        answer = _joined([words.rule.answer_to(own[begin:end]).answer for own in words.letters])
+        if answer.worst != KEPT:
+            yield StackedOutcome(words, place, answer)
+
+
 def _first_alike(
     alternatives: Sequence[NDArray[np.intp]], bounds: NDArray[np.intp]
 ) -> NDArray[np.intp]:
@@ -102,8 +119,6 @@ def _first_alike(
     Words of the letters of all alternatives, which begin and end at ``bounds``. They are told apart
     by sums of letters with weights, and compared then.
     """
-    if len(bounds) == 2:
-        return np.zeros(1, dtype=np.intp)
     begins, lengths = bounds[:-1], np.diff(bounds)
     states = np.arange(bounds[-1]) - np.repeat(begins, lengths)
     weights = _weights(int(lengths.max(initial=0)) + 1)
@@ -124,21 +139,6 @@ def _weights(count: int) -> NDArray[np.uint64]:
     """Odd numbers without a pattern, the powers of one."""
     weights: NDArray[np.uint64] = np.cumprod(np.full(count, _ODD), dtype=np.uint64)
     return weights
-
-
-def _stretches(
-    letters: NDArray[np.intp], bounds: NDArray[np.intp]
-) -> tuple[NDArray[np.intp], list[int]]:
-    """The letters of all words with how often each stays, in rows, and where each word has its own.
-
-    Words begin and end at ``bounds``.
-    """
-    is_new = np.ones(len(letters), dtype=bool)
-    np.not_equal(letters[1:], letters[:-1], out=is_new[1:])
-    is_new[bounds[:-1]] = True
-    starts = np.flatnonzero(is_new)
-    rows = np.column_stack([letters[starts], np.diff(starts, append=len(letters))])
-    return rows, np.searchsorted(starts, bounds).tolist()
 
 
 def _joined(answers: Sequence[Answer]) -> Answer:
@@ -181,19 +181,17 @@ class _Chosen:
     @staticmethod
     def of(rule: StackedRule, reader: StackReader, instances: Instances) -> _Chosen:
         """Some choices, with nothing supposed."""
-        spots = instances.spots(rule, reader.stack)
-        return _Chosen(instances, instances.bounds(), spots, NumbersAt(rule, reader, spots))
+        bounds, spots = instances.spots(rule, reader.stack)
+        return _Chosen(instances, bounds, spots, NumbersAt(rule, reader, spots))
 
     def part(self, rule: StackedRule, reader: StackReader, members: NDArray[np.intp]) -> _Chosen:
         """Some of them."""
         if len(members) == len(self.instances.traces):
             return self
         instances = self.instances.part(members)
-        spots = instances.spots(rule, reader.stack)
+        bounds, spots = instances.spots(rule, reader.stack)
         numbers = NumbersAt(rule, reader, spots)
-        return replace(
-            self, instances=instances, bounds=instances.bounds(), spots=spots, numbers=numbers
-        )
+        return replace(self, instances=instances, bounds=bounds, spots=spots, numbers=numbers)
 
 
 def _by_unknown_constants(
@@ -255,7 +253,10 @@ def _alternatives(
         if instead or chosen.instances.letters is None:
             letters = rule.letters.numbers(own)
         else:
-            letters = chosen.instances.letters.at(chosen.spots, rule.variables)
+            letters = chosen.instances.letters
+            if isinstance(letters, np.ndarray):
+                (where,) = chosen.spots.cells.values() or [chosen.spots.states]
+                letters = letters.take(where)
         if not isinstance(letters, np.ndarray):
             letters = np.full(len(chosen.spots.states), letters, dtype=np.intp)
         found.append((values, own, letters))
@@ -267,14 +268,16 @@ def _are_surely_kept(
 ) -> NDArray[np.bool_]:
     """For each word whether it is kept, whatever its letters are of those that they may be."""
     n_words = len(bounds) - 1
-    kept = np.zeros(n_words, dtype=bool)
-    is_few = n_words <= _FEW_WORDS
-    first_alike = np.arange(n_words) if is_few else _first_alike([letters], bounds)
-    rows, ends = _stretches(letters, bounds)
-    sets = rule.letters.sets
-    for place in range(n_words) if is_few else distinct(first_alike).tolist():
-        own = rows[ends[place] : ends[place + 1]]
+    if n_words < _FEW_WORDS:
+        words = [rule.answer_to(letters[i:j]) for i, j in pairwise(bounds.tolist())]
         # What cannot be, because facts exclude it, is never kept
+        return np.array([word.is_possible and word.answer.worst == KEPT for word in words])
+    kept = np.zeros(n_words, dtype=bool)
+    first_alike = _first_alike([letters], bounds)
+    rows, ends = stretches(letters, bounds)
+    sets = rule.letters.sets
+    for place in distinct(first_alike).tolist():
+        own = rows[ends[place] : ends[place + 1]]
         if all(sets[number] for number in own[:, 0].tolist()):
             kept[place] = rule.answer(own).worst == KEPT
     return kept[first_alike]

@@ -34,6 +34,15 @@ from rulec.trace import Value
 from rulec.vocabulary import Enumeration, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
 
+
+@dataclass(frozen=True, slots=True)
+class KnownWord:
+    """What a word comes to, and whether facts exclude none of its letters."""
+
+    answer: Answer
+    is_possible: bool
+
+
 NOBODY = NothingKnown({}, Vocabulary("", {}, {}))
 """Nothing is known of anybody."""
 
@@ -125,9 +134,10 @@ class StackedRule:
             )
         )
         self.is_simple = _is_simple(self)
-        self._idle_flags: NDArray[np.bool_] = np.zeros(0, dtype=bool)
+        self._busy_flags: NDArray[np.bool_] = np.zeros(0, dtype=bool)
         self.letters = self._no_letters()
         self._answers: dict[bytes, Answer] = {}
+        self._words: dict[bytes, KnownWord] = {}
         self._bytes = 0
         self._does_nothing: dict[tuple[int, ...], bool] = {}
         self._vocabulary = vocabulary
@@ -172,8 +182,8 @@ class StackedRule:
     def forget_many(self) -> None:
         """Forget the sets that have been met, if they are many; their numbers are no more."""
         if len(self.letters.sets) > MOST_SETS:
-            self.letters, self._answers = self._no_letters(), {}
-            self._idle_flags = np.zeros(0, dtype=bool)
+            self.letters, self._answers, self._words = self._no_letters(), {}, {}
+            self._busy_flags = np.zeros(0, dtype=bool)
 
     def does_nothing(self, digits: Sequence[int]) -> bool:
         """Whether letters are idle that have any of these digits, as bits, for each read."""
@@ -185,27 +195,61 @@ class StackedRule:
             known = self._does_nothing[key] = self.machine.idle.of_cube(key)
         return known
 
-    def idle_flags(self) -> NDArray[np.bool_]:
-        """Whether each set of letters that has been met is idle."""
+    def busy_flags(self) -> NDArray[np.bool_]:
+        """Whether each set of letters that has been met might do something: it is not idle."""
         sets = self.letters.sets
-        if len(self._idle_flags) < len(sets):
-            more = [self.machine.idle.of_classes(x) for x in sets[len(self._idle_flags) :]]
-            self._idle_flags = np.concatenate([self._idle_flags, np.array(more, dtype=bool)])
-        return self._idle_flags
+        if len(self._busy_flags) < len(sets):
+            more = [not self.machine.idle.of_classes(x) for x in sets[len(self._busy_flags) :]]
+            self._busy_flags = np.concatenate([self._busy_flags, np.array(more, dtype=bool)])
+        return self._busy_flags
 
-    def answer(self, stretches: NDArray[np.intp]) -> Answer:
+    def answer_to(self, letters: NDArray[np.intp]) -> KnownWord:
+        """What a word comes to: the number of a letter set for each state."""
+        key = letters.tobytes()
+        found = self._words.get(key)
+        if found is None:
+            bounds = np.array([0, len(letters)], dtype=np.intp)
+            rows, _ = stretches(letters, bounds)
+            sets = self.letters.sets
+            is_possible = all(sets[number] for number in rows[:, 0].tolist())
+            found = KnownWord(self.answer(rows), is_possible)
+            if len(key) <= MOST_BYTES >> 10:
+                self._make_room(len(key))
+                self._words[key] = found
+        return found
+
+    def answer(self, rows: NDArray[np.intp]) -> Answer:
         """What a word comes to: rows of the number of a letter set, and for how long it stays."""
-        key = stretches.tobytes()
+        key = rows.tobytes()
         found = self._answers.get(key)
         if found is None:
-            self._bytes += len(key)
-            if self._bytes > MOST_BYTES:
-                self._answers.clear()
-                self._bytes = len(key)
+            self._make_room(len(key))
             sets = self.letters.sets
-            word = ((sets[number], length) for number, length in stretches.tolist())
+            word = ((sets[number], length) for number, length in rows.tolist())
             found = self._answers[key] = Answer(*self.machine.monitor.run_stretches(word))
         return found
+
+    def _make_room(self, n_bytes: int) -> None:
+        self._bytes += n_bytes
+        if self._bytes > MOST_BYTES:
+            self._answers.clear()
+            self._words.clear()
+            self._bytes = n_bytes
+
+
+def stretches(
+    letters: NDArray[np.intp], bounds: NDArray[np.intp]
+) -> tuple[NDArray[np.intp], list[int]]:
+    """The letters of all words with how often each stays, in rows, and where each word has its own.
+
+    Words begin and end at ``bounds``.
+    """
+    is_new = np.ones(len(letters), dtype=bool)
+    np.not_equal(letters[1:], letters[:-1], out=is_new[1:])
+    is_new[bounds[:-1]] = True
+    starts = np.flatnonzero(is_new)
+    rows = np.column_stack([letters[starts], np.diff(starts, append=len(letters))])
+    return rows, np.searchsorted(starts, bounds).tolist()
 
 
 def _stacked(read: Read | NumberRead, vocabulary: Vocabulary, keys: ReadKeys) -> StackedRead:

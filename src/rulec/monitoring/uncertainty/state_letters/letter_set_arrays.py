@@ -67,11 +67,6 @@ class LetterSets:
 
     def numbers(self, columns: Sequence[Numbers]) -> Numbers:
         """The number of each letter, for columns of the reads' numbers, or one for all."""
-        table, codes = self.looked_up(columns)
-        return table.item(codes) if isinstance(codes, int) else table.take(codes)
-
-    def looked_up(self, columns: Sequence[Numbers]) -> tuple[NDArray[np.intp], Numbers]:
-        """A table of the numbers of letters, and the place of each letter in it."""
         numbers: list[Numbers] = []
         given: list[int | None] = []
         varying: list[tuple[int, NDArray[np.intp]]] = []
@@ -88,8 +83,7 @@ class LetterSets:
             numbers.append(own)
             given.append(None if isinstance(own, np.ndarray) else own)
         if width > MOST_CODES or width > max(_FEW_CODES, n_letters):
-            found = self._one_by_one(numbers)
-            return np.arange(len(self._places[0])), found
+            return self._one_by_one(numbers)
         codes: Numbers = 0
         for read, column in varying:
             if isinstance(codes, int):
@@ -105,11 +99,16 @@ class LetterSets:
                 self._together.clear()
                 self._kept = width
             table = self._together[key] = np.full(width, _UNMET, dtype=np.intp)
-        unmet = np.asarray(table.take(codes)) == _UNMET
-        if unmet.any():
-            for code in distinct(np.asarray(codes)[unmet]).tolist():
+        if isinstance(codes, int):
+            if table.item(codes) == _UNMET:
+                table[codes] = self._of_code(codes, key)
+            return table.item(codes)
+        found: NDArray[np.intp] = table.take(codes)
+        if found.min(initial=0) == _UNMET:
+            for code in distinct(codes[found == _UNMET]).tolist():
                 table[code] = self._of_code(code, key)
-        return table, codes
+            found = table.take(codes)
+        return found
 
     def _of_code(self, code: int, key: Sequence[int | None]) -> Numbers:
         """The number of the letter of which the reads have these numbers, some by a code."""
