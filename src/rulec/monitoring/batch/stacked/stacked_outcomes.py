@@ -106,7 +106,9 @@ def _few(words: StackedWords) -> Iterator[StackedOutcome]:
         if any_odd and words.odd[begin:end].any():
             yield StackedOutcome(words, place, None)
             continue
-        answer = _joined([words.rule.answer_to(own[begin:end]).answer for own in words.letters])
+        found = [words.rule.answer_to(own[begin:end]) for own in words.letters]
+        # What facts exclude is odd
+        answer = _joined([own for own in found if own is not None])
         if answer.worst != KEPT:
             yield StackedOutcome(words, place, answer)
 
@@ -271,7 +273,7 @@ def _are_surely_kept(
     if n_words < _FEW_WORDS:
         words = [rule.answer_to(letters[i:j]) for i, j in pairwise(bounds.tolist())]
         # What cannot be, because facts exclude it, is never kept
-        return np.array([word.is_possible and word.answer.worst == KEPT for word in words])
+        return np.array([word is not None and word.worst == KEPT for word in words])
     kept = np.zeros(n_words, dtype=bool)
     first_alike = _first_alike([letters], bounds)
     rows, ends = stretches(letters, bounds)

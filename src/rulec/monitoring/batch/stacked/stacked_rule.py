@@ -34,15 +34,6 @@ from rulec.trace import Value
 from rulec.vocabulary import Enumeration, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
 
-
-@dataclass(frozen=True, slots=True)
-class KnownWord:
-    """What a word comes to, and whether facts exclude none of its letters."""
-
-    answer: Answer
-    is_possible: bool
-
-
 NOBODY = NothingKnown({}, Vocabulary("", {}, {}))
 """Nothing is known of anybody."""
 
@@ -137,7 +128,7 @@ class StackedRule:
         self._busy_flags: NDArray[np.bool_] = np.zeros(0, dtype=bool)
         self.letters = self._no_letters()
         self._answers: dict[bytes, Answer] = {}
-        self._words: dict[bytes, KnownWord] = {}
+        self._words: dict[bytes, Answer | None] = {}
         self._bytes = 0
         self._does_nothing: dict[tuple[int, ...], bool] = {}
         self._vocabulary = vocabulary
@@ -203,19 +194,20 @@ class StackedRule:
             self._busy_flags = np.concatenate([self._busy_flags, np.array(more, dtype=bool)])
         return self._busy_flags
 
-    def answer_to(self, letters: NDArray[np.intp]) -> KnownWord:
-        """What a word comes to: the number of a letter set for each state."""
+    def answer_to(self, letters: NDArray[np.intp]) -> Answer | None:
+        """What a word comes to, as the number of a letter set for each state.
+
+        None if facts exclude one of them.
+        """
         key = letters.tobytes()
-        found = self._words.get(key)
-        if found is None:
-            bounds = np.array([0, len(letters)], dtype=np.intp)
-            rows, _ = stretches(letters, bounds)
-            sets = self.letters.sets
-            is_possible = all(sets[number] for number in rows[:, 0].tolist())
-            found = KnownWord(self.answer(rows), is_possible)
-            if len(key) <= MOST_BYTES >> 10:
-                self._make_room(len(key))
-                self._words[key] = found
+        if key in self._words:
+            return self._words[key]
+        rows, _ = stretches(letters, np.array([0, len(letters)], dtype=np.intp))
+        sets = self.letters.sets
+        found = self.answer(rows) if all(sets[n] for n in rows[:, 0].tolist()) else None
+        if len(key) <= MOST_BYTES >> 10:
+            self._make_room(len(key))
+            self._words[key] = found
         return found
 
     def answer(self, rows: NDArray[np.intp]) -> Answer:
