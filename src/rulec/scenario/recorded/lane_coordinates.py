@@ -228,21 +228,22 @@ def _side(strip: _Strip, inner: _Values, *, left: bool) -> list[tuple[_Values, N
 
 
 def _bound(strip: _Strip, lanelets: Sequence[Lanelet | None], *, left: bool) -> _Values:
-    parts = [np.empty((0, 2))]
+    numbers = [k for k, lanelet in enumerate(lanelets) if lanelet is not None]
+    bounds = [
+        densified(lanelet.left if left else lanelet.right, _EVERY_M)
+        for lanelet in lanelets
+        if lanelet is not None
+    ]
+    # All places together, each near the piece of its lanelet
+    piece = np.repeat(numbers, [len(bound) for bound in bounds])
+    start, end = strip.borders[piece], strip.borders[piece + 1]
+    places: Points = strip.line.coordinates_near(
+        np.concatenate(bounds), (start + end) / 2, (end - start) / 2 + _FAR_M
+    )
     # Where the way changes lanes its bounds do not go on
     same = np.concatenate(([True], np.diff(strip.own_number) == 0, [True]))
-    for k, (start, end) in enumerate(pairwise(strip.borders)):
-        lanelet = lanelets[k]
-        if lanelet is None:
-            continue
-        bound = densified(lanelet.left if left else lanelet.right, _EVERY_M)
-        reach = (end - start) / 2 + _FAR_M
-        middle = np.full(len(bound), (start + end) / 2)
-        places = strip.line.coordinates_near(bound, middle, np.full(len(bound), reach))
-        low, high = (_MARGIN_M if same[k] else 0.0), (_MARGIN_M if same[k + 1] else 0.0)
-        near = (places[:, 0] >= start - low) & (places[:, 0] <= end + high)
-        parts.append(places[near])
-    places = np.concatenate(parts)
+    low, high = (np.where(goes_on, _MARGIN_M, 0.0) for goes_on in (same[piece], same[piece + 1]))
+    places = places[(places[:, 0] >= start - low) & (places[:, 0] <= end + high)]
     if not len(places):
         raise ValueError("a lane's bounds are nowhere beside its centre line")
     places = places[np.argsort(places[:, 0], kind="stable")]

@@ -20,7 +20,7 @@ _MARGIN_M, _MARGIN_PART = 1e-2, 1e-6
 """What single precision rounds away, of a place so far (m) from the line's first corner."""
 
 _AT_ONCE = 1 << 17
-_MOST_PLACES = 2048
+_MOST_PLACES = 256
 _FEW = 1 << 16
 _Values = NDArray[float64]
 
