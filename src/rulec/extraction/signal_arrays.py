@@ -205,10 +205,15 @@ def with_signals(
     told = [(x.first, x.last) for own in present for x in own]
     every = np.array(told, dtype=intp).reshape(-1, 2)
     cells, bounds = _cells(rows, every, counts, spans)
+    never = np.zeros(len(cells), dtype=bool)
 
     def gathered(name: str, column: SignalColumn) -> SignalColumn:
         """A signal's values end to end: of the world, or of who is present."""
-        return column if name in columns.world else column.ravel().take(cells)
+        if name in columns.world:
+            return column
+        # Much is true of nobody, which is seen sooner than it is gathered
+        is_never = column.dtype == bool and not column.any()
+        return never if is_never else column.ravel().take(cells)
 
     world = {name: gathered(name, own) for name, own in columns.world.items()}
     about = {name: gathered(name, own) for name, own in columns.about.items()}

@@ -162,7 +162,7 @@ def _charged(
 
 def _at(violation: Violation, begins: int) -> Violation:
     step = violation.step
-    return violation if step is None else replace(violation, step=step + begins)
+    return replace(violation, step=step + begins) if begins and step is not None else violation
 
 
 def _anew(

@@ -171,19 +171,19 @@ def queues_by_lane(context: DriveContext) -> tuple[Flags, Flags]:
     place = around.state * lanes + around.lane
     enough = np.bincount(place, minlength=context.states * lanes) >= context.thresholds.fewest
     several = np.flatnonzero(enough[place])
-    around, place = around.part(several), place[several]
+    place = place[several]
     slow = medians_hold(
         place,
-        around.speed,
+        around.speed[several],
         context.states * lanes,
         lambda speed: speed * KMH < context.thresholds.slow_queue_kmh,
     )
-    order = sorted_in(place, around.s_min)
-    around, place = around.part(order), place[order]
+    order = sorted_in(place, around.s_min[several])
+    several, place = several[order], place[order]
     next_to = np.flatnonzero(place[1:] == place[:-1])
-    behind, place = around.part(next_to), place[next_to]
-    longest = longest_gaps(context, behind.speed, behind.speed_error)
-    short = around.s_min[next_to + 1] - behind.s_max <= longest
+    behind, ahead, place = several[next_to], several[next_to + 1], place[next_to]
+    longest = longest_gaps(context, around.speed[behind], around.speed_error[behind])
+    short = around.s_min[ahead] - around.s_max[behind] <= longest
     queues = np.zeros((len(READINGS), context.states * lanes), dtype=bool)
     if len(place):
         # All of a lane and state stand together

@@ -185,6 +185,14 @@ class _LaidExtents(RoadExtents):
     def __init__(self, whole: RoadExtents, laid: LaidOut) -> None:
         self.__dict__.update(_whole=whole, _laid=laid, most_off_middle=whole.most_off_middle)
 
+    def from_bound(self, bound: NDArray[intp]) -> tuple[Floats, Floats]:
+        """How far (m) left of one bound of the lanes, by column, bodies begin and end."""
+        if bound.ndim > 1 and len(bound) != 1:
+            return super().from_bound(bound)
+        whole, laid, places = self.__dict__["_whole"], self.__dict__["_laid"], bound.ravel()
+        low: Floats = laid.at_third(whole.left_of_min, places)
+        return low, laid.at_third(whole.left_of_max, places)
+
     def __getattribute__(self, name: str) -> Any:
         if name in _LAID:
             own = object.__getattribute__(self, "__dict__")

@@ -30,6 +30,8 @@ _HAIR_RAD = 1e-6
 _ACROSS_RAD = np.radians(30.0)
 _LEAST_M = 2.0
 
+_MUCH_RAD = 1.5
+
 _DRIFT_M = 3.0
 """Boxes of vehicles that stand drift by less: up to 2.5 m to and fro in Argoverse 2."""
 
@@ -47,10 +49,11 @@ def _reversing(context: DriveContext) -> SignalColumns:
     backs = forward < -least
     unknown = np.abs(forward + least) < error
     unknown |= backs & ~_for_long(context, backs)
-    for columns in context.spans.slices:
-        backs_ever = bool(backs[columns].any())
-        if _jumps(heading[columns]) or not (backs_ever or _tells_headings(context, columns)):
-            unknown[columns] = True
+    spans, jumps = context.spans, _jumps(context)
+    unknown |= jumps
+    if not _are_told(context):
+        for _, columns in spans.those(~jumps & ~spans.any(backs)):
+            unknown[columns] |= not _tells_headings(context, columns)
     return SignalColumns({"reversing": backs}, unknown={"reversing": unknown})
 
 
@@ -74,16 +77,23 @@ def _for_long(context: DriveContext, flags: Flags) -> Flags:
     return found
 
 
-def _jumps(heading: Floats) -> bool:
-    """True if a heading turns round from one state to the next, as a box that is taken amiss."""
-    steps = np.angle(np.exp(1j * np.diff(heading)))
-    return bool((np.abs(steps) > np.pi / 2).any())
+def _jumps(context: DriveContext) -> Flags:
+    """Flags of drives in which a heading turns round at once, as a box that is taken amiss."""
+    spans, heading = context.spans, context.ego.heading[0]
+    turned, jumps = heading - spans.before(heading), np.zeros(context.states, dtype=bool)
+    # Hardly any turn as much
+    much = np.flatnonzero(np.abs(turned) > _MUCH_RAD)
+    jumps[much] = np.abs(np.angle(np.exp(1j * turned[much]))) > np.pi / 2
+    return spans.any(jumps)
+
+
+def _are_told(context: DriveContext) -> bool:
+    """Whether the source says which way everybody looks."""
+    return not context.recording.complete.isdisjoint({"arrivals", HEADINGS})
 
 
 def _tells_headings(context: DriveContext, columns: slice) -> bool:
     """False if ego's headings in a drive are no more than the directions in which it moved."""
-    if not context.recording.complete.isdisjoint({"arrivals", HEADINGS}):
-        return True
     own = context.ego
     x, y, heading = own.x[0, columns], own.y[0, columns], own.heading[0, columns]
     steps = np.hypot(np.diff(x), np.diff(y))

@@ -241,6 +241,9 @@ def _exit_clear(context: DriveContext) -> SignalColumns:
     front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
     stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
     entered = _entered(front, rear, places, context.thresholds.approach_m)
+    if not any((entered == number).any() for number in range(len(places))):
+        nobody = np.zeros(context.relevant.shape, dtype=bool)
+        return _room_beyond(context, clear, unknown, nobody)
     error = context.tolerances.place_m
     beyond = corner_ahead(context) + error
     ahead = _ahead_on_lane(context)
@@ -264,6 +267,12 @@ def _exit_clear(context: DriveContext) -> SignalColumns:
         unknown |= nears & may_be_short & ~blocked & may_be
     where = np.where(nearest, context.extents.s_min, np.inf)
     nearest &= where == where.min(axis=0, initial=np.inf)
+    return _room_beyond(context, clear, unknown, nearest)
+
+
+def _room_beyond(
+    context: DriveContext, clear: Flags, unknown: Flags, nearest: Flags
+) -> SignalColumns:
     return SignalColumns(
         {"exit_clear": clear},
         unknown={"exit_clear": unknown & clear},
