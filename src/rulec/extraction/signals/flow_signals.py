@@ -57,17 +57,17 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     """
     around, limits, states = vehicles_around(context), context.thresholds, context.states
     existing = context.existing_lanes
-    shape, size = existing.shape, existing.size
-    place = around.state * shape[1] + around.lane
+    shape = existing.shape[::-1]
     enough = np.bincount(around.state, minlength=states) >= limits.fewest
 
     def slow(below_kmh: float) -> Flags:
         own = around.speed * KMH < below_kmh
-        there = (np.bincount(place[own], minlength=size) > 0).reshape(shape) & existing
+        on_lanes = np.bincount(around.place[own], minlength=existing.size).reshape(shape) > 0
+        there = on_lanes.T & existing
         called: Flags = enough & (2 * there.sum(axis=1) >= existing.sum(axis=1))
         asked = np.flatnonzero(called[around.state])
         if len(asked):
-            called &= _is_slow(context, around.part(asked), below_kmh)
+            called &= _is_slow(context, around, asked, below_kmh)
         return called
 
     congested = slow(limits.congested_kmh)
@@ -80,25 +80,27 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     )
 
 
-def _is_slow(context: DriveContext, around: VehiclesAround, below_kmh: float) -> Flags:
+def _is_slow(
+    context: DriveContext, around: VehiclesAround, asked: NDArray[intp], below_kmh: float
+) -> Flags:
     """Flags of states in which traffic is slower than so much, and nowhere so many times as fast.
 
-    Nobody is on no lane, nor one alone where traffic flows freely.
+    By all vehicles in states that are asked about, at places among all. Nobody is on no lane, nor
+    one alone where traffic flows freely.
     """
     states, lanes = context.states, context.existing_lanes.shape[1]
+    state, speed = around.state[asked], around.speed[asked]
 
-    def are_below(limit_kmh: float, chosen: Flags | None, *, by_lane: bool = False) -> Flags:
-        own = around if chosen is None else around.part(np.flatnonzero(chosen))
-        groups = own.state * lanes + own.lane if by_lane else own.state
-        count = states * lanes if by_lane else states
-        below = medians_hold(groups, own.speed, count, lambda speed: speed * KMH < limit_kmh)
-        return below if chosen is None else below | (np.bincount(groups, minlength=count) <= 1)
+    def are_below(limit_kmh: float, groups: NDArray[intp], speed: Floats, count: int) -> Flags:
+        return medians_hold(groups, speed, count, lambda own: own * KMH < limit_kmh)
 
-    fast_kmh = TIMES_AS_FAST * below_kmh
-    everybody = np.ones(len(around.state), dtype=bool)
-    beside = around.lane != context.ego_lane[around.state]
-    on_lanes = are_below(fast_kmh, everybody, by_lane=True).reshape(states, lanes).all(axis=1)
-    slow: Flags = are_below(below_kmh, None) & on_lanes & are_below(fast_kmh, beside)
+    fast_kmh, place = TIMES_AS_FAST * below_kmh, around.place[asked]
+    few = np.bincount(place, minlength=states * lanes) <= 1
+    on_lanes = (few | are_below(fast_kmh, place, speed, len(few))).reshape(lanes, states)
+    aside = np.flatnonzero(around.lane[asked] != context.ego_lane[state])
+    alone = np.bincount(state[aside], minlength=states) <= 1
+    beside = alone | are_below(fast_kmh, state[aside], speed[aside], states)
+    slow: Flags = are_below(below_kmh, state, speed, states) & on_lanes.all(axis=0) & beside
     return slow
 
 

@@ -42,8 +42,13 @@ def _ahead_for(context: DriveContext) -> SignalColumns:
     most = np.where(seen, (states - since + 1) * step_s, LONGEST_S) * perhaps
     since, seen = _since(context, rows, surely)
     least = (states - since) * step_s
-    appears = (surely & ~seen).nonzero()
-    least[appears] += _before(context, rows[appears[0]], since[appears])
+    appears = surely & ~seen
+    # For all of a run it is that of its first state
+    first = (appears & (since == states)).nonzero()
+    earlier = np.zeros(least.shape)
+    earlier[first] = _before(context, rows[first[0]], first[1])
+    at = appears.nonzero()
+    least[at] += earlier[at[0], since[at]]
     least = np.minimum(least, LONGEST_S) * surely
     times, *bounds = np.zeros((3, *context.relevant.shape))
     times[rows] = rounded(least)

@@ -6,7 +6,7 @@ queue at ego's speed have room. A lane's vehicles are those whose middle is in i
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,7 @@ from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.trace.plain_arrays import in_order, medians_hold, sorted_in
+from rulec.trace.plain_arrays import medians_hold, sorted_in
 
 _BODY_M = 5.0
 """About how long a vehicle is."""
@@ -119,43 +119,47 @@ def close_by(context: DriveContext) -> Flags:
 class VehiclesAround:
     """Ego and the vehicles around it that go its way, an entry for each in each state.
 
-    ``lane`` is that of the middle, ``speed`` (m/s) that along the road, 0 of who drives back.
+    ``lane`` is that of the middle, ``speed`` (m/s) that along the road, 0 of who drives back;
+    ``place`` numbers the lanes and in each of them the states.
     """
 
     state: NDArray[intp]
     lane: NDArray[intp]
+    place: NDArray[intp]
     s_min: Floats
     s_max: Floats
     speed: Floats
     speed_error: Floats
 
-    def part(self, chosen: NDArray[intp]) -> VehiclesAround:
-        """Some of the entries, in this order."""
-        return VehiclesAround(*(getattr(self, field.name)[chosen] for field in fields(self)))
-
 
 @once
 def vehicles_around(context: DriveContext) -> VehiclesAround:
-    """The traffic around ego, by state and lane, ego first in each."""
-    rows, states = np.nonzero(close_by(context))
+    """The traffic around ego, by lane and state, ego first in each."""
     own, others = context.ego_extents, context.extents
-    lane = np.concatenate((own.lane[0], others.lane[rows, states]))
-    state = np.concatenate((context.spans.columns, states))
-    order = in_order(state * context.existing_lanes.shape[1] + lane)
+    lanes = np.concatenate((own.lane, others.lane))
+    there = np.concatenate((np.ones((1, context.states), dtype=bool), close_by(context)))
+    there, of_row = np.ascontiguousarray(there.T), np.ascontiguousarray(lanes.T)
+    numbers = range(context.existing_lanes.shape[1])
+    # Lane by lane they are found in their order
+    found = [np.nonzero(there & (of_row == number)) for number in numbers]
+    state, row = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    lane, at = np.repeat(numbers, [len(own) for own, _ in found]), row * context.states + state
 
-    def ordered(of_ego: NDArray[Any], of_others: NDArray[Any]) -> NDArray[Any]:
-        return np.concatenate((of_ego[0], of_others[rows, states]))[order]
+    def taken(of_ego: NDArray[Any], of_others: NDArray[Any]) -> NDArray[Any]:
+        every: NDArray[Any] = np.concatenate((of_ego, of_others)).ravel().take(at)
+        return every
 
     s_min, s_max, along = (
-        ordered(getattr(own, name), getattr(others, name)) for name in ("s_min", "s_max", "along")
+        taken(getattr(own, name), getattr(others, name)) for name in ("s_min", "s_max", "along")
     )
     return VehiclesAround(
-        state=state[order],
-        lane=lane[order],
+        state=state,
+        lane=lane,
+        place=lane * context.states + state,
         s_min=s_min,
         s_max=s_max,
         speed=np.maximum(along, 0.0),
-        speed_error=ordered(context.ego.speed_error, context.tracks.speed_error),
+        speed_error=taken(context.ego.speed_error, context.tracks.speed_error),
     )
 
 
@@ -167,8 +171,8 @@ def queues_by_lane(context: DriveContext) -> tuple[Flags, Flags]:
     axis.
     """
     lanes = context.existing_lanes.shape[1]
-    shape, around = (context.states, lanes), vehicles_around(context)
-    place = around.state * lanes + around.lane
+    shape, around = (lanes, context.states), vehicles_around(context)
+    place = around.place
     enough = np.bincount(place, minlength=context.states * lanes) >= context.thresholds.fewest
     several = np.flatnonzero(enough[place])
     place = place[several]
@@ -190,4 +194,4 @@ def queues_by_lane(context: DriveContext) -> tuple[Flags, Flags]:
         begins = np.flatnonzero(np.diff(place, prepend=-1))
         n_short = np.add.reduceat(short, begins, axis=1, dtype=np.intp)
         queues[:, place[begins]] = n_short > _MOST * np.diff(begins, append=len(place))
-    return queues.reshape(len(READINGS), *shape), slow.reshape(shape)
+    return queues.reshape(len(READINGS), *shape).swapaxes(1, 2), slow.reshape(shape).T

@@ -80,24 +80,32 @@ class MapMatching:
 
     def of(self, row: int) -> tuple[MatchedStretch, ...]:
         """The stretches of a participant, parted at gaps in its recording."""
-        lanes, begins = self._paths
-        first, last = np.searchsorted(self._candidates.rows, [row, row + 1]).tolist()
-        starts = (np.flatnonzero(begins[first:last]) + first).tolist()
-        ends = [*starts[1:], last][: len(starts)]
-        return tuple(self._stretch(*part, lanes) for part in zip(starts, ends, strict=True))
+        lanes, _ = self._paths
+        starts, of_row = self._starts
+        own = slice(of_row[row], of_row[row + 1])
+        ends = starts[own.start + 1 : own.stop + 1]
+        return tuple(self._stretch(*part, lanes) for part in zip(starts[own], ends, strict=True))
+
+    @cached_property
+    def _starts(self) -> tuple[list[int], list[int]]:
+        """Where stretches begin, and the last one ends; and the numbers of each row's first one."""
+        rows, (_, begins) = self._candidates.rows, self._paths
+        starts = np.flatnonzero(begins)
+        of_row = np.searchsorted(rows[starts], np.arange(len(self._tracks.present) + 1))
+        return [*starts.tolist(), len(rows)], of_row.tolist()
 
     def _stretch(self, start: int, end: int, lanes: NDArray[intp]) -> MatchedStretch:
         names, own = self._candidates.names, lanes[start:end]
+        columns = tuple(self._candidates.columns[start:end].tolist())
+        if (own == own[0]).all():
+            return MatchedStretch(columns, (names[own[0]],), (0,) * len(columns))
         chain, added = [names[own[0]]], np.zeros(end - start, dtype=intp)
         for change in (np.flatnonzero(np.diff(own)) + 1).tolist():
             way = self._graph.way(names[own[change - 1]], names[own[change]])
             assert way is not None, "a stretch goes on only along ways"
             chain += way.lanelets
             added[change] = len(way.lanelets)
-        columns = self._candidates.columns[start:end]
-        return MatchedStretch(
-            tuple(columns.tolist()), tuple(chain), tuple(np.cumsum(added).tolist())
-        )
+        return MatchedStretch(columns, tuple(chain), tuple(np.cumsum(added).tolist()))
 
     @cached_property
     def lanelets(self) -> NDArray[intp]:

@@ -134,7 +134,8 @@ def _by_others(context: DriveContext, others: _Others) -> Flags:
     """Flags of the others' states with one ahead in ego's way, coming into it, or across it."""
     states, reach = others.states, _reach(context)[others.states]
     near = (others.ahead > -_REACH_M / 4) & (others.ahead <= reach + _REACH_M)
-    rows, columns = (near & (others.away <= _CROSSES_M)).nonzero()
+    found: Flags = np.any(near & (others.away <= _IN_WAY_M), axis=0)
+    rows, columns = (near & (others.away <= _CROSSES_M) & ~found).nonzero()
     left, away = others.left[rows, columns], others.away[rows, columns]
     motion = _motion(context, others.rows[rows], states[columns])
     comes = (away <= _COMES_M) & (-motion.sideways * np.sign(left) > _SIDEWAYS_MPS)
@@ -145,9 +146,7 @@ def _by_others(context: DriveContext, others: _Others) -> Flags:
     speed = context.ego.speed[0, states[columns]]
     slower = (angle < _ACROSS_RAD) & (motion.along < speed + _ALIKE_MPS)
     not_to_pass = slower & (to_far > 0) & (away <= _COMES_M)
-    in_way = (away <= _IN_WAY_M) | comes | (across & motion.moves) | not_to_pass
-    found = np.zeros(len(states), dtype=bool)
-    found[columns[in_way]] = True
+    found[columns[comes | (across & motion.moves) | not_to_pass]] = True
     rest = np.flatnonzero(~found)
     at = states[rest]
     in_lane = relations.station(context)[:, at] == relations.BEHIND
