@@ -58,7 +58,10 @@ def fewest_counted_objects(
     sums = tuple(dict(state.counted)[count] for count in counts)
     if _comes_out(state, universe, dict(zip(counts, sums, strict=True))):
         return ()  # mostly; kinds of objects take a search each
-    kinds = object_kinds.of(state)
+    # Of those that add to the same counts the first is enough; most types are alike.
+    kinds: dict[tuple[int, ...], CountedObject] = {}
+    for kind in object_kinds.of(state):
+        kinds.setdefault(kind.adds, kind)
     enough = [_enough(count, state) for count in counts]
     waiting: list[tuple[tuple[int, ...], CountedObjects]] = [(sums, ())]
     seen = {sums}
@@ -67,7 +70,7 @@ def fewest_counted_objects(
             return further
         if len(further) == MOST_COUNTED_OBJECTS:
             raise UndecidedError(f"it takes more than {MOST_COUNTED_OBJECTS} objects to be counted")
-        for kind in kinds:
+        for kind in kinds.values():
             after = tuple(
                 min(a + b, most) for a, b, most in zip(sums, kind.adds, enough, strict=True)
             )

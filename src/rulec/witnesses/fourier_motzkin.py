@@ -92,10 +92,11 @@ def solve(
 
 def _rest(bound: LinearBound, solution: Mapping[Term, Fraction]) -> Fraction:
     """What the unknowns with a number leave of a limit."""
-    factors = bound.coefficients.items()
-    return bound.limit - sum(
-        (factor * solution[name] for name, factor in factors if name in solution), Fraction(0)
-    )
+    left = bound.limit
+    for name, factor in bound.coefficients.items():
+        if name in solution:
+            left -= factor * solution[name]
+    return left
 
 
 def _n_eliminated(unknown: Term, system: Sequence[LinearBound]) -> int:
@@ -109,17 +110,25 @@ def _eliminate(unknown: Term, system: Sequence[LinearBound]) -> list[LinearBound
     rest = [bound for bound in system if not bound.coefficients.get(unknown)]
     above = [bound for bound in system if bound.coefficients.get(unknown, 0) > 0]
     below = [bound for bound in system if bound.coefficients.get(unknown, 0) < 0]
-    for upper, lower in product(above, below):
-        sums: dict[Term, Fraction] = {}
-        limit = Fraction(0)
-        for bound in (upper, lower):
-            own = abs(bound.coefficients[unknown])
-            limit += bound.limit / own
-            for name, factor in bound.coefficients.items():
-                sums[name] = sums.get(name, Fraction(0)) + factor / own
+    for upper, lower in product(_per_one(unknown, above), _per_one(unknown, below)):
+        sums = dict(upper.coefficients)
+        for name, factor in lower.coefficients.items():
+            sums[name] = sums[name] + factor if name in sums else factor
         sums = {name: factor for name, factor in sums.items() if factor}
-        rest.append(LinearBound(sums, limit, upper.strict or lower.strict))
+        rest.append(LinearBound(sums, upper.limit + lower.limit, upper.strict or lower.strict))
     return rest
+
+
+def _per_one(unknown: Term, bounds: Sequence[LinearBound]) -> list[LinearBound]:
+    """The same inequalities, multiplied such that this unknown counts once."""
+    scaled = []
+    for bound in bounds:
+        own = abs(bound.coefficients[unknown])
+        if own != 1:
+            factors = {name: factor / own for name, factor in bound.coefficients.items()}
+            bound = LinearBound(factors, bound.limit / own, bound.strict)
+        scaled.append(bound)
+    return scaled
 
 
 def _candidates(
