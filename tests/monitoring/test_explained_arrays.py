@@ -24,7 +24,7 @@ from support.generators.seeds import seeds
 
 
 @given(seeds)
-@settings(phases=[Phase.generate], max_examples=settings().max_examples // 2)
+@settings(phases=[Phase.generate], max_examples=settings().max_examples // 4)
 def test_columns_explain_what_states_do(chance):
     book = with_some_constant(chance, rulebook(chance, Fraction(1)))
     compiled, vocabulary = compile_here(book, Fraction(1)), book.vocabulary
