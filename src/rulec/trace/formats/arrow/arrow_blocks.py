@@ -90,9 +90,19 @@ def cut(
 def _last_start(waiting: Sequence[Piece], piece: Piece, table: Table) -> int | None:
     """Start of the last trace of a piece; None if earlier."""
     at = table.at[TRACE]
-    start = int(blocks.trace_starts(coded(piece.column(at)))[-1])
-    goes_on = not waiting or waiting[-1].column(at)[-1] == piece.column(at)[0]
+    names = piece.column(at)
+    start = _start_of_last(names)
+    goes_on = not waiting or waiting[-1].column(at)[-1] == names[0]
     return None if start == 0 and goes_on else start
+
+
+def _start_of_last(names: Any) -> int:
+    """The row with which the last trace begins, by the column that names them."""
+    if not types.is_string(names.type) or not names[-1].as_py():
+        return int(blocks.trace_starts(coded(names))[-1])
+    # Its name is looked for, which takes less than to tell all names apart
+    others = np.flatnonzero(~truths_in(compute.fill_null(compute.equal(names, names[-1]), False)))
+    return int(others[-1]) + 1 if len(others) else 0
 
 
 def _block(
@@ -109,7 +119,9 @@ def _block(
     said = np.zeros(len(whole), dtype=bool)
     for column in columns.values():
         said |= _odd_values(column)
-    starts = np.append(blocks.trace_starts(coded(whole.column(table.at[TRACE]))), len(whole))
+    names = columns[TRACE]
+    assert isinstance(names, blocks.Coded), "names are texts"
+    starts = np.append(blocks.trace_starts(names), len(whole))
 
     def rows(start: int, stop: int) -> Iterator[Row]:
         return _rows([whole.slice(start, stop - start)], first + start)

@@ -91,7 +91,11 @@ def _parsed(lines: bytes, columns: Sequence[str]) -> Piece | None:
             csv.ReadOptions(
                 use_threads=False, block_size=len(lines) + 1, column_names=list(columns)
             ),
-            csv.ParseOptions(quote_char='"' if b'"' in lines else False, newlines_in_values=True),
+            # Lines that end within quotes are told by their number, which is a third faster.
+            csv.ParseOptions(
+                quote_char='"' if b'"' in lines else False,
+                newlines_in_values=not lines.endswith(b"\n"),
+            ),
             csv.ConvertOptions(
                 column_types=dict.fromkeys(columns, pyarrow.string()),
                 null_values=[""],
