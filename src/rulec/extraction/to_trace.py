@@ -105,8 +105,8 @@ def _presences(context: DriveContext) -> tuple[NDArray[np.intp], ...]:
     """
     longest, spans = round(context.thresholds.away_s / context.recording.step_s), context.spans
     rows, columns = np.nonzero(context.relevant)
-    drives, away, s = spans.number[columns], np.diff(columns), context.extents.s
-    parted = (np.diff(rows) > 0) | (away > longest + 1) | (np.diff(drives) > 0)
+    drives, away, s = spans.number[columns], columns[1:] - columns[:-1], context.extents.s
+    parted = (rows[1:] > rows[:-1]) | (away > longest + 1) | (drives[1:] > drives[:-1])
     parted |= np.isnan(s[rows, columns])[1:]
     gaps = np.flatnonzero(~parted & (away > 1))
     in_gaps = distinct(rows[gaps])

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -51,6 +52,11 @@ class EndToEnd:
     def slices(self) -> tuple[slice, ...]:
         """The columns of each."""
         return tuple(map(slice, self.bounds[:-1], self.bounds[1:]))
+
+    @cached_property
+    def _lengths(self) -> frozenset[int]:
+        """The numbers of states that drives have."""
+        return frozenset(end - begin for begin, end in pairwise(self.bounds))
 
     @cached_property
     def columns(self) -> _Columns:
@@ -170,9 +176,9 @@ class EndToEnd:
 
         If all drives have as many there is one, with an axis more, for drives.
         """
-        lengths = set(np.diff(self.bounds).tolist())
-        if len(lengths) == 1:
-            return [values.reshape(*values.shape[:-1], self.n_drives, lengths.pop())]
+        if len(self._lengths) == 1:
+            (length,) = self._lengths
+            return [values.reshape(*values.shape[:-1], self.n_drives, length)]
         return [values[..., columns] for columns in self.slices]
 
     def each(self, function: Callable[[slice], NDArray[Any]], axis: int = -1) -> NDArray[Any]:

@@ -19,9 +19,15 @@ _MOST_EMPTY = 8
 def distinct(values: NDArray[_Number]) -> NDArray[_Number]:
     """The different numbers in an array, ascending; without NaN."""
     ascending = np.sort(values, axis=None)
-    is_new = np.ones(len(ascending), dtype=bool)
-    np.not_equal(ascending[1:], ascending[:-1], out=is_new[1:])
-    return ascending[is_new]
+    return ascending[_are_new(ascending)]
+
+
+def _are_new(ascending: NDArray[Any]) -> NDArray[np.bool_]:
+    """Flags of the first ones of those that are equal."""
+    are_new = np.empty(len(ascending), dtype=bool)
+    are_new[:1] = True
+    np.not_equal(ascending[1:], ascending[:-1], out=are_new[1:])
+    return are_new
 
 
 def places_among(values: NDArray[_Number]) -> NDArray[np.intp]:
@@ -61,7 +67,7 @@ def sorted_in(groups: NDArray[np.intp], values: NDArray[np.float64]) -> NDArray[
     if rows is None:
         return np.lexsort((values, groups))
     within = np.argsort(rows, axis=1, kind="stable")
-    sizes = np.diff(begins, append=len(order))
+    sizes = _sizes(begins, len(order))
     there = np.arange(rows.shape[1]) < sizes[:, None]
     own: NDArray[np.intp] = order[(within + begins[:, None])[there]]
     return own
@@ -118,14 +124,20 @@ def _in_rows(
     size that rows would be mostly empty.
     """
     order = in_order(groups)
-    ascending = groups[order]
-    is_new = np.ones(len(order), dtype=bool)
-    np.not_equal(ascending[1:], ascending[:-1], out=is_new[1:])
-    begins = np.flatnonzero(is_new)
-    longest = int(np.diff(begins, append=len(order)).max(initial=0))
+    is_new = _are_new(groups[order])
+    begins = is_new.nonzero()[0]
+    longest = int(_sizes(begins, len(order)).max(initial=0))
     if longest * len(begins) > _MOST_EMPTY * len(order):
         return order, begins, None
     rows = np.full((len(begins), longest), np.nan)
-    row = np.cumsum(is_new) - 1
+    row = is_new.cumsum() - 1
     rows[row, np.arange(len(order)) - begins[row]] = values[order]
     return order, begins, rows
+
+
+def _sizes(begins: NDArray[np.intp], end: int) -> NDArray[np.intp]:
+    """From where each group begins, and all end, how many there are in each."""
+    sizes = np.empty_like(begins)
+    np.subtract(begins[1:], begins[:-1], out=sizes[:-1])
+    sizes[-1:] = end - begins[-1:]
+    return sizes

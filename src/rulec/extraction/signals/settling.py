@@ -129,10 +129,10 @@ def without_blips(column: SignalColumn, least: int, spans: EndToEnd) -> SignalCo
     begins = np.ones(rows.shape, dtype=bool)
     begins[:, 1:] = rows[:, 1:] != rows[:, :-1]
     begins[:, spans.begins] = True
-    starts = np.append(np.flatnonzero(begins), rows.size)
+    starts = np.append(begins.ravel().nonzero()[0], rows.size)
     at_end = spans.begins_here[starts % states]
-    between = ~at_end[:-1] & ~at_end[1:]
-    brief = np.flatnonzero(between & (np.diff(starts) < least))
+    between = ~(at_end[:-1] | at_end[1:])
+    brief = np.flatnonzero(between & (starts[1:] - starts[:-1] < least))
     if not len(brief):
         return column
     given, found = rows.ravel(), np.array(rows).ravel()

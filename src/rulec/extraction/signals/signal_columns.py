@@ -56,8 +56,9 @@ def together(parts: Sequence[SignalColumns], names: SignalNames = None) -> Signa
                 found.update(columns)
     if names is not None:
         for found in kinds:
-            for name in found.keys() - names:
-                del found[name]
+            if not names.issuperset(found):
+                for name in found.keys() - names:
+                    del found[name]
     return SignalColumns(*kinds)
 
 
@@ -87,6 +88,8 @@ def end_to_end(parts: Sequence[SignalColumns]) -> SignalColumns:
 def ids_by_state(flags: Flags, ids: Sequence[str]) -> SignalColumn:
     """The ids of the rows that are flagged, a tuple for each state."""
     found = nobody(flags.shape[-1])
+    if not flags.any():
+        return found
     columns = np.flatnonzero(flags.any(axis=0))
     places, rows = flags[:, columns].T.nonzero()
     begins = np.flatnonzero(np.diff(places, prepend=-1)).tolist()

@@ -315,8 +315,8 @@ def _entangled_words(
                     letters = letters.copy()
                     letters[entangled.places] = np.array(sets, dtype=np.intp)[entangled.numbers]
         if rule.facts:
-            nothing = [n for n, classes in enumerate(rule.letters.sets) if not classes]
-            odd |= np.isin(letters, nothing)
+            for nothing in rule.letters.numbers_of_none:
+                odd |= letters == nothing
         every_entangled.append(entangled)
         every_letters.append(letters)
     return StackedWords(

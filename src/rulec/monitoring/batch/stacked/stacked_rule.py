@@ -240,7 +240,10 @@ def stretches(
     np.not_equal(letters[1:], letters[:-1], out=is_new[1:])
     is_new[bounds[:-1]] = True
     starts = np.flatnonzero(is_new)
-    rows = np.column_stack([letters[starts], np.diff(starts, append=len(letters))])
+    rows = np.empty((len(starts), 2), dtype=np.intp)
+    rows[:, 0] = letters[starts]
+    rows[:-1, 1] = starts[1:] - starts[:-1]
+    rows[-1:, 1] = len(letters) - starts[-1:]
     return rows, np.searchsorted(starts, bounds).tolist()
 
 

@@ -53,6 +53,12 @@ class LetterSets:
             own += [nodes >> 1 for nodes in islice(places, len(own), None)]
         return own
 
+    @property
+    def numbers_of_none(self) -> list[int]:
+        """The numbers of the set without classes, of letters that cannot be."""
+        places = self._places[0]
+        return [places[nodes] for nodes in (0, 1) if nodes in places]
+
     def number_of(self, classes: int) -> int:
         """The number of a set of classes, given as bits."""
         places = self._places[0]
