@@ -121,9 +121,7 @@ def _numbers(
     n_values = len(declaration.values)
     dtype = smallest_unsigned(n_values + 1)
     if texts is None:
-        places = np.full(column.shape, n_values, dtype=dtype)
-        for place, value in enumerate(declaration.values):
-            places[column == value] = place
+        places = _places_of_texts(column, declaration.values).astype(dtype)
     else:
         known = {value: place for place, value in enumerate(declaration.values)}
         table = np.array([known.get(text, n_values) for text in texts], dtype=dtype)
@@ -138,6 +136,18 @@ def _numbers(
             return None
         places[strange] = 0
     return places
+
+
+def _places_of_texts(column: SignalColumn, values: Sequence[str]) -> NDArray[intp]:
+    """The places of texts among values, behind them for others."""
+    every = column.ravel()
+    # They seldom change, and are slow to compare
+    starts = np.flatnonzero(np.append(np.ones(min(len(every), 1), bool), every[1:] != every[:-1]))
+    own, lengths = every[starts], np.diff(starts, append=len(every))
+    places = np.full(len(starts), len(values), dtype=intp)
+    for place, value in enumerate(values):
+        places[own == value] = place
+    return np.repeat(places, lengths).reshape(column.shape)
 
 
 def _is_told(strange: Flags, unknown: Flags) -> bool:

@@ -278,9 +278,10 @@ def _are_surely_kept(
     first_alike = _first_alike([letters], bounds)
     rows, ends = stretches(letters, bounds)
     sets = rule.letters.sets
+    are_all = 0 not in sets
     for place in distinct(first_alike).tolist():
         own = rows[ends[place] : ends[place + 1]]
-        if all(sets[number] for number in own[:, 0].tolist()):
+        if are_all or all(sets[number] for number in own[:, 0].tolist()):
             kept[place] = rule.answer(own).worst == KEPT
     return kept[first_alike]
 
