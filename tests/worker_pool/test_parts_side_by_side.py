@@ -65,8 +65,19 @@ def test_parts_are_put_together(rules, to_explain, monkeypatch):
     assert whole.tally.violated
     assert bool(whole.explained) == (to_explain > 0)
     monkeypatch.setattr(recording_parts, "MOST_CELLS", 1)
-    # So long this process works alone
-    found, counted = pieces(rules, Jobs(2, alone_s=1e9), to_explain)
+    asked = []
+
+    def here(work, tasks, jobs, tell, lost):
+        asked.append(jobs)
+        for done, task in enumerate(tasks, 1):
+            for result in work(task):
+                yield task, result
+            tell(done)
+
+    monkeypatch.setattr(worker_pool, "in_order", here)
+    found, counted = pieces(rules, Jobs(2, alone_s=1.0), to_explain)
+    # A part takes longer than that: other processes get all of them at once
+    assert asked == [Jobs(2, alone_s=0.0)]
     assert len(counted) >= 3
     assert found == usual
 

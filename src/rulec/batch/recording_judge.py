@@ -194,7 +194,8 @@ class _RecordingJudge:
         for task, judged in in_order(
             work,
             tasks,
-            jobs,
+            # Parts take more than a moment, and this process has all of them to keep
+            replace(jobs, alone_s=0.0),
             lambda done: tell(done, len(tasks)),
             lambda _, signal_number: lost(signal_number),
         ):
