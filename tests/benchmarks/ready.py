@@ -55,6 +55,10 @@ sys.exit(done.returncode not in (0, 1))
 """
 """A small program that starts another one: a process begins with the peak of who started it."""
 
+READING = "a process that calls read_table once"
+STARTING = "one trace alone, by as many states"
+"""The start and the end of a process, which are a part of what every file takes."""
+
 Drives = Mapping[str, np.ndarray]
 """What is said: ``congested`` (traces x states), the rest (traces x vehicles x states)."""
 
@@ -73,8 +77,9 @@ def times(here: Path, rounds: int) -> Result:
     """Every format, beside reading alone, one rule by hand, and an older rulec."""
     drives = made(N_TRACES)
     files = {form: written(here / f"traces.{form}", drives) for form in FORMATS}
+    few = written(here / "few.jsonl", made(1))
     work = N_TRACES * N_STATES * 1e3
-    tasks: dict[str, Timed] = {}
+    tasks: dict[str, Timed] = {STARTING: whole_process(here, Path.cwd(), few.name)}
     checkouts = {"": Path.cwd()}
     if "RULEC_BEFORE" in os.environ:
         checkouts[", before"] = Path(os.environ["RULEC_BEFORE"])
@@ -84,13 +89,14 @@ def times(here: Path, rounds: int) -> Result:
     tasks["pyarrow's read_table"] = processor_time(
         lambda: parquet.read_table(files["parquet"]), work
     )
+    tasks[READING] = lambda: once_read(files["parquet"]) * 1e6 / (N_TRACES * N_STATES)
     tasks["numpy by hand, one rule of Parquet"] = processor_time(by_hand(files["parquet"]), work)
     taken = in_turns(tasks, rounds)
-    reading = taken["pyarrow's read_table"]
+    reading = taken[READING]
     figures = []
     for name in tasks:
         if name == "Parquet to findings":
-            figures.append(taken[name].against(reading, "read_table", name, "µs", WANTED_US, 1 / 3))
+            figures.append(taken[name].against(reading, "a process", name, "µs", WANTED_US, 1 / 3))
         elif name in (f"{form} to findings" for form in FORMATS.values()):
             figures.append(taken[name].figure(name, "µs", WANTED_US))
         else:
@@ -101,7 +107,12 @@ def times(here: Path, rounds: int) -> Result:
         f"{N_TRACES:,} traces of {N_STATES} states and {N_VEHICLES} vehicles, 3 rules; "
         "whole processes, per trace and step",
         figures,
-        [f"{lines:,} findings, each with its time and its margin."],
+        [
+            f"{lines:,} findings, each with its time and its margin.",
+            "Bytes: "
+            + ", ".join(f"{name} {files[form].stat().st_size:,}" for form, name in FORMATS.items())
+            + ".",
+        ],
     )
 
 
@@ -233,12 +244,23 @@ def verified(here: Path, checkout: Path, file: str) -> tuple[float, float]:
     return rulec(checkout, "verify", file, *rules, folder=here)
 
 
+def once_read(file: Path) -> float:
+    """Processor time (s) of a process that imports pyarrow, reads a table, and does no more."""
+    program = f"from pyarrow import parquet; parquet.read_table({str(file)!r})"
+    return watched([sys.executable, "-c", program], {**os.environ}, file.parent)[0]
+
+
 def rulec(checkout: Path, *arguments: str, folder: Path) -> tuple[float, float]:
     """Run a checkout's rulec: its processor time (s), and the most memory that it held (MB)."""
     environment = os.environ | {"PYTHONPATH": str(checkout / "src")}
+    return watched([sys.executable, "-m", "rulec", *arguments], environment, folder)
+
+
+def watched(command: list[str], environment: dict[str, str], folder: Path) -> tuple[float, float]:
+    """Run a command: its processor time (s), and the most memory that it held (MB)."""
     environment.pop("PYTHONDONTWRITEBYTECODE", None)
     done = subprocess.run(
-        [sys.executable, "-c", WATCH, sys.executable, "-m", "rulec", *arguments],
+        [sys.executable, "-c", WATCH, *command],
         capture_output=True,
         cwd=folder,
         env=environment,
