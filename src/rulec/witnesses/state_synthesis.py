@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from itertools import product
 
 from rulec.automata.mealy_monitor import NumberRead, Read
@@ -99,18 +100,66 @@ def solve_numbers(
     number_digits: NumberDigits, vocabulary: Vocabulary, least: Mapping[Count, int]
 ) -> dict[Term, Fraction] | None:
     """Numbers with these digits, preferably defaults, and counts from ``least`` on."""
+    _, quantities, counts = _linear_system(number_digits, least)
+    parts = []
+    for part in _apart(number_digits):
+        read_of = dict.fromkeys(term for read, _ in part for _, term in read.terms)
+        known = [
+            (term, least.get(term, 0) if isinstance(term, Count) else _default(term, vocabulary))
+            for term in read_of
+        ]
+        parts.append((part, tuple(known)))
+    for is_natural in (True, False):
+        found: dict[Term, Fraction] = {}
+        for own in parts:
+            solution = _part_solved(*own, is_natural=is_natural)
+            if solution is None:
+                break
+            found |= solution
+        else:
+            terms: list[Term] = [*quantities, *counts]
+            return {term: found[term] for term in reversed(terms)}
+    return None
+
+
+def _apart(number_digits: NumberDigits) -> list[tuple[tuple[NumberRead, int], ...]]:
+    """Sums with their digits in groups, so that no term is in two of these."""
+    groups: list[tuple[set[Term], list[int]]] = []
+    for place, (read, _) in enumerate(number_digits):
+        terms, places = {term for _, term in read.terms}, [place]
+        others = []
+        for own, members in groups:
+            if own.isdisjoint(terms):
+                others.append((own, members))
+            else:
+                terms |= own
+                places += members
+        groups = [*others, (terms, places)]
+    return [tuple([number_digits[place] for place in sorted(places)]) for _, places in groups]
+
+
+@lru_cache(maxsize=1 << 12)
+def _part_solved(
+    number_digits: tuple[tuple[NumberRead, int], ...],
+    known: tuple[tuple[Term, float | None], ...],
+    *,
+    is_natural: bool,
+) -> Mapping[Term, Fraction] | None:
+    """Numbers with these digits, if ``is_natural`` from zero on.
+
+    Of each term is ``known`` the default, None if there is none, or how many objects count at
+    least.
+    """
+    least = {term: int(number or 0) for term, number in known if isinstance(term, Count)}
     system, quantities, counts = _linear_system(number_digits, least)
+    if is_natural:
+        system += _natural(quantities)
     preferred: dict[Term, Fraction] = {
-        term: default
-        for term in quantities
-        if (default := _default_number(term, vocabulary)) is not None
+        term: exact(number)
+        for term, number in known
+        if number is not None and isinstance(term, QuantityTerm)
     }
-    order: list[Term] = [*quantities, *counts]
-    natural = _natural(quantities)
-    solution = solve([*system, *natural], order, preferred, frozenset(counts))
-    if solution is None:
-        return solve(system, order, preferred, frozenset(counts))
-    return solution
+    return solve(system, [*quantities, *counts], preferred, frozenset(counts))
 
 
 def numbers_near_thresholds(
@@ -149,8 +198,13 @@ def _natural(quantities: Iterable[QuantityTerm]) -> list[LinearBound]:
 
 
 def _default_number(term: QuantityTerm, vocabulary: Vocabulary) -> Fraction | None:
+    default = _default(term, vocabulary)
+    return None if default is None else exact(default)
+
+
+def _default(term: QuantityTerm, vocabulary: Vocabulary) -> float | None:
     default = vocabulary.declarations[term.name].default
-    return exact(default) if isinstance(default, int | float) else None
+    return default if isinstance(default, int | float) else None
 
 
 def _is_float(number: Fraction) -> bool:
