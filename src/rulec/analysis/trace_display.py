@@ -47,8 +47,8 @@ def trace_table(trace: Trace, names: Set[str], vocabulary: Vocabulary) -> TraceT
     ]
     ends = [*(start - 1 for start in starts[1:]), len(trace.states) - 1]
     rows = []
-    for (name, items), declaration in subjects_of(vocabulary, trace.objects):
-        if name in names and len(set(items)) == len(items):
+    for (name, items), declaration in subjects_of(vocabulary, trace.objects, names):
+        if len(set(items)) == len(items):
             values: tuple[Any, ...] = tuple(
                 value_in(trace.states[n], name, items, declaration) for n in starts
             )
@@ -71,9 +71,9 @@ def trace_note(what: str, trace: Trace, rules: Sequence[AnalyzedRule]) -> tuple[
 
 def _state(state: State, trace: Trace, names: frozenset[str], vocabulary: Vocabulary) -> str:
     literals = []
-    for (name, items), declaration in subjects_of(vocabulary, trace.objects):
+    for (name, items), declaration in subjects_of(vocabulary, trace.objects, names):
         value = value_in(state, name, items, declaration)
-        if name not in names or value is None or value == declaration.default:
+        if value is None or value == declaration.default:
             continue
         if len(set(items)) < len(items):
             continue

@@ -6,7 +6,7 @@ Fourier-Motzkin elimination solves.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -288,10 +288,12 @@ def default_digit(read: Read | NumberRead, vocabulary: Vocabulary) -> int | None
 
 
 def subjects_of(
-    vocabulary: Vocabulary, objects: Mapping[str, str]
+    vocabulary: Vocabulary, objects: Mapping[str, str], names: Set[str] | None = None
 ) -> Iterator[tuple[Subject, Declaration]]:
-    """Subjects that states can have values for, and their declarations."""
+    """Subjects that states can have values for, all or of some names, and their declarations."""
     for name, declaration in vocabulary.declarations.items():
+        if names is not None and name not in names:
+            continue
         candidates = [
             [item for item, kind in objects.items() if vocabulary.is_subtype(kind, parameter)]
             for parameter in declaration.parameters

@@ -162,9 +162,10 @@ def diverse_witnesses(contest: Contest, first: Trace, most: int) -> tuple[Trace,
 
 def non_default_names(trace: Trace, vocabulary: Vocabulary) -> frozenset[str]:
     """The declarations whose value in some state differs from their default."""
+    said = frozenset[str]().union(*trace.states)
     return frozenset(
         name
-        for (name, items), declaration in subjects_of(vocabulary, trace.objects)
+        for (name, items), declaration in subjects_of(vocabulary, trace.objects, said)
         if declaration.default is not None
         if any(
             value_in(state, name, items, declaration) != declaration.default

@@ -240,18 +240,18 @@ def _only(
     ours: Sequence[Rule], theirs: Sequence[Rule], remarks: Sequence[Remark]
 ) -> tuple[OneSided, ...]:
     remark_on = {remark.name: remark for remark in remarks if remark.kind != "softened"}
-    return tuple(OneSided(rule, remark_on.get(rule.name), _alike(rule, theirs)) for rule in ours)
+    words = {other.name: set(names_in(other.formula)) for other in theirs}
+    return tuple([OneSided(rule, remark_on.get(rule.name), _alike(rule, words)) for rule in ours])
 
 
-def _alike(rule: Rule, others: Sequence[Rule]) -> tuple[str, ...]:
+def _alike(rule: Rule, others: Mapping[str, set[str]]) -> tuple[str, ...]:
     """The names of rules that share at least half of the words that one or the other reads."""
     words = set(names_in(rule.formula))
     shares = {}
-    for other in others:
-        theirs = set(names_in(other.formula))
+    for name, theirs in others.items():
         share = Fraction(len(words & theirs), max(1, len(words | theirs)))
         if share >= ALIKE:
-            shares[other.name] = share
+            shares[name] = share
     return tuple(sorted(shares, key=lambda name: -shares[name])[:MOST_ALIKE])
 
 
