@@ -14,6 +14,7 @@ from rulec.witnesses.state_synthesis import (
     default_value,
     numbers_near_thresholds,
     required_counts,
+    solve_numbers,
     subjects_of,
     synthesize_state,
     value_of,
@@ -138,4 +139,22 @@ def test_subjects_are_all_that_a_state_could_say():
         ("speed", ()),
         *(("gap", (name,)) for name in "xy"),
     ]
+    objects, names = {"x": "thing"}, frozenset({"gap", "p", "nobody's"})
+    some = [subject for subject, _ in subjects_of(VOCABULARY, objects, names)]
+    assert some == [("p", ()), ("gap", ("x",))]
     assert QuantityTerm("speed") == SPEED
+
+
+@given(described, described)
+def test_sums_that_share_no_term_are_solved_as_if_alone(pairs, others):
+    own = [(read, min(number, read.size - 1)) for read, number in pairs]
+    terms = {term for read, _ in own for _, term in read.terms}
+    apart = [
+        (read, min(number, read.size - 1))
+        for read, number in others
+        if terms.isdisjoint(term for _, term in read.terms)
+    ]
+    found, alone, rest = (solve_numbers(x, VOCABULARY, {}) for x in (own + apart, own, apart))
+    assert (found is None) == (alone is None or rest is None)
+    if found is not None and min(found.values(), default=0) >= 0:
+        assert found == alone | rest
