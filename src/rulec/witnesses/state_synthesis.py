@@ -100,15 +100,15 @@ def solve_numbers(
     number_digits: NumberDigits, vocabulary: Vocabulary, least: Mapping[Count, int]
 ) -> dict[Term, Fraction] | None:
     """Numbers with these digits, preferably defaults, and counts from ``least`` on."""
-    _, quantities, counts = _linear_system(number_digits, least)
-    parts = []
-    for part in _apart(number_digits):
-        read_of = dict.fromkeys(term for read, _ in part for _, term in read.terms)
-        known = [
-            (term, least.get(term, 0) if isinstance(term, Count) else _default(term, vocabulary))
-            for term in read_of
-        ]
-        parts.append((part, tuple(known)))
+    terms = _terms_of(number_digits)
+    given = {
+        term: least.get(term, 0) if isinstance(term, Count) else _default(term, vocabulary)
+        for term in terms
+    }
+    parts = [
+        (part, tuple([(term, given[term]) for term in _terms_of(part)]))
+        for part in _apart(number_digits)
+    ]
     for is_natural in (True, False):
         found: dict[Term, Fraction] = {}
         for own in parts:
@@ -117,9 +117,14 @@ def solve_numbers(
                 break
             found |= solution
         else:
-            terms: list[Term] = [*quantities, *counts]
             return {term: found[term] for term in reversed(terms)}
     return None
+
+
+def _terms_of(number_digits: NumberDigits) -> list[Term]:
+    """What the sums add up, quantities first."""
+    terms = dict.fromkeys(term for read, _ in number_digits for _, term in read.terms)
+    return sorted(terms, key=lambda term: isinstance(term, Count))
 
 
 def _apart(number_digits: NumberDigits) -> list[tuple[tuple[NumberRead, int], ...]]:
@@ -141,22 +146,22 @@ def _apart(number_digits: NumberDigits) -> list[tuple[tuple[NumberRead, int], ..
 @lru_cache(maxsize=1 << 12)
 def _part_solved(
     number_digits: tuple[tuple[NumberRead, int], ...],
-    known: tuple[tuple[Term, float | None], ...],
+    given: tuple[tuple[Term, float | None], ...],
     *,
     is_natural: bool,
 ) -> Mapping[Term, Fraction] | None:
     """Numbers with these digits, if ``is_natural`` from zero on.
 
-    Of each term is ``known`` the default, None if there is none, or how many objects count at
+    Of each term is ``given`` its default, None if there is none, or how many objects count at
     least.
     """
-    least = {term: int(number or 0) for term, number in known if isinstance(term, Count)}
+    least = {term: int(number or 0) for term, number in given if isinstance(term, Count)}
     system, quantities, counts = _linear_system(number_digits, least)
     if is_natural:
         system += _natural(quantities)
     preferred: dict[Term, Fraction] = {
         term: exact(number)
-        for term, number in known
+        for term, number in given
         if number is not None and isinstance(term, QuantityTerm)
     }
     return solve(system, [*quantities, *counts], preferred, frozenset(counts))
@@ -230,7 +235,7 @@ def _linear_system(
     number_digits: NumberDigits, least: Mapping[Count, int]
 ) -> tuple[list[LinearBound], list[QuantityTerm], list[Count]]:
     """Inequalities for these digits and least counts, and their unknowns."""
-    terms = list(dict.fromkeys(term for read, _ in number_digits for _, term in read.terms))
+    terms = _terms_of(number_digits)
     counts = [term for term in terms if isinstance(term, Count)]
     system = [bound for read, digit in number_digits for bound in _bounds_of(read, digit)]
     system += [

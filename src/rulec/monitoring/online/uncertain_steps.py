@@ -79,6 +79,9 @@ class UncertainSteps:
         self._n_steps += 1
         if self._n_steps > MOST_STEPS:
             self._n_steps = 0
+            # Monitors still have edges, but these are to keep nothing alive.
+            for known in self._edges.values():
+                known.successors.clear()
             self.rows.clear()
             self._edges.clear()
         machine = self._machine
@@ -104,7 +107,6 @@ class UncertainSteps:
         if key not in self._edges:
             row = _Row(self)
             row.edge = self._edges[key] = UncertainEdge(tuple(sorted(members)), verdict, row)
-            self.rows[row.edge] = row
         return self._edges[key]
 
     def letter_class(self, mask: int) -> LetterClass | None:
@@ -128,8 +130,12 @@ class _Rows(dict["Edge", "_Row"]):
         self._steps = steps
 
     def __missing__(self, edge: Edge) -> _Row:
-        row = self[edge] = _Row(self._steps)
-        row.edge = edge
+        if isinstance(edge, UncertainEdge):
+            row = edge.successors
+        else:
+            row = _Row(self._steps)
+            row.edge = edge
+        self[edge] = row
         return row
 
 

@@ -6,7 +6,7 @@ Numbers are reduced to the breakpoints that they reach.
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from operator import itemgetter
@@ -131,7 +131,7 @@ def _encode_some_truths(values: tuple[Any, ...]) -> Encoded:
     return _with_unknown_digits(values)
 
 
-def _with_unknown_digits(values: tuple[Any, ...]) -> Encoded:
+def _with_unknown_digits(values: Iterable[Any]) -> Encoded:
     return tuple([UNKNOWN_DIGIT if value is UNKNOWN else value for value in values])
 
 
@@ -154,12 +154,8 @@ def _encode_digits(floors: Sequence[float], values: tuple[Any, ...]) -> Encoded:
     except TypeError:
         types = PARTIAL_NUMBERS
         digits = _with_unknown_digits(
-            tuple(
-                [
-                    value if type(value) in UNKNOWN_TYPES else bisect_right(floors, value)
-                    for value in values
-                ]
-            )
+            value if type(value) in UNKNOWN_TYPES else bisect_right(floors, value)
+            for value in values
         )
     # nan is above all floors.
     if 0 in digits or len(floors) in digits or not types.issuperset(map(type, values)):
