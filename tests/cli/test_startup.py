@@ -127,6 +127,30 @@ def test_what_is_asked_again_is_neither_parsed_nor_compiled(tmp_path, monkeypatc
     assert [line[-8:] for line in runs[1][1]] == ["False []"] * len(ASKED_AGAIN)
 
 
+@pytest.mark.parametrize("form", ["csv", "parquet"])
+def test_a_large_table_is_read_without_pandas(tmp_path, form):
+    pyarrow = pytest.importorskip("pyarrow")
+    # Arrow, which may not be installed.
+    from pyarrow import csv, parquet
+
+    write = csv.write_csv if form == "csv" else parquet.write_table
+    n_rows = 1 << 16
+    columns = {
+        "trace": [f"t{row >> 12}" for row in range(n_rows)],
+        "step": [row & 4095 for row in range(n_rows)],
+        "p": [True] * n_rows,
+    }
+    write(pyarrow.table(columns), tmp_path / f"traces.{form}")
+    (tmp_path / "pandas.py").write_text("raise SystemExit('pandas is imported')")
+    (tmp_path / "held.rules").write_text(
+        "rulebook held_p\nsignal p\nhard rule held { require always p }\n"
+    )
+    call = ["-m", "rulec", "verify", f"traces.{form}", "-r", "held.rules"]
+    done = subprocess.run([sys.executable, *call], cwd=tmp_path, capture_output=True, check=False)
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert b"16 traces: 16 satisfied, 0 violated" in done.stdout
+
+
 def test_what_lives_until_the_end_is_not_looked_through_then():
     program = (
         "import atexit, gc, sys\n"

@@ -101,7 +101,8 @@ def _start_of_last(names: Any) -> int:
     if not types.is_string(names.type) or not names[-1].as_py():
         return int(blocks.trace_starts(coded(names))[-1])
     # Its name is looked for, which takes less than to tell all names apart
-    others = np.flatnonzero(~truths_in(compute.fill_null(compute.equal(names, names[-1]), False)))
+    same = compute.equal(names, names[-1])
+    others = np.flatnonzero(~(truths_in(same) & given_in(same)))
     return int(others[-1]) + 1 if len(others) else 0
 
 
@@ -157,11 +158,11 @@ def _unknown_rows(piece: Piece, table: Table) -> Mapping[str, NDArray[np.int64]]
         return {}
     if not types.is_list(lists.type) or not types.is_string(lists.type.value_type):
         return None
-    lengths = compute.fill_null(compute.list_value_length(lists), 0)
+    lengths = compute.list_value_length(lists)
     codes, names = codes_in(lists.flatten())
     if (codes < 0).any():
         return None
-    row = np.repeat(np.arange(len(piece)), numbers_in(lengths))
+    row = np.repeat(np.arange(len(piece)), np.where(given_in(lengths), numbers_in(lengths), 0))
     return {name: row[codes == code] for code, name in enumerate(names)}
 
 
