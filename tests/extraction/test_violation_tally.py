@@ -4,7 +4,14 @@ from rulec.diagnostics import Diagnostic, RulecError
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict, ViolationTally
 from rulec.extraction.to_trace import Drive
-from rulec.monitoring.verdict import NotJudged, OpenVerdict, RuleNotJudged, Verdict, Violation
+from rulec.monitoring.verdict import (
+    NotJudged,
+    OpenReasons,
+    OpenVerdict,
+    RuleNotJudged,
+    Verdict,
+    Violation,
+)
 from rulec.trace.trace_arrays import TraceArrays
 
 
@@ -77,6 +84,39 @@ def test_a_rule_that_is_open_or_not_judged_does_not_count_as_judged():
         DriveVerdict(own, Verdict("1", (), (doubtful,), (missing,))), verdict(drive("2"))
     )
     assert counted.judged_in == {"gentle": 2, "fast": 1, "late": 1}
-    assert list(counted.open_rules["late"]) == ["built_up", "indicator"]
+    assert list(counted.open_rules) == ["late"]
+    assert counted.open_on == {"built_up", "indicator"}
     assert list(counted.untold["fast"]) == ["light"]
     assert (counted.satisfied, counted.doubtful, counted.open_hard) == (["2"], ["1"], 1)
+
+
+def test_reasons_are_found_only_where_they_may_have_names_that_are_not_known():
+    asked = []
+
+    def open_on(rule, *names, among):
+        def reasons():
+            asked.append(rule)
+            return OpenReasons(("not told",), names)
+
+        return OpenVerdict.explained_later(
+            rule, "hard", {}, reasons, unknown=lambda: frozenset(among)
+        )
+
+    open_verdicts = (
+        open_on("late", "light", among=("light", "indicator")),
+        open_on("fast", "light", among=("light",)),
+        open_on("gentle", "speed", "light", among=("light", "speed")),
+    )
+    counted = tally(DriveVerdict(drive("1"), Verdict("1", (), open_verdicts)))
+    assert asked == ["late", "gentle"]
+    assert counted.open_on == {"light", "speed"}
+    assert list(counted.open_rules) == ["late", "fast", "gentle"]
+    # They can be asked for later on
+    assert [one.depends_on for one in open_verdicts] == [("light",), ("light",), ("speed", "light")]
+
+
+def test_tallies_of_parts_have_the_names_of_all():
+    counted, later = ViolationTally(), ViolationTally()
+    counted.open_on, later.open_on = {"light"}, {"speed"}
+    counted.include(later)
+    assert counted.open_on == {"light", "speed"}

@@ -61,7 +61,14 @@ def test_together_they_get_the_verdicts_of_each(chance):
         except CannotSayError:
             continue
     expected = [in_plain_words(verify_or_reason(own.trace(), compiled)) for own in arrays]
-    assert [in_plain_words(answer) for answer in verify_arrays(arrays, compiled)] == expected
+    answers = verify_arrays(arrays, compiled)
+    some = frozenset(name for name in names if chance.random() < 0.8)
+    for verdict in answers:
+        for one in () if isinstance(verdict, NotJudged) else verdict.open:
+            # Asked before the names themselves are known
+            is_among = one.depends_on_none_but(some)
+            assert is_among == some.issuperset(one.depends_on)
+    assert [in_plain_words(answer) for answer in answers] == expected
 
 
 def test_arrays_say_what_the_states_say():

@@ -176,7 +176,8 @@ class ViolationTally:
     """Verdicts, counted drive by drive.
 
     ``first_s``: rule -> drive -> time of its first violation (s of the recording). ``open_rules``
-    and ``untold``: rule -> the names for want of which it is open, or not judged, in some drive.
+    are open in some drive, and ``open_on`` has all names on which open ones depend. ``untold``:
+    rule -> the names for want of which it is not judged in some drive.
     ``causes``: rule -> the objects that it is violated about -> the drives: many who pass one
     standing car are one finding. ``judged_in``: rule -> the number of drives in which it is neither
     open nor not judged. ``words`` are the names of the signals that every drive supplies.
@@ -187,7 +188,8 @@ class ViolationTally:
     doubtful: list[str] = field(default_factory=list)
     not_judged: list[NoDrive] = field(default_factory=list)
     first_s: dict[str, dict[str, float]] = field(default_factory=dict)
-    open_rules: dict[str, dict[str, None]] = field(default_factory=dict)
+    open_rules: dict[str, None] = field(default_factory=dict)
+    open_on: set[str] = field(default_factory=set)
     untold: dict[str, dict[str, None]] = field(default_factory=dict)
     causes: dict[str, dict[tuple[str, ...], list[str]]] = field(default_factory=dict)
     judged_in: Counter[str] = field(default_factory=Counter)
@@ -207,9 +209,10 @@ class ViolationTally:
         self.not_judged += later.not_judged
         for rule, times in later.first_s.items():
             self.first_s.setdefault(rule, {}).update(times)
-        for own, more in ((self.open_rules, later.open_rules), (self.untold, later.untold)):
-            for rule, names in more.items():
-                own.setdefault(rule, {}).update(names)
+        self.open_rules.update(later.open_rules)
+        self.open_on |= later.open_on
+        for rule, names in later.untold.items():
+            self.untold.setdefault(rule, {}).update(names)
         for rule, causes in later.causes.items():
             about = self.causes.setdefault(rule, {})
             for objects, drives in causes.items():
@@ -240,8 +243,9 @@ class ViolationTally:
             if drive.arrays.id not in members:
                 members.append(drive.arrays.id)
         for result in answer.open:
-            names = self.open_rules.setdefault(result.rule, {})
-            names.update(dict.fromkeys(result.depends_on))
+            self.open_rules[result.rule] = None
+            if not result.depends_on_none_but(self.open_on):
+                self.open_on.update(result.depends_on)
             self.open_hard += result.strength == "hard"
         for rule in answer.not_judged:
             self.untold.setdefault(rule.rule, {}).update(dict.fromkeys(rule.untold))

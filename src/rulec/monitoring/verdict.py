@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal, NamedTuple, TypeAlias
 
@@ -83,12 +83,24 @@ class OpenVerdict:
         strength: Strength,
         binding: Mapping[str, str],
         reasons: Callable[[], OpenReasons],
+        *,
+        unknown: Callable[[], frozenset[str]] | None = None,
     ) -> OpenVerdict:
-        """An open verdict whose reasons are found when they are asked for."""
+        """An open verdict whose reasons are found when they are asked for.
+
+        ``unknown`` tells names among which are all that it depends on, and takes less time.
+        """
         result = cls.__new__(cls)
         own = {"rule": rule, "strength": strength, "binding": binding, "_reasons": reasons}
-        result.__dict__.update(own)
+        result.__dict__.update(own, _unknown=unknown)
         return result
+
+    def depends_on_none_but(self, names: Set[str]) -> bool:
+        """Whether ``depends_on`` is among these, told without finding it if that can be."""
+        unknown = self.__dict__.get("_unknown")
+        if unknown is not None and unknown() <= names:
+            return True
+        return frozenset(self.depends_on) <= names
 
     def __getattr__(self, name: str) -> Any:
         # Called only for what is not there.
@@ -96,7 +108,8 @@ class OpenVerdict:
         if reasons is None or name not in OpenReasons._fields:
             raise AttributeError(name)
         self.__dict__.update(reasons()._asdict())
-        self.__dict__.pop("_reasons", None)
+        for key in ("_reasons", "_unknown"):
+            self.__dict__.pop(key, None)
         return self.__dict__[name]
 
     def __getstate__(self) -> dict[str, Any]:

@@ -61,8 +61,7 @@ def _rule_counts(verdicts: RecordingVerdicts, tally: ViolationTally, width: int)
     some_open = [rule for rule in rules if rule.name in tally.open_rules]
     parts = [f"{len(rules) - len(never) - len(some_open):,} judged"]
     if some_open:
-        about = {word for rule in some_open for word in tally.open_rules[rule.name]}
-        words = first_of(sorted(about, key=order.index), MOST_DEFAULTS)
+        words = first_of(sorted(tally.open_on, key=order.index), MOST_DEFAULTS)
         parts.append(
             f"{len(some_open):,} open in some drive" + (f" (words: {words})" if words else "")
         )

@@ -166,6 +166,22 @@ class StackedReasons:
         return found
 
 
+def unknown_names(words: StackedWords, place: int) -> frozenset[str]:
+    """All names of which something is unknown to one of these words, and perhaps others."""
+    own = slice(int(words.bounds[place]), int(words.bounds[place + 1]))
+    rule, found = words.rule, set[str]()
+    for numbers in words.numbers:
+        for n, read in enumerate(rule.reads):
+            if not found.issuperset(read.names):
+                column = numbers[n]
+                part = column[own] if isinstance(column, np.ndarray) else column
+                if rule.letters.are_partial({n: part}, (n,)).any():
+                    found.update(read.names)
+    for supposed in words.supposed:
+        found.update(name for name, _ in supposed)
+    return frozenset(found)
+
+
 def _asked_in(body: ltl.Formula) -> Iterator[tuple[str, tuple[str, ...]]]:
     """The names that a counted formula reads, which counts nothing itself, and of what."""
     for part in ltl.atoms_of(body):

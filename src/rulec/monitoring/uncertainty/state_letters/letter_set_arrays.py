@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import islice
 
 import numpy as np
@@ -64,7 +64,9 @@ class LetterSets:
         places = self._places[0]
         return places.setdefault(classes << 1, len(places))
 
-    def are_partial(self, columns: Sequence[Numbers], reads: Sequence[int]) -> NDArray[np.bool_]:
+    def are_partial(
+        self, columns: Sequence[Numbers] | Mapping[int, Numbers], reads: Sequence[int]
+    ) -> NDArray[np.bool_]:
         """Whether some of these reads may have several digits."""
         found: NDArray[np.bool_] = np.zeros(1, dtype=bool)
         for read in reads:
