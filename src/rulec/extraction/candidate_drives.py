@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy import intp
@@ -26,6 +27,9 @@ from rulec.trace.end_to_end import UnlikeDrivesError
 
 MOST_CELLS = 1 << 18
 """Drives are laid end to end up to so many cells; fewer at a time take more calls, more memory."""
+
+Block: TypeAlias = list[tuple[int, tuple[Drive | NoDrive, ...]]]
+"""The numbers of some candidates, and the drives of each."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -123,28 +127,49 @@ class _Batch:
             self._places[road] = self._drives.places_of(road, members)
         return self._places[road], rows[row]
 
-    def drives(self) -> list[tuple[Drive | NoDrive, ...]]:
-        """The drives of each candidate."""
-        found: list[tuple[Drive | NoDrive, ...] | None] = [None] * len(self.stretches)
+    def drives(self) -> Iterator[Block]:
+        """The drives of each candidate, those along one road one after the other."""
+        known: dict[DrivenRoad | None, int] = {}
+        roads = [
+            known.setdefault(self._road(own[0]) if own else None, len(known))
+            for own in self.stretches
+        ]
+        order = sorted(range(len(roads)), key=roads.__getitem__)
+        n_others = max(len(self._among.surroundings.tracks.participants), 1)
+        rows: list[int] = []
+        states = 0
+        for row in order:
+            rows.append(row)
+            states += sum(one.last - one.first + 1 for one in self.stretches[row])
+            if states * n_others >= MOST_CELLS:
+                yield self._block(rows)
+                rows, states = [], 0
+        if rows:
+            yield self._block(rows)
+
+    def _block(self, rows: Sequence[int]) -> Block:
+        """The drives of some candidates."""
         together: dict[DrivenRoad, list[_Stretch]] = defaultdict(list)
-        for row, stretches in enumerate(self.stretches):
+        apart = set()
+        for row in rows:
+            stretches = self.stretches[row]
             own = [self._together(row, number, one) for number, one in enumerate(stretches)]
             ready = [one for one in own if one is not None]
             if not own or len(ready) < len(own):
-                found[row] = self._by_itself(row)
+                apart.add(row)
                 continue
             for road, one in ready:
                 together[road].append(one)
         drives: dict[tuple[int, int], Drive] = {}
         for road, waiting in together.items():
-            for part in _parts(waiting, len(self._among.surroundings.tracks.participants)):
-                drives |= self._end_to_end(road, part)
-        for row, stretches in enumerate(self.stretches):
-            if found[row] is None:
-                own_drives = [drives.get((row, number)) for number in range(len(stretches))]
-                whole = tuple([drive for drive in own_drives if drive is not None])
-                found[row] = whole if len(whole) == len(stretches) else self._by_itself(row)
-        return [own for own in found if own is not None]
+            drives |= self._end_to_end(road, waiting)
+        found: Block = []
+        for row in rows:
+            own_drives = [drives.get((row, k)) for k in range(len(self.stretches[row]))]
+            whole = tuple([drive for drive in own_drives if drive is not None])
+            is_whole = row not in apart and len(whole) == len(own_drives)
+            found.append((row, whole if is_whole else self._by_itself(row)))
+        return found
 
     def _together(
         self, row: int, number: int, stretch: RouteStretch
@@ -195,20 +220,6 @@ class _Batch:
         return joined, len(among.surroundings.tracks.participants)
 
 
-def _parts(stretches: Sequence[_Stretch], n_others: int) -> Iterator[Sequence[_Stretch]]:
-    """Stretches, about ``MOST_CELLS`` at a time."""
-    waiting: list[_Stretch] = []
-    states = 0
-    for one in stretches:
-        waiting.append(one)
-        states += one.columns.stop - one.columns.start
-        if states * n_others >= MOST_CELLS:
-            yield waiting
-            waiting, states = [], 0
-    if waiting:
-        yield waiting
-
-
 class CandidateDrives:
     """The drives of candidates for one vehicle, the last participant of a ``recording``.
 
@@ -241,8 +252,6 @@ class CandidateDrives:
             self._places[road] = self._drives.places_of(road, self._everybody)
         return self._places[road]
 
-    def of(
-        self, candidates: Sequence[Participant], writer: TraceWriter
-    ) -> Iterator[tuple[Drive | NoDrive, ...]]:
-        """The drives of each candidate."""
+    def of(self, candidates: Sequence[Participant], writer: TraceWriter) -> Iterator[Block]:
+        """The drives of each candidate, some candidates at a time."""
         yield from _Batch(self, candidates, writer).drives()

@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike, NDArray
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import (
-    MOST_STATES,
     DriveVerdict,
     agreed_answers,
     names_read,
@@ -61,28 +60,29 @@ def _scored(
     rules: CompiledRulebook,
 ) -> Scores:
     bodies = world.bodies_along(paths, past)
-    first = world.now + 1
-    steps = first - len(past), first + paths.shape[1] - 1
+    first, n_states = world.now + 1, paths.shape[1]
+    steps = first - len(past), first + n_states - 1
     about = past.tobytes(), steps
     known: _Pasts = rules.prepared.setdefault(score, WeakKeyDictionary())
     key, before = known.get(world, (None, ()))
-    if key != about and len(past):
-        # Alone, to see what it has violated whatever comes
-        bodies.append(world.body_at(past, steps[0]))
+    before = before if key == about else ()
+    is_asked = key != about and len(past) > 0
+    if is_asked:
+        # Alone, and before all others, to see what it has violated whatever comes
+        bodies.insert(0, world.body_at(past, steps[0]))
     roundings = rounded_rulebooks(rules, world.recording.step_s)
-    found = list(_judged(bodies, world, roundings, steps))
-    if key != about:
-        alone = found.pop() if len(past) else ()
-        before = tuple([one for _, verdict in _verdicts(alone) for one in verdict.violations])
-        # The next candidates are mostly asked about after the same past.
-        known[world] = about, before
-    scores = _anew(
-        [_charged(number, own, first, paths.shape[1]) for number, own in enumerate(found)],
-        before,
-        roundings,
-        (first, first + paths.shape[1] // 2),
-    )
-    return Scores(roundings[0], tuple(scores), before, paths, first)
+    scores: dict[int, CandidateScore] = {}
+    for block in _judged(bodies, world, roundings, steps):
+        if is_asked and not scores:
+            ((_, alone), *block) = block
+            before = tuple([one for _, verdict in _verdicts(alone) for one in verdict.violations])
+        charged = [_charged(number - is_asked, own, first, n_states) for number, own in block]
+        half = first + n_states // 2
+        scores |= {x.number: x for x in _anew(charged, before, roundings, (first, half))}
+    # The next candidates are mostly asked about after the same past.
+    known[world] = about, before
+    ordered = tuple([scores[number] for number in range(len(paths))])
+    return Scores(roundings[0], ordered, before, paths, first)
 
 
 def _judged(
@@ -90,8 +90,8 @@ def _judged(
     world: TrafficWorld,
     roundings: Sequence[CompiledRulebook],
     steps: tuple[int, int],
-) -> Iterator[tuple[DriveVerdict | NoDrive, ...]]:
-    """The verdicts on the drives of each body, many together."""
+) -> Iterator[list[tuple[int, tuple[DriveVerdict | NoDrive, ...]]]]:
+    """The verdicts on the drives of each body, by its number, many together, the first one first."""
     rules = roundings[0]
     drives, mirrored = world.drives(rules.traffic, *steps)
     if mirrored:
@@ -99,15 +99,9 @@ def _judged(
     wanted = world.wanted
     names = names_read(rules)
     writer = TraceWriter(rules.vocabulary, names, wanted.assumed, wanted.defaults)
-    waiting: list[tuple[Drive | NoDrive, ...]] = []
-    states = 0
-    for own in drives.of(bodies, writer):
-        waiting.append(own)
-        states += sum(drive.arrays.n_states for drive in own if isinstance(drive, Drive))
-        if states >= MOST_STATES:
-            yield from _verified(waiting, roundings)
-            waiting, states = [], 0
-    yield from _verified(waiting, roundings)
+    for block in drives.of(bodies, writer):
+        answers = _verified([own for _, own in block], roundings)
+        yield [(number, own) for (number, _), own in zip(block, answers, strict=True)]
 
 
 def _verified(
