@@ -1,11 +1,14 @@
 """What a candidate comes to is what ``verify`` says of the recording in which ego drives it."""
 
+import pickle
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rulec.api.rulebook_compilation import machines
+from rulec.extraction import candidate_drives
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
@@ -109,3 +112,19 @@ def test_recorded_worlds():
                 assert_equal_to_verify(np.array(futures), world, GERMAN, world.past)
                 seen += 1
     assert seen > 20
+
+
+def test_many_candidates_come_to_what_few_do(monkeypatch):
+    turns = [(a, t) for a in (-3.0, 0.0, 2.0) for t in (0.0, 0.05)]
+    futures = np.array([driven(BUSY.past[-1], [own] * 8) for own in turns])
+    few = score(futures, BUSY, GERMAN, BUSY.past)
+    monkeypatch.setattr(candidate_drives, "MOST_CELLS", 1)
+    many = score(futures, BUSY, GERMAN, BUSY.past)
+    assert any(found.open for found in few.candidates)
+    for one, other in zip(few.candidates, many.candidates, strict=True):
+        assert one.open == other.open
+        assert [verdict_key(x) for x in one.drives] == [verdict_key(x) for x in other.drives]
+        assert len(one.drives) == len(other.drives)
+    assert few.rows() == many.rows()
+    assert few.margins(2) == many.margins(2)
+    assert pickle.loads(pickle.dumps(many.candidates[1])).open == few.candidates[1].open

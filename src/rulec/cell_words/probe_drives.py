@@ -148,7 +148,7 @@ def probe_drives(
     longest = max(len(body.states) for body in bodies)
     among = world_of(origin, bodies[0], side, longest)
     writer = TraceWriter(rules.vocabulary, names_read(rules))
-    found = list(among.of(bodies, writer))
+    found = among.of(bodies, writer)
     lane_probes, timed, told = [], [], set[str]()
     for number, drives in enumerate(found):
         own = [drive for drive in drives if isinstance(drive, Drive)]

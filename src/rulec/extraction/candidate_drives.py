@@ -252,6 +252,13 @@ class CandidateDrives:
             self._places[road] = self._drives.places_of(road, self._everybody)
         return self._places[road]
 
-    def of(self, candidates: Sequence[Participant], writer: TraceWriter) -> Iterator[Block]:
-        """The drives of each candidate, some candidates at a time."""
+    def of(
+        self, candidates: Sequence[Participant], writer: TraceWriter
+    ) -> list[tuple[Drive | NoDrive, ...]]:
+        """The drives of each candidate."""
+        found = dict(own for block in self.in_blocks(candidates, writer) for own in block)
+        return [found[row] for row in range(len(candidates))]
+
+    def in_blocks(self, candidates: Sequence[Participant], writer: TraceWriter) -> Iterator[Block]:
+        """The drives of some candidates at a time, of which the first one is the first."""
         yield from _Batch(self, candidates, writer).drives()

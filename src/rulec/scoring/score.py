@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any, TypeAlias
 from weakref import WeakKeyDictionary
 
@@ -24,6 +25,7 @@ from rulec.extraction.tracks.mirror import mirrored_participant
 from rulec.files import no_garbage_collection
 from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict, Violation
 from rulec.recordings.recording import Participant
+from rulec.scoring.scored_again import light
 from rulec.scoring.scores import CandidateScore, Scores
 from rulec.scoring.traffic_world import TrafficWorld
 
@@ -73,16 +75,31 @@ def _scored(
     roundings = rounded_rulebooks(rules, world.recording.step_s)
     scores: dict[int, CandidateScore] = {}
     for block in _judged(bodies, world, roundings, steps):
+        is_every = len(block) == len(bodies)
         if is_asked and not scores:
             ((_, alone), *block) = block
             before = tuple([one for _, verdict in _verdicts(alone) for one in verdict.violations])
         charged = [_charged(number - is_asked, own, first, n_states) for number, own in block]
         half = first + n_states // 2
-        scores |= {x.number: x for x in _anew(charged, before, roundings, (first, half))}
+        for found in _anew(charged, before, roundings, (first, half)):
+            again = partial(_by_itself, paths[found.number], past, world, rules)
+            # What is among many is mostly looked at no more
+            scores[found.number] = found if is_every else light(found, again)
     # The next candidates are mostly asked about after the same past.
     known[world] = about, before
     ordered = tuple([scores[number] for number in range(len(paths))])
     return Scores(roundings[0], ordered, before, paths, first)
+
+
+def _by_itself(
+    path: NDArray[np.float64],
+    past: NDArray[np.float64],
+    world: TrafficWorld,
+    rules: CompiledRulebook,
+) -> CandidateScore:
+    """What one candidate comes to, with its drives."""
+    (found,) = _scored(path[None], past, world, rules).candidates
+    return found
 
 
 def _judged(
@@ -91,7 +108,7 @@ def _judged(
     roundings: Sequence[CompiledRulebook],
     steps: tuple[int, int],
 ) -> Iterator[list[tuple[int, tuple[DriveVerdict | NoDrive, ...]]]]:
-    """The verdicts on the drives of each body, by its number, many together, the first one first."""
+    """The verdicts on the drives of some bodies at a time, by number, of which 0 is the first."""
     rules = roundings[0]
     drives, mirrored = world.drives(rules.traffic, *steps)
     if mirrored:
@@ -99,7 +116,7 @@ def _judged(
     wanted = world.wanted
     names = names_read(rules)
     writer = TraceWriter(rules.vocabulary, names, wanted.assumed, wanted.defaults)
-    for block in drives.of(bodies, writer):
+    for block in drives.in_blocks(bodies, writer):
         answers = _verified([own for _, own in block], roundings)
         yield [(number, own) for (number, _), own in zip(block, answers, strict=True)]
 

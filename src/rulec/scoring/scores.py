@@ -28,7 +28,8 @@ class CandidateScore:
     is a state of the candidate, from 0, before 0 one of the past, None if its end decides.
     ``not_judged`` are rules that the world tells too little for. ``off_road`` of its states are in
     no drive, because ego is on no lane there that leads its way; no rule is judged in these, and
-    ``why`` says more. ``drives`` are what ``verify_recording`` gives of past and candidate.
+    ``why`` says more. ``drives`` are what ``verify_recording`` gives of past and candidate; of many
+    candidates they are made when they are asked for.
     """
 
     __repr__ = short_repr
@@ -39,7 +40,7 @@ class CandidateScore:
     not_judged: tuple[RuleNotJudged, ...]
     off_road: int
     why: str
-    drives: tuple[DriveVerdict | NoDrive, ...]
+    drives: Sequence[DriveVerdict | NoDrive]
 
     @property
     def satisfied(self) -> bool | None:

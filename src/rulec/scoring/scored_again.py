@@ -1,0 +1,73 @@
+"""What many candidates come to takes much room, and little of it is read: that is made again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import TypeAlias, overload
+
+from rulec.extraction.drives import NoDrive
+from rulec.extraction.recording_verdicts import DriveVerdict
+from rulec.monitoring.verdict import OpenReasons, OpenVerdict
+from rulec.scoring.scores import CandidateScore
+
+_OneDrive: TypeAlias = DriveVerdict | NoDrive
+
+
+class _Again:
+    """What one candidate comes to, scored by itself when somebody asks for it."""
+
+    def __init__(self, scored: Callable[[], CandidateScore]) -> None:
+        self._scored = scored
+
+    @cached_property
+    def found(self) -> CandidateScore:
+        return self._scored()
+
+    def reasons(self, place: int) -> OpenReasons:
+        """Why one of the open verdicts is open."""
+        own = self.found.open[place]
+        return OpenReasons(own.because, own.depends_on, own.outcomes, own.exact)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _LaterDrives(Sequence[_OneDrive]):
+    """A candidate's drives, of which there are so many."""
+
+    again: _Again
+    n_drives: int
+
+    def __len__(self) -> int:
+        return self.n_drives
+
+    @overload
+    def __getitem__(self, place: int) -> _OneDrive: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> Sequence[_OneDrive]: ...
+
+    def __getitem__(self, place: int | slice) -> _OneDrive | Sequence[_OneDrive]:
+        return self.again.found.drives[place]
+
+    def __eq__(self, other: object) -> bool:
+        """Whether they are the same drives."""
+        return isinstance(other, Sequence) and tuple(self) == tuple(other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[type[tuple[_OneDrive, ...]], tuple[Sequence[_OneDrive]]]:
+        return tuple, (self.again.found.drives,)
+
+
+def light(found: CandidateScore, scored: Callable[[], CandidateScore]) -> CandidateScore:
+    """A candidate's score without what takes room, which ``scored`` finds again."""
+    again = _Again(scored)
+    doubtful = [
+        OpenVerdict.explained_later(
+            one.rule, one.strength, one.binding, partial(again.reasons, place)
+        )
+        for place, one in enumerate(found.open)
+    ]
+    drives = _LaterDrives(again, len(found.drives))
+    return replace(found, open=tuple(doubtful), drives=drives)
