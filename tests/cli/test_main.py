@@ -20,13 +20,13 @@ def test_version(capsys):
 
 def test_the_version_alone_needs_nothing_else_to_be_loaded():
     program = (
-        "import sys; sys.argv = ['rulec', '--version']\n"
+        "import atexit, sys; sys.argv = ['rulec', '--version']\n"
+        "atexit.register(lambda: print('click' in sys.modules))\n"
         "from rulec.cli.entry_point import run\n"
-        "status = run()\n"
-        "print(status, 'click' in sys.modules)"
+        "run()"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    assert (done.stdout, done.stderr) == ("rulec 0.1.0\n0 False\n", "")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "rulec 0.1.0\nFalse\n", "")
 
 
 @pytest.mark.parametrize("verb", VERBS)

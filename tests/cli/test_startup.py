@@ -151,16 +151,31 @@ def test_a_large_table_is_read_without_pandas(tmp_path, form):
     assert b"16 traces: 16 satisfied, 0 violated" in done.stdout
 
 
-def test_what_lives_until_the_end_is_not_looked_through_then():
-    program = (
-        "import atexit, gc, sys\n"
-        "atexit.register(lambda: print(gc.get_freeze_count() > 10_000))\n"
-        "from rulec.cli.entry_point import run\n"
-        "sys.argv = ['rulec', 'list']\n"
-        "sys.exit(run())"
-    )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True)
-    assert done.stdout.split()[-1] == b"True"
+ENDING = """
+import atexit, sys, threading, time
+class Kept:
+    def __del__(self):
+        print("taken apart")
+def waited():
+    time.sleep(0.1)
+    print("waited for")
+kept = Kept()
+atexit.register(print, "at the end")
+threading.Thread(target=waited).start()
+from rulec.cli.entry_point import run
+sys.argv = ["rulec", "--version"]
+sys.exit(run())
+"""
+
+
+@pytest.mark.parametrize(
+    ("options", "ending"), [([], []), (["-X", "dev"], ["taken apart"])], ids=["usual", "watched"]
+)
+def test_what_lives_until_the_end_is_not_taken_apart_then(options, ending):
+    call = [sys.executable, *options, "-c", ENDING]
+    done = subprocess.run(call, capture_output=True, check=True, text=True)
+    assert done.stdout.splitlines()[1:] == ["waited for", "at the end", *ending]
+    assert done.stderr == ""
 
 
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="says what threads there are")
