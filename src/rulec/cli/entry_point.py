@@ -106,7 +106,7 @@ def _prepare() -> None:
             stream.reconfigure(errors="backslashreplace")
     # Traces are many objects without cycles, which need not be looked through so often; nor need
     # what a start makes, which stays.
-    gc.set_threshold(150_000)
+    gc.set_threshold(400_000)
     if hasattr(sys, "set_int_max_str_digits"):
         # Exact counts are long: at most a few digits for each of the 10,000 layers of a graph.
         sys.set_int_max_str_digits(100_000)

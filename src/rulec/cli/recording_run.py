@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -43,6 +44,8 @@ class RecordingRun:
 
     def files(self, paths: Sequence[str], jobs: Jobs) -> None:
         """Judge files, with one table for all of them if there are several."""
+        # Modules and rules stay: they need not be looked through with what is to come.
+        gc.freeze()
         with _without_standard_input(paths) as (files, labels):
             self.settings = replace(self.settings, labels=labels)
             several = len(files) > 1
