@@ -50,3 +50,14 @@ def test_who_is_out_of_reach_changes_nothing(world, monkeypatch):
     monkeypatch.setattr(drives, "rows_in_reach", lambda *_: everybody)
     assert told(found, near) == some
     assert sum(map(np.count_nonzero, left_out)) > len(left_out) > 10
+
+
+def test_places_are_dropped_after_the_last_drive_that_awaits_them(monkeypatch):
+    stored = StoredWorld("priority")
+    found = read_recording(stored.data, stored.net)
+    monkeypatch.setattr(drives, "MOST_PLACES", 0)
+    egos = Drives(found, "right").egos()
+    looked = Drives(found, "right", expected=egos)
+    kept = [len(looked._parts) for ego in egos for _ in looked.of(ego)]
+    assert max(kept) > 0
+    assert kept[-1] == 0

@@ -106,11 +106,10 @@ class DriveContext:
                 spans=EndToEnd.of_one(columns.stop - columns.start),
                 steps=self.steps[columns],
                 own=surroundings,
-                ego=replace(
-                    own,
-                    participants=self.ego.participants[number : number + 1],
-                    types=surroundings.tracks.types,
-                    rows=np.array([row]),
+                ego=own.seen_as(
+                    self.ego.participants[number : number + 1],
+                    surroundings.tracks.types,
+                    np.array([row]),
                 ),
                 ego_extents=self.ego_extents.part(np.zeros(1, dtype=intp), columns),
                 tracks=self.tracks.part(rows, columns),

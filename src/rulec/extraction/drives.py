@@ -67,6 +67,14 @@ class NoDrive:
     why: str
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class _PlacesInPart:
+    """Places on a road, kept for drives that are ``awaited``: who drives from which column on."""
+
+    places: RoadPlaces
+    awaited: set[tuple[int, int]]
+
+
 class LaidOutMap:
     """What is known of a map: its graph of lanelets, and the roads along them, once laid out."""
 
@@ -127,7 +135,7 @@ class Drives:
         self._tracks = self._surroundings.tracks
         self._first = self._tracks.present.argmax(axis=1)
         self._places: dict[DrivenRoad, RoadPlaces] = {}
-        self._parts: dict[DrivenRoad, RoadPlaces] = {}
+        self._parts: dict[DrivenRoad, _PlacesInPart] = {}
         self._expected = expected
         self._ready: dict[tuple[int, int], Drive] = {}
 
@@ -272,13 +280,15 @@ class Drives:
 
     def _places_in_part(self, road: DrivenRoad, row: int, columns: slice) -> RoadPlaces:
         """The places on a road during a drive and those on it that come soon."""
-        first = self._tracks.first
         known = self._parts.get(road)
         if known is not None:
-            begins = known.tracks.first - first
-            ends = begins + known.tracks.present.shape[1]
+            begins = known.places.tracks.first - self._tracks.first
+            ends = begins + known.places.tracks.present.shape[1]
             if begins <= columns.start and columns.stop <= ends:
-                return known
+                known.awaited.discard((row, columns.start))
+                if not known.awaited:
+                    del self._parts[road]
+                return known.places
         end = columns.start + PART * (columns.stop - columns.start)
         soon = [
             (ego, own)
@@ -288,13 +298,14 @@ class Drives:
         found = self._places_during(road, [(row, columns), *soon])
         self._parts.pop(road, None)
         if soon:
-            self._parts[road] = found
+            awaited = {(ego, own.start) for ego, own in soon}
+            self._parts[road] = _PlacesInPart(found, awaited)
         while len(self._parts) > 1 and self._n_kept() > MOST_KEPT:
             del self._parts[next(iter(self._parts))]
         return found
 
     def _n_kept(self) -> int:
-        return sum(places.tracks.present.size for places in self._parts.values())
+        return sum(part.places.tracks.present.size for part in self._parts.values())
 
     def _places_during(self, road: DrivenRoad, egos: Sequence[tuple[int, slice]]) -> RoadPlaces:
         """The places on a road, during drives along it, of all who may count for one of them."""
@@ -302,13 +313,13 @@ class Drives:
         columns = slice(begin, end)
         near = [rows_in_reach(self._tracks, road, *ego, self._thresholds) for ego in egos]
         rows = np.flatnonzero(np.logical_or.reduce(near))
-        tracks = self._tracks.part(rows, columns)
-        extents = road_extents(tracks, road)
+        extents = road_extents(self._tracks.part(rows, columns), road)
         own_rows = np.searchsorted(rows, [row for row, _ in egos])
         if not are_on_road(extents, road, own_rows, self._thresholds):
             rows = self._present(columns)
-            tracks = self._tracks.part(rows, columns)
-            extents = road_extents(tracks, road)
+            extents = road_extents(self._tracks.part(rows, columns), road)
+        # Without the arrays that extents were computed from, which are many times as large
+        tracks = self._tracks.part(rows, columns)
         return self._road_places(road, tracks, extents, self._elsewhere(road, rows, columns))
 
     def _places_of_one(

@@ -113,3 +113,25 @@ def test_who_is_absent_from_a_range_has_no_values_in_it(ranges, expected, long, 
         assert np.array_equal(by_lane[..., lane], sign * np.array(expected), equal_nan=True)
     flags = laid(values > 0)
     assert flags.tolist() == [[True] * 4, [True, True, False, False]]
+
+
+def test_a_part_of_a_part_is_of_the_whole_and_lays_out_what_is_asked_for():
+    bodies = [vehicle(7 + k, {step: (9 * step, k) for step in range(k, 8)}) for k in range(4)]
+    whole = tracks(*bodies)
+    part = whole.part(np.array([1, 2, 3]), slice(2, 7))
+    again = part.part(np.array([0, 2]), slice(1, 4))
+    assert (again.first, again.rows.tolist()) == (3, [1, 3])
+    assert [body.id for body in again.participants] == ["8", "10"]
+    assert again.y.tolist() == [[1.0, 1.0, 1.0], [3.0, 3.0, 3.0]]
+    assert again.x.tolist() == whole.x[[1, 3], 3:6].tolist() == [[27.0, 36.0, 45.0]] * 2
+    assert {"x", "y"} <= again.__dict__.keys()
+    assert not {"x", "y", "speed"} & part.__dict__.keys()
+
+
+def test_the_same_tracks_seen_as_those_of_others():
+    one = tracks(vehicle(7, {0: (0, 0), 1: (9, 0)})).part(np.array([0]), slice(0, 1))
+    types = own_tracks.ObjectTypes([vehicle(7, {0: (0, 0)}), vehicle(8, {0: (5, 0)})])
+    other = one.seen_as((vehicle(8, {0: (5, 0)}),), types, np.array([1]))
+    assert (other.rows.tolist(), other.x.tolist(), other.first) == ([1], [[0.0]], 0)
+    assert other.of_type("vehicle").tolist() == [True]
+    assert one.rows.tolist() == [0]

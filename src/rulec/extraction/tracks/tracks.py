@@ -6,8 +6,10 @@ Rows are participants, in the order of the file; columns are time steps, from ``
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from copy import copy
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from operator import itemgetter
 from typing import Any, TypeAlias, cast
 
 import numpy as np
@@ -140,13 +142,15 @@ class Tracks:
 
     def part(self, rows: NDArray[intp], columns: slice) -> Tracks:
         """The tracks of some participants in a range of steps."""
-        return Tracks(
-            participants=tuple(self.participants[row] for row in rows.tolist()),
-            types=self.types,
-            rows=self.rows[rows],
-            first=self.first + columns.start,
-            **{name: getattr(self, name)[rows, columns] for name in _ARRAYS},
-        )
+        return _PartOfTracks(self, rows, columns)
+
+    def seen_as(
+        self, participants: tuple[Participant, ...], types: ObjectTypes, rows: NDArray[intp]
+    ) -> Tracks:
+        """The same tracks, as those of others, with rows of their own among the ``types``."""
+        same = copy(self)
+        same.__dict__.update(participants=participants, types=types, rows=rows)
+        return same
 
     def at(self, rows: NDArray[intp], columns: NDArray[intp], members: NDArray[intp]) -> Tracks:
         """What arrays have at places, of rows and columns in one shape; who are the ``members``.
@@ -217,6 +221,21 @@ class _LaidTracks(Tracks):
         values = self.__dict__["_lay"](getattr(self.__dict__["_whole"], name))
         self.__dict__[name] = values
         return cast("NDArray[Any]", values)
+
+
+class _PartOfTracks(_LaidTracks):
+    """Some rows and a range of columns of a ``whole``, whose own parts are parts of that."""
+
+    def __init__(self, whole: Tracks, rows: NDArray[intp], columns: slice) -> None:
+        super().__init__(whole, rows, itemgetter((rows, columns)))
+        self.__dict__.update(first=whole.first + columns.start, _rows=rows, _columns=columns)
+
+    def part(self, rows: NDArray[intp], columns: slice) -> Tracks:
+        """The tracks of some participants in a range of steps."""
+        own = self.__dict__
+        before = own["_columns"].start
+        later = slice(before + columns.start, before + columns.stop)
+        return _PartOfTracks(own["_whole"], own["_rows"][rows], later)
 
 
 def _bodies(tracks: Tracks, *, repeated: bool) -> Bodies:
