@@ -3,6 +3,8 @@
 import io
 import json
 import random
+import re
+from itertools import pairwise, product
 
 import numpy as np
 import pytest
@@ -13,6 +15,7 @@ from rulec.monitoring.batch.batch_verify import verify_items
 from rulec.monitoring.verdict import NotJudged
 from rulec.trace.formats.alike_lines import LineBlock
 from rulec.trace.formats.byte_columns import PADDING, read_values
+from rulec.trace.formats.byte_words import as_before, begin_with, short_decimals, words_from
 from rulec.trace.formats.json_lines import read_chunks
 from rulec.trace.formats.table_blocks import Numbers
 
@@ -236,3 +239,30 @@ def test_numbers_are_the_very_floats_that_they_are_written_as():
     for one, number, is_read in zip(texts, found.column.numbers, found.read, strict=True):
         assert is_read == (one not in REFUSED), one
         assert not is_read or (number == float(one) and repr(float(number)) == repr(float(one)))
+
+
+def test_numbers_of_few_bytes_are_the_floats_that_json_says():
+    chance = random.Random(8)
+    short = ["".join(one) for size in range(1, 6) for one in product("019./:", repeat=size)]
+    longer = ["".join(chance.choices("0123456789.", k=chance.randint(6, 8))) for _ in range(5_000)]
+    texts = short + longer
+    text = b" " * PADDING + " ".join(texts).encode() + b" " * PADDING
+    ends = PADDING + np.cumsum([len(one) + 1 for one in texts]) - 1
+    sizes = np.array(list(map(len, texts)))
+    numbers, is_read = short_decimals(np.frombuffer(text, np.uint8), ends, sizes)
+    json = re.compile(r"(0|[1-9][0-9]*)([.][0-9]+)?")
+    assert is_read.tolist() == [json.fullmatch(one) is not None for one in texts]
+    assert numbers[is_read].tolist() == [float(one) for one in texts if json.fullmatch(one)]
+
+
+def test_bytes_are_compared_in_words_as_one_by_one():
+    chance = random.Random(9)
+    for width in range(1, 30):
+        rows = [bytes(chance.choices(b"ab", k=width)) for _ in range(2)]
+        rows = [chance.choice(rows) + bytes(chance.choices(b"ab", k=2)) for _ in range(60)]
+        text = np.frombuffer(b"".join(rows) + b" " * 7, np.uint8)
+        words = words_from(text, np.arange(60) * (width + 2), width)
+        cut = [one[:width] for one in rows]
+        same = [one == before for before, one in pairwise(cut)]
+        assert as_before(words, width).tolist() == same
+        assert begin_with(words, cut[0]).tolist() == [one == cut[0] for one in cut]

@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
-from rulec.trace.formats.byte_columns import PADDING, Bytes, Places, bytes_from, read_values
+from rulec.trace.formats.byte_columns import PADDING, bytes_from, read_values
+from rulec.trace.formats.byte_words import Bytes, Places, as_before, words_from
 from rulec.trace.formats.partial_json import BOUNDS
 from rulec.trace.formats.table_blocks import Coded, Column, Numbers
 from rulec.trace.trace_model import Trace
@@ -273,9 +274,10 @@ def _together(outlines: Sequence[_Outline]) -> AlikeLines | None:
     is_first = np.zeros(len(line_of), dtype=bool)
     is_first[first] = True
     for place, before in enumerate(befores):
-        parts = bytes_from(text, before, len(between[place]))
-        fits[1:] &= (parts[1:] == parts[:-1]) | is_first[1:]
-        fits[first] &= parts[first] == np.array([one.between[place] for one in outlines])
+        width = len(between[place])
+        fits[1:] &= as_before(words_from(text, before, width), width) | is_first[1:]
+        parts = bytes_from(text, before[first], width)
+        fits[first] &= parts == np.array([one.between[place] for one in outlines])
     columns = {}
     for place, path in enumerate(form.paths):
         starts, stops = begins[:, place], befores[place + 1]

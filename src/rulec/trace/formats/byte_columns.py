@@ -7,13 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.trace.formats.byte_words import (
+    BYTES,
+    Bytes,
+    Places,
+    begin_with,
+    short_decimals,
+    words_from,
+)
 from rulec.trace.formats.table_blocks import Coded, Column, Numbers
 
-Bytes = NDArray[np.uint8]
-Places = NDArray[np.int64]
-
 PADDING = 64
-"""So many bytes have to stand before the first value."""
+"""So many bytes have to stand before the first value, and behind the last."""
 
 _MOST_DIGITS = 15
 """Of so many digits every decimal is a float's own; so many fit into a float's 53 bits, too."""
@@ -58,15 +63,31 @@ def read_values(text: Bytes, starts: Places, ends: Places) -> ReadColumn:
 
 
 def _truths(text: Bytes, starts: Places, ends: Places) -> ReadColumn:
+    words, lengths = words_from(text, starts, len(_FALSE)), ends - starts
     is_true, is_false = (
-        (ends - starts == len(word)) & (bytes_from(text, starts, len(word)) == word)
-        for word in (_TRUE, _FALSE)
+        begin_with(words, word) & (lengths == len(word)) for word in (_TRUE, _FALSE)
     )
     return ReadColumn(Coded(is_true.astype(np.int8), (False, True)), is_true | is_false)
 
 
 def _numbers(text: Bytes, starts: Places, ends: Places) -> ReadColumn:
     """Numbers of few digits together, exactly; others one by one."""
+    lengths = ends - starts
+    is_negative = text[starts] == _MINUS
+    if lengths.max() <= BYTES and not is_negative.any():
+        numbers, is_read = short_decimals(text, ends, lengths)
+    else:
+        numbers, is_read = _decimals(text, starts, ends, is_negative)
+    for place in np.flatnonzero(~is_read & (lengths <= _LONGEST_WRITTEN)).tolist():
+        found = _own(bytes(text[starts[place] : ends[place]]))
+        if found is not None:
+            numbers[place], is_read[place] = found, True
+    return ReadColumn(Numbers(numbers, is_read), is_read)
+
+
+def _decimals(
+    text: Bytes, starts: Places, ends: Places, is_negative: NDArray[np.bool_]
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     lengths = ends - starts
     width = min(int(lengths.max()), _LONGEST_NUMBER)
     # A column for each byte counted from the end, so that all digits of one weight lie together.
@@ -84,7 +105,6 @@ def _numbers(text: Bytes, starts: Places, ends: Places) -> ReadColumn:
         behind += is_behind
         is_behind |= is_point[byte]
     n_digits, n_points = is_digit.sum(axis=0), is_point.sum(axis=0)
-    is_negative = text[starts] == _MINUS
     before = n_digits - behind
     leads_with_zero = (text[starts + is_negative] == _ZERO) & (before > 1)
     is_read = (
@@ -98,11 +118,7 @@ def _numbers(text: Bytes, starts: Places, ends: Places) -> ReadColumn:
     )
     numbers = mantissa / 10.0 ** behind.clip(max=_MOST_DIGITS)
     np.negative(numbers, out=numbers, where=is_negative)
-    for place in np.flatnonzero(~is_read & (lengths <= _LONGEST_WRITTEN)).tolist():
-        found = _own(bytes(text[starts[place] : ends[place]]))
-        if found is not None:
-            numbers[place], is_read[place] = found, True
-    return ReadColumn(Numbers(numbers, is_read), is_read)
+    return numbers, is_read
 
 
 def _own(written: bytes) -> float | None:
@@ -122,13 +138,13 @@ def _texts(text: Bytes, starts: Places, ends: Places) -> ReadColumn:
     codes = np.full(len(starts), -1, dtype=np.int64)
     values: list[str] = []
     left = np.flatnonzero(lengths <= _LONGEST_TEXT)
+    lengths = lengths[left]
+    words = words_from(text, starts[left], int(lengths.max(initial=0)))
     while len(left) and len(values) < _MOST_TEXTS:
-        start, end = int(starts[left[0]]), int(ends[left[0]])
-        written = text[start:end].tobytes()
-        alike = left[lengths[left] == end - start]
-        alike = alike[bytes_from(text, starts[alike], end - start) == written]
-        codes[alike] = _code(written, values)
-        left = left[codes[left] == -1]
+        written = text[starts[left[0]] : ends[left[0]]].tobytes()
+        alike = begin_with(words, written) & (lengths == len(written))
+        codes[left[alike]] = _code(written, values)
+        left, lengths, words = left[~alike], lengths[~alike], words[~alike]
     return ReadColumn(Coded(codes.clip(min=0), values), codes >= 0)
 
 
