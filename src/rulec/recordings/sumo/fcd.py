@@ -6,99 +6,38 @@ degrees clockwise from the y axis. Who rides in a vehicle is a part of it, and l
 
 from __future__ import annotations
 
-import re
-from array import array
-from dataclasses import dataclass, field
 from operator import itemgetter
 from pathlib import Path, PurePosixPath
 
 from rulec.diagnostics import RulecError, SourceLocation, named
 from rulec.recordings.encodings.safe_xml import scan
-from rulec.recordings.encodings.xml_element import LARGEST, XmlElement, XmlFormat, short
+from rulec.recordings.encodings.xml_element import LARGEST, XmlElement, short
 from rulec.recordings.recording_messages import NET_MISSING
-
-FCD = XmlFormat(
-    "SUMO's floating-car data",
-    "fcd-export",
-    "SUMO writes them with the option --fcd-output",
-    2_000_000_000,
+from rulec.recordings.sumo.fcd_content import (
+    BODIES,
+    FCD,
+    LONGEST_ID,
+    MICROSECONDS,
+    FcdHead,
+    FcdTrack,
+    FloatingCarData,
+    fcd_head,
 )
-BODIES = frozenset({"vehicle", "person", "container"})
-LONGEST_ID = 200
-MICROSECONDS = 1_000_000
-"""In a second: moments are whole numbers of them."""
+from rulec.recordings.sumo.plain_fcd import read_plain_fcd
 
-_OPTION = re.compile(r'<(net-file|route-files|additional-files|fcd-output\.geo)\s+value="([^"]*)"')
 _PLACE = ("x", "y", "angle", "speed")
 _place_of = itemgetter(*_PLACE)
 _NOWHERE = -(2.0**30)
 """What SUMO writes for x and y of who is in no place, as while it is moved elsewhere."""
 
 
-@dataclass(frozen=True, slots=True)
-class FcdHead:
-    """SUMO's configuration, a comment at the head of its output."""
-
-    net: str = ""
-    demand: tuple[str, ...] = ()
-    additional: tuple[str, ...] = ()
-    geographic: bool = False
-
-
-def _unescaped(text: str) -> str:
-    if "&" not in text:
-        return text
-    # The names of all characters of HTML, 3 ms: few paths have one.
-    from html import unescape
-
-    return unescape(text)
-
-
-def fcd_head(comment: str) -> FcdHead:
-    """The configuration in a comment, as far as it matters here."""
-    options = {name: _unescaped(value) for name, value in _OPTION.findall(comment)}
-    routes, additional = (
-        tuple(filter(None, map(str.strip, options.get(key, "").split(","))))
-        for key in ("route-files", "additional-files")
-    )
-    return FcdHead(
-        options.get("net-file", ""),
-        (*routes, *additional),
-        additional,
-        options.get("fcd-output.geo") in ("true", "1", "yes", "on"),
-    )
-
-
-@dataclass(slots=True)
-class FcdTrack:
-    """The track of a participant in rows of floating-car data: x, y, angle and speed.
-
-    ``moments`` are indices into those of the file.
-    """
-
-    element: str
-    type: str
-    moments: array[int] = field(default_factory=lambda: array("q"))
-    rows: array[float] = field(default_factory=lambda: array("d"))
-    accelerations: array[float] = field(default_factory=lambda: array("d"))
-    lamps: dict[int, int] = field(default_factory=dict)
-
-
-@dataclass(slots=True)
-class FloatingCarData:
-    """The content of a floating-car data file.
-
-    ``moments`` are times in microseconds, ``on`` the lanes and edges that are named.
-    """
-
-    head: FcdHead = field(default_factory=FcdHead)
-    moments: list[int] = field(default_factory=list)
-    tracks: dict[str, FcdTrack] = field(default_factory=dict)
-    on: dict[str, tuple[str, int]] = field(default_factory=dict)
-
-
 def read_fcd(path: Path) -> FloatingCarData:
     """The file's content. Raises RulecError R0610 if it is none, R0701 if it cannot be read."""
+    return read_plain_fcd(path) or read_fcd_as_xml(path)
+
+
+def read_fcd_as_xml(path: Path) -> FloatingCarData:
+    """The content of a file that may be written in any way that XML allows. Raises as above."""
     data = FloatingCarData()
     carriers = 0
 

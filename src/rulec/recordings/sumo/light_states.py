@@ -11,7 +11,8 @@ from pathlib import Path
 
 from rulec.recordings.encodings.safe_xml import root_of, scan
 from rulec.recordings.encodings.xml_element import XmlElement, XmlFormat
-from rulec.recordings.sumo.fcd import FcdHead, demand_beside, named_beside
+from rulec.recordings.sumo.fcd import demand_beside, named_beside
+from rulec.recordings.sumo.fcd_content import FcdHead
 from rulec.recordings.sumo.net import ProgrammeReader, SignalProgramme
 
 STATES = XmlFormat(

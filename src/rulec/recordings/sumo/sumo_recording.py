@@ -25,15 +25,8 @@ from rulec.recordings.recording import (
 )
 from rulec.recordings.recording_messages import OTHER_NET
 from rulec.recordings.road_map import RoadMap
-from rulec.recordings.sumo.fcd import (
-    FCD,
-    MICROSECONDS,
-    FcdTrack,
-    FloatingCarData,
-    demand_beside,
-    net_beside,
-    read_fcd,
-)
+from rulec.recordings.sumo.fcd import demand_beside, net_beside, read_fcd
+from rulec.recordings.sumo.fcd_content import FCD, MICROSECONDS, FcdTrack, FloatingCarData
 from rulec.recordings.sumo.lanelets import net_lanelets
 from rulec.recordings.sumo.light_states import (
     light_states_beside,
