@@ -14,8 +14,14 @@ from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.batch_verify import verify_items
 from rulec.monitoring.verdict import NotJudged
 from rulec.trace.formats.alike_lines import LineBlock
-from rulec.trace.formats.byte_columns import PADDING, read_values
-from rulec.trace.formats.byte_words import as_before, begin_with, short_decimals, words_from
+from rulec.trace.formats.byte_columns import PADDING, column_words, read_values
+from rulec.trace.formats.byte_words import (
+    begin_with,
+    end_as_before,
+    short_decimals,
+    words_for,
+    words_from,
+)
 from rulec.trace.formats.json_lines import read_chunks
 from rulec.trace.formats.table_blocks import Numbers
 
@@ -226,6 +232,10 @@ REFUSED = ["00", "-01", "1.", ".5", "-.5", "-", "1-2", "1.2.3", "0x1", "1e5", "-
 REFUSED += ["12345678901234567890", "0.1000000000000000055", "1e-300", "nan", "1_0", "1 ", "1,5"]
 
 
+def values_of(text, starts, ends):
+    return read_values(text, starts, ends, column_words(text, starts, ends, 0))
+
+
 def test_numbers_are_the_very_floats_that_they_are_written_as():
     texts = [
         *WRITTEN,
@@ -234,7 +244,7 @@ def test_numbers_are_the_very_floats_that_they_are_written_as():
     ]
     text = b" " * PADDING + " ".join(texts).encode() + b" " * PADDING
     ends = PADDING + np.cumsum([len(one) + 1 for one in texts]) - 1
-    found = read_values(np.frombuffer(text, np.uint8), ends - list(map(len, texts)), ends)
+    found = values_of(np.frombuffer(text, np.uint8), ends - list(map(len, texts)), ends)
     assert isinstance(found.column, Numbers)
     for one, number, is_read in zip(texts, found.column.numbers, found.read, strict=True):
         assert is_read == (one not in REFUSED), one
@@ -249,7 +259,8 @@ def test_numbers_of_few_bytes_are_the_floats_that_json_says():
     text = b" " * PADDING + " ".join(texts).encode() + b" " * PADDING
     ends = PADDING + np.cumsum([len(one) + 1 for one in texts]) - 1
     sizes = np.array(list(map(len, texts)))
-    numbers, is_read = short_decimals(np.frombuffer(text, np.uint8), ends, sizes)
+    words = words_from(np.frombuffer(text, np.uint8), ends - sizes, 1)
+    numbers, is_read = short_decimals(words[:, 0], sizes)
     json = re.compile(r"(0|[1-9][0-9]*)([.][0-9]+)?")
     assert is_read.tolist() == [json.fullmatch(one) is not None for one in texts]
     assert numbers[is_read].tolist() == [float(one) for one in texts if json.fullmatch(one)]
@@ -259,10 +270,12 @@ def test_bytes_are_compared_in_words_as_one_by_one():
     chance = random.Random(9)
     for width in range(1, 30):
         rows = [bytes(chance.choices(b"ab", k=width)) for _ in range(2)]
-        rows = [chance.choice(rows) + bytes(chance.choices(b"ab", k=2)) for _ in range(60)]
+        rows = [bytes(chance.choices(b"ab", k=7)) + chance.choice(rows) for _ in range(60)]
         text = np.frombuffer(b"".join(rows) + b" " * 7, np.uint8)
-        words = words_from(text, np.arange(60) * (width + 2), width)
-        cut = [one[:width] for one in rows]
+        starts, count = np.arange(60) * (width + 7) + 7, words_for(width)
+        cut = [one[7:] for one in rows]
         same = [one == before for before, one in pairwise(cut)]
-        assert as_before(words, width).tolist() == same
+        words = words_from(text, starts + width - 8 * count, count)
+        assert end_as_before(words, width).tolist() == same
+        words = words_from(text, starts, count)
         assert begin_with(words, cut[0]).tolist() == [one == cut[0] for one in cut]

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
-from rulec.trace.formats.byte_columns import PADDING, bytes_from, read_values
-from rulec.trace.formats.byte_words import Bytes, Places, as_before, words_from
+from rulec.trace.formats.byte_columns import PADDING, bytes_from, column_words, read_values
+from rulec.trace.formats.byte_words import Bytes, Places, end_as_before, words_for
 from rulec.trace.formats.partial_json import BOUNDS
 from rulec.trace.formats.table_blocks import Coded, Column, Numbers
 from rulec.trace.trace_model import Trace
@@ -273,18 +273,23 @@ def _together(outlines: Sequence[_Outline]) -> AlikeLines | None:
     fits[first] = heads[first] == np.append(PADDING, ends[:-1])
     is_first = np.zeros(len(line_of), dtype=bool)
     is_first[first] = True
-    for place, before in enumerate(befores):
+    columns = {}
+    paths: list[ColumnPath | None] = [*form.paths, None]
+    for place, (path, before) in enumerate(zip(paths, befores, strict=True)):
+        # One look takes what stands between two values and the value behind it.
         width = len(between[place])
-        fits[1:] &= as_before(words_from(text, before, width), width) | is_first[1:]
+        starts = before + width
+        stops = starts if path is None else befores[place + 1]
+        n_between = words_for(width)
+        words = column_words(text, starts, np.maximum(stops, starts + 1), n_between)
+        fits[1:] &= end_as_before(words[:, :n_between], width) | is_first[1:]
         parts = bytes_from(text, before[first], width)
         fits[first] &= parts == np.array([one.between[place] for one in outlines])
-    columns = {}
-    for place, path in enumerate(form.paths):
-        starts, stops = begins[:, place], befores[place + 1]
-        fits &= stops > starts
-        found = read_values(text, starts, np.maximum(stops, starts + 1))
-        fits &= found.read
-        columns[path] = found.column
+        if path is not None:
+            fits &= stops > starts
+            found = read_values(text, starts, np.maximum(stops, starts + 1), words[:, n_between:])
+            fits &= found.read
+            columns[path] = found.column
     is_whole = np.ones(len(outlines), dtype=bool)
     is_whole[line_of[~fits]] = False
     if lengths[is_whole].sum() < FEWEST_STATES:

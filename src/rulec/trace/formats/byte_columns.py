@@ -11,8 +11,10 @@ from rulec.trace.formats.byte_words import (
     BYTES,
     Bytes,
     Places,
+    Words,
     begin_with,
     short_decimals,
+    words_for,
     words_from,
 )
 from rulec.trace.formats.table_blocks import Coded, Column, Numbers
@@ -52,30 +54,38 @@ def bytes_from(text: Bytes, starts: Places, width: int) -> NDArray[np.bytes_]:
     return found
 
 
-def read_values(text: Bytes, starts: Places, ends: Places) -> ReadColumn:
-    """The values of a column, all truth values, all numbers or all texts; others are not read."""
+def column_words(text: Bytes, starts: Places, ends: Places, before: int) -> Words:
+    """The words that hold values and end with them, behind so many words that stand before."""
+    longest = int((ends - starts).max().clip(1, _LONGEST_TEXT))
+    return words_from(text, starts - BYTES * before, before + words_for(longest))
+
+
+def read_values(text: Bytes, starts: Places, ends: Places, words: Words) -> ReadColumn:
+    """The values of a column, all truth values, all numbers or all texts; others are not read.
+
+    ``words`` are those of ``column_words`` from the values on.
+    """
     first = text[starts[0]]
     if first == _QUOTE:
-        return _texts(text, starts, ends)
+        return _texts(text, starts, ends, words)
     if first in (_TRUE[0], _FALSE[0]):
-        return _truths(text, starts, ends)
-    return _numbers(text, starts, ends)
+        return _truths(ends - starts, words)
+    return _numbers(text, starts, ends, words)
 
 
-def _truths(text: Bytes, starts: Places, ends: Places) -> ReadColumn:
-    words, lengths = words_from(text, starts, len(_FALSE)), ends - starts
+def _truths(lengths: Places, words: Words) -> ReadColumn:
     is_true, is_false = (
         begin_with(words, word) & (lengths == len(word)) for word in (_TRUE, _FALSE)
     )
     return ReadColumn(Coded(is_true.astype(np.int8), (False, True)), is_true | is_false)
 
 
-def _numbers(text: Bytes, starts: Places, ends: Places) -> ReadColumn:
+def _numbers(text: Bytes, starts: Places, ends: Places, words: Words) -> ReadColumn:
     """Numbers of few digits together, exactly; others one by one."""
     lengths = ends - starts
-    is_negative = text[starts] == _MINUS
+    is_negative = begin_with(words, b"-")
     if lengths.max() <= BYTES and not is_negative.any():
-        numbers, is_read = short_decimals(text, ends, lengths)
+        numbers, is_read = short_decimals(words[:, 0], lengths)
     else:
         numbers, is_read = _decimals(text, starts, ends, is_negative)
     for place in np.flatnonzero(~is_read & (lengths <= _LONGEST_WRITTEN)).tolist():
@@ -132,14 +142,13 @@ def _own(written: bytes) -> float | None:
     return number if is_own and number - number == 0 else None
 
 
-def _texts(text: Bytes, starts: Places, ends: Places) -> ReadColumn:
+def _texts(text: Bytes, starts: Places, ends: Places, words: Words) -> ReadColumn:
     """Few texts that are met again and again."""
     lengths = ends - starts
     codes = np.full(len(starts), -1, dtype=np.int64)
     values: list[str] = []
     left = np.flatnonzero(lengths <= _LONGEST_TEXT)
-    lengths = lengths[left]
-    words = words_from(text, starts[left], int(lengths.max(initial=0)))
+    lengths, words = lengths[left], words[left]
     while len(left) and len(values) < _MOST_TEXTS:
         written = text[starts[left[0]] : ends[left[0]]].tobytes()
         alike = begin_with(words, written) & (lengths == len(written))

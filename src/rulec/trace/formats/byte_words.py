@@ -24,22 +24,25 @@ _POINT_AT = np.uint64(0x80) << np.arange(0, 64, 8, dtype=np.uint64)
 """Words in which the highest bit of one byte is set."""
 
 
-def words_from(text: Bytes, starts: Places, width: int) -> Words:
-    """The words from each place on that hold so many bytes, any where there are none; (n, words).
+def words_for(width: int) -> int:
+    """How many words hold so many bytes."""
+    return -(-width // BYTES)
 
-    Behind the last place there are seven bytes more than these.
-    """
-    size = max(-(-width // BYTES), 1) * BYTES
+
+def words_from(text: Bytes, starts: Places, count: int) -> Words:
+    """So many words from each place on, any where there are none; (places, words)."""
+    size = max(count, 1) * BYTES
     windows = np.ndarray((len(text) - size + 1,), f"V{size}", text, strides=(1,))
     # ``take`` would first write out all windows.
     words: Words = windows[starts.clip(0, len(windows) - 1)].view("<u8")
     return words.reshape(len(starts), size // BYTES)
 
 
-def as_before(words: Words, width: int) -> NDArray[np.bool_]:
-    """Where so many bytes are those of the row before; for all rows but the first."""
+def end_as_before(words: Words, width: int) -> NDArray[np.bool_]:
+    """Where the last so many bytes are those of the row before; for all rows but the first."""
     same = np.ones(max(len(words) - 1, 0), dtype=bool)
-    for place, mask in enumerate(_word_of(b"\xff" * width)):
+    masks = np.frombuffer((b"\xff" * width).rjust(BYTES * words.shape[1], b"\0"), "<u8")
+    for place, mask in enumerate(masks):
         same &= (words[1:, place] ^ words[:-1, place]) & mask == 0
     return same
 
@@ -58,23 +61,23 @@ def _word_of(written: bytes) -> Words:
 
 
 def short_decimals(
-    text: Bytes, ends: Places, lengths: Places
+    words: NDArray[np.uint64], lengths: Places
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Numbers without a sign of one to eight bytes, and where they are such as JSON has them.
 
-    All digits are reckoned with at once: their neighbours first, then pairs, then fours.
+    Words begin with them. All digits are reckoned with at once: their neighbours first, then
+    pairs, then fours.
     """
     unused = (BYTES * (BYTES - lengths)).astype(np.uint64)
-    inside = _ALL << unused
-    words = words_from(text, ends - BYTES, BYTES)[:, 0]
-    words = (words & inside) | (_ZEROS & ~inside)
+    first = words & np.uint64(0xFF)
+    # They end where the word ends, behind noughts.
+    words = (words << unused) | (_ZEROS & ~(_ALL << unused))
     # The highest bit of each byte that is a point.
     others = words ^ _POINTS
     points = ~(((others & _LOW) + _LOW) | others | _LOW)
     has_point = points != 0
     behind = np.where(has_point, BYTES - 1 - np.searchsorted(_POINT_AT, points), 0)
     before = lengths - behind - has_point
-    first = (words >> unused) & np.uint64(0xFF)
     # What stands before the point moves to where it was.
     lower = (points >> np.uint64(7)) - np.uint64(1)
     higher = ~((points << np.uint64(1)) - np.uint64(1))
