@@ -157,9 +157,12 @@ def _outlined(
     usual: _Form | None,
 ) -> _Outline | None:
     """A line, whose first state is probably of the ``usual`` form; None if it is unusual."""
-    found = [(line.find(b'"states"' + colon + b"["), comma, colon) for comma, colon in _STYLES]
-    begin, comma, colon = max(found)
-    if begin < 0:
+    styles = _STYLES if usual is None or usual.comma == _STYLES[0][0] else _STYLES[::-1]
+    for comma, colon in styles:
+        begin = line.find(b'"states"' + colon + b"[")
+        if begin >= 0:
+            break
+    else:
         return None
     begin = line.index(b"[", begin) + 1
     end = line.rfind(b"}]") + 1
