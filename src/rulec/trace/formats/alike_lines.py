@@ -158,11 +158,9 @@ def _outlined(
 ) -> _Outline | None:
     """A line, whose first state is probably of the ``usual`` form; None if it is unusual."""
     styles = _STYLES if usual is None or usual.comma == _STYLES[0][0] else _STYLES[::-1]
-    for comma, colon in styles:
-        begin = line.find(b'"states"' + colon + b"[")
-        if begin >= 0:
-            break
-    else:
+    places = ((line.find(b'"states"' + colon + b"["), comma, colon) for comma, colon in styles)
+    begin, comma, colon = next((one for one in places if one[0] >= 0), (-1, b"", b""))
+    if begin < 0:
         return None
     begin = line.index(b"[", begin) + 1
     end = line.rfind(b"}]") + 1
