@@ -85,6 +85,41 @@ def test_a_recording_is_judged_with_what_has_been_compiled(tmp_path, monkeypatch
     assert runs[1][1] & (NOT_FOR_A_RECORDING | {"0", "True"}) == {"0", "True"}
 
 
+NOT_FOR_WHAT_IS_KNOWN = {
+    "pyarrow",
+    "shapely",
+    "rulec.logic.sentences.english",
+    "rulec.monitoring.batch.uncertain.uncertain_engine",
+    "rulec.monitoring.explain.explanation",
+    "rulec.monitoring.uncertainty.uncertain_machine",
+    "rulec.syntax",
+}
+
+
+@pytest.mark.parametrize(("value", "needed"), [("true", set()), ("null", {"uncertain_machine"})])
+def test_what_judges_the_unknown_is_imported_where_something_is(tmp_path, value, needed):
+    (tmp_path / "held.rules").write_text(
+        "rulebook held_p\nsignal p\nhard rule held { require always p }\n"
+    )
+    (tmp_path / "t.jsonl").write_text(f'{{"states": [{{"p": {value}}}, {{"p": true}}]}}')
+    program = (
+        "import sys; from rulec.cli.main import main\n"
+        "main('compile held.rules -o . --step 1'.split())"
+    )
+    judge = (
+        "import sys; from rulec.cli.main import main\n"
+        "main('verify t.jsonl -r held.json --explain 0 -o f.jsonl'.split())\n"
+        "print(*sys.modules)"
+    )
+    done = [
+        subprocess.run([sys.executable, "-c", one], capture_output=True, cwd=tmp_path, check=True)
+        for one in (program, judge)
+    ]
+    imported = NOT_FOR_WHAT_IS_KNOWN & set(done[1].stdout.decode().split())
+    assert {name.rpartition(".")[2] for name in imported} >= needed
+    assert imported == set() or needed
+
+
 BOOK = """\
 rulebook {}
 use road

@@ -18,13 +18,11 @@ from rulec.diagnostics import RulecError
 from rulec.files import opened
 from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.batch.batch_verify import Items, rulebook_for, step_of, verify_items
-from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import page_width, progress
-from rulec.report.verdict_findings.found_in_traces import not_judged_trace, trace_findings
 from rulec.report.verdict_findings.verdict_finding import FoundInRecording, VerdictFinding
-from rulec.report.verdicts import verdict_json, verdict_report
+from rulec.report.verdicts import verdict_report
 from rulec.report.verdicts.batch_table import BatchTally
 from rulec.report.verdicts.state_times import StateTimes
 from rulec.resource_limits import REFUSED
@@ -33,6 +31,7 @@ from rulec.trace.formats.trace_files import Format, format_of, read_chunks
 
 if TYPE_CHECKING:
     from rulec.code_generation.compiled_c.c_engine import CEngine
+    from rulec.monitoring.explain.explanation import Explanation
 
 Answer = tuple[Sequence[Trace | RulecError], int, Verdict | NotJudged]
 """Traces, which of them, and its verdict, or why there is none."""
@@ -98,8 +97,14 @@ class TraceRun:
         self.total.not_judged += 1
         self.complaints.add(answer.error)
         if self.to.wants_lines:
+            # Evidence and sentences, 8 ms: only where they are wanted.
+            from rulec.report.verdicts import verdict_json
+
             self.to.line(verdict_json.not_judged_as_json(answer, self.rules.name))
         if self.to.wants_findings:
+            # As above: only where they are wanted.
+            from rulec.report.verdict_findings.found_in_traces import not_judged_trace
+
             findings.append(not_judged_trace(file, answer, self.rules.name))
 
     def _judged(self, file: str, answer: Any, left: int, findings: list[VerdictFinding]) -> int:
@@ -115,9 +120,15 @@ class TraceRun:
         explained: list[Explanation] = []
         # A trace of a table is made only if it is looked at.
         if left and verdict.violations:
+            # As above: only where they are wanted.
+            from rulec.monitoring.explain.explanation import explain
+
             trace = cast("Trace", traces[place])
             explained = [explain(one, trace, used) for one in verdict.violations[:left]]
         if self.to.wants_lines:
+            # As above: only where they are wanted.
+            from rulec.report.verdicts import verdict_json
+
             says_engine = self.engine is not None
             self.to.line(verdict_json.as_json(verdict, used, explained, says_engine=says_engine))
         if says and self.to.wants_text:
@@ -131,6 +142,9 @@ class TraceRun:
             )
             self.to.text(text)
         if self.to.wants_findings:
+            # As above: only where they are wanted.
+            from rulec.report.verdict_findings.found_in_traces import trace_findings
+
             findings += trace_findings(file, traces[place], verdict, used, explained)
         return len(explained)
 

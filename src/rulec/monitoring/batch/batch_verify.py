@@ -21,7 +21,6 @@ from rulec.monitoring.batch.columns.column_reader import NotGivenError
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.columns.line_columns import columnize_lines
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
-from rulec.monitoring.batch.uncertain.uncertain_verdicts import uncertain_verdicts
 from rulec.monitoring.batch.verdict_columns import VerdictColumns
 from rulec.monitoring.bindings import Cast, types_of
 from rulec.monitoring.implied_values import with_all_said
@@ -33,9 +32,7 @@ from rulec.monitoring.state_validation import (
     has_partial_values,
 )
 from rulec.monitoring.state_view import StateView
-from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
-from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.monitoring.verify import rulebook_for_step, rulebook_for_trace, verify_or_reason
@@ -181,6 +178,10 @@ def _verify_columns(
             verdicts = verify_columns(columns, rules)
             _answer(violations_in(verdicts, len(traces)), traces, group, answers)
             return True
+        # What judges partial states, 10 ms: only where there are some.
+        from rulec.monitoring.batch.uncertain.uncertain_verdicts import uncertain_verdicts
+        from rulec.monitoring.uncertainty.judged_rules import judged_rules
+
         ordered = [traces[place] for place in group.order]
         judged = judged_rules(rules, example.told, cut=example.ends == "cut")
         own = [trace for _, trace in ordered]
@@ -213,6 +214,9 @@ def _is_partial(state: object) -> bool:
 def _with_all_said(trace: Trace, vocabulary: Vocabulary) -> Trace:
     about = [x for x in vocabulary.constants if vocabulary.declarations[x].parameters]
     if any(state.get(name) is UNKNOWN for name in about for state in trace.states):
+        # As above, for partial states alone.
+        from rulec.monitoring.uncertainty.suppositions import spelled_out
+
         trace = spelled_out(trace, vocabulary)
     return with_all_said(trace, vocabulary)
 
