@@ -82,10 +82,10 @@ def _station(context: DriveContext) -> SignalColumns:
 
 
 def _lateral(context: DriveContext) -> SignalColumns:
-    lateral, others = relations.lateral(context), relations.possible_laterals(context)
+    found = relations.laterals(context)
     return SignalColumns(
-        about={"lateral": lateral},
-        unknown={"lateral": np.logical_or.reduce([lateral != codes for codes in others])},
+        about={"lateral": found.codes},
+        unknown={"lateral": found.doubtful},
         texts={"lateral": LATERALS},
     )
 

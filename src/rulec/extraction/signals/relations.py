@@ -7,7 +7,8 @@ within a lane is in that lane. For the paper's ``position`` see ``docs/scenarios
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +20,7 @@ from rulec.extraction.signals.signal_passes import once_a_recording
 from rulec.extraction.tracks.road_extents import LaneSets, RoadExtents, lane_sets, lanes_touched
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.paper_words import LATERALS, PAPER_TABLES, STATIONS
+from rulec.trace.cells import Cells
 
 if TYPE_CHECKING:
     from rulec.scenario.motion import Facing
@@ -64,82 +66,94 @@ def _coded(least: Flags, most: Flags) -> Codes:
 
 
 @once
+def known_places(context: DriveContext) -> Cells:
+    """The cells of those who are beside the road: of the others no relation says anything."""
+    return Cells.at(~np.isnan(context.extents.s_min))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Laterals:
+    """On which side of others ego is: as measured, and as far as places allow.
+
+    ``codes`` are indices into ``LATERALS``, ``doubtful`` where it may be another one. Is it the
+    same lane ``surely``, and ``perhaps``?
+    """
+
+    codes: Codes
+    doubtful: Flags
+    surely: Flags
+    perhaps: Flags
+
+
 def lateral(context: DriveContext) -> Codes:
     """Ego right of others, in their lanes or left of them, as indices into ``LATERALS``.
 
     Who is on a mark of ego's lane, reaching beyond it, and clear of ego sideways is at its side;
     who is no farther in but in the way of ego's body is in the lane.
     """
-    return _lateral(context, _beside_lane(context), 0.0, context.lanes_within[0])
+    return laterals(context).codes
 
 
 @once
-def possible_laterals(context: DriveContext) -> tuple[Codes, ...]:
-    """The same as far as places allow: with others further in and out, and the map where it may be.
+def laterals(context: DriveContext) -> Laterals:
+    """The same with what places allow: others further in and out, and the map where it may be.
 
     What lies between these is among them. Who is ahead in ego's lane, but hardly in its way, may as
     well be at its side.
     """
-    place = context.tolerances.place_m
-    reach, offset = context.thresholds.touching_m, context.map_offset_m
-    maps = [(_beside_lane(context), context.lanes_within[1:])]
+    place, offset = context.tolerances.place_m, context.map_offset_m
+    cells, beside = known_places(context), _beside_lane(context)
+    touched, *both = map(cells.of, context.lanes_within)
+    codes = beside.sides(touched, 0.0)
+    behind = np.flatnonzero(cells.of(station(context)) == BEHIND)
+    at_side = behind[~_in_the_way(context, cells.part(behind), beside.clear.take(behind))]
+    doubtful, perhaps = np.zeros(len(codes), dtype=bool), codes == SAME_LANE
+    doubtful[at_side] = beside.ego_at.take(at_side) != codes.take(at_side)
+    surely = perhaps.copy()
+    surely[at_side] = False
+    maps = [(beside.wavering(both, place), beside, both)]
     if offset.any():
+        reach = context.thresholds.touching_m
         least = reach + place, reach - place
         sets = lanes_touched(context.extents, context.lanes_there, least, -offset)
-        maps.append((_beside_lane_shifted(context, offset), sets))
-    shifted = (
-        _lateral(context, beside, way * place, touched)
-        for beside, both in maps
-        for way, touched in zip((-1, 1), both, strict=True)
+        shifted = _beside_lane_shifted(context, offset)
+        maps.append((np.arange(len(codes)), shifted, [cells.of(own) for own in sets]))
+    for chosen, lane, sets in maps:
+        own, part = codes.take(chosen), lane.part(chosen)
+        for way, touched in zip((-1, 1), sets, strict=True):
+            others = part.sides(touched.take(chosen), way * place)
+            doubtful[chosen] |= others != own
+            surely[chosen] &= others == SAME_LANE
+            perhaps[chosen] |= others == SAME_LANE
+    return Laterals(
+        cells.laid(codes, SAME_LANE),
+        cells.laid(doubtful),
+        surely=cells.laid(surely, True),
+        perhaps=cells.laid(perhaps, True),
     )
-    at_side = (station(context) == BEHIND) & ~_in_the_way(context)
-    return *shifted, np.where(at_side, _ego_at(context), lateral(context))
 
 
-def _in_the_way(context: DriveContext) -> Flags:
+def _in_the_way(context: DriveContext, cells: Cells, clear: Floats) -> Flags:
     """Flags of who takes up ego's way by a quarter of its width, half with its middle elsewhere.
 
     The width is the narrower one's. Who leaves ego's lane or comes into it, or rides at its edge,
     is not driving in front of ego yet, or any more.
     """
     own, others = context.ego_extents, context.extents
-    narrower = np.minimum(own.d_max - own.d_min, others.d_max - others.d_min)
-    both = np.minimum(-_clear(context), narrower)
-    part = narrower * np.where(others.lane == own.lane, 0.25, 0.5)
+    theirs = cells.of(others.d_max) - cells.of(others.d_min)
+    narrower = np.minimum(cells.of(own.d_max - own.d_min), theirs)
+    both = np.minimum(-clear, narrower)
+    part = narrower * np.where(cells.of(others.lane) == cells.of(own.lane), 0.25, 0.5)
     takes: Flags = both > np.maximum(part, context.tolerances.place_m)
     return takes
 
 
 @once
-def _aside(context: DriveContext) -> tuple[Floats, Floats]:
-    """How far (m) others are clear of ego on its left and right, from the middle of ego's lane."""
-    lane = context.ego_extents.lane
-    own_low, own_high = context.ego_extents.from_middle(lane)
-    others = _beside_lane(context)
-    return others.low - own_high, own_low - others.high
-
-
-@once
-def _clear(context: DriveContext) -> Floats:
-    """How far (m) others are clear of ego at the side where it is more."""
-    return np.maximum(*_aside(context))
-
-
-@once
-def _ego_at(context: DriveContext) -> Codes:
-    """On which side of others ego is."""
-    on_left, on_right = _aside(context)
-    side: Codes = (~(on_left > on_right)).view(int8) * LEFT_OF
-    return side
-
-
-@once
 def ahead_in_lane(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     """Flags of who is ahead in ego's lane: as measured, surely and perhaps."""
-    ahead = station(context) == BEHIND
-    same = [ahead & (codes == SAME_LANE) for codes in possible_laterals(context)]
-    measured: Flags = ahead & (lateral(context) == SAME_LANE)
-    return measured, measured & np.logical_and.reduce(same), measured | np.logical_or.reduce(same)
+    ahead, sides = station(context) == BEHIND, laterals(context)
+    measured = ahead & (sides.codes == SAME_LANE)
+    return measured, ahead & sides.surely, ahead & sides.perhaps
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -147,14 +161,70 @@ class _BesideLane:
     """Where others are beside ego's lane: how far (m) they reach in it and beyond its bounds.
 
     ``low`` and ``high`` say how far left of its middle they begin and end, ``into`` and ``beyond``
-    how far they reach over the nearer bound and the farther one. ``own`` are ego's extents.
+    how far they reach over the nearer bound and the farther one. ``middle`` is ego's, ``right_of``
+    and ``left_of`` are the sets of the lanes that it is right and left of. They are ``clear`` of
+    ego at the side where that is more, and there ``ego_at`` is its side. All by cell.
     """
 
-    own: RoadExtents
+    reach: float
+    right_of: LaneSets
+    left_of: LaneSets
+    middle: Floats
     low: Floats
     high: Floats
     into: Floats
     beyond: Floats
+    clear: Floats
+    ego_at: Codes
+
+    def part(self, chosen: NDArray[intp]) -> _BesideLane:
+        """Some of the cells."""
+        if len(chosen) == len(self.low):
+            return self
+        own = {name: getattr(self, name).take(chosen) for name in _BY_CELL}
+        return replace(self, **own)
+
+    def sides(self, touched: LaneSets, inward: float) -> Codes:
+        """Ego's sides, with others so much (m) further in its lane; they touch the lanes of sets.
+
+        ``touched`` has a set by cell.
+        """
+        reach, sides = self.reach, self.across(touched)
+        beside_way = (self.beyond > reach + inward) & (self.clear > reach + inward)
+        in_the_way = (self.into > -inward) & (self.clear < inward - reach)
+        beside_way &= sides == SAME_LANE
+        np.copyto(sides, self.ego_at, where=beside_way)
+        np.copyto(sides, SAME_LANE, where=in_the_way)
+        return sides
+
+    def across(self, touched: LaneSets) -> Codes:
+        """Ego's middle right of others' lanes, in or left of them; without any lane, of them."""
+        nowhere = touched == 0
+        right_of, left_of_all = (touched & self.right_of) == 0, (touched & self.left_of) == 0
+        right_of &= ~nowhere | (self.middle <= self.low)
+        left_of_all &= ~nowhere | (self.middle >= self.high)
+        return _coded(right_of, left_of_all)
+
+    def wavering(self, sets: Sequence[LaneSets], place_m: float) -> NDArray[intp]:
+        """The cells in which sides may be others so much (m) further in and out.
+
+        ``sets`` are the lanes that others touch then, which in between are between these.
+        """
+        reach = self.reach
+        wavers: Flags = sets[0] != sets[1]
+        for values, limit in (
+            (self.beyond, reach),
+            (self.clear, reach),
+            (self.into, 0.0),
+            (self.clear, -reach),
+        ):
+            wavers |= np.abs(values - limit) <= place_m + _HAIR_M
+        return np.flatnonzero(wavers)
+
+
+_BY_CELL = tuple(field.name for field in fields(_BesideLane) if field.name != "reach")
+
+_HAIR_M = 1e-6
 
 
 @once
@@ -163,48 +233,38 @@ def _beside_lane(context: DriveContext) -> _BesideLane:
 
 
 def _beside_lane_shifted(context: DriveContext, shift: Floats) -> _BesideLane:
-    """The same with all so much (m), by state, farther right on the map."""
+    """The same with all so much (m), by state, farther right on the map; of ``known_places``."""
+    cells = known_places(context)
     own, others = context.ego_extents.moved(-shift), context.extents
     # How far left of the two bounds of ego's lane they begin and end
-    (low_r, high_r), (low_l, high_l) = (
-        others.from_bound(bound) for bound in (own.lane, own.lane + 1)
+    low_r, high_r, low_l, high_l = (
+        values
+        for bound in (own.lane[0], own.lane[0] + 1)
+        for values in others.cells_from_bound(cells, bound)
     )
     if shift.any():
-        low_r, high_r, low_l, high_l = (values - shift for values in (low_r, high_r, low_l, high_l))
+        by = cells.of(shift)
+        low_r, high_r, low_l, high_l = (values - by for values in (low_r, high_r, low_l, high_l))
+    own_low, own_high = own.from_middle(own.lane)
+    low, high = (low_r + low_l) / 2, (high_r + high_l) / 2
+    if shift.any():
+        clear, ego_at = _beside_lane(context).clear, _beside_lane(context).ego_at
+    else:
+        on_left, on_right = low - cells.of(own_high), cells.of(own_low) - high
+        clear, ego_at = np.maximum(on_left, on_right), (~(on_left > on_right)).view(int8) * LEFT_OF
+    # Bounds ascend to the left: who is right of the first lane is left of the right bound of none
     return _BesideLane(
-        own=own,
-        low=(low_r + low_l) / 2,
-        high=(high_r + high_l) / 2,
+        context.thresholds.touching_m,
+        right_of=cells.of(lane_sets(own.left_of[..., :-1] > 0)),
+        left_of=cells.of(lane_sets(own.left_of[..., 1:] < 0)),
+        middle=cells.of((own_low + own_high) / 2),
+        low=low,
+        high=high,
         into=np.minimum(high_r, -low_l),
         beyond=np.maximum(high_l, -low_r),
+        clear=clear,
+        ego_at=ego_at,
     )
-
-
-def _lateral(context: DriveContext, beside: _BesideLane, inward: float, touched: LaneSets) -> Codes:
-    """Sides, with others so much (m) further in ego's lane; these touch the lanes of sets."""
-    reach = context.thresholds.touching_m
-    clear = _clear(context)
-    sides = _across(beside.own, touched, beside.low, beside.high)
-    beside_way = (beside.beyond > reach + inward) & (clear > reach + inward)
-    in_the_way = (beside.into > -inward) & (clear < inward - reach)
-    beside_way &= sides == SAME_LANE
-    np.copyto(sides, _ego_at(context), where=beside_way)
-    np.copyto(sides, SAME_LANE, where=in_the_way)
-    return sides
-
-
-def _across(own: RoadExtents, lanes: LaneSets, low: Floats, high: Floats) -> Codes:
-    """Ego's middle right of others' lanes, in or left of them; without any lane, of them.
-
-    ``low`` and ``high`` say how far (m) left of the middle of ego's lane others begin and end.
-    """
-    nowhere, middle = lanes == 0, np.add(*own.from_middle(own.lane)) / 2
-    # Bounds ascend to the left: who is right of the first lane is left of the right bound of none
-    right_of = (lanes & lane_sets(own.left_of[..., :-1] > 0)) == 0
-    left_of_all = (lanes & lane_sets(own.left_of[..., 1:] < 0)) == 0
-    right_of &= ~nowhere | (middle <= low)
-    left_of_all &= ~nowhere | (middle >= high)
-    return _coded(right_of, left_of_all)
 
 
 @once
@@ -259,13 +319,13 @@ def position(context: DriveContext) -> NDArray[np.str_]:
                 np.where(on, np.maximum(s_max, end), s_max),
             )
     column = _along(ego, s_min, s_max)
-    beside = _beside_lane(context)
-    row = _across(ego, touched, beside.low, beside.high)
+    beside, cells = _beside_lane(context), known_places(context)
+    row = cells.laid(beside.across(cells.of(touched)), SAME_LANE)
     inside = (row == SAME_LANE) & (column == BESIDE)
     half = np.minimum(ego.d_max - ego.d_min, others.d_max - others.d_min) / 2
-    aside = _clear(context) > np.maximum(way_along(context), -half)
+    aside = cells.laid(beside.clear, np.nan) > np.maximum(way_along(context), -half)
     at_side = inside & (facing % 2 == 0) & aside
-    row, inside = np.where(at_side, _ego_at(context), row), inside & ~at_side
+    row, inside = np.where(at_side, cells.laid(beside.ego_at), row), inside & ~at_side
     column = np.where(inside, np.where(ego.s < others.s, BEHIND, IN_FRONT_OF), column)
     tables = np.array([list(PAPER_TABLES[name].decode()) for name in _FACING])
     letters: NDArray[np.str_] = tables[facing, 3 * row + column]

@@ -21,6 +21,7 @@ from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.tracks import Flags, Floats, LaidOut, Tracks
 from rulec.scenario.recorded.lane_coordinates import outline_bounds
 from rulec.scenario.recorded.reference_line import turn
+from rulec.trace.cells import Cells
 
 LaneSets: TypeAlias = NDArray[Any]
 """Lanes as whole numbers, of which bit ``k`` says whether lane ``k`` is among them."""
@@ -113,6 +114,16 @@ class RoadExtents:
         """How far (m) left of one bound of the lanes, by column, bodies begin and end."""
         return _at_bound(self.left_of_min, bound), _at_bound(self.left_of_max, bound)
 
+    def cells_from_bound(self, cells: Cells, bound: NDArray[intp]) -> tuple[Floats, Floats]:
+        """The same of some cells only."""
+        steps = bound * len(self.left_of_min)
+        places = (steps[cells.columns] + cells.rows) * len(bound) + cells.columns
+        low, high = (
+            np.moveaxis(own, -1, 0).ravel().take(places)
+            for own in (self.left_of_min, self.left_of_max)
+        )
+        return low, high
+
     def from_middle(self, lane: NDArray[intp]) -> tuple[Floats, Floats]:
         """How far (m) left of the middle of one lane, by column, bodies begin and end."""
         (low, high), (low_left, high_left) = self.from_bound(lane), self.from_bound(lane + 1)
@@ -192,6 +203,20 @@ class _LaidExtents(RoadExtents):
         whole, laid, places = self.__dict__["_whole"], self.__dict__["_laid"], bound.ravel()
         low: Floats = laid.at_third(whole.left_of_min, places)
         return low, laid.at_third(whole.left_of_max, places)
+
+    def cells_from_bound(self, cells: Cells, bound: NDArray[intp]) -> tuple[Floats, Floats]:
+        """How far (m) left of one bound of the lanes, by column, bodies begin and end in cells."""
+        own, laid = self.__dict__["_whole"], self.__dict__["_laid"]
+        steps = bound * len(own.left_of_min)
+        columns = laid.columns.take(cells.columns)
+        places = steps.take(cells.columns) + laid.rows.take(cells.rows)
+        places *= own.left_of_min.shape[1]
+        places += columns
+        low, high = (
+            np.moveaxis(own, -1, 0).ravel().take(places)
+            for own in (own.left_of_min, own.left_of_max)
+        )
+        return low, high
 
     def __getattribute__(self, name: str) -> Any:
         if name in _LAID:

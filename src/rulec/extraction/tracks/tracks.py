@@ -401,6 +401,11 @@ class LaidOut:
         """The columns of all ranges, if these are so short that each is not worth it by itself."""
         if self.absent.shape[1] > _LONG * len(self.ranges):
             return None
+        return self.columns
+
+    @cached_property
+    def columns(self) -> NDArray[intp]:
+        """The columns of all ranges."""
         return np.concatenate([np.arange(own.start, own.stop) for own in self.ranges])
 
     @cached_property

@@ -1,0 +1,50 @@
+"""Some cells of arrays with a row per participant and a column per state, laid flat."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy import bool_, intp
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Cells:
+    """Some cells of arrays of one ``shape``; ``places`` are theirs in the arrays laid flat."""
+
+    shape: tuple[int, ...]
+    rows: NDArray[intp]
+    columns: NDArray[intp]
+    places: NDArray[intp]
+
+    @staticmethod
+    def at(flags: NDArray[bool_]) -> Cells:
+        """Those that are flagged."""
+        places = np.flatnonzero(flags)
+        n_rows, n_columns = flags.shape
+        # Rows stand together, which is sooner known than what a division leaves
+        ends = np.searchsorted(places, np.arange(1, n_rows + 1) * n_columns)
+        rows = np.repeat(np.arange(n_rows), np.diff(ends, prepend=0))
+        return Cells(flags.shape, rows, places - rows * n_columns, places)
+
+    def __len__(self) -> int:
+        return len(self.places)
+
+    def part(self, chosen: NDArray[intp]) -> Cells:
+        """Some of them."""
+        own = (values.take(chosen) for values in (self.rows, self.columns, self.places))
+        return Cells(self.shape, *own)
+
+    def of(self, values: NDArray[Any]) -> NDArray[Any]:
+        """The cells of an array, or of one with a value for each column only."""
+        if values.ndim > 1 and len(values) == self.shape[0]:
+            return values.ravel().take(self.places)
+        return values.ravel().take(self.columns)
+
+    def laid(self, values: NDArray[Any], elsewhere: object = 0) -> NDArray[Any]:
+        """The array with these values in the cells, and something else in all others."""
+        found = np.full(self.shape, elsewhere, dtype=values.dtype)
+        found.ravel()[self.places] = values
+        return found
