@@ -23,6 +23,7 @@ from rulec.extraction.signals.signal_columns import (
 )
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.trace.cells import Cells
 
 _AWAY_MPS = 0.3
 
@@ -35,46 +36,47 @@ def following_signals(context: DriveContext, names: SignalNames = None) -> Signa
 def _ahead_for(context: DriveContext) -> SignalColumns:
     """Times (s) for which ego has been behind others in one lane, with their bounds."""
     _, surely, perhaps = relations.ahead_in_lane(context)
-    rows, step_s = np.flatnonzero(perhaps.any(axis=1)), context.recording.step_s
-    surely, perhaps = surely[rows], perhaps[rows]
-    since, seen = _since(context, rows, perhaps)
-    states = context.spans.columns
-    most = np.where(seen, (states - since + 1) * step_s, LONGEST_S) * perhaps
-    since, seen = _since(context, rows, surely)
-    least = (states - since) * step_s
-    appears = surely & ~seen
+    cells, step_s = Cells.at(perhaps), context.recording.step_s
+    since, seen = _since(context, cells)
+    most = np.where(seen, (cells.columns - since + 1) * step_s, LONGEST_S)
+    sure = np.flatnonzero(surely.ravel().take(cells.places))
+    own, least = cells.part(sure), np.zeros(len(cells))
+    since, seen = _since(context, own)
+    times = (own.columns - since) * step_s
     # For all of a run it is that of its first state
-    first = (appears & (since == states)).nonzero()
-    earlier = np.zeros(least.shape)
-    earlier[first] = _before(context, rows[first[0]], first[1])
-    at = appears.nonzero()
-    least[at] += earlier[at[0], since[at]]
-    least = np.minimum(least, LONGEST_S) * surely
-    times, *bounds = np.zeros((3, *context.relevant.shape))
-    times[rows] = rounded(least)
-    bounds[0][rows], bounds[1][rows] = rounded_outward(least, np.maximum(least, most))
-    return SignalColumns(about={"ahead_for": times}, bounds={"ahead_for": (bounds[0], bounds[1])})
+    appears = np.flatnonzero(~seen)
+    first = appears[since[appears] == own.columns[appears]]
+    earlier = _before(context, own.part(first))
+    run = np.cumsum(since[appears] == own.columns[appears]) - 1
+    times[appears] += earlier[run]
+    least[sure] = np.minimum(times, LONGEST_S)
+    low, high = rounded_outward(least, np.maximum(least, most))
+    return SignalColumns(
+        about={"ahead_for": cells.laid(rounded(least))},
+        bounds={"ahead_for": (cells.laid(low), cells.laid(high))},
+    )
 
 
-def _since(
-    context: DriveContext, rows: NDArray[intp], follows: Flags
-) -> tuple[NDArray[intp], Flags]:
-    """The states in which these rows' flags last began, and was one seen the state before?"""
-    spans = context.spans
-    since = np.minimum(spans.latest(~follows) + 1, spans.end - 1)
-    return since, (since > spans.first) & context.relevant[rows[:, None], since - 1]
+def _since(context: DriveContext, cells: Cells) -> tuple[NDArray[intp], Flags]:
+    """The states in which runs of cells began, and was one seen the state before?"""
+    spans, begins = context.spans, np.diff(cells.places, prepend=-1) > 1
+    begins |= spans.begins_here[cells.columns]
+    since = cells.columns[begins][np.cumsum(begins) - 1]
+    before = context.relevant.ravel().take(cells.places - (cells.columns - since) - 1, mode="clip")
+    return since, (since > spans.first[since]) & before
 
 
-def _before(context: DriveContext, rows: NDArray[intp], states: NDArray[intp]) -> Floats:
+def _before(context: DriveContext, cells: Cells) -> Floats:
     """How long (s) others were ahead at least when first seen, by where they were across."""
     limits, own, others = context.thresholds, context.ego_extents, context.extents
-    reach, right = limits.touching_m, context.ego_lane[states]
+    rows, states, reach = cells.rows, cells.columns, limits.touching_m
+    right = context.ego_lane
     left = right + 1
-    low, high = others.left_of_min[rows, states, left], others.left_of_max[rows, states, left]
-    from_left = np.maximum(own.left_of_max[0, states, left] - low, -high) + reach
+    low, high = others.cells_from_bound(cells, left)
+    from_left = np.maximum(own.left_of_max[0, states, left[states]] - low, -high) + reach
     inside = np.minimum(-low - reach, from_left)
-    low, high = others.left_of_min[rows, states, right], others.left_of_max[rows, states, right]
-    from_right = np.maximum(high - own.left_of_min[0, states, right], low) + reach
+    low, high = others.cells_from_bound(cells, right)
+    from_right = np.maximum(high - own.left_of_min[0, states, right[states]], low) + reach
     inside = np.minimum(inside, np.minimum(high - reach, from_right))
     way = np.nan_to_num(np.maximum(inside - context.tolerances.place_m, 0.0))
     across = others.across[rows, states]

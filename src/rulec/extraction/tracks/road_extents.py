@@ -204,6 +204,12 @@ class _LaidExtents(RoadExtents):
         low: Floats = laid.at_third(whole.left_of_min, places)
         return low, laid.at_third(whole.left_of_max, places)
 
+    def part(self, rows: NDArray[intp], columns: slice) -> RoadExtents:
+        """The extents of some participants in a range of steps."""
+        if columns != slice(None):
+            return super().part(rows, columns)
+        return _LaidExtents(self.__dict__["_whole"], self.__dict__["_laid"].of_rows(rows))
+
     def cells_from_bound(self, cells: Cells, bound: NDArray[intp]) -> tuple[Floats, Floats]:
         """How far (m) left of one bound of the lanes, by column, bodies begin and end in cells."""
         own, laid = self.__dict__["_whole"], self.__dict__["_laid"]

@@ -384,6 +384,10 @@ class LaidOut:
                 begin = end
         return np.moveaxis(found, 0, -1) if values.ndim > 2 else found[0]
 
+    def of_rows(self, rows: NDArray[intp]) -> LaidOut:
+        """Some of the rows."""
+        return LaidOut(self.rows[rows], self.ranges, self.absent[rows])
+
     def at_third(self, values: Floats, places: NDArray[intp]) -> Floats:
         """An array's part, of whose third axis there is one place, by column; NaN as above."""
         if self._columns is None:
