@@ -18,6 +18,7 @@ from rulec.extraction.signals.signal_passes import Passes, once_a_recording, sig
 from rulec.extraction.tracks.road_extents import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.recording import Lanelet, LaneMark, Side
+from rulec.trace.cells import Cells
 
 _BESIDE_M = 0.5
 """A vehicle needs so much more room than it is wide."""
@@ -152,15 +153,16 @@ def _obstructed(context: DriveContext) -> Flags:
     used = own.inside[0] > 0
     used[np.arange(context.states), context.ego_lane] = True
     counts = context.relevant & stands & (relations.gap(context) <= _OBSTACLE_M)
-    others = context.extents
-    blocked = np.zeros(context.states, dtype=bool)
-    rows, columns = counts.nonzero()
-    low, high = others.left_of_min[rows, columns], others.left_of_max[rows, columns]
-    sets = context.lanes_within[0][rows, columns]
-    for lane in range(used.shape[1]) if len(rows) else ():
-        room = np.maximum(low[:, lane], -high[:, lane + 1])
-        blocks = is_in(sets, lane) & (room < width[columns]) & used[columns, lane]
-        blocked[columns[blocks]] = True
+    blocked, cells = np.zeros(context.states, dtype=bool), Cells.at(counts)
+    sets, columns = cells.of(context.lanes_within[0]), cells.columns
+    for lane in range(used.shape[1]):
+        there = np.flatnonzero(is_in(sets, lane) & used[columns, lane])
+        if not len(there):
+            continue
+        own, bound = cells.part(there), np.full(context.states, lane)
+        low, _ = context.extents.cells_from_bound(own, bound)
+        _, high = context.extents.cells_from_bound(own, bound + 1)
+        blocked[own.columns[np.maximum(low, -high) < width[own.columns]]] = True
     return blocked
 
 

@@ -201,8 +201,8 @@ class _LaidExtents(RoadExtents):
         if bound.ndim > 1 and len(bound) != 1:
             return super().from_bound(bound)
         whole, laid, places = self.__dict__["_whole"], self.__dict__["_laid"], bound.ravel()
-        low: Floats = laid.at_third(whole.left_of_min, places)
-        return low, laid.at_third(whole.left_of_max, places)
+        low, high = laid.at_third(places, whole.left_of_min, whole.left_of_max)
+        return low, high
 
     def part(self, rows: NDArray[intp], columns: slice) -> RoadExtents:
         """The extents of some participants in a range of steps."""

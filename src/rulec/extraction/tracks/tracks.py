@@ -388,16 +388,13 @@ class LaidOut:
         """Some of the rows."""
         return LaidOut(self.rows[rows], self.ranges, self.absent[rows])
 
-    def at_third(self, values: Floats, places: NDArray[intp]) -> Floats:
-        """An array's part, of whose third axis there is one place, by column; NaN as above."""
-        if self._columns is None:
-            found: Floats = self(values)[:, np.arange(len(places)), places]
-            return found
-        _, steps, count = values.shape
-        by_row = values[self.rows].swapaxes(1, 2).reshape(len(self.rows), count * steps)
-        found = by_row.take(places * steps + self._columns, axis=1)
-        if self._are_absent:
-            np.copyto(found, np.nan, where=self.absent)
+    def at_third(self, places: NDArray[intp], *arrays: Floats) -> list[Floats]:
+        """Parts of arrays with one place of the third axis, by column; NaN as above."""
+        n_rows, n_columns, _ = arrays[0].shape
+        at = (places * n_rows + self.rows[:, None]) * n_columns + self.columns
+        found = [np.moveaxis(values, -1, 0).ravel().take(at) for values in arrays]
+        for own in found if self._are_absent else ():
+            np.copyto(own, np.nan, where=self.absent)
         return found
 
     @cached_property

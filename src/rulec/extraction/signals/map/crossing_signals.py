@@ -16,8 +16,8 @@ from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
-from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.trace.cells import Cells
 
 _USES = ("not_crossing", "waiting_to_cross", "about_to_cross", "entering_crossing", "on_crossing")
 
@@ -28,12 +28,13 @@ def crossing_signals(context: DriveContext, names: SignalNames = None) -> Signal
 
 
 def _crossing_use(context: DriveContext) -> SignalColumns:
-    rows = _pedestrians(context)
+    rows, used = _pedestrians(context), _used_ahead(context)
     own, unsure = np.zeros(context.relevant.shape, dtype=int), np.zeros_like(context.relevant)
-    if len(rows):
-        used = _used_ahead(context)
-        too_late, may_be = _too_late(context, used)
-        own[rows] = np.where(_past_ego(context) | too_late, 0, used)
+    some = used.any(axis=1)
+    if some.any():
+        rows, used = rows[some], used[some]
+        too_late, may_be = _too_late(context, rows, used)
+        own[rows] = np.where(_past_ego(context, rows) | too_late, 0, used)
         unsure[rows] = may_be & (own[rows] > 0)
     return SignalColumns(
         about={"crossing_use": own},
@@ -74,7 +75,7 @@ def _crosses_side_road(context: DriveContext) -> SignalColumns:
     rows, crosses = _pedestrians(context), np.zeros_like(context.relevant)
     start, end = _side_road(context)
     if len(rows) and np.isfinite(start).any():
-        crosses[rows] = _crossing_uses(context, (start, end), context.tracks.on_lane[rows]) > 0
+        crosses[rows] = _crossing_uses(context, (start, end), context.tracks.on_lane) > 0
     return SignalColumns(
         about={"crosses_side_road": crosses},
         only={"crosses_side_road": context.tracks.of_type("pedestrian")},
@@ -88,16 +89,9 @@ def _pedestrians(context: DriveContext) -> NDArray[intp]:
 
 
 @once
-def _walking(context: DriveContext) -> RoadExtents:
-    """The extents of pedestrians, a row each."""
-    return context.extents.part(_pedestrians(context), slice(None))
-
-
-@once
 def _used_ahead(context: DriveContext) -> NDArray[intp]:
     """How pedestrians use ego's present or next crossing: indices into ``_USES``, a row each."""
-    on_it = context.tracks.on_crosswalk[_pedestrians(context)]
-    return _crossing_uses(context, next_crossing(context), on_it)
+    return _crossing_uses(context, next_crossing(context), context.tracks.on_crosswalk)
 
 
 def _side_road(context: DriveContext) -> tuple[Floats, Floats]:
@@ -121,31 +115,46 @@ def _crossing_uses(
     crosses; where no crossing is drawn that is any place in the road.
     """
     start, end = stretch
-    others, limits, rows = _walking(context), context.thresholds, _pedestrians(context)
+    others, tracks, limits = context.extents, context.tracks, context.thresholds
+    rows, beside = _pedestrians(context), np.zeros_like(context.relevant)
     # Room for who does not walk exactly between the marks
-    beside = (others.s_max > start - limits.kerb_m) & (others.s_min < end + limits.kerb_m)
-    to_road = np.maximum(-others.left_of_max[..., 0], others.left_of_min[..., -1]).clip(0.0)
-    walks = context.tracks.speed[rows] * KMH >= limits.standing_kmh
-    towards = _towards(others)
-    crossing = beside & on_it & context.tracks.on_lane[rows]
-    on = crossing & (context.on_lanes[rows] | ~walks | (towards > 0))
-    waits = beside & (to_road <= limits.kerb_m) & ~walks
+    beside[rows] = others.s_max[rows] > start - limits.kerb_m
+    beside[rows] &= others.s_min[rows] < end + limits.kerb_m
+    uses, cells = np.zeros(beside.shape, dtype=int), Cells.at(beside)
+    if not len(cells):
+        return uses[rows]
+    edges = (
+        np.zeros(context.states, dtype=intp),
+        np.full(context.states, context.existing_lanes.shape[1]),
+    )
+    (low_r, high_r), (low_l, high_l) = (others.cells_from_bound(cells, edge) for edge in edges)
+    to_road = np.maximum(-high_r, low_l).clip(0.0)
+    walks = cells.of(tracks.speed) * KMH >= limits.standing_kmh
+    # The speed towards the middle of the road, across it (m/s)
+    across, left = cells.of(others.across), (low_r + high_r) / 2 + (low_l + high_l) / 2
+    towards = np.where(left < 0, across, -across)
+    crossing = cells.of(on_it) & cells.of(tracks.on_lane)
+    on = crossing & (cells.of(context.on_lanes) | ~walks | (towards > 0))
+    waits = (to_road <= limits.kerb_m) & ~walks
     # Who walks along the pavement and drifts a little towards the road does not come to cross
-    approaches = walks & (towards > np.abs(others.along))
-    soon = beside & approaches & (to_road <= towards * limits.about_to_s)
+    approaches = walks & (towards > np.abs(cells.of(others.along)))
+    soon = approaches & (to_road <= towards * limits.about_to_s)
     enters = soon & (to_road <= towards * limits.entering_s)
-    return np.select([on, enters, soon, waits], [4, 3, 2, 1], 0)
+    uses.ravel()[cells.places] = np.select([on, enters, soon, waits], [4, 3, 2, 1], 0)
+    return uses[rows]
 
 
-def _too_late(context: DriveContext, uses: NDArray[intp]) -> tuple[Flags, Flags]:
+def _too_late(
+    context: DriveContext, rows: NDArray[intp], uses: NDArray[intp]
+) -> tuple[Flags, Flags]:
     """Flags of who came to use the crossing when ego could not wait any more, and of who may have.
 
-    Ego can where, braking at once, it stops before them or before the crossing. Who leaves off for
+    Of these rows, with their ``uses``. Ego can where, braking at once, it stops before them or before the crossing. Who leaves off for
     no longer than ``away_s`` uses it all the time. Who does when first seen may have come just
     then; who is on the crossing then has been about to cross for ``about_to_s``. Where somebody
     walks shows late in a mean, by half its time.
     """
-    limits, used, rows = context.thresholds, uses > 0, _pedestrians(context)
+    limits, used = context.thresholds, uses > 0
     speed, front = np.maximum(context.ego_extents.along[0], 0.0), context.ego_extents.s_max[0]
     start, _ = next_crossing(context)
     longest = round(limits.away_s / context.recording.step_s)
@@ -155,33 +164,27 @@ def _too_late(context: DriveContext, uses: NDArray[intp]) -> tuple[Flags, Flags]
     on_it = (uses == len(_USES) - 1) & ~seen_before
     earlier = np.where(on_it, limits.about_to_s, 0.0) + limits.smoothing_s / 2
     stop = speed**2 / (2 * limits.braking_mps2) - speed * earlier
-    waits = front + stop <= np.maximum(start, _walking(context).s_min)
+    waits = front + stop <= np.maximum(start, context.extents.s_min[rows])
     begins = np.maximum(spans.latest(off | spans.changes(start)), spans.first)
     late = used & (spans.latest(used & waits) < begins)
     return late & seen_before, late & ~seen_before
 
 
-def _towards(others: RoadExtents) -> Floats:
-    """The speed towards the middle of the road, across it (m/s)."""
-    left, left_of = others.across, others.left_of
-    return np.where(left_of[..., 0] + left_of[..., -1] < 0, left, -left)
-
-
-def _past_ego(context: DriveContext) -> Flags:
-    """Flags of pedestrians that have left ego's lane, and ego's body, and walk away from them.
+def _past_ego(context: DriveContext, rows: NDArray[intp]) -> Flags:
+    """Flags of those of these rows that have left ego's lane, and ego's body, and walk away from them.
 
     Who turns along the road then has left them behind too, for ``away_s``, until they walk back or
     their middle is in ego's way: how far bodies reach is not known well. Of ego's body counts the
     middle if it turns away from them: what reaches farther is its rear.
     """
-    own, others, bound = context.ego_extents, _walking(context), context.ego_lane
+    others = context.extents.part(rows, slice(None))
+    own, bound = context.ego_extents, context.ego_lane
     low = np.where(own.across > 0, own.middle_from(bound), own.from_bound(bound)[0])
     high = np.where(own.across < 0, own.middle_from(bound + 1), own.from_bound(bound + 1)[1])
     leftmost, rightmost = np.maximum(high, 0.0), np.minimum(low, 0.0)
-    on_left = others.from_bound(bound + 1)[0] > leftmost
-    on_right = others.from_bound(bound)[1] < rightmost
-    left = others.middle_from(bound + 1) > leftmost
-    right = others.middle_from(bound) < rightmost
+    (low_r, high_r), (low_l, high_l) = map(others.from_bound, (bound, bound + 1))
+    on_left, on_right = low_l > leftmost, high_r < rightmost
+    left, right = (low_l + high_l) / 2 > leftmost, (low_r + high_r) / 2 < rightmost
     # Outwards from ego's way
     leaves = np.where(left, others.across, np.where(right, -others.across, 0.0))
     least = context.thresholds.standing_kmh / KMH
