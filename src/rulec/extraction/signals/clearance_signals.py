@@ -159,10 +159,10 @@ def _obstructed(context: DriveContext) -> Flags:
         there = np.flatnonzero(is_in(sets, lane) & used[columns, lane])
         if not len(there):
             continue
-        own, bound = cells.part(there), np.full(context.states, lane)
-        low, _ = context.extents.cells_from_bound(own, bound)
-        _, high = context.extents.cells_from_bound(own, bound + 1)
-        blocked[own.columns[np.maximum(low, -high) < width[own.columns]]] = True
+        part, bound = cells.part(there), np.full(context.states, lane)
+        low, _ = context.extents.cells_from_bound(part, bound)
+        _, high = context.extents.cells_from_bound(part, bound + 1)
+        blocked[part.columns[np.maximum(low, -high) < width[part.columns]]] = True
     return blocked
 
 

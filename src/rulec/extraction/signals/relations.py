@@ -103,7 +103,7 @@ def laterals(context: DriveContext) -> Laterals:
     """
     place, offset = context.tolerances.place_m, context.map_offset_m
     cells, beside = known_places(context), _beside_lane(context)
-    touched, *both = map(cells.of, context.lanes_within)
+    touched, *both = [cells.of(sets) for sets in context.lanes_within]
     codes = beside.sides(touched, 0.0)
     behind = np.flatnonzero(cells.of(station(context)) == BEHIND)
     at_side = behind[~_in_the_way(context, cells.part(behind), beside.clear.take(behind))]
@@ -118,9 +118,9 @@ def laterals(context: DriveContext) -> Laterals:
         sets = lanes_touched(context.extents, context.lanes_there, least, -offset)
         shifted = _beside_lane_shifted(context, offset)
         maps.append((np.arange(len(codes)), shifted, [cells.of(own) for own in sets]))
-    for chosen, lane, sets in maps:
+    for chosen, lane, both in maps:
         own, part = codes.take(chosen), lane.part(chosen)
-        for way, touched in zip((-1, 1), sets, strict=True):
+        for way, touched in zip((-1, 1), both, strict=True):
             others = part.sides(touched.take(chosen), way * place)
             doubtful[chosen] |= others != own
             surely[chosen] &= others == SAME_LANE

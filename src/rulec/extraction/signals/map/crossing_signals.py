@@ -149,10 +149,10 @@ def _too_late(
 ) -> tuple[Flags, Flags]:
     """Flags of who came to use the crossing when ego could not wait any more, and of who may have.
 
-    Of these rows, with their ``uses``. Ego can where, braking at once, it stops before them or before the crossing. Who leaves off for
-    no longer than ``away_s`` uses it all the time. Who does when first seen may have come just
-    then; who is on the crossing then has been about to cross for ``about_to_s``. Where somebody
-    walks shows late in a mean, by half its time.
+    Of these rows, with their ``uses``. Ego can where, braking at once, it stops before them or
+    before the crossing. Who leaves off for no longer than ``away_s`` uses it all the time. Who does
+    when first seen may have come just then; who is on the crossing then has been about to cross for
+    ``about_to_s``. Where somebody walks shows late in a mean, by half its time.
     """
     limits, used = context.thresholds, uses > 0
     speed, front = np.maximum(context.ego_extents.along[0], 0.0), context.ego_extents.s_max[0]
@@ -171,7 +171,7 @@ def _too_late(
 
 
 def _past_ego(context: DriveContext, rows: NDArray[intp]) -> Flags:
-    """Flags of those of these rows that have left ego's lane, and ego's body, and walk away from them.
+    """Flags of those of these rows that have left ego's lane and body, and walk away from them.
 
     Who turns along the road then has left them behind too, for ``away_s``, until they walk back or
     their middle is in ego's way: how far bodies reach is not known well. Of ego's body counts the
