@@ -150,10 +150,7 @@ class RunPairs:
         key = one, other, fixed
         found = self._choices.get(key)
         if found is None:
-            first, second = (
-                self._classes.groups(self._letters[number], fixed) for number in (one, other)
-            )
-            choices = frozenset([(first[part], second[part]) for part in first.keys() & second])
+            choices = self._classes.side_by_side(self._letters[one], self._letters[other], fixed)
             found = self._places.setdefault(choices, len(self._sets))
             if found == len(self._sets):
                 self._sets.append(choices)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import reduce
 from itertools import groupby
 from operator import or_
 
@@ -10,6 +11,9 @@ from rulec.automata.outcome_machine import OutcomeMachine
 
 MOST_TABLES = 1 << 12
 """Tables of outcomes that are kept before all are forgotten."""
+
+BYTES = 1 << 8
+"""The different bytes that there are."""
 
 
 class Prospects:
@@ -21,6 +25,9 @@ class Prospects:
     def __init__(self, machine: OutcomeMachine) -> None:
         # By classes of letters, of which one is looked at after the other.
         self._successors = list(zip(*machine.successors, strict=True))
+        # Few states have numbers of one byte, whose outcomes are looked up all at once.
+        self._are_few = len(machine.successors) <= BYTES
+        self._small = [bytes(targets) for targets in self._successors] if self._are_few else []
         self._outcomes = [
             bytes([1 << outcome for outcome in column])
             for column in zip(*machine.outputs, strict=True)
@@ -60,6 +67,9 @@ class Prospects:
         symbols = [n for n in range(classes.bit_length()) if classes >> n & 1]
         if after < 0:
             columns = {self._outcomes[symbol] for symbol in symbols}
+        elif self._are_few:
+            table = self._tables[after].ljust(BYTES, b"\0")
+            columns = {targets.translate(table) for targets in {self._small[n] for n in symbols}}
         else:
             behind = self._tables[after].__getitem__
             columns = {
@@ -67,8 +77,9 @@ class Prospects:
                 for targets in {self._successors[symbol] for symbol in symbols}
             }
         joined, *others = columns
-        for column in others:
-            joined = bytes(map(or_, joined, column))
+        if others:
+            every = reduce(or_, [int.from_bytes(column, "little") for column in columns])
+            joined = every.to_bytes(len(joined), "little")
         number = self._numbers.setdefault(joined, len(self._tables))
         if number == len(self._tables):
             self._tables.append(joined)

@@ -51,6 +51,16 @@ class LetterClasses:
             known = self._rules[rule.name] = RuleLetters(self, rule, reads)
         return known
 
+    def side_by_side(
+        self, one: Letters, other: Letters, fixed: tuple[int, ...]
+    ) -> frozenset[tuple[int, int]]:
+        """The classes of two letters for each choice of digits of ``fixed`` reads in both."""
+        if len(one) == len(other) == 1:
+            both = self.diagram.nodes_side_by_side(one[0], other[0], frozenset(fixed))
+            return frozenset([(x >> 1, y >> 1) for x, y in both if x > 1 and y > 1])
+        first, second = self.groups(one, fixed), self.groups(other, fixed)
+        return frozenset([(first[part], second[part]) for part in first.keys() & second])
+
     def groups(self, letters: Letters, fixed: tuple[int, ...]) -> Mapping[Cube, int]:
         """The classes of letters by the digits, as bits, of ``fixed`` reads."""
         key = letters, fixed

@@ -8,7 +8,7 @@ are met.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 
 from rulec.automata.outcome_machine import OutcomeMachine, bits_of
 
@@ -40,6 +40,25 @@ class LetterDiagram:
         for read in range(self._n_reads - 1, -1, -1):
             here = self.step(read, here, cube[read])
         return here
+
+    def nodes_side_by_side(
+        self, one: Sequence[int], other: Sequence[int], fixed: Set[int]
+    ) -> set[tuple[int, int]]:
+        """The ``nodes`` of two cubes for each choice of digits of ``fixed`` reads in both."""
+        step = self.step
+        reached = {(self.start, self.start)}
+        for read in range(self._n_reads - 1, -1, -1):
+            own, their = one[read], other[read]
+            if read in fixed:
+                digits = [1 << digit for digit in bits_of(own & their)]
+                reached = {
+                    (step(read, x, digit), step(read, y, digit))
+                    for x, y in reached
+                    for digit in digits
+                }
+            else:
+                reached = {(step(read, x, own), step(read, y, their)) for x, y in reached}
+        return reached
 
     def step(self, read: int, here: int, digits: int) -> int:
         """The nodes behind some nodes and some digits of a read, all as bits."""

@@ -1,0 +1,58 @@
+"""What may come of words of sets of letters, and of two letters side by side."""
+
+import pytest
+from hypothesis import given
+
+from rulec.automata.mealy_monitor import Read
+from rulec.automata.outcome_machine import OutcomeMachine, bits_of
+from rulec.monitoring.uncertainty.prospects import Prospects
+from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
+from support.generators.seeds import seeds
+
+N_CLASSES = 4
+READS = tuple(Read(name, ()) for name in ("a", "b", "c"))
+
+
+def machine(chance, n_states):
+    def rows(most):
+        return [[chance.randrange(most) for _ in range(N_CLASSES)] for _ in range(n_states)]
+
+    # One combination of the reads' digits is excluded
+    letters = tuple([-1] + [chance.randrange(N_CLASSES) for _ in range(7)])
+    return OutcomeMachine(READS, letters, rows(n_states), rows(3), frozenset({0}))
+
+
+def outcomes_from(own, state, word):
+    """The outcomes, as bits, of all words of one class of each set."""
+    here, found = {state}, 0
+    for place, classes in enumerate(word):
+        steps = [(one, symbol) for one in here for symbol in bits_of(classes)]
+        if place == len(word) - 1:
+            found = sum({1 << own.outputs[one][symbol] for one, symbol in steps})
+        here = {own.successors[one][symbol] for one, symbol in steps}
+    return found
+
+
+@pytest.mark.parametrize("n_states", [3, 256, 257])
+@given(seeds)
+def test_tables_say_what_may_come_of_each_state(n_states, chance):
+    own = machine(chance, n_states)
+    word = [chance.randrange(1, 1 << N_CLASSES) for _ in range(chance.randrange(1, 6))]
+    tables = Prospects(own).along(word)
+    assert len(tables) == len(word)
+    for state in (0, n_states // 2, n_states - 1):
+        for place in range(len(word)):
+            assert tables[place][state] == outcomes_from(own, state, word[place:])
+
+
+@given(seeds)
+def test_letters_of_one_cube_are_classed_side_by_side_as_others_are(chance):
+    classes = LetterClasses(machine(chance, 2))
+    one, other = (tuple([chance.randrange(1, 4) for _ in READS]) for _ in range(2))
+    fixed = tuple([n for n in range(len(READS)) if chance.random() < 0.5])
+    # Said twice it is the same letter, and takes the way of those of several cubes
+    expected = classes.side_by_side((one, one), (other, other), fixed)
+    assert classes.side_by_side((one,), (other,), fixed) == expected
+    assert classes.side_by_side((one,), (one,), fixed) == classes.side_by_side(
+        (one, one), (one,), fixed
+    )
