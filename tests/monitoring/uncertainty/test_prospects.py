@@ -1,12 +1,15 @@
 """What may come of words of sets of letters, and of two letters side by side."""
 
+from itertools import product
+
 import pytest
 from hypothesis import given
 
 from rulec.automata.mealy_monitor import Read
-from rulec.automata.outcome_machine import OutcomeMachine, bits_of
+from rulec.automata.outcome_machine import KEPT, OutcomeMachine, bits_of
 from rulec.monitoring.uncertainty.prospects import Prospects
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
+from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine
 from support.generators.seeds import seeds
 
 N_CLASSES = 4
@@ -56,3 +59,15 @@ def test_letters_of_one_cube_are_classed_side_by_side_as_others_are(chance):
     assert classes.side_by_side((one,), (one,), fixed) == classes.side_by_side(
         (one, one), (one,), fixed
     )
+
+
+@given(seeds)
+def test_letters_keep_a_rule_in_whatever_order_if_no_word_of_them_is_lost(chance):
+    own = machine(chance, 3)
+    letters = chance.randrange(1, 1 << N_CLASSES)
+    last = letters & chance.randrange(1, 1 << N_CLASSES)
+    # Three states are reached by two letters, if at all
+    words = [word for n in range(3) for word in product(bits_of(letters), repeat=n)]
+    every = [[*(1 << n for n in word), last] for word in words] if last else []
+    expected = bool(last) and all(outcomes_from(own, 0, word) == 1 << KEPT for word in every)
+    assert UncertainMachine(own).is_surely_kept(letters, last) == expected

@@ -76,6 +76,7 @@ class UncertainMachine:
         self.classes = LetterClasses(machine)
         self._runs = RunPairs(machine, self.classes)
         self._reasons: dict[object, OpenReasons] = {}
+        self._surely_kept: dict[tuple[int, int], bool] = {}
         self._untold: dict[frozenset[str], tuple[str, ...]] = {}
         self._steps: dict[tuple[int, int], int | None] = {}
 
@@ -94,6 +95,36 @@ class UncertainMachine:
         best, worst = min(run[0] for run in runs), max(run[1] for run in runs)
         steps = [step for *_, step in runs if step is not None]
         return Answer(best, worst, max(steps) if len(steps) == len(runs) else None)
+
+    def is_surely_kept(self, letters: int, last: int) -> bool:
+        """Whether words of these classes of letters, as bits, are kept in whatever order.
+
+        They end with one of the ``last`` classes. If there are none, it is not told.
+        """
+        key = letters, last
+        known = self._surely_kept.get(key)
+        if known is None:
+            if len(self._surely_kept) > _MOST_REMEMBERED:
+                self._surely_kept.clear()
+            known = self._surely_kept[key] = bool(last) and self._keeps(letters, last)
+        return known
+
+    def _keeps(self, letters: int, last: int) -> bool:
+        machine = self.machine
+        symbols, ends = bits_of(letters), bits_of(last)
+        reached = set(machine.starts)
+        for state in (waiting := list(reached)):
+            if state in machine.safe:
+                continue
+            outputs, targets = machine.outputs[state], machine.successors[state]
+            if any(outputs[symbol] != KEPT for symbol in ends):
+                return False
+            for symbol in symbols:
+                target = targets[symbol]
+                if target not in reached:
+                    reached.add(target)
+                    waiting.append(target)
+        return True
 
     def reasons(
         self,

@@ -57,7 +57,7 @@ class Instances:
 
     ``traces`` are theirs, ``objects`` has an array for each variable; each is judged from its
     state in ``firsts`` to that in ``lasts``. Objects and states are numbered as in the stack.
-    ``letters`` are those of all states, or of all cells of the only variable, if they are known.
+    ``letters`` are those of all states, where there are no variables.
     """
 
     traces: Places
@@ -116,34 +116,50 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
     if not busy.any():
         return Instances(_NONE, (_NONE,) * len(rule.variables), _NONE, _NONE)
     if not rule.variables:
-        traces = _traces_in(stack, busy)
+        traces = np.flatnonzero(~rule.are_surely_kept(every, stack.begins[:-1]))
         firsts, lasts = stack.begins[traces], stack.begins[traces + 1] - 1
         return Instances(traces, (), firsts, lasts, every)
-    found = [
-        _busy_cells(rule, reader, busy, (variable, kind))
-        for variable, kind in zip(rule.variables, rule.types, strict=True)
-    ]
-    chosen = [cells for cells, _ in found]
     objects: tuple[Places, ...]
-    letters: Numbers | None = None
-    if len(chosen) == 1:
-        ((_, letters),) = found
-        is_busy = np.zeros(len(stack.types), dtype=bool)
-        is_busy[stack.object_of[chosen[0]]] = True
-        objects = (np.flatnonzero(is_busy),)
+    if len(rule.variables) == 1:
+        objects = (_doubtful_objects(rule, reader, busy),)
     else:
-        objects = _pairs(rule, reader, chosen[0], chosen[1])
+        first, second = (
+            _busy_cells(rule, reader, busy, (variable, kind))
+            for variable, kind in zip(rule.variables, rule.types, strict=True)
+        )
+        objects = _pairs(rule, reader, first, second)
     firsts = np.max([stack.firsts[own] for own in objects], axis=0)
     lasts = np.min([stack.lasts[own] for own in objects], axis=0)
-    return Instances(stack.trace_of[objects[0]], objects, firsts, lasts, letters)
+    return Instances(stack.trace_of[objects[0]], objects, firsts, lasts)
 
 
-def _traces_in(stack: Stack, busy: Mask) -> Places:
-    """The traces with a busy state."""
-    if isinstance(busy, np.ndarray) and len(stack.traces) > 1:
-        places = np.searchsorted(stack.begins, busy.nonzero()[0], side="right") - 1
-        return distinct(places)
-    return np.arange(len(stack.traces))
+def _doubtful_objects(rule: StackedRule, reader: StackReader, busy: Mask) -> Places:
+    """The objects for the only variable whose letters alone do not show that the rule is kept.
+
+    They are there in some ``busy`` state. Letters are found where some read changes: seldom.
+    """
+    stack, (variable,), (kind,) = reader.stack, rule.variables, rule.types
+    suits = stack.of_type(kind)
+    if isinstance(busy, np.ndarray):
+        before = np.concatenate([[0], np.cumsum(busy)])
+        suits = suits & (before[stack.lasts + 1] > before[stack.firsts])
+    if not suits.any():
+        return _NONE
+    changes = stack.are_first.copy()
+    for read in rule.reads:
+        own = reader.changes(read)
+        if own is not None:
+            changes |= own
+    cells = changes.nonzero()[0]
+    if not suits.all():
+        cells = cells[suits[stack.object_of[cells]]]
+    if not len(cells):
+        return _NONE
+    spots = Spots(stack.state_of[cells], {variable: cells})
+    letters = rule.letters.numbers(numbers_at(rule, reader, spots, (variable,)))
+    begins = stack.are_first[cells].nonzero()[0]
+    objects: Places = stack.object_of[cells[begins]]
+    return objects[~rule.are_surely_kept(letters, begins)]
 
 
 def _are_busy(rule: StackedRule, letters: Numbers) -> Mask:
@@ -157,11 +173,8 @@ def _busy_cells(
     reader: StackReader,
     busy: Mask,
     about: tuple[str, str],
-) -> tuple[Places, Numbers | None]:
-    """The cells of objects for a variable in which a letter might do something.
-
-    With the letters of all cells if these have been looked at.
-    """
+) -> Places:
+    """The cells of objects for a variable in which a letter might do something."""
     (variable, kind), stack = about, reader.stack
     cells, states = stack.cells_of_type(kind), stack.states_of_type(kind)
     is_every = bool(busy.all())
@@ -169,13 +182,10 @@ def _busy_cells(
         there = busy[states]
         cells, states = cells[there], states[there]
     if not len(cells):
-        return cells, None
+        return cells
     spots = Spots(states, {variable: cells}, kind=kind if is_every else None)
-    letters = rule.letters.numbers(numbers_at(rule, reader, spots, (variable,)))
-    is_whole = len(cells) == stack.starts[-1]
-    are_busy = _are_busy(rule, letters)
-    found = cells[are_busy] if isinstance(are_busy, np.ndarray) else cells if are_busy else _NONE
-    return found, letters if is_whole else None
+    are_busy = _are_busy(rule, rule.letters.numbers(numbers_at(rule, reader, spots, (variable,))))
+    return cells[are_busy] if isinstance(are_busy, np.ndarray) else cells if are_busy else _NONE
 
 
 def _pairs(

@@ -98,6 +98,13 @@ class Stack:
         shift: Places = self.firsts - self.starts[:-1]
         return np.arange(self.starts[-1]) + np.repeat(shift, np.diff(self.starts))
 
+    @cached_property
+    def are_first(self) -> Flags:
+        """The first cell of each object."""
+        found: Flags = np.zeros(self.starts[-1], dtype=bool)
+        found[self.starts[:-1][self.firsts <= self.lasts]] = True
+        return found
+
     def of_type(self, kind: str) -> Flags:
         """Which objects are of a type, or of one below it."""
         if kind not in self._of_type:

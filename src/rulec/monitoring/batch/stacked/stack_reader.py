@@ -61,6 +61,7 @@ class StackReader:
         self.stack = stack
         self._numbers: dict[int, Array | int] = {}
         self._of_kind: dict[tuple[int, str], Array] = {}
+        self._changes: dict[int, Flags | None] = {}
         self._digits: dict[int, int] = {}
         self._met = MetValues(stack)
         self._every_state = np.arange(stack.n_states)
@@ -90,6 +91,22 @@ class StackReader:
             is_every = bool(read.variables) and len(own) == len(found)
             self._of_kind[key] = found if is_every else found.take(own)
         return self._of_kind[key]
+
+    def changes(self, read: StackedRead) -> Flags | None:
+        """The cells whose number of a read is not that of the cell before; None if there are none.
+
+        The read is of one object at most. Raises UnencodableError.
+        """
+        if read.key not in self._changes:
+            numbers = self.numbers(read, None)
+            found: Flags | None = None
+            if isinstance(numbers, np.ndarray):
+                found = np.zeros(len(numbers), dtype=bool)
+                np.not_equal(numbers[1:], numbers[:-1], out=found[1:])
+                if not read.variables:
+                    found = found.take(self.stack.state_of) if found.any() else None
+            self._changes[read.key] = found
+        return self._changes[read.key]
 
     def digits(self, read: StackedRead) -> int:
         """The digits, as bits, that a read has anywhere, and perhaps others.

@@ -257,8 +257,7 @@ def _alternatives(
         else:
             letters = chosen.instances.letters
             if isinstance(letters, np.ndarray):
-                (where,) = chosen.spots.cells.values() or [chosen.spots.states]
-                letters = letters.take(where)
+                letters = letters.take(chosen.spots.states)
         if not isinstance(letters, np.ndarray):
             letters = np.full(len(chosen.spots.states), letters, dtype=np.intp)
         found.append((values, own, letters))

@@ -22,7 +22,7 @@ from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     NothingKnown,
     local_reads,
 )
-from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import LetterSets
+from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import LetterSets, Numbers
 from rulec.monitoring.uncertainty.state_letters.related_facts import (
     is_of_one,
     related_facts,
@@ -45,6 +45,10 @@ MOST_SETS = 1 << 14
 
 MOST_BYTES = 1 << 22
 """Words of so many bytes, whose answers are known, are kept before all are forgotten."""
+
+_MOST_BITS = 63
+_NO_CLASS = 1 << _MOST_BITS
+"""Stands among classes, as bits, for letters that cannot be."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -193,6 +197,28 @@ class StackedRule:
             more = [not self.machine.idle.of_classes(x) for x in sets[len(self._busy_flags) :]]
             self._busy_flags = np.concatenate([self._busy_flags, np.array(more, dtype=bool)])
         return self._busy_flags
+
+    def are_surely_kept(self, letters: Numbers, begins: NDArray[np.intp]) -> NDArray[np.bool_]:
+        """Whether words are kept by what letters they have alone, and by the last one.
+
+        Each begins at one of these places, and none is empty. Letters that facts exclude, and those
+        of machines with very many classes, tell nothing.
+        """
+        if not isinstance(letters, np.ndarray):
+            classes = self.letters.sets[letters]
+            return np.full(len(begins), self.machine.is_surely_kept(classes, classes))
+        sets = self.letters.sets
+        if self.machine.machine.n_classes > _MOST_BITS:
+            return ~np.logical_or.reduceat(self.busy_flags().take(letters), begins)
+        bits = np.array([classes or _NO_CLASS for classes in sets], dtype=np.uint64)
+        every: list[int] = np.bitwise_or.reduceat(bits.take(letters), begins).tolist()
+        ends = np.append(begins[1:], len(letters)) - 1
+        last = [sets[number] for number in letters[ends].tolist()]
+        known: dict[tuple[int, int], bool] = {}
+        for key in zip(every, last, strict=True):
+            if key not in known:
+                known[key] = key[0] < _NO_CLASS and self.machine.is_surely_kept(*key)
+        return np.array([known[key] for key in zip(every, last, strict=True)], dtype=bool)
 
     def answer_to(self, letters: NDArray[np.intp]) -> Answer | None:
         """What a word comes to, as the number of a letter set for each state.
