@@ -108,13 +108,14 @@ def test_what_judges_the_unknown_is_imported_where_something_is(tmp_path, value,
     )
     judge = (
         "import sys; from rulec.cli.main import main\n"
-        "main('verify t.jsonl -r held.json --explain 0 -o f.jsonl'.split())\n"
+        "main('verify t.jsonl -r held_p.json --explain 0 -o f.jsonl'.split())\n"
         "print(*sys.modules)"
     )
     done = [
         subprocess.run([sys.executable, "-c", one], capture_output=True, cwd=tmp_path, check=True)
         for one in (program, judge)
     ]
+    assert b"1 trace: " in done[1].stdout
     imported = NOT_FOR_WHAT_IS_KNOWN & set(done[1].stdout.decode().split())
     assert {name.rpartition(".")[2] for name in imported} >= needed
     assert imported == set() or needed
