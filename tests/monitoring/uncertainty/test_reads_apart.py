@@ -54,15 +54,37 @@ def together(reads, rule, objects, vocabulary, values):
     return tuple(tuple(1 << n for n in one) for one in sorted(joint.digits)), joint.exact
 
 
-def agree_in_parts(chance, compiled, rule):
+def known(chance, declaration):
+    if isinstance(declaration, Enumeration):
+        return chance.choice(declaration.values)
+    if isinstance(declaration, Quantity):
+        return chance.choice([0.0, 30.0, 50.0])
+    return chance.random() < 0.5
+
+
+def one_between(chance, declarations):
+    """Values that are known but for one number, whose ends are at, or beside, what rules say."""
+    values = [known(chance, declaration) for declaration in declarations]
+    numbers = [n for n, own in enumerate(declarations) if isinstance(own, Quantity)]
+    if numbers:
+        low = chance.choice([0.0, 29.9, 30.0, 49.9, 50.0, 50.1, 99.9])
+        values[chance.choice(numbers)] = Interval(low, low + chance.choice([0.0, 0.1, 0.2, 20.1]))
+    return tuple(values)
+
+
+def of_any_kind(chance, declarations):
+    return tuple(drawn(chance, declaration) for declaration in declarations)
+
+
+def agree_in_parts(chance, compiled, rule, draw=of_any_kind, times=8):
     """Whether there are reads to look at; if so, all that is drawn of them has to agree."""
     reads = local_reads(rule, compiled)
     if reads is None or not reads.numbers:
         return False
     objects = {variable.name: variable.type for variable in rule.variables}
     declared = [compiled.vocabulary.declarations[name] for name, _ in reads.subjects]
-    for _ in range(8):
-        values = tuple(drawn(chance, declaration) for declaration in declared)
+    for _ in range(times):
+        values = draw(chance, declared)
         lacking, expected = outcome(together, reads, rule, objects, compiled.vocabulary, values)
         missing, found = outcome(reads.number, values)
         assert missing == lacking, (rule, values)
@@ -83,6 +105,17 @@ def test_of_law_that_reads_much_in_parts_as_together(name):
     chance = Random(name)
     compiled = rulec.compile_rulebook(name).fitted_to(1)
     assert sum([agree_in_parts(chance, compiled, rule) for rule in compiled.rules]) > 10
+
+
+def test_of_law_with_one_number_between_others_in_parts_as_together():
+    chance = Random(17)
+    compiled = rulec.compile_rulebook("de").fitted_to(1)
+    several = [agree_in_parts(chance, compiled, x, one_between, 60) for x in compiled.rules]
+    assert sum(several) > 10
+    tables = compiled.prepared[KnownParts].tables.values()
+    met = [steps for table in tables for steps in table._steps.values() if steps is not None]
+    # Many intervals end beside the same steps
+    assert any(steps.points and len(steps.found) > 3 for steps in met)
 
 
 def outcome(call, *given):

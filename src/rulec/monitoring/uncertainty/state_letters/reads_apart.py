@@ -7,14 +7,18 @@ fewer ways to say that than for all subjects together.
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from fractions import Fraction
 from functools import cached_property
 from itertools import product
 from typing import Any, NamedTuple, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.automata.thresholds import exact
+from rulec.logic import formula as ltl
 from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.completions import Digits, joint_digits
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in
@@ -34,7 +38,7 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     subjects_of_read,
 )
 from rulec.vocabulary import Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN_TYPES, PartialValue
+from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval, PartialValue
 
 
 class _PartFound(NamedTuple):
@@ -46,6 +50,19 @@ class _PartFound(NamedTuple):
     known: Digits | None
     joint: frozenset[Digits]
     exact: bool
+
+
+class _Steps(NamedTuple):
+    """Where reads change along a number, and what is found by where its interval ends."""
+
+    points: Sequence[Fraction]
+    found: dict[tuple[int, int], _PartFound]
+
+    def place(self, number: float) -> int:
+        """Where a number lies: odd at a point, even between two of them."""
+        value = exact(number)
+        place = bisect_left(self.points, value)
+        return 2 * place + (place < len(self.points) and self.points[place] == value)
 
 
 class _PartTable:
@@ -68,12 +85,13 @@ class _PartTable:
         self.found: list[_PartFound] = []
         self._numbers: dict[_PartFound, int] = {}
         self._known: dict[tuple[object, ...], int] = {}
+        self._steps: dict[tuple[object, ...], _Steps | None] = {}
 
     def number(self, values: tuple[PartialValue | None, ...]) -> int:
         """The place of what is found for these values. Raises MissingValueError."""
         known = self._known.get(values)
         if known is None:
-            found = self._found(values)
+            found = self._found_once(values)
             known = self._numbers.setdefault(found, len(self.found))
             if known == len(self.found):
                 self.found.append(found)
@@ -81,6 +99,55 @@ class _PartTable:
                 self._known.clear()
             self._known[values] = known
         return known
+
+    def _found_once(self, values: tuple[PartialValue | None, ...]) -> _PartFound:
+        """What is found, the same one for intervals that have the same steps of reads in them."""
+        intervals = [place for place, value in enumerate(values) if isinstance(value, Interval)]
+        if len(intervals) != 1 or self._axioms:
+            return self._found(values)
+        (place,) = intervals
+        others = (*values[:place], *values[place + 1 :])
+        key = place, others
+        if key not in self._steps:
+            if len(self._steps) >= MOST_KNOWN:
+                self._steps.clear()
+            self._steps[key] = self._steps_along(place, others)
+        steps, interval = self._steps[key], values[place]
+        if steps is None:
+            return self._found(values)
+        assert isinstance(interval, Interval)
+        ends = steps.place(interval.low), steps.place(interval.high)
+        if ends not in steps.found:
+            steps.found[ends] = self._found(values)
+        return steps.found[ends]
+
+    def _steps_along(self, place: int, others: Sequence[PartialValue | None]) -> _Steps | None:
+        """Where reads change along one subject's number, the others' being known; None if not."""
+        if None in others or not UNKNOWN_TYPES.isdisjoint(map(type, others)):
+            return None
+        along = self._subjects[place]
+        known = dict(
+            zip((*self._subjects[:place], *self._subjects[place + 1 :]), others, strict=True)
+        )
+        points: set[Fraction] = set()
+        for read in self._reads:
+            if isinstance(read, Read):
+                continue
+            factor, rest = Fraction(0), Fraction(0)
+            for own, term in read.terms:
+                if not isinstance(term, ltl.QuantityTerm):
+                    return None
+                subject = term.name, tuple([self._binding[item] for item in term.arguments])
+                if subject == along:
+                    factor += own
+                    continue
+                value = known.get(subject)
+                if not isinstance(value, int | float):
+                    return None
+                rest += own * exact(value)
+            if factor:
+                points.update((threshold.limit - rest) / factor for threshold in read.thresholds)
+        return _Steps(sorted(points), {})
 
     @cached_property
     def _read_ways(self) -> ReadWays | None:
