@@ -85,6 +85,8 @@ def _scored(
             again = partial(_by_itself, paths[found.number], past, world, rules)
             # What is among many is mostly looked at no more
             scores[found.number] = found if is_every else light(found, again)
+        # Before the next ones are made
+        del block, charged, found
     # The next candidates are mostly asked about after the same past.
     known[world] = about, before
     ordered = tuple([scores[number] for number in range(len(paths))])
@@ -118,7 +120,10 @@ def _judged(
     writer = TraceWriter(rules.vocabulary, names, wanted.assumed, wanted.defaults)
     for block in drives.in_blocks(bodies, writer):
         answers = _verified([own for _, own in block], roundings)
-        yield [(number, own) for (number, _), own in zip(block, answers, strict=True)]
+        numbers = [number for number, _ in block]
+        del block
+        yield list(zip(numbers, answers, strict=True))
+        del answers
 
 
 def _verified(
