@@ -15,6 +15,7 @@ from rulec.automata.thresholds import ThresholdScale, scale
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
 from rulec.logic.kleene import holds
+from rulec.monitoring.batch.stacked.words_together import WordsTogether
 from rulec.monitoring.batch.uncertain.partial_reader import meanings_of
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import counts
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
@@ -91,6 +92,7 @@ class StackedRule:
     ``entangled`` are its entangled reads, if its own objects alone decide what these may be, and
     ``related`` the places of all reads that may have to do with each other. ``constants`` are those
     of reads of what never changes, ``hidden`` the names of such in sums and counts.
+    ``words_together`` run many words of the ``letters``.
     """
 
     def __init__(
@@ -131,6 +133,7 @@ class StackedRule:
         self.is_simple = _is_simple(self)
         self._busy_flags: NDArray[np.bool_] = np.zeros(0, dtype=bool)
         self.letters = self._no_letters()
+        self.words_together = WordsTogether(machine.monitor, self.letters)
         self._answers: dict[bytes, Answer] = {}
         self._words: dict[bytes, Answer | None] = {}
         self._bytes = 0
@@ -179,6 +182,7 @@ class StackedRule:
         if len(self.letters.sets) > MOST_SETS:
             self.letters, self._answers, self._words = self._no_letters(), {}, {}
             self._busy_flags = np.zeros(0, dtype=bool)
+            self.words_together = WordsTogether(self.machine.monitor, self.letters)
 
     def does_nothing(self, digits: Sequence[int]) -> bool:
         """Whether letters are idle that have any of these digits, as bits, for each read."""
