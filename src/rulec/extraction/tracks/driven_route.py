@@ -93,7 +93,9 @@ def route_stretches(
         # Who is in each of them, and changes no lanes, has driven nowhere else
         yield RouteStretch(matched.columns, matched.chain, tuple(at))
         return
-    counts = Counter((piece_of[place], matched.chain[place]) for place in matched.places)
+    counts: Counter[tuple[int, str]] = Counter()
+    for place, count in Counter(matched.places).items():
+        counts[piece_of[place], matched.chain[place]] += count
     rows = []
     for number, piece in enumerate(pieces):
         lanes = graph.row(piece[0])

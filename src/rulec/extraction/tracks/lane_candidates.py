@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from math import pi, radians
 
 import numpy as np
@@ -12,7 +14,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
-from rulec.recordings.recording import Lanelet, Recording, is_lane
+from rulec.recordings.recording import Lanelet, Points, Recording, is_lane
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import directions_at, lanelet_area
 
@@ -21,6 +23,9 @@ NEAR_M = 3.0
 
 _AROUND_M = NEAR_M + 0.1
 """Who is not even so near to the rectangle around a lanelet is not near it."""
+
+_HAIR_RAD, _HAIR_M = 1e-6, 1e-6
+_FEW_CORNERS = 6
 
 SIGMA_M = 1.0
 SIGMA_RAD = radians(20)
@@ -73,15 +78,30 @@ def candidates(recording: Recording, tracks: Tracks) -> LaneCandidates:
     points = shapely.points(x, y)
     areas = [lanelet_area(lanelet) for lanelet in lanes]
     bounds = shapely.bounds(areas) + np.array([-1.0, -1.0, 1.0, 1.0]) * _AROUND_M
-    found = []
-    for lanelet, area, (left, low, right, high) in zip(lanes, areas, bounds.tolist(), strict=True):
-        around = np.flatnonzero((x >= left) & (x <= right) & (y >= low) & (y <= high))
-        around = around[_beside(lanelet, area, x[around], y[around])]
-        shapely.prepare(area)
-        near = around[shapely.dwithin(area, points[around], NEAR_M)]
-        found.append(_candidates_on(lanelet, near, points[near], headings[near]))
-    at, costs, along = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    numbers = np.repeat(np.arange(len(lanes)), [len(own) for own, _, _ in found])
+    near: dict[int, NDArray[intp]] = {}
+    for number, (left, low, right, high) in enumerate(bounds.tolist()):
+        own = np.flatnonzero((x >= left) & (x <= right) & (y >= low) & (y <= high))
+        if len(own):
+            own = own[leading_on(lanes[number].centre, headings[own])]
+            own = own[_beside(lanes[number], areas[number], x[own], y[own])]
+            shapely.prepare(areas[number])
+            own = own[shapely.dwithin(areas[number], points[own], NEAR_M)]
+        if len(own):
+            near[number] = own
+    if not near:
+        return _NONE
+    at, numbers = np.concatenate(list(near.values())), _numbers(near.items())
+    feet = [(lanes[k].centre, np.stack((x[own], y[own]), axis=-1)) for k, own in near.items()]
+    along, away = feet_on(feet)
+    bounds_of = np.cumsum([0, *map(len, near.values())]).tolist()
+    directions = [
+        directions_at(lanes[k], along[start:end])
+        for k, (start, end) in zip(near, pairwise(bounds_of), strict=True)
+    ]
+    angle = np.abs(turn(np.concatenate(directions), headings[at]))
+    fits = angle < pi / 2
+    at, numbers, along = at[fits], numbers[fits], along[fits]
+    costs = ((away[fits] / SIGMA_M) ** 2 + (angle[fits] / SIGMA_RAD) ** 2) / 2
     # By place, lanelets in the order of the file
     order = np.argsort(at, kind="stable")
     at = at[order]
@@ -97,6 +117,17 @@ def candidates(recording: Recording, tracks: Tracks) -> LaneCandidates:
         costs=costs[order],
         along=along[order],
     )
+
+
+def leading_on(line: Points, headings: Floats) -> Flags:
+    """Flags of headings (rad), of all that are less than a right angle off a line somewhere."""
+    steps = np.diff(line, axis=0)
+    directions = np.arctan2(steps[:, 1], steps[:, 0])
+    turned = turn(directions[0], directions)
+    least, most = turned.min(), turned.max()
+    off = np.abs(turn(directions[0] + (least + most) / 2, headings))
+    leading: Flags = off < pi / 2 + (most - least) / 2 + _HAIR_RAD
+    return leading
 
 
 def _beside(lanelet: Lanelet, area: shapely.Polygon, x: Floats, y: Floats) -> Flags:
@@ -115,17 +146,69 @@ def _beside(lanelet: Lanelet, area: shapely.Polygon, x: Floats, y: Floats) -> Fl
     return beside
 
 
-def _candidates_on(
-    lanelet: Lanelet,
-    near: NDArray[intp],
-    points: NDArray[np.object_],
-    headings: NDArray[np.float64],
-) -> tuple[NDArray[intp], Floats, Floats]:
-    """Those ``near`` a lanelet that may be on it, their costs, and their places along it (m)."""
-    middle = shapely.LineString(lanelet.centre)
-    along = shapely.line_locate_point(middle, points)
-    angle = np.abs(turn(directions_at(lanelet, along), headings))
-    fits = angle < pi / 2
-    away = shapely.distance(middle, points[fits])
-    costs = ((away / SIGMA_M) ** 2 + (angle[fits] / SIGMA_RAD) ** 2) / 2
-    return near[fits], costs, along[fits]
+def _numbers(groups: Iterable[tuple[int, NDArray[intp]]]) -> NDArray[intp]:
+    """The number of each group, as often as it has members."""
+    numbers, members = zip(*groups, strict=True)
+    return np.repeat(np.array(numbers, dtype=intp), [len(own) for own in members])
+
+
+def feet_on(lines: Sequence[tuple[Points, Points]]) -> tuple[Floats, Floats]:
+    """How far (m) along a line, and from it, the nearest of its points to each place is.
+
+    Each line comes with the places that are asked about; their answers are end to end. Of points as
+    near the first one counts. Shapely's ``line_locate_point`` and ``distance`` say the same, to the
+    last digit, but try each piece of a line for each place.
+    """
+    starts = np.concatenate([line[:-1] for line, _ in lines])
+    ends = np.concatenate([line[1:] for line, _ in lines])
+    places = np.concatenate([own for _, own in lines])
+    ux, uy = (ends - starts).T
+    squares = ux * ux + uy * uy
+    lengths = np.sqrt(squares)
+    first, counts, before, begin = [], [], [], 0
+    for line, own in lines:
+        end = begin + len(line) - 1
+        low, count = _pieces_near(line, own)
+        first.append(low + begin)
+        counts.append(count)
+        before.append(np.concatenate(([0.0], np.cumsum(lengths[begin:end])[:-1])))
+        begin = end
+    n_pieces = np.concatenate(counts)
+    bounds = np.cumsum(n_pieces) - n_pieces
+    number = np.repeat(np.arange(len(places)), n_pieces)
+    piece = np.arange(len(number)) + np.repeat(np.concatenate(first) - bounds, n_pieces)
+    x0, y0, ux, uy, square = np.stack((*starts.T, ux, uy, squares))[:, piece]
+    x, y = places.T[:, number]
+    dx, dy = x - x0, y - y0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        part = (dx * ux + dy * uy) / square
+        off = np.abs((dx * uy - dy * ux) / square) * lengths[piece]
+    # NaN, of a piece without length, is before it
+    is_before, is_beyond = ~(part > 0), part >= 1
+    off[is_before] = np.sqrt(dx[is_before] ** 2 + dy[is_before] ** 2)
+    dx, dy = places.T[:, number[is_beyond]] - ends.T[:, piece[is_beyond]]
+    off[is_beyond] = np.sqrt(dx**2 + dy**2)
+    least = np.minimum.reduceat(off, bounds)
+    best = np.flatnonzero(off == np.repeat(least, n_pieces))
+    best = best[np.diff(number[best], prepend=-1) > 0]
+    part, length = part[best], lengths[piece[best]]
+    on = np.where(part > 0, np.where(part > 1, length, part * length), 0.0)
+    return np.concatenate(before)[piece[best]] + on, least
+
+
+def _pieces_near(line: Points, places: Points) -> tuple[NDArray[intp], NDArray[intp]]:
+    """The first piece of a line that may be the nearest to each place, and how many there are.
+
+    Pieces count that come as near as some corner does, seen along the chord.
+    """
+    if len(line) <= _FEW_CORNERS:
+        return np.zeros(len(places), dtype=intp), np.full(len(places), len(line) - 1)
+    chord = line[-1] - line[0]
+    chord = chord / (np.hypot(*chord) or 1.0)
+    corners, own = line @ chord, places @ chord
+    ends = np.maximum.accumulate(np.maximum(corners[:-1], corners[1:]))
+    begins = np.minimum.accumulate(np.minimum(corners[:-1], corners[1:])[::-1])[::-1]
+    corner = line[np.searchsorted(ends, own, "left")]
+    reach = np.hypot(*(places - corner).T) + _HAIR_M
+    first = np.searchsorted(ends, own - reach, "left")
+    return first, np.searchsorted(begins, own + reach, "right") - first
