@@ -6,9 +6,11 @@ import pytest
 from hypothesis import given
 
 from rulec.automata.mealy_monitor import Read
-from rulec.automata.outcome_machine import KEPT, OutcomeMachine, bits_of
+from rulec.automata.outcome_machine import KEPT, VIOLATED, OutcomeMachine, bits_of
+from rulec.monitoring.uncertainty import uncertain_machine
 from rulec.monitoring.uncertainty.prospects import Prospects
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
+from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleWord
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine
 from support.generators.seeds import seeds
 
@@ -71,3 +73,29 @@ def test_letters_keep_a_rule_in_whatever_order_if_no_word_of_them_is_lost(chance
     every = [[*(1 << n for n in word), last] for word in words] if last else []
     expected = bool(last) and all(outcomes_from(own, 0, word) == 1 << KEPT for word in every)
     assert UncertainMachine(own).is_surely_kept(letters, last) == expected
+
+
+def test_reasons_of_long_words_are_forgotten_again_and_found_again(monkeypatch):
+    # Violated by the first letter with `a`
+    letters = tuple(digits & 1 for digits in range(8))
+    own = OutcomeMachine(READS, letters, [[0, 0]], [[KEPT, VIOLATED]], frozenset({0}))
+    asked = UncertainMachine(own)
+    monkeypatch.setattr(uncertain_machine, "MOST_STRETCHES", 20)
+
+    def reasons(n_known):
+        # `a` is unknown last, and `b` each other time before
+        states = (*[((1, 3 - n % 2, 1),) for n in range(n_known)], ((3, 1, 1),))
+        names = frozenset({"a"}), frozenset({"b"}), frozenset[str]()
+        classes = tuple(asked.classes.of(cubes) for cubes in states)
+        word = PossibleWord(classes, True, lambda: states, lambda: names)
+        return asked.reasons([word], [{}], "abc")
+
+    first = reasons(9)
+    assert first.depends_on == ("a",)
+    kept = []
+    for n_known in (9, 10, 11, 12):
+        reasons(n_known)
+        kept.append(len(asked._reasons))
+    assert kept == [1, 1, 1, 1]
+    assert reasons(9) == first
+    assert [reasons(n) and len(asked._reasons) for n in (1, 2, 3)] == [2, 3, 1]

@@ -44,6 +44,9 @@ MOST_REPETITIONS = 1 << 12
 """A letter is repeated no more often than this."""
 
 _MOST_REMEMBERED = 1 << 14
+
+MOST_STRETCHES = 1 << 10
+"""Reasons of a rule are remembered of words of so many stretches together: long ones differ."""
 _NAMES: Mapping[tuple[int, int], OutcomeName] = {
     (KEPT, KEPT): "kept",
     (VIOLATED, VIOLATED): "violated",
@@ -76,6 +79,7 @@ class UncertainMachine:
         self.classes = LetterClasses(machine)
         self._runs = RunPairs(machine, self.classes)
         self._reasons: dict[object, OpenReasons] = {}
+        self._n_stretches = 0
         self._surely_kept: dict[tuple[int, int], bool] = {}
         self._untold: dict[frozenset[str], tuple[str, ...]] = {}
         self._steps: dict[tuple[int, int], int | None] = {}
@@ -146,8 +150,11 @@ class UncertainMachine:
         key = tuple([(x.stretches, tuple(x.constants.items())) for x in alternatives]), unknown
         found = self._reasons.get(key)
         if found is None:
-            if len(self._reasons) > _MOST_REMEMBERED:
+            n_own = 1 + sum([len(x.stretches) for x in alternatives])
+            if self._n_stretches + n_own > MOST_STRETCHES:
                 self._reasons.clear()
+                self._n_stretches = 0
+            self._n_stretches += n_own
             best, worst, _ = self.answer(words)
             found = self._reasons_of(alternatives, unknown, order, {best, worst})
             self._reasons[key] = found
