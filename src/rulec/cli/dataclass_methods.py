@@ -9,20 +9,16 @@ rulec as a library gets what Python makes.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import MISSING, Field, FrozenInstanceError, fields
+from collections.abc import Callable, Sequence
+from dataclasses import MISSING, FrozenInstanceError, fields
 from functools import partial
 from inspect import get_annotations  # which `dataclasses` imports, too
 from reprlib import recursive_repr
-from types import MemberDescriptorType
 from typing import Any
 
 _AS_PYTHON_DOES = dataclasses.dataclass
 _KNOWN = {"frozen", "slots", "eq", "kw_only"}
 """The options of rulec's dataclasses; others are left to Python."""
-
-_NO_FIELDS = ("InitVar", "ClassVar", "KW_ONLY")
-"""Annotations that are left to Python, too."""
 
 
 def write_when_called() -> None:
@@ -46,67 +42,6 @@ def _is_plain(cls: type) -> bool:
     return cls.__module__.startswith("rulec.") and not any("InitVar" in one for one in annotations)
 
 
-@_AS_PYTHON_DOES(init=False, repr=False, eq=False)
-class _Sample:
-    one: int
-
-
-_USUAL: Any = _Sample.__dict__["__dataclass_fields__"]["one"]
-_PARAMETERS: Any = _Sample.__dict__["__dataclass_params__"]
-
-
-def _with_fields(cls: type, *, slots: bool, kw_only: bool) -> type:
-    """A dataclass without methods, as Python makes it, for fields that are nothing but fields."""
-    annotations = get_annotations(cls)
-    if any(odd in str(one) for one in annotations.values() for odd in _NO_FIELDS):
-        make = _AS_PYTHON_DOES(init=False, repr=False, eq=False, slots=slots, kw_only=kw_only)
-        return make(cls)
-    known: dict[str, Any] = {}
-    for base in cls.__mro__[-1:0:-1]:
-        known |= getattr(base, "__dataclass_fields__", {})
-    for name, annotation in annotations.items():
-        given = getattr(cls, name, MISSING)
-        default = MISSING if isinstance(given, MemberDescriptorType) else given
-        one: Any = default if isinstance(default, Field) else dataclasses.field(default=default)
-        one.name, one.type, one._field_type = name, annotation, _USUAL._field_type
-        if one.kw_only is MISSING:
-            one.kw_only = kw_only
-        known[name] = one
-        if isinstance(given, Field) and not slots:
-            if one.default is MISSING:
-                delattr(cls, name)
-            else:
-                setattr(cls, name, one.default)
-    if slots:
-        cls = _with_slots(cls, known)
-    said: dict[str, object] = {
-        "__dataclass_fields__": known,
-        "__dataclass_params__": _PARAMETERS,
-        "__match_args__": tuple(
-            [one.name for one in known.values() if one.init and not one.kw_only]
-        ),
-    }
-    for name, value in said.items():
-        if name != "__match_args__" or name not in cls.__dict__:
-            setattr(cls, name, value)
-    return cls
-
-
-def _with_slots(cls: type, known: Iterable[str]) -> type:
-    """The class anew, with a place for each field that no base has."""
-    content = {**cls.__dict__}
-    inherited: set[str] = set()
-    for base in cls.__mro__[1:-1]:
-        places = base.__dict__.get("__slots__", ())
-        inherited |= {places} if isinstance(places, str) else set(places)
-    content["__slots__"] = tuple([name for name in known if name not in inherited])
-    for name in (*known, "__dict__", "__weakref__"):
-        content.pop(name, None)
-    made: type = type(cls)(cls.__name__, cls.__bases__, content)
-    made.__qualname__ = cls.__qualname__
-    return made
-
-
 def _late(
     given: type,
     *,
@@ -120,7 +55,8 @@ def _late(
         own.pop("__hash__", None)  # Python puts it there beside an `__eq__`
     if given.__doc__ is None:
         given.__doc__ = given.__name__  # Python would look for a signature
-    cls = _with_fields(given, slots=slots, kw_only=kw_only)
+    make = _AS_PYTHON_DOES(init=False, repr=False, eq=False, slots=slots, kw_only=kw_only)
+    cls: type = make(given)
     methods: dict[str, object] = {
         "__init__": _Unwritten(cls, "__init__", partial(_init_text, frozen=frozen)),
         "__repr__": _Unwritten(cls, "__repr__", _repr_text),
