@@ -77,12 +77,15 @@ class UncertainMachine:
         self.machine = machine
         self.monitor = SetMonitor(machine)
         self.classes = LetterClasses(machine)
-        self._runs = RunPairs(machine, self.classes)
         self._reasons: dict[object, OpenReasons] = {}
         self._n_stretches = 0
         self._surely_kept: dict[tuple[int, int], bool] = {}
         self._untold: dict[frozenset[str], tuple[str, ...]] = {}
         self._steps: dict[tuple[int, int], int | None] = {}
+
+    @cached_property
+    def _runs(self) -> RunPairs:
+        return RunPairs(self.machine, self.classes)
 
     @cached_property
     def idle(self) -> IdleLetters:
