@@ -25,7 +25,7 @@ MOST_REMEMBERED = 1 << 14
 MOST_WORDS = 1 << 9
 """Words whose prospects are kept before all is forgotten."""
 
-MOST_TRIED = 4
+MOST_TRIED = 2
 """Pairs that are followed first: that some run comes to less than another is mostly told by few."""
 
 BEFORE = ""
@@ -340,12 +340,20 @@ class Dependence:
         ``names`` are in the order that ties are broken by; ``BEFORE`` may be among them. None if
         all of them together do not decide, or there is too much to look at.
         """
-        if not self.decides(frozenset(names)):
+        every = frozenset(names)
+        if not self.decides(every):
             return None
-        needed = [name for name in names if not self.decides(frozenset(names) - {name})]
+        told = {name: self._decides(every - {name}, thoroughly=False) for name in names}
+        surely = tuple([name for name in names if told[name] is False])
+        # If these decide, so do they with any others: none of which is needed.
+        if len(surely) == len(names) or self.decides(frozenset(surely)):
+            return surely
+        needed = [
+            name
+            for name in names
+            if told[name] is False or (told[name] is None and not self.decides(every - {name}))
+        ]
         others = [name for name in names if name not in needed]
-        if not others:
-            return tuple(names)
         for size in range(len(others) + 1):
             for more in combinations(others, size):
                 if self.decides(frozenset((*needed, *more))):
@@ -354,18 +362,27 @@ class Dependence:
 
     def decides(self, names: frozenset[str]) -> bool:
         """Whether completions that agree on these names agree on the outcome."""
+        return self._decides(names, thoroughly=True) is True
+
+    def _decides(self, names: frozenset[str], *, thoroughly: bool) -> bool | None:
+        """The same; None if it is not to be found out ``thoroughly``, and few pairs do not tell."""
         fixed = tuple([n for n, about in enumerate(self._unknown) if about and about <= names])
         is_same = BEFORE in names
         is_one = is_same or self._runs.n_starts == 1
         starts = self._runs.starts(same=is_same)
-        return all(
-            # There is one run of a word all of whose reads are fixed
-            (one is other and is_one and self._runs.are_settled(one, set(fixed)))
-            or self._agree(one, other, fixed, starts)
-            for group in self._groups(names)
+        agree = self._agree if thoroughly else self._agree_by_few
+        found: bool | None = True
+        for group in self._groups(names):
             # Different words come to something else more often than one does
-            for one, other in sorted(product(group, repeat=2), key=lambda both: both[0] is both[1])
-        )
+            for one, other in sorted(product(group, repeat=2), key=lambda both: both[0] is both[1]):
+                # There is one run of a word all of whose reads are fixed
+                if one is other and is_one and self._runs.are_settled(one, set(fixed)):
+                    continue
+                told = agree(one, other, fixed, starts)
+                if told is False:
+                    return False
+                found = found and told
+        return found
 
     def _groups(self, names: frozenset[str]) -> Iterator[list[_Word]]:
         """Alternatives that have the same values of these constants."""
@@ -380,11 +397,17 @@ class Dependence:
 
         That they can is often told by few pairs.
         """
-        found = self._agree_by(MOST_TRIED, one, other, fixed=fixed, pairs=pairs)
+        found = self._agree_by_few(one, other, fixed, pairs)
         if found is None:
             found = self._agree_by(None, one, other, fixed=fixed, pairs=pairs)
         assert found is not None, "all pairs were followed"
         return found
+
+    def _agree_by_few(
+        self, one: _Word, other: _Word, fixed: tuple[int, ...], pairs: _Pairs
+    ) -> bool | None:
+        """The same by some pairs of each state; None if these do not tell."""
+        return self._agree_by(MOST_TRIED, one, other, fixed=fixed, pairs=pairs)
 
     def _agree_by(
         self, most: int | None, one: _Word, other: _Word, *, fixed: tuple[int, ...], pairs: _Pairs
@@ -406,9 +429,9 @@ class Dependence:
                     if not undecided:
                         return True if all_followed else None
                     pairs = undecided
+                    if most is not None and len(pairs) > most:
+                        pairs, all_followed = frozenset(_some(pairs, most)), False
                 after = runs.after(pairs, choices)
-                if most is not None and len(after) > most:
-                    after, all_followed = frozenset(_some(after, most)), False
                 if after == pairs:
                     break  # the same again, however often
                 pairs = after
