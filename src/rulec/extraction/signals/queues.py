@@ -136,19 +136,20 @@ class VehiclesAround:
 def vehicles_around(context: DriveContext) -> VehiclesAround:
     """The traffic around ego, by lane and state, ego first in each."""
     own, others = context.ego_extents, context.extents
-    lanes = np.concatenate((own.lane, others.lane))
     there = np.concatenate((np.ones((1, context.states), dtype=bool), close_by(context)))
-    there, of_row = np.ascontiguousarray(there.T), np.ascontiguousarray(lanes.T)
-    numbers = range(context.existing_lanes.shape[1])
-    # Lane by lane they are found in their order
-    found = [np.nonzero(there & (of_row == number)) for number in numbers]
-    state, row = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    lane, at = np.repeat(numbers, [len(own) for own, _ in found]), row * context.states + state
+    state, row = np.ascontiguousarray(there.T).nonzero()
+    at, is_own = (row - 1) * context.states + state, row == 0
 
     def taken(of_ego: NDArray[Any], of_others: NDArray[Any]) -> NDArray[Any]:
-        every: NDArray[Any] = np.concatenate((of_ego, of_others)).ravel().take(at)
+        every = np.empty(len(at), dtype=of_others.dtype)
+        every[is_own] = of_ego[0, state[is_own]]
+        every[~is_own] = of_others.ravel().take(at[~is_own])
         return every
 
+    lane = taken(own.lane, others.lane)
+    # Lanes are few, so that they are soon in order; states and rows stay so within each
+    order = np.argsort(lane.astype(np.uint16), kind="stable")
+    lane, state, at, is_own = (values.take(order) for values in (lane, state, at, is_own))
     s_min, s_max, along = (
         taken(getattr(own, name), getattr(others, name)) for name in ("s_min", "s_max", "along")
     )
