@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -127,8 +127,11 @@ class _Batch:
             self._places[road] = self._drives.places_of(road, members)
         return self._places[road], rows[row]
 
-    def drives(self) -> Iterator[Block]:
-        """The drives of each candidate, those along one road one after the other."""
+    def drives(self, *, bare: bool) -> Iterator[Block]:
+        """The drives of each candidate, those along one road one after the other.
+
+        They are ``bare`` if this is asked for, unless all are in one block.
+        """
         known: dict[DrivenRoad | None, int] = {}
         roads = [
             known.setdefault(self._road(own[0]) if own else None, len(known))
@@ -142,13 +145,14 @@ class _Batch:
             rows.append(row)
             states += sum(one.last - one.first + 1 for one in self.stretches[row])
             if states * n_others >= MOST_CELLS:
-                yield self._block(rows)
+                yield self._block(rows, bare=bare and len(rows) < len(order))
                 rows, states = [], 0
         if rows:
-            yield self._block(rows)
+            yield self._block(rows, bare=bare and len(rows) < len(order))
 
-    def _block(self, rows: Sequence[int]) -> Block:
+    def _block(self, rows: Sequence[int], *, bare: bool) -> Block:
         """The drives of some candidates."""
+        writer = replace(self.writer, bare=bare)
         together: dict[DrivenRoad, list[_Stretch]] = defaultdict(list)
         apart = set()
         for row in rows:
@@ -162,7 +166,7 @@ class _Batch:
                 together[road].append(one)
         drives: dict[tuple[int, int], Drive] = {}
         for road, waiting in together.items():
-            drives |= self._end_to_end(road, waiting)
+            drives |= self._end_to_end(road, waiting, writer)
         found: Block = []
         for row in rows:
             own_drives = [drives.get((row, k)) for k in range(len(self.stretches[row]))]
@@ -194,7 +198,7 @@ class _Batch:
         )
 
     def _end_to_end(
-        self, road: DrivenRoad, stretches: Sequence[_Stretch]
+        self, road: DrivenRoad, stretches: Sequence[_Stretch], writer: TraceWriter
     ) -> dict[tuple[int, int], Drive]:
         """Drives along one road, by candidate and number; none if not all say the same names."""
         among = self._among
@@ -208,7 +212,7 @@ class _Batch:
         context = drives_context(among.surroundings, among.places(road), among.side, egos)
         ids = [self.surroundings.tracks.participants[one.row].id for one in stretches]
         try:
-            drives = to_traces(context, ids, [one.name for one in stretches], self.writer)
+            drives = to_traces(context, ids, [one.name for one in stretches], writer)
         except UnlikeDrivesError:
             return {}
         return {(one.row, one.number): x for one, x in zip(stretches, drives, strict=True)}
@@ -256,9 +260,13 @@ class CandidateDrives:
         self, candidates: Sequence[Participant], writer: TraceWriter
     ) -> list[tuple[Drive | NoDrive, ...]]:
         """The drives of each candidate."""
-        found = dict(own for block in self.in_blocks(candidates, writer) for own in block)
+        blocks = _Batch(self, candidates, writer).drives(bare=False)
+        found = dict(own for block in blocks for own in block)
         return [found[row] for row in range(len(candidates))]
 
     def in_blocks(self, candidates: Sequence[Participant], writer: TraceWriter) -> Iterator[Block]:
-        """The drives of some candidates at a time, of which the first one is the first."""
-        yield from _Batch(self, candidates, writer).drives()
+        """The drives of some candidates at a time, of which the first one is the first.
+
+        They are bare if there are several blocks.
+        """
+        yield from _Batch(self, candidates, writer).drives(bare=True)

@@ -277,12 +277,15 @@ class TraceWriter:
 
     ``assumed`` are values that hold in every state, whatever the recording says. With ``defaults``
     what is unknown is left out, so that it takes its default, and the trace is over when it ends.
+    Drives that are ``bare`` are judged and looked at no more: they lack places, and the numbers and
+    ids behind signals.
     """
 
     vocabulary: Vocabulary | None = None
     names: frozenset[str] | None = None
     assumed: Mapping[str, Value] = field(default_factory=dict)
     defaults: bool = False
+    bare: bool = False
 
 
 ALL_SIGNALS = TraceWriter()
@@ -321,6 +324,12 @@ def to_traces(
         )
         traces.append(empty)
     arrays = with_signals(traces, chosen, present, spans, defaults=writer.defaults)
+    if writer.bare:
+        starts = context.steps[spans.begins].tolist()
+        return [
+            Drive(ego, round(start * context.recording.step_s, 9), own, kinds)
+            for ego, start, own in zip(egos, starts, arrays, strict=True)
+        ]
     decided_by = _decided_by(context, chosen, present)
     places, starts = _places(context), context.steps[spans.begins].tolist()
     return [
