@@ -59,8 +59,10 @@ class OpenReasons(NamedTuple):
 class OpenVerdict:
     """A rule that some completions of a trace keep and others do not, or whose end is not seen.
 
-    ``depends_on``: the smallest set of names such that completions that agree on them agree on the
-    outcome; of equally small ones the first in the vocabulary's order. ``exact`` is false where
+    ``depends_on``: the smallest set of names that the rule reads such that completions that agree
+    on them agree on the outcome; of equally small ones the first in the vocabulary's order. Where
+    the rule asks of several names at once, as a sum does, all of them that are unknown in some
+    state go together, which may be a name more than need be. ``exact`` is false where
     there was too much to look at: the verdict may then be known after all. To find all this takes
     longer than the verdict; it is done when it is first asked for.
     """

@@ -4,6 +4,7 @@ from dataclasses import replace
 from itertools import combinations, product
 from math import prod
 
+from rulec.logic.free_names import names_in
 from rulec.vocabulary import Enumeration, Quantity
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.oracles.formula_oracle import is_kept
@@ -103,6 +104,7 @@ class CompletionOracle:
         ]
         self.refused = [answer for _, answer in every if not isinstance(answer, tuple)]
         self.answers = [(chosen, answer) for chosen, answer in every if isinstance(answer, tuple)]
+        self.read_by = {one.name: set(names_in(one.formula)) for one in oracle.rulebook.rules}
         self.names = [
             name
             for name in vocabulary.declarations
@@ -127,14 +129,19 @@ class CompletionOracle:
         return Said(rule, objects, step, outcomes[0].strength)
 
     def smallest(self, rule, objects):
-        """The smallest set of names that decides, the first of equally small ones."""
-        for size in range(len(self.names) + 1):
-            for names in combinations(self.names, size):
-                if self._decides(names, rule, objects):
+        """The smallest set of the rule's own names that decides, the first of equally small ones.
+
+        A fact may have others decide, too, of which the rule does not speak.
+        """
+        own = [name for name in self.names if name in self.read_by[rule]]
+        for size in range(len(own) + 1):
+            for names in combinations(own, size):
+                if self.decides(names, rule, objects):
                     return names
         return None
 
-    def _decides(self, names, rule, objects):
+    def decides(self, names, rule, objects):
+        """Whether completions that agree on these names agree on the verdict."""
         known = {}
         for chosen, said in self.outcomes(rule, objects):
             key = tuple(value for place, value in chosen.items() if place[1] in names)

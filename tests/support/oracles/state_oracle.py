@@ -26,7 +26,7 @@ def as_facts_have_it(rulebook, trace):
         if isinstance(one, Binary) and one.operator.value == "implies"
         if isinstance(one.left, Atom) and isinstance(one.right, Atom)
         if (one.left.value, one.right.value) == (None, None)
-        if one.left.arguments == one.right.arguments
+        if one.left.arguments == one.right.arguments and one.left.name != one.right.name
     ]
     if not links:
         return trace
