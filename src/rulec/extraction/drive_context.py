@@ -17,10 +17,11 @@ from rulec.extraction.tracks.road_extents import LaneSets, RoadExtents, is_in
 from rulec.extraction.tracks.road_places import KMH as KMH
 from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.tracks.surroundings import Surroundings
-from rulec.extraction.tracks.tracks import Flags, Floats, LaidOut, Tracks
+from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Recording, Side
 from rulec.trace.end_to_end import EndToEnd
+from rulec.trace.laid_out import LaidOut
 from rulec.trace.plain_arrays import distinct, medians
 
 _ENOUGH_TRACKS = 10

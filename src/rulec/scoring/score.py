@@ -25,7 +25,7 @@ from rulec.extraction.tracks.mirror import mirrored_participant
 from rulec.files import no_garbage_collection
 from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict, Violation
 from rulec.recordings.recording import Participant
-from rulec.scoring.scored_again import light
+from rulec.scoring.scored_again import without_drives
 from rulec.scoring.scores import CandidateScore, Scores
 from rulec.scoring.traffic_world import TrafficWorld
 
@@ -84,7 +84,7 @@ def _scored(
         for found in _anew(charged, before, roundings, (first, half)):
             again = partial(_by_itself, paths[found.number], past, world, rules)
             # What is among many is mostly looked at no more
-            scores[found.number] = found if is_every else light(found, again)
+            scores[found.number] = found if is_every else without_drives(found, again)
         # Before the next ones are made
         del block, charged, found
     # The next candidates are mostly asked about after the same past.

@@ -60,8 +60,8 @@ class _LaterDrives(Sequence[_OneDrive]):
         return tuple, (self.again.found.drives,)
 
 
-def light(found: CandidateScore, scored: Callable[[], CandidateScore]) -> CandidateScore:
-    """A candidate's score without what takes room, which ``scored`` finds again."""
+def without_drives(found: CandidateScore, scored: Callable[[], CandidateScore]) -> CandidateScore:
+    """A candidate's score without its drives and reasons, which ``scored`` finds again."""
     again = _Again(scored)
     doubtful = [
         OpenVerdict.explained_later(

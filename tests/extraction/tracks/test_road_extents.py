@@ -4,7 +4,7 @@ from math import cos, pi, radians, sin
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from rulec.extraction.tracks.driven_road import driven_road
@@ -77,13 +77,15 @@ OPENING = [
 
 
 @given(st.floats(1, 99), st.floats(-1, 6))
+@example(50.0, 2.0)
 def test_who_reaches_into_a_lane_that_opens_is_in_it_by_so_much(x, y):
     found = extents(OPENING, vehicle(7, {0: (x, y)}, length=0.2, width=2.0))
     opened = 0.04 * x
     into = max(0.0, min(y + 1, 2 + opened) - max(y - 1, 2))
     assert np.maximum(found.inside[0, 0, 1], 0) == pytest.approx(into, abs=0.02)
     assert found.left_of[0, 0] == pytest.approx([y + 2, y - 2, y - 2 - opened], abs=0.01)
-    assert found.lane[0, 0] == (y > 2)
+    # Who is on the mark itself is left of it
+    assert found.lane[0, 0] == (y >= 2)
 
 
 def test_beside_the_road_the_nearest_lane_counts():

@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.extraction.tracks import tracks as own_tracks
-from rulec.extraction.tracks.tracks import LaidOut, tracks_of
+from rulec.extraction.tracks.tracks import ObjectTypes, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
+from rulec.trace import laid_out
+from rulec.trace.laid_out import LaidOut
 from support.builders.recordings import recording, straight, vehicle
 
 ROAD = [straight(1, -100, 300)]
@@ -103,7 +104,7 @@ def test_constant_velocity_is_found_wherever_it_can_be(vx, vy, steps, smoothing_
     ],
 )
 def test_who_is_absent_from_a_range_has_no_values_in_it(ranges, expected, long, monkeypatch):
-    monkeypatch.setattr(own_tracks, "_LONG", long)
+    monkeypatch.setattr(laid_out, "_LONG", long)
     values, absent = np.arange(12.0).reshape(3, 4), np.zeros((2, 4), dtype=bool)
     absent[1, 2:] = True
     laid = LaidOut(np.array([2, 0]), ranges, absent)
@@ -130,7 +131,7 @@ def test_a_part_of_a_part_is_of_the_whole_and_lays_out_what_is_asked_for():
 
 def test_the_same_tracks_seen_as_those_of_others():
     one = tracks(vehicle(7, {0: (0, 0), 1: (9, 0)})).part(np.array([0]), slice(0, 1))
-    types = own_tracks.ObjectTypes([vehicle(7, {0: (0, 0)}), vehicle(8, {0: (5, 0)})])
+    types = ObjectTypes([vehicle(7, {0: (0, 0)}), vehicle(8, {0: (5, 0)})])
     other = one.seen_as((vehicle(8, {0: (5, 0)}),), types, np.array([1]))
     assert (other.rows.tolist(), other.x.tolist(), other.first) == ([1], [[0.0]], 0)
     assert other.of_type("vehicle").tolist() == [True]

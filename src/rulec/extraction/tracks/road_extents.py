@@ -18,10 +18,11 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.tracks import Flags, Floats, LaidOut, Tracks
+from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.scenario.recorded.lane_coordinates import outline_bounds
 from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.cells import Cells
+from rulec.trace.laid_out import LaidOut
 
 LaneSets: TypeAlias = NDArray[Any]
 """Lanes as whole numbers, of which bit ``k`` says whether lane ``k`` is among them."""

@@ -34,8 +34,8 @@ from rulec.recordings.sumo.fcd_content import (
 
 _BLOCK = 1 << 18
 _PRINTABLE = bytes(range(0x20, 0x7F))
-_WANTED = ("id", "x", "y", "angle", "speed", "acceleration", "type", "signals")
-_TOLD = 5
+_ATTRIBUTES = ("id", "x", "y", "angle", "speed", "acceleration", "type", "signals")
+_N_NUMBERS = 5
 """So many of these, behind the first one, are numbers; all but the last one every element has."""
 
 _STEP, _STEP_ENDS = "<timestep time=", "</timestep>"
@@ -211,14 +211,14 @@ class _Elements:
 
         Raises _NotPlainError, or ValueError.
         """
-        keys, *told, types, lamps, places = zip(*self.values, strict=True)
+        keys, *numbers, types, lamps, places = zip(*self.values, strict=True)
         moments = np.searchsorted(self.steps, np.arange(len(keys)), "right") + self.n_moments - 1
         whose = {key: number for number, key in enumerate(dict.fromkeys(keys))}
         if len({(key, kind.name) for key, kind in zip(keys, self.kinds, strict=True)}) > len(whose):
             raise _NotPlainError
         which = np.fromiter(map(whose.__getitem__, keys), intp, len(keys))
         order = np.argsort(which, kind="stable")
-        at, rows = moments[order], _rows(told)[order]
+        at, rows = moments[order], _rows(numbers)[order]
         bounds = np.append(np.flatnonzero(np.diff(which[order], prepend=-1)), len(keys)).tolist()
         for key, start, end in zip(whose, bounds[:-1], bounds[1:], strict=True):
             own, name = at[start:end], self.kinds[order[start]].name
@@ -242,10 +242,10 @@ class _Elements:
         }
 
 
-def _rows(told: Sequence[Sequence[str]]) -> NDArray[float64]:
+def _rows(texts: Sequence[Sequence[str]]) -> NDArray[float64]:
     """The numbers of elements, a row each, of columns of texts."""
-    numbers = np.fromiter(map(float, chain(*told)), float, _TOLD * len(told[0]))
-    columns = numbers.reshape(_TOLD, -1)
+    numbers = np.fromiter(map(float, chain(*texts)), float, _N_NUMBERS * len(texts[0]))
+    columns = numbers.reshape(_N_NUMBERS, -1)
     is_known = np.abs(columns) < LARGEST  # NaN is not
     if not is_known[:-1].all():
         raise _NotPlainError
@@ -268,15 +268,15 @@ def _kind(line: str, pieces: list[str]) -> _Kind:
     parser.ordered_attributes = True
     parser.StartElementHandler = lambda name, attributes: found.append((name, attributes))
     parser.Parse(line.encode(), True)
-    ((name, told),) = found
-    names = told[::2]
+    ((name, attributes),) = found
+    names = attributes[::2]
     at = {key: 2 * number + 1 for number, key in enumerate(names)}
     rides = "vehicle" in names
-    if rides or name not in BODIES or told[1::2] != pieces[1::2]:
+    if rides or name not in BODIES or attributes[1::2] != pieces[1::2]:
         raise _NotPlainError
-    if not set(_WANTED[:_TOLD]) <= set(names) or {"lane", "edge"} <= set(names):
+    if not set(_ATTRIBUTES[:_N_NUMBERS]) <= set(names) or {"lane", "edge"} <= set(names):
         raise _NotPlainError
     on = "lane" if "lane" in names else "edge"
     empty = {"signals": -3, "acceleration": -2}
-    take = itemgetter(*(at.get(key, empty.get(key, -1)) for key in (*_WANTED, on)))
-    return _Kind(name, on, take, lacks=not {*_WANTED, on} <= set(names))
+    take = itemgetter(*(at.get(key, empty.get(key, -1)) for key in (*_ATTRIBUTES, on)))
+    return _Kind(name, on, take, lacks=not {*_ATTRIBUTES, on} <= set(names))

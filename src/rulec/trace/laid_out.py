@@ -1,0 +1,85 @@
+"""Several ranges of columns of arrays laid out one behind the other, as drives are looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy import bool_, float64, intp
+from numpy.typing import NDArray
+
+_LONG = 200
+"""Of ranges that are longer each is laid out by itself."""
+
+
+@dataclass(frozen=True, eq=False)
+class LaidOut:
+    """Some rows of arrays in several ranges of columns, one behind the other.
+
+    ``absent`` are flags of who is so from a whole range, by row and column of what is laid out.
+    """
+
+    rows: NDArray[intp]
+    ranges: Sequence[slice]
+    absent: NDArray[bool_]
+
+    def __call__(self, values: NDArray[Any]) -> NDArray[Any]:
+        """An array's part.
+
+        Flags are false, sets empty and measures NaN for who is absent; a third axis stays the first
+        in memory.
+        """
+        by_lane = np.moveaxis(values, -1, 0) if values.ndim > 2 else values[None]
+        none = values.dtype.type(np.nan if values.dtype.kind == "f" else 0)
+        if self._columns is not None:
+            found = by_lane.take(self.rows, axis=1).take(self._columns, axis=2)
+            if self._are_absent:
+                np.copyto(found, none, where=self.absent)
+        else:
+            found, begin = np.empty((len(by_lane), *self.absent.shape), dtype=values.dtype), 0
+            for own, (there, whole) in zip(self.ranges, self._there, strict=True):
+                end = begin + own.stop - own.start
+                if len(there) < len(self.rows):
+                    found[:, :, begin:end] = none
+                found[:, there, begin:end] = by_lane[:, whole, own]
+                begin = end
+        return np.moveaxis(found, 0, -1) if values.ndim > 2 else found[0]
+
+    def of_rows(self, rows: NDArray[intp]) -> LaidOut:
+        """Some of the rows."""
+        return LaidOut(self.rows[rows], self.ranges, self.absent[rows])
+
+    def at_third(self, places: NDArray[intp], *arrays: NDArray[float64]) -> list[NDArray[float64]]:
+        """Parts of arrays with one place of the third axis, by column; NaN as above."""
+        n_rows, n_columns, _ = arrays[0].shape
+        at = (places * n_rows + self.rows[:, None]) * n_columns + self.columns
+        found = [np.moveaxis(values, -1, 0).ravel().take(at) for values in arrays]
+        for own in found if self._are_absent else ():
+            np.copyto(own, np.nan, where=self.absent)
+        return found
+
+    @cached_property
+    def _columns(self) -> NDArray[intp] | None:
+        """The columns of all ranges, if these are so short that each is not worth it by itself."""
+        if self.absent.shape[1] > _LONG * len(self.ranges):
+            return None
+        return self.columns
+
+    @cached_property
+    def columns(self) -> NDArray[intp]:
+        """The columns of all ranges."""
+        return np.concatenate([np.arange(own.start, own.stop) for own in self.ranges])
+
+    @cached_property
+    def _are_absent(self) -> bool:
+        return bool(self.absent.any())
+
+    @cached_property
+    def _there(self) -> list[tuple[NDArray[intp], NDArray[intp]]]:
+        """For each range who is not absent, and their rows in arrays."""
+        begins = np.cumsum([0, *(own.stop - own.start for own in self.ranges)])[:-1]
+        there = [np.flatnonzero(~self.absent[:, begin]) for begin in begins.tolist()]
+        return [(own, self.rows[own]) for own in there]
