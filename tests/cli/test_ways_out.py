@@ -80,6 +80,8 @@ def test_in_a_rulebook(rules, way_out, tmp_path, monkeypatch, capsys):
         (["diff", "de"], "with which rulebook is it to be compared? As in `rulec diff de nl`"),
         (["diff", "de", "nl", "fr"], "of 3, `rulec diff --all de nl fr`"),
         (["test", "de", "--fail"], "no option `--fail`; did you mean `--fail-on-empty`?"),
+        (["test", "de", "--own"], "error: there is no option `--own`\n"),
+        (["verify", "x", "-r", "de", "-o", "x.html"], "`rulec draw`.\n  = usage"),
         (["maneuvers", "s2", "-r", "de", "--list", "many"], "--list: `many` is no whole number"),
         (["compile", "de", "-o", "x", "--step", "0,5"], "decimals have a point: 0.5"),
         (["verify", "https://x.org/a.xml", "-r", "nl"], "download it first"),

@@ -23,6 +23,13 @@ def test_a_mistake_of_spelling(tmp_path):
     assert notes(tmp_path, "base", BASE.replace("always p", "always p p")) == [("rule `r` is § 1",)]
 
 
+def test_a_rule_without_end_is_the_one_that_began(tmp_path):
+    two = BASE.replace("  require always p\n}", "  require always p") + (
+        'hard rule s {\n  cite "§ 2"\n  require never p\n}\n'
+    )
+    assert notes(tmp_path, "base", two) == [("rule `r` is § 1",)]
+
+
 def test_a_mistake_elsewhere(tmp_path):
     assert notes(tmp_path, "base", BASE + "define x = y\n") == [()]
 

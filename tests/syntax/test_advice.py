@@ -125,6 +125,7 @@ FORMULAS = [
     ("gap(v) 1.5 m", "1.5", BY_SIGNS),
     ("gap < 1,5 m", ",", "write a point: `1.5`"),
     ("gap < .5 m", ".", "write `0.5`"),
+    ("sp\u00adeed > 3", "\u00ad", "delete the character there, which cannot be seen"),
     ("gap < 1 000 m", "000", DIGITS),
     ("gap < 1'000 m", "'", DIGITS),
     ("gap < 1_000 m", "m", DIGITS),
@@ -263,6 +264,27 @@ LINES = [
     ),
     ("hard rule a:", ":", "what a rule says stands between `{` and `}`"),
     ("hard rule a () { require p }", ")", "a rule without variables has no parentheses"),
+    ("hard rule a { require p accept { gap = 1,5 m } }", ",", "write a point: `1.5`"),
+    (
+        "hard rule a { require p certainty from memory }",
+        "from",
+        "what was written from memory is `unverified`; `source` says in words where from",
+    ),
+    (
+        "hard rule a (every v: car) { require p }",
+        "every",
+        "leave `every` out: a rule holds for every one, as in `(v: vehicle)`",
+    ),
+    (
+        "hard rule a (v: car, some w: car) { require p }",
+        "some",
+        "a rule holds for every one; of some speaks its formula: `some v: vehicle (…)`",
+    ),
+    (
+        "hard\u200b rule a { require p }",
+        "\u200b",
+        "delete the character there, which cannot be seen",
+    ),
     (
         "hard rule a { require p accept { p, q } }",
         ",",
@@ -419,6 +441,12 @@ def test_in_a_line(line, underlined, way_out):
     text = f"rulebook a\n{line}\nhard rule last {{ require p }}\n"
     _, (one,) = parse(Source("a.rules", text))
     check(one, underlined, way_out)
+
+
+def test_what_cannot_be_seen_is_called_by_its_number():
+    for text in ("rulebook a\n\ufefftitle 'A'\n", "rulebook a\nsignal p\u200b, q\n"):
+        _, (one, *_) = parse(Source("a.rules", text))
+        assert one.message.endswith((" with `U+FEFF`", " with `U+200B`"))
 
 
 EXPECTED = [

@@ -74,8 +74,11 @@ def reworded(problem: click.ClickException) -> str:
         if others := _OF_OTHER_VERBS.get(problem.option_name):
             return f"there is no option `{problem.option_name}` here; {others}"
         fitting = [option for option in known if option.startswith(problem.option_name)]
-        near = fitting[0] if fitting else nearest_name(problem.option_name, known)
-        way_out = f"; did you mean `{near}`?" if near else ""
+        # Without their dashes, which all have and which say nothing of what is meant.
+        by_name = {option.lstrip("-"): option for option in known}
+        near = nearest_name(problem.option_name.lstrip("-"), by_name)
+        meant = fitting[0] if fitting else by_name.get(near or "")
+        way_out = f"; did you mean `{meant}`?" if meant else ""
         return f"there is no option `{problem.option_name}`{way_out}"
     param = problem.param if isinstance(problem, click.BadParameter) else None
     kind = None if param is None else param.type

@@ -79,7 +79,12 @@ _OF_SEVERAL_BOOKS = ("text", "json", "jsonl", "csv", "parquet")
     "--engine", ["python", "c"], "What judges traces: in C your own compiler compiles the monitor."
 )
 @shared.jobs_option("Judge so many recordings, or parts of a long one, at a time")
-@output_options(FORMATS, "the answer", multiple=True)
+@output_options(
+    FORMATS,
+    "the answer",
+    multiple=True,
+    instead="Pictures and pages are drawn by `rulec draw`.",
+)
 @click.option(
     "--exposure",
     is_flag=True,

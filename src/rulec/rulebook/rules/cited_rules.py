@@ -9,6 +9,7 @@ from dataclasses import replace
 from rulec.diagnostics import Diagnostic, SourceLocation
 from rulec.rulebook.rulebook_model import provision_note
 from rulec.syntax import tree
+from rulec.syntax.messages.structure import UNBALANCED_BRACE
 
 
 def with_provisions(
@@ -43,6 +44,9 @@ def with_provisions(
 
 def _noted(finding: Diagnostic, rules: dict[str, list[tuple[int, int, str]]]) -> Diagnostic:
     place = finding.place
+    if finding.code == UNBALANCED_BRACE.code and finding.labels:
+        # It stands in the next rule, where something should have ended; its label is in this one.
+        place = finding.labels[0].place
     if place is None or place.line is None:
         return finding
     within = rules.get(place.file, [])

@@ -27,7 +27,7 @@ from rulec.syntax.messages.in_items import (
     advise_on_rule_head,
     advise_on_state,
 )
-from rulec.syntax.messages.parse_context import ParseContext, spelling
+from rulec.syntax.messages.parse_context import DELETE_IT, ParseContext, is_invisible, spelling
 
 _BOOLEAN: Final = frozenset(
     (*("not", "and", "or", "implies", "iff", "xor"), *("!", "&", "&&", "|", "||", "->", "<->", "^"))
@@ -227,7 +227,12 @@ def _form(scene: ParseContext) -> str:
     return "" if formula or scene.kind != "item" else FORMS.get(scene.first, "")
 
 
+def _invisible(scene: ParseContext) -> str:
+    return DELETE_IT if is_invisible(scene.text) else ""
+
+
 _IN_ORDER: tuple[Callable[[ParseContext], str], ...] = (
+    _invisible,
     _quotes,
     _comment,
     _ending,

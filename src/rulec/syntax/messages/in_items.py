@@ -137,6 +137,7 @@ _OTHER_CLAUSES: Final = {
     "at": _SCOPE,
     ";": "delete the `;`",
 }
+_AS_REMEMBERED: Final = ("from", "memory", "remembered", "unsure", "uncertain", "unknown", "none")
 _NO_OPERATORS: Final = ("from", "force", "valid", "except", "exempt", "given", "where", "weight")
 
 
@@ -192,6 +193,8 @@ def advise_on_clause(scene: ParseContext) -> str:
         return "only an `unless` clause has a scope; write `always p` for all of the time"
     if scene.operator and scene.text in _NO_OPERATORS:
         return other_clause(scene.text)
+    if scene.first == "certainty" and scene.text in _AS_REMEMBERED:
+        return "what was written from memory is `unverified`; `source` says in words where from"
     return advise_on_dates(scene) if scene.first == "in" else ""
 
 
@@ -215,6 +218,8 @@ def advise_on_state(scene: ParseContext) -> str:
     text = scene.text
     if scene.unexpected is None and "NAME" in scene.accepted:
         return "say what holds in this state; a `;` stands only between two states"
+    if text == "," and scene.is_number(scene.at - 1) and scene.is_number(scene.at + 1):
+        return f"write a point: `{scene.text_before}.{scene.text_behind}`"
     if text == ",":
         return "states are separated by `;`, the facts of one state by `and`"
     if text in ("or", "|", "||"):

@@ -10,7 +10,12 @@ from rulec.syntax import keywords
 from rulec.syntax.file_pieces import Piece, span_of
 from rulec.syntax.messages.advice import advise
 from rulec.syntax.messages.in_items import other_clause, other_word
-from rulec.syntax.messages.parse_context import ParseContext, in_words
+from rulec.syntax.messages.parse_context import (
+    DELETE_IT,
+    ParseContext,
+    in_words,
+    is_invisible,
+)
 from rulec.syntax.parse_nodes import MAX_DEPTH, Mismatch
 from rulec.syntax.scanner import Token
 
@@ -97,7 +102,7 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
     if token is not None and token.kind == "unterminated":
         return _unterminated(span)
     if token is not None and _is_word_for_name(scene):
-        return _reserved(span, token.text, in_formula=scene.operand)
+        return _reserved(span, token.text, scene)
     if piece.kind == "item" and at < 2 and first not in keywords.ITEM_WORDS:
         return _unknown_item(source, inside)
     what = _BY_KIND.get(piece.kind) or _WHAT.get(first, "the declaration")
@@ -147,6 +152,8 @@ def _unknown_item(source: Source, inside: list[Token]) -> Diagnostic:
             way_out = f"an enumeration is declared by `{token.text} is one of a, b`"
     if token.text in ("//", "/*"):
         way_out = "a comment begins with `#`"
+    if is_invisible(token.text):
+        way_out = DELETE_IT
     return UNEXPECTED_WORD.at(
         _span(source, token),
         f"nothing in the language begins with `{_short(token.text)}`",
@@ -185,6 +192,8 @@ def _span(source: Source, token: Token) -> Span:
 
 
 def _short(text: str) -> str:
+    if is_invisible(text):
+        return f"U+{ord(text):04X}"
     return text if len(text) <= 40 else f"{text[:39]}…"
 
 
@@ -201,10 +210,14 @@ def _is_word_for_name(scene: ParseContext) -> bool:
     return scene.kind != "state" or token.text in keywords.ITEM_WORDS | keywords.CLAUSE_WORDS
 
 
-def _reserved(span: Span, word: str, *, in_formula: bool) -> Diagnostic:
+def _reserved(span: Span, word: str, scene: ParseContext) -> Diagnostic:
     kind = "an operator" if word in keywords.OPERATOR_LETTERS else "a word of the language"
     another = f"choose another name, such as `{word.lower()}_1`"
-    if in_formula and word in ("when", "unless"):
+    if scene.kind == "rule_head" and word == "every" and scene.text_before in ("(", ","):
+        another = "leave `every` out: a rule holds for every one, as in `(v: vehicle)`"
+    if scene.kind == "rule_head" and word == "some" and scene.text_before in ("(", ","):
+        another = "a rule holds for every one; of some speaks its formula: `some v: vehicle (…)`"
+    if scene.operand and word in ("when", "unless"):
         other = "not p" if word == "unless" else "p"
         another = f"in a formula write `{other} implies q`; of a whole rule it is a clause"
     return RESERVED_WORD.at(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -175,3 +176,11 @@ class ParseContext:
                     return index
                 depth -= 1
         return None
+
+
+DELETE_IT: Final = "delete the character there, which cannot be seen"
+
+
+def is_invisible(text: str) -> bool:
+    """True for a character that no screen shows, as word processors put between others."""
+    return len(text) == 1 and unicodedata.category(text) == "Cf"
