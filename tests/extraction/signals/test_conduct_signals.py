@@ -232,6 +232,18 @@ def test_who_holds_up_others():
     assert set(queue) == {"F"}
 
 
+def test_a_cycle_holds_up_nobody():
+    """The law asks for no more than its rider's strength."""
+    road = [straight(1, 0, 2500, limit_mps=13.9)]
+    rider = steady(7, 100, 0, 5, 100, kind="bicycle")
+    follower = steady(8, 92, 0, 5, 100)
+    found = told(reason_signals, "impedes_traffic", road, rider, follower, complete=SIMULATED)
+    assert set(found) == {"F"}
+    moped = replace(rider, type="motorcycle")
+    found = told(reason_signals, "impedes_traffic", road, moped, follower, complete=SIMULATED)
+    assert found[40] == "T"
+
+
 def crossroads():
     turn = [(x, y) for x, y, _ in arc(100, -14, 14, 0, 90)][::-1]
     return [

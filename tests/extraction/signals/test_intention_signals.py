@@ -245,6 +245,20 @@ def test_one_that_stands_with_its_lights_on():
     assert near(body, ego=steady(7, 0, 0, 10, STEPS))[0] == "True"
 
 
+def test_one_that_waits_at_lights_having_come_towards_ego():
+    """Behind ego, its back to it, it needs nobody's way there, and before that ego's."""
+    against = [straight(1, -200, 300), lanelet(2, [(300, 4), (-200, 4)])]
+    places = {k: (max(40 - 7.5 * k, -20.0), 4.0) for k in range(STEPS)}
+    moving = vehicle(8, places, "priorityVehicle", heading=np.pi)
+    body = replace(ambulance(40), states=moving.states, outlines=moving.outlines)
+    found = near(body, road=against)
+    assert found[:3] == ["True"] * 3
+    # Ego is 15 m ahead of it after five states, and it stands from the eighth on
+    assert set(found[6:]) == {"False"}
+    ahead = near(body, road=against, ego=steady(7, -150, 0, 1, STEPS))
+    assert ahead[20] == "True"
+
+
 def test_lights_that_a_file_does_not_tell():
     assert near(ambulance(-60, lamps=None))[0] == "?"
     assert set(near(ambulance(30, lamps=None))[:4]) == {"False"}

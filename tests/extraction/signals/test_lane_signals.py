@@ -69,6 +69,25 @@ def test_the_indicator_before_a_change_of_lanes_counts(lit, expected):
     assert not found.unknown["indicator"].any()
 
 
+@pytest.mark.parametrize(
+    ("last_lit", "expected"),
+    [(2, "no_indicator"), (3, "far_indicator"), (7, "far_indicator")],
+)
+def test_an_indicator_that_goes_out_while_ego_lies_across_the_mark_counts(last_lit, expected):
+    """Of 0.5 m a state to the left the body, 1.8 m wide, reaches the mark at y = 2 in state 3."""
+    places = {k: (5 * k, 0.5 * (k - 0.5)) for k in range(9)}
+    lit = {k: LEFT if k <= last_lit else frozenset() for k in range(9)}
+    body = replace(vehicle(7, places, width=1.8), lamps=lit, shows=INDICATORS)
+    found = changes(body=body)
+    change = found.world["lane_change"].tolist().index(True)
+    assert change == 6
+    assert found.values("indicator")[change] == expected
+    # A lamp that was lit longer ago announces nothing
+    assert changes(body=body, signalling_s=0.5).values("indicator")[change] == (
+        expected if last_lit > change - 2 else "no_indicator"
+    )
+
+
 @pytest.mark.parametrize(("y", "unknown"), [(2.4, False), (2.6, True), (4.0, True)])
 @pytest.mark.parametrize("lamp", ["none", "left_indicator"])
 def test_of_who_jumps_to_another_lane_unlit_nobody_knows(y, unknown, lamp):

@@ -28,6 +28,9 @@ _PUBLIC = ("bus", "rail_vehicle")
 _FLASH_S = 1.0
 """Lights that flash are on if they are lit within so long."""
 
+_FACES = -0.5
+"""The cosine between the directions of ego's road and of one who has come the other way on it."""
+
 
 def intention_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
     """The signals of others' lamps and doors, and of what they are about to do."""
@@ -134,10 +137,11 @@ def _flashing(lit: Flags, context: DriveContext) -> Flags:
 def _comes_near(context: DriveContext) -> Flags:
     """Flags of those who are behind or beside ego, or come towards it on its carriageway.
 
-    One that has come towards ego and is past it drives away.
+    One that has come towards ego and is past it drives away, also while it waits at lights there.
     """
     station = relations.station(context)
-    against = context.extents.along * KMH < -context.thresholds.standing_kmh
+    along, faces = context.extents.along, np.cos(context.extents.turned) < _FACES
+    against = np.where(_stands(context), faces, along * KMH < -context.thresholds.standing_kmh)
     directions = context.surroundings.directions
     divided = own_lanelets(context).flags(lambda lanelet: directions(lanelet)[1] is True)
     towards = against & (station != relations.IN_FRONT_OF) & ~divided

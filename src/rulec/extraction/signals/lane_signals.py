@@ -101,7 +101,8 @@ def _indicator(context: DriveContext) -> SignalColumns:
 
     Both at once are no indication, as hazard lights are none; a file that says that these are off
     contradicts itself, and nobody knows what both mean in that drive at other times. Who changes
-    lanes has indicated it if it did up to the state before; of who jumps there nobody knows.
+    lanes has indicated it if it did up to the state before, or while it lay across the mark; of who
+    jumps there nobody knows.
     """
     egos = context.ego.participants
     if not context.spans.agreed([ego.lamps and ego.shows >= _INDICATORS for ego in egos]):
@@ -120,7 +121,7 @@ def _indicator(context: DriveContext) -> SignalColumns:
     unknown |= np.array([lamps is None for lamps in steps])
     is_dark = np.array([lamps is not None and not lamps & _INDICATORS for lamps in steps])
     changes = np.flatnonzero(_changes(context) & is_dark)
-    codes[changes] = codes[changes - 1]
+    codes[changes] = [_shown_across(context, codes, change) for change in changes.tolist()]
     dark = changes[codes[changes] == 0]
     unknown[dark[_jumps_across(context, dark)]] = True
     return SignalColumns(
@@ -128,6 +129,21 @@ def _indicator(context: DriveContext) -> SignalColumns:
         unknown={"indicator": unknown},
         texts={"indicator": _INDICATIONS},
     )
+
+
+def _shown_across(context: DriveContext, codes: NDArray[intp], change: int) -> int:
+    """What ego indicated last before a change of lanes, since its body reached the mark."""
+    lane, own = context.steady_lane, context.ego_extents
+    mark = max(lane[change - 1], lane[change])
+    longest = round(context.thresholds.signalling_s / context.recording.step_s)
+    first = max(int(context.spans.first[change]), change - longest)
+    low, high = (
+        left_of[first:change, mark] for left_of in (own.left_of_min[0], own.left_of_max[0])
+    )
+    clear = np.flatnonzero((low > 0.0) | (high < 0.0))
+    since = min(first + int(clear[-1]) + 1 if len(clear) else first, change - 1)
+    lit = np.flatnonzero(codes[since:change])
+    return int(codes[since + lit[-1]]) if len(lit) else 0
 
 
 def _jumps_across(context: DriveContext, changes: NDArray[intp]) -> Flags:

@@ -219,10 +219,14 @@ def _motion(context: DriveContext, rows: NDArray[intp], states: NDArray[intp]) -
 
 
 def _impedes(context: DriveContext) -> SignalColumns:
-    """Whether somebody follows ego, far below the limit for long without a reason."""
+    """Whether somebody follows ego, far below the limit for long without a reason.
+
+    Who rides a cycle has one: no law asks for more than its rider's strength.
+    """
     limit, speed = context.limit_mps, context.ego.speed[0]
     told = np.isfinite(limit)
-    followed = _followed(context)
+    cycles = context.spans.spread([ego.type == "bicycle" for ego in context.ego.participants])
+    followed = _followed(context) & ~cycles
     caused, perhaps = _causes(context)
     far_slower = told & (speed < _FAR_SLOWER * limit) & moves(context) & ~caused & ~perhaps
     steps = round(context.thresholds.preparing_s / context.recording.step_s)
