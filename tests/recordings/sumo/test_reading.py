@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec import read_recording
-from rulec.recordings.sumo.vehicle_types import CLASSES
+from rulec.recordings.sumo.vehicle_types import CLASSES, read_vehicle_types
 from rulec.recordings.track import rectangles
 from support.builders.sumo_files import body, data, moment, written
 
@@ -104,6 +104,53 @@ def test_who_walks_turns_where_it_stands(tmp_path):
     walker = {"element": "person", "kind": "DEFAULT_PEDTYPE", "speed": 0}
     one = only(read(tmp_path, *(moment(k, body(angle=90 + 45 * k, **walker)) for k in range(2))))
     assert np.degrees(one.states[1].heading) == pytest.approx(-45)
+
+
+def test_who_is_in_parts_lies_along_its_way(tmp_path):
+    """A lorry and its trailer, 16.5 m long, drive 40 m to the east, and 10 m to the north.
+
+    SUMO's angle is that of the first part. The rear is 6.5 m before the corner, the middle, 8.25 m
+    back on the way, 1.75 m behind it.
+    """
+    way = [(2 * k, 0, 90) for k in range(21)] + [(40, 2 * k, 0) for k in range(1, 6)]
+
+    def last(kind):
+        rows = [body(x=x, y=y, angle=a, kind=kind) for x, y, a in way]
+        one = only(read(tmp_path, *(moment(k, row) for k, row in enumerate(rows))))
+        return one.states[0], one.states[25]
+
+    first, state = last("trailer")
+    assert (first.x, first.y, first.heading) == pytest.approx((-8.25, 0, 0))
+    assert (state.x, state.y) == pytest.approx((40, 1.75))
+    assert state.heading == pytest.approx(np.arctan2(10, 6.5))
+    # In one part its angle is that of the whole
+    _, rigid = last("truck")
+    assert (rigid.x, rigid.y) == pytest.approx((40, 10 - 7.1 / 2))
+
+
+@pytest.mark.parametrize(
+    ("words", "in_parts"),
+    [
+        ('vClass="trailer"', True),
+        ('vClass="trailer" guiShape="truck"', False),
+        ('vClass="bus"', False),
+        ('vClass="bus" guiShape="bus/flexible"', True),
+        ('vClass="truck" guiShape="truck/trailer"', True),
+        ('vClass="tram"', True),
+        ('vClass="tram" guiShape="rail/railcar"', True),
+    ],
+)
+def test_who_is_in_parts_by_its_shape_or_class(tmp_path, words, in_parts):
+    file = tmp_path / "types.rou.xml"
+    file.write_text(f'<routes><vType id="t" {words}/></routes>', encoding="utf-8")
+    assert read_vehicle_types([file])["t"].in_parts == in_parts
+
+
+def test_who_jumps_to_another_lane_does_so_with_all_parts(tmp_path):
+    rows = [body(x=3 * k, y=-4.8 if k < 5 else -1.6, kind="trailer") for k in range(8)]
+    one = only(read(tmp_path, *(moment(k / 10, row) for k, row in enumerate(rows))))
+    assert [state.heading for state in one.states.values()] == pytest.approx([0.0] * 8)
+    assert [one.states[k].y for k in (4, 5)] == pytest.approx([-4.8, -1.6])
 
 
 def test_time_begins_with_the_simulation(tmp_path):

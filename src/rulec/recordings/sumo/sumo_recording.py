@@ -232,7 +232,8 @@ def fcd_participants(
     rows = np.array(track_rows.rows, dtype=float).reshape(-1, 4)
     if track_rows.element == "vehicle":
         rows[:, 2] = _steered(rows, starts)
-    rows = _centres(rows, kind.length)
+    in_parts = track_rows.element == "vehicle" and kind.in_parts
+    rows = _drawn(rows, starts, kind.length) if in_parts else _centres(rows, kind.length)
     rows = np.column_stack((rows, _accelerations(track_rows, rows[:, 3], own, step_s)))
     lamps = {int(steps[moment]): _lit(bits) for moment, bits in track_rows.lamps.items()}
     for number, (start, end) in enumerate(zip(starts, [*starts[1:], len(own)], strict=True), 1):
@@ -261,6 +262,36 @@ def _steered(rows: NDArray[float64], starts: NDArray[intp]) -> NDArray[float64]:
     last = np.maximum.accumulate(np.where(moves, np.arange(len(rows)), 0))
     angles: NDArray[float64] = rows[last, 2]
     return angles
+
+
+def _drawn(rows: NDArray[float64], starts: NDArray[intp], length: float) -> NDArray[float64]:
+    """The rows of one in parts, by its middle: there its front was half its length ago.
+
+    Its angle in the data is that of its first part. It is turned as its rear lies to its front,
+    which comes where that has been, as far back as it is long on its way; that begins with a
+    straight piece. What moves across its heading more than along it jumps to another lane in a
+    step, or is slid there, with all its parts.
+    """
+    found: NDArray[float64] = rows.copy()
+    for start, end in zip(starts, [*starts[1:], len(rows)], strict=True):
+        x, y, angle = rows[start:end, :3].T
+        heading = np.pi / 2 - np.radians(angle)
+        ways = np.stack((np.diff(x), np.diff(y)), axis=1)
+        cos, sin = np.cos(heading[1:]), np.sin(heading[1:])
+        along, across = ways[:, 0] * cos + ways[:, 1] * sin, ways[:, 1] * cos - ways[:, 0] * sin
+        ways[np.abs(across) > np.abs(along)] = 0.0
+        behind = 2 * length * np.array([[np.cos(heading[0]), np.sin(heading[0])]])
+        ways = np.concatenate((behind, ways))
+        driven = np.append(0.0, np.hypot(*ways.T).cumsum())
+        places = np.concatenate((np.zeros((1, 2)), ways.cumsum(axis=0)))
+        middle, rear = (
+            places[1:]
+            - np.stack([np.interp(driven[1:] - back, driven, axis) for axis in places.T], 1)
+            for back in (length / 2, length)
+        )
+        found[start:end, :2] -= middle
+        found[start:end, 2] = np.arctan2(rear[:, 1], rear[:, 0])
+    return found
 
 
 def _centres(rows: NDArray[float64], length: float) -> NDArray[float64]:

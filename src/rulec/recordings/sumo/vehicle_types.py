@@ -20,15 +20,16 @@ _ROOTS = ("routes", "additional")
 
 @dataclass(frozen=True, slots=True)
 class VehicleType:
-    """A kind of road user, its CommonRoad type, and its size."""
+    """A kind of road user, its CommonRoad type, its size, and has it parts that turn?"""
 
     kind: str
     length: float
     width: float
+    in_parts: bool = False
 
 
 _CAR = VehicleType("car", 5.0, 1.8)
-_RAIL = VehicleType("train", 135.0, 2.84)
+_RAIL = VehicleType("train", 135.0, 2.84, in_parts=True)
 
 CLASSES: Mapping[str, VehicleType] = MappingProxyType(
     {
@@ -39,7 +40,7 @@ CLASSES: Mapping[str, VehicleType] = MappingProxyType(
         "emergency": VehicleType("priorityVehicle", 6.5, 2.16),
         "delivery": VehicleType("truck", 6.5, 2.16),
         "truck": VehicleType("truck", 7.1, 2.4),
-        "trailer": VehicleType("truck", 16.5, 2.55),
+        "trailer": VehicleType("truck", 16.5, 2.55, in_parts=True),
         "bus": VehicleType("bus", 12.0, 2.5),
         "coach": VehicleType("bus", 14.0, 2.6),
         "motorcycle": VehicleType("motorcycle", 2.2, 0.9),
@@ -48,16 +49,20 @@ CLASSES: Mapping[str, VehicleType] = MappingProxyType(
         "scooter": VehicleType("bicycle", 1.2, 0.5),
         "pedestrian": VehicleType("pedestrian", 0.215, 0.478),
         "wheelchair": VehicleType("pedestrian", 0.8, 0.8),
-        "tram": VehicleType("train", 22.0, 2.4),
-        "subway": VehicleType("train", 109.5, 3.0),
-        "rail_urban": VehicleType("train", 109.5, 3.0),
+        "tram": VehicleType("train", 22.0, 2.4, in_parts=True),
+        "subway": VehicleType("train", 109.5, 3.0, in_parts=True),
+        "rail_urban": VehicleType("train", 109.5, 3.0, in_parts=True),
         "rail": _RAIL,
-        "rail_electric": VehicleType("train", 200.0, 2.95),
-        "rail_fast": VehicleType("train", 200.0, 2.95),
+        "rail_electric": VehicleType("train", 200.0, 2.95, in_parts=True),
+        "rail_fast": VehicleType("train", 200.0, 2.95, in_parts=True),
         "container": VehicleType("unknown", 6.1, 2.59),
     }
 )
 """SUMO's vehicle classes, with the sizes that it gives their vehicles unless a type says other."""
+
+_IN_PARTS = frozenset({"bus/flexible", "truck/semitrailer", "truck/trailer"})
+_RAIL_SHAPE = "rail"
+"""How shapes begin, and which others are, that SUMO draws in parts, each turned as its own way."""
 
 _BUILT_IN = {
     "DEFAULT_VEHTYPE": "passenger",
@@ -81,10 +86,13 @@ def read_vehicle_types(files: Iterable[Path]) -> dict[str, VehicleType]:
     def begin(element: XmlElement) -> None:
         if element.name == "vType":
             usual = CLASSES.get(element.attributes.get("vClass", "passenger"), _UNKNOWN)
+            shape = element.attributes.get("guiShape", "")
+            in_parts = shape in _IN_PARTS or shape.startswith(_RAIL_SHAPE)
             types[element.text("id")] = VehicleType(
                 usual.kind,
                 element.positive("length", usual.length),
                 element.positive("width", usual.width),
+                in_parts if shape else usual.in_parts,
             )
 
     for path in files:
