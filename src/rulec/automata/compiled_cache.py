@@ -14,13 +14,11 @@ from datetime import date
 from fractions import Fraction
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
-import msgspec
-
-from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.automata.bundle.mapped_rulebook import MappedRulebook, placed, rulebook_from
-from rulec.automata.bundle.mapped_tables import TableWriter, mapped
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.bundle.mapped_rulebook import Compilation, compilation_in, written
+from rulec.automata.bundle.mapped_tables import mapped
 from rulec.automata.bundle.stored_prefixes import StoredPrefixes, stored
 from rulec.automata.worker import compiler_choice
 from rulec.cache.cache_folder import program_digest, tidy, usable_folder, write_own
@@ -32,7 +30,6 @@ from rulec.version import __version__
 if TYPE_CHECKING:
     from rulec.automata.outcome_machine import OutcomeMachine
     from rulec.automata.step_compilation import StepCompiler
-    from rulec.rulebook.rulebook_model import SourceFile
 
 MOST_FILES = 100
 """So many are kept; those longest unused go first."""
@@ -79,35 +76,16 @@ def asked(
     return CompiledQuestion(path, folders, at, str(folder / name), seen.hexdigest())
 
 
-class Compilation(msgspec.Struct):
-    """The text of a file: what it depends on, what there was to be said, and the rulebook.
-
-    ``day`` is the one whose law it is, if nothing else says that; empty if something does.
-    ``problems`` say why there is no rulebook.
-    """
-
-    stamp: str
-    day: str
-    dependencies: tuple[Dependency, ...]
-    warnings: tuple[Diagnostic, ...] = ()
-    problems: tuple[Diagnostic, ...] = ()
-    rulebook: MappedRulebook | None = None
-
-
 def recalled(
     question: CompiledQuestion,
 ) -> tuple[CompiledRulebook, tuple[Diagnostic, ...]] | None:
     """The rulebook with its warnings; None if it has to be compiled."""
     file = _File(question, _OWN)
     known = file.read()
-    if known is None or not _is_valid(known[0], question):
+    if known is None or not _is_valid(known, question) or known.rulebook is None:
         return None
-    text, compiled = known
-    if compiled is None:
-        return None
-    return _cached(
-        compiled, CachedSteps(question, text, compiled.sources), file, text
-    ), text.warnings
+    text, compiled = replace(known, rulebook=None), known.rulebook
+    return _cached(compiled, CachedSteps(question, text, compiled), file, text), text.warnings
 
 
 def remembered(
@@ -122,7 +100,7 @@ def remembered(
     text = Compilation(question.stamp, day, tuple(dependencies), tuple(warnings))
     file = _File(question, _OWN)
     file.write(text, compiled)
-    return _cached(compiled, CachedSteps(question, text, compiled.sources, steps), file, text)
+    return _cached(compiled, CachedSteps(question, text, compiled, steps), file, text)
 
 
 def _today() -> str:
@@ -140,30 +118,29 @@ def _is_valid(text: Compilation, question: CompiledQuestion) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _File:
-    """A file of the cache."""
+    """A file of the cache; what is in ``given`` it does not repeat, and is read with."""
 
     question: CompiledQuestion
     step: str
+    given: tuple[object, ...] = ()
 
     @property
     def path(self) -> Path:
         return Path(f"{self.question.file}-{self.step}{_ENDING}")
 
-    def read(self) -> tuple[Compilation, CompiledRulebook | None] | None:
-        with suppress(OSError, ValueError):  # what msgspec says is a ValueError, too
-            tables = mapped(self.path)
-            text = msgspec.json.decode(tables.text, type=Compilation)
-            compiled = None if text.rulebook is None else rulebook_from(text.rulebook, tables)
+    def read(self) -> Compilation | None:
+        with suppress(OSError, ValueError, TypeError, LookupError):
+            found = compilation_in(mapped(self.path), self.given)
             os.utime(self.path)
-            return msgspec.structs.replace(text, rulebook=None), compiled
+            return found
         return None
 
     def write(self, text: Compilation, compiled: CompiledRulebook | None) -> None:
-        tables = TableWriter()
-        with suppress(OSError, RulecError, ValueError):
-            entry = None if compiled is None else placed(compiled, tables)
-            written = msgspec.structs.replace(text, rulebook=entry)
-            write_own(self.path, tables.file(msgspec.json.encode(written)))
+        if compiled is not None:
+            prefixes = compiled.prefixes if isinstance(compiled.prefixes, StoredPrefixes) else None
+            compiled = replace(compiled, source=None, recompile=None, prefixes=prefixes)
+        with suppress(OSError, ValueError):
+            write_own(self.path, written(replace(text, rulebook=compiled), self.given))
             tidy(self.path.parent, _ENDING, MOST_FILES)
 
 
@@ -175,23 +152,28 @@ def _cached(
 
 
 class CachedSteps:
-    """A ``Recompiler`` that asks the cache first. Pickled, it is its key."""
+    """A ``Recompiler`` that asks the cache first, whose files share what the ``own`` rulebook has.
+
+    That one is for the steps of the rules' own examples.
+    """
 
     def __init__(
         self,
         question: CompiledQuestion,
         text: Compilation,
-        sources: tuple[SourceFile, ...],
+        own: CompiledRulebook,
         steps: StepCompiler | None = None,
     ) -> None:
         self._question = question
-        self._text = msgspec.structs.replace(text, warnings=())
-        self._sources = sources
+        self._text = replace(text, warnings=())
+        self._own = own
+        self._given = own.vocabulary, own.axioms, own.sources, *own.rules
         self._steps = steps
         self._answers: dict[str, CompiledRulebook | RulecError] = {}
 
     def __reduce__(self) -> tuple[type[CachedSteps], tuple[object, ...]]:
-        return CachedSteps, (self._question, self._text, self._sources)
+        own = replace(self._own, source=None, recompile=None, prefixes=None)
+        return CachedSteps, (self._question, self._text, own)
 
     def __call__(self, step_s: Fraction) -> CompiledRulebook:
         """The rulebook for a step. Raises RulecError as ``StepCompiler``."""
@@ -207,7 +189,7 @@ class CachedSteps:
         if step not in self._answers:
             if len(self._answers) >= MOST_FILES:
                 self._answers.clear()
-            self._answers[step] = self._found(_File(self._question, step), compile_it)
+            self._answers[step] = self._found(_File(self._question, step, self._given), compile_it)
         answer = self._answers[step]
         if isinstance(answer, RulecError):
             raise answer
@@ -218,22 +200,22 @@ class CachedSteps:
     ) -> CompiledRulebook | RulecError:
         text = self._text
         known = file.read()
-        if known is not None and _depends_on(known[0]) == _depends_on(text):
-            if known[1] is None:
-                return RulecError(known[0].problems)
-            return _cached(known[1], self, file, text)
+        if known is not None and _depends_on(known) == _depends_on(text):
+            if known.rulebook is None:
+                return RulecError(known.problems)
+            return _cached(known.rulebook, self, file, text)
         try:
-            compiled = compile_it()
+            compiled = _sharing(compile_it(), self._own)
         except RulecError as error:
             # Messages of the parser, 20 ms: it has been loaded where there is an error.
             from rulec.rulebook.elaborate.rule_messages import NOT_A_MULTIPLE
 
             # Whether a machine gets too large, or Spot is there, is another question next time.
             if all(problem.code == NOT_A_MULTIPLE.code for problem in error.diagnostics):
-                file.write(msgspec.structs.replace(text, problems=error.diagnostics), None)
+                file.write(replace(text, problems=error.diagnostics), None)
             return error
         # Its source may have been changed since it was recalled.
-        if compiled.sources == self._sources:
+        if compiled.sources == self._own.sources:
             file.write(text, compiled)
         return _cached(compiled, self, file, text)
 
@@ -247,6 +229,29 @@ class CachedSteps:
             book = read_rulebook(asked.source, asked.search_path, asked.at).rulebook
             self._steps = StepCompiler(book)
         return self._steps
+
+
+def _sharing(compiled: CompiledRulebook, own: CompiledRulebook) -> CompiledRulebook:
+    """A rulebook that has the very objects of its ``own`` steps' one where they are alike."""
+    known = {rule.name: rule for rule in own.rules}
+    return replace(
+        compiled,
+        vocabulary=_one_of(compiled.vocabulary, own.vocabulary),
+        axioms=_one_of(compiled.axioms, own.axioms),
+        sources=_one_of(compiled.sources, own.sources),
+        rules=tuple([_one_rule(rule, known.get(rule.name, rule)) for rule in compiled.rules]),
+    )
+
+
+def _one_of(this: _Part, other: _Part) -> _Part:
+    return other if this == other else this
+
+
+def _one_rule(this: CompiledRule, other: CompiledRule) -> CompiledRule:
+    return _one_of(this, other) if this.certificate == other.certificate else this
+
+
+_Part = TypeVar("_Part")
 
 
 def _depends_on(text: Compilation) -> tuple[object, ...]:
@@ -274,8 +279,8 @@ class CachedPrefixes:
 
         machines = prefix_machines(rulebook)
         whole = self._file.read()
-        if whole is not None and whole[1] is not None:
-            prefixes = stored(replace(whole[1], prefixes=lambda _: machines))
-            if all(rule.name in machines for rule in whole[1].rules):
-                self._file.write(whole[0], replace(whole[1], prefixes=prefixes))
+        if whole is not None and whole.rulebook is not None:
+            prefixes = stored(replace(whole.rulebook, prefixes=lambda _: machines))
+            if all(rule.name in machines for rule in whole.rulebook.rules):
+                self._file.write(whole, replace(whole.rulebook, prefixes=prefixes))
         return machines

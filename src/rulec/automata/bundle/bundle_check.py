@@ -19,7 +19,7 @@ from rulec.automata.bundle.compiled_rulebook import (
     CompiledRulebook,
     alike,
 )
-from rulec.automata.bundle.stored_prefixes import StoredPrefixes
+from rulec.automata.bundle.stored_prefixes import CutTables, StoredPrefixes
 from rulec.automata.bundle.stored_steps import for_steps
 from rulec.diagnostics import SourceLocation
 from rulec.logic import formula as ltl
@@ -39,11 +39,8 @@ from rulec.rulebook.rules.implied_signals import with_implied
 from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
 
 
-def rulebook_of(read: schema.BundleFile, *, own: bool = False) -> CompiledRulebook:
-    """Compiled rulebook of a sound file; ValueError for any other.
-
-    ``own``: this rulec has written it so, and its rules need no check.
-    """
+def rulebook_of(read: schema.BundleFile) -> CompiledRulebook:
+    """Compiled rulebook of a sound file; ValueError for any other."""
     _check_visible(read)
     kind_of = {entry: kind for kind, entry in schema.ENTRY_OF.items()}
     vocabulary = Vocabulary(
@@ -61,14 +58,14 @@ def rulebook_of(read: schema.BundleFile, *, own: bool = False) -> CompiledRulebo
         rulec=read.rulec,
         spot=read.spot,
         vocabulary=vocabulary,
-        rules=tuple(_rule(rule, vocabulary, read.levels, own=own) for rule in read.rules),
+        rules=tuple(_rule(rule, vocabulary, read.levels) for rule in read.rules),
         sources=tuple(SourceFile(source.name, source.sha256) for source in read.sources),
         priorities=_priorities(read),
         axioms=tuple(_axiom(fact, vocabulary) for fact in read.facts),
     )
     known = with_implied(vocabulary, [axiom.formula for axiom in rulebook.axioms])
     rulebook = replace(rulebook, vocabulary=known)
-    prefixes = _prefixes(read, own=own)
+    prefixes = _prefixes(read)
     if read.steps is not UNSET:
         return _with_steps(rulebook, read)
     _check_names(rulebook)
@@ -108,7 +105,7 @@ def _with_steps(rulebook: CompiledRulebook, read: schema.BundleFile) -> Compiled
     books = []
     for step in steps:
         own = [(rule, entry) for rule, entry in pairs if rule.step_s in (None, step)]
-        prefixes = StoredPrefixes({entry.name: entry.cut or None for _, entry in own})
+        prefixes = StoredPrefixes({entry.name: _cut_tables(entry) for _, entry in own})
         books.append(replace(rulebook, rules=tuple([rule for rule, _ in own]), prefixes=prefixes))
         _check_names(books[-1])
         same = list(map(_timeless, books[0].rules)) == list(map(_timeless, books[-1].rules))
@@ -122,20 +119,24 @@ def _timeless(rule: CompiledRule) -> CompiledRule:
     return replace(rule, machine=nothing, hoa="", step_s=None)
 
 
-def _prefixes(read: schema.BundleFile, *, own: bool) -> StoredPrefixes | None:
+def _prefixes(read: schema.BundleFile) -> StoredPrefixes | None:
     """The machines for cut traces, checked; None in a file that has none."""
     lacking = [rule.cut is UNSET for rule in read.rules]
     if any(lacking):
         _require(all(lacking), "it has machines for traces that are cut for some rules alone")
         return None
-    for rule in () if own else read.rules:
+    for rule in read.rules:
         if rule.cut:
             _check_table(rule.cut, len(rule.machine.letters), rule.name)
             known = len(rule.cut.starts) > 0 and set(rule.cut.starts) <= set(
                 range(len(rule.cut.successors))
             )
             _require(known, f"the table of rule `{rule.name}` for cut traces begins nowhere")
-    return StoredPrefixes({rule.name: rule.cut or None for rule in read.rules})
+    return StoredPrefixes({rule.name: _cut_tables(rule) for rule in read.rules})
+
+
+def _cut_tables(rule: schema.BundleRule) -> CutTables | None:
+    return CutTables(*astuple(rule.cut)) if rule.cut else None
 
 
 def _priorities(read: schema.BundleFile) -> frozenset[tuple[str, str]]:
@@ -271,9 +272,7 @@ def _check_term(term: ltl.Term, vocabulary: Vocabulary, variables: Set[str], of:
             _check_formula(body, vocabulary, variables | {variable}, of, counted=True)
 
 
-def _rule(
-    rule: schema.BundleRule, vocabulary: Vocabulary, levels: Container[str], *, own: bool
-) -> CompiledRule:
+def _rule(rule: schema.BundleRule, vocabulary: Vocabulary, levels: Container[str]) -> CompiledRule:
     reads = tuple([_read(item) for item in rule.machine.reads])
     formula = from_data(rule.tree)
     parts = None if rule.parts is None else _rule_parts(rule.parts)
@@ -289,8 +288,7 @@ def _rule(
         parts=parts,
         certificate=rule.certificate,
     )
-    if not own:
-        _check_rule(compiled, rule, vocabulary, levels)
+    _check_rule(compiled, rule, vocabulary, levels)
     return compiled
 
 

@@ -29,7 +29,7 @@ from rulec.automata.bundle.compiled_rulebook import (
     alike,
 )
 from rulec.automata.bundle.required_signature import check_signed
-from rulec.automata.bundle.stored_prefixes import StoredPrefixes, stored
+from rulec.automata.bundle.stored_prefixes import CutTables, StoredPrefixes, stored
 from rulec.automata.bundle.stored_steps import StoredSteps
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.diagnostics import RulecError, SourceLocation
@@ -59,7 +59,7 @@ def entry_of(rulebook: CompiledRulebook) -> schema.BundleFile:
         return _entry_of_steps(rulebook.recompile)
     stored_prefixes = isinstance(rulebook.prefixes, StoredPrefixes)
     cut = rulebook.prefixes.entries if isinstance(rulebook.prefixes, StoredPrefixes) else {}
-    lacking = None if stored_prefixes else msgspec.UNSET
+    cut_of = _cut if stored_prefixes else lambda _: msgspec.UNSET
     vocabulary = rulebook.vocabulary
     return schema.BundleFile(
         **alike(Rulebook, rulebook),
@@ -76,7 +76,7 @@ def entry_of(rulebook: CompiledRulebook) -> schema.BundleFile:
             ],
         ),
         facts=[_axiom(axiom) for axiom in rulebook.axioms],
-        rules=[_rule(rule, cut.get(rule.name, lacking)) for rule in rulebook.rules],
+        rules=[_rule(rule, cut_of(cut.get(rule.name))) for rule in rulebook.rules],
     )
 
 
@@ -140,6 +140,14 @@ def _rule(
             accepting_sink=machine.accepting_sink,
         ),
     )
+
+
+def _cut(tables: CutTables | None) -> schema.CutMachineEntry | None:
+    if tables is None:
+        return None
+    # Outcomes are 0, 1 and 2.
+    outputs: Any = tables.outputs
+    return schema.CutMachineEntry(tables.letters, tables.successors, outputs, tables.starts)
 
 
 def _parts(parts: RuleParts) -> schema.PartsEntry:

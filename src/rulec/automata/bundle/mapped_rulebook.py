@@ -1,95 +1,176 @@
-"""A compiled rulebook as a text with its tables as rows of integers beside it."""
+"""What the cache of compiled rulebooks keeps, as a text with rows of integers beside it.
+
+A file is made of parts, each behind those that it is made of, and equal ones are there once: rules
+share most of what they speak of. Nothing is checked but that the file is as this rulec wrote it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+import json
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, fields, replace
+from fractions import Fraction
+from operator import attrgetter
+from typing import Any
 
-import msgspec
-
-from rulec.automata.bundle import bundle_schema as schema
-from rulec.automata.bundle.bundle_check import rulebook_of
-from rulec.automata.bundle.bundle_file import entry_of
-from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.automata.bundle.mapped_tables import MappedTables, RowPlace, TableWriter
-from rulec.automata.bundle.stored_prefixes import StoredPrefixes
-from rulec.diagnostics import SourceLocation
-
-
-class TablePlaces(msgspec.Struct):
-    """Where the rows of a machine are: one a state, of ``width`` letter classes."""
-
-    letters: RowPlace
-    width: int
-    successors: RowPlace
-    outputs: RowPlace
+from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
+from rulec.automata.bundle.mapped_tables import MappedTables, TableWriter
+from rulec.automata.bundle.stored_prefixes import CutTables, StoredPrefixes
+from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read, Threshold
+from rulec.diagnostics import Diagnostic, Fix, Label, SourceLocation
+from rulec.logic import formula as ltl
+from rulec.rulebook import rulebook_model as model
+from rulec.rulebook.files.search_path import Dependency
+from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabulary
 
 
-class MappedRulebook(msgspec.Struct):
-    """The text of a compiled rulebook whose tables are beside it.
+@dataclass(frozen=True, slots=True)
+class Compilation:
+    """What a file says: what it depends on, what there was to be said, and the rulebook.
 
-    ``rulebook`` is as in its file, but for empty tables; ``machines`` and ``cut`` have theirs, a
-    rule each, ``orders`` those of the latter's states, by rule. ``places`` say where the axioms are
-    written.
+    ``stamp`` is a digest of what it was compiled from and by. ``day`` is the one whose law it is,
+    if nothing else says that; empty if something does. ``problems`` say why there is no rulebook.
     """
 
-    rulebook: schema.BundleFile
-    machines: list[TablePlaces]
-    cut: list[TablePlaces | None]
-    orders: dict[str, RowPlace]
-    places: list[SourceLocation | None]
+    stamp: str
+    day: str
+    dependencies: tuple[Dependency, ...]
+    warnings: tuple[Diagnostic, ...] = ()
+    problems: tuple[Diagnostic, ...] = ()
+    rulebook: CompiledRulebook | None = None
 
 
-def placed(rulebook: CompiledRulebook, tables: TableWriter) -> MappedRulebook:
-    """The text of a rulebook whose tables have been written."""
-    entry = entry_of(rulebook)
-    machines: list[TablePlaces] = []
-    cut: list[TablePlaces | None] = []
-    for rule in entry.rules:
-        machines.append(_placed(rule.machine, tables))
-        rule.machine.letters = rule.machine.successors = rule.machine.outputs = ()
-        cut.append(None)
-        if rule.cut:
-            cut[-1] = _placed(rule.cut, tables)
-            rule.cut.letters = rule.cut.successors = rule.cut.outputs = ()
-    prefixes = rulebook.prefixes
-    known = prefixes.orders if isinstance(prefixes, StoredPrefixes) else {}
-    orders = {name: tables.place(order) for name, order in known.items()}
-    return MappedRulebook(entry, machines, cut, orders, [axiom.place for axiom in rulebook.axioms])
+@dataclass(frozen=True, slots=True)
+class _Kind:
+    """How what is of one kind is taken apart, and made of its parts again."""
+
+    parts: Callable[[Any], Iterable[object]]
+    make: Callable[..., object]
 
 
-def _placed(
-    machine: schema.MachineEntry | schema.CutMachineEntry, tables: TableWriter
-) -> TablePlaces:
-    return TablePlaces(
-        tables.place(machine.letters),
-        len(machine.successors[0]),
-        tables.place_rows(machine.successors),
-        tables.place_rows(machine.outputs),
-    )
+def _of_fields(cls: type, without: Sequence[str] = ()) -> _Kind:
+    """The kind of a dataclass; fields that are left out come last, and have defaults."""
+    names = [one.name for one in fields(cls) if one.init and one.name not in without]
+    if len(names) == 1:
+        return _Kind(lambda item: (getattr(item, names[0]),), cls)
+    return _Kind(attrgetter(*names), cls)
 
 
-def rulebook_from(text: MappedRulebook, tables: MappedTables) -> CompiledRulebook:
-    """The compiled rulebook. Raises ValueError if its tables do not fit."""
-    rows: Sequence[tuple[schema.BundleRule, TablePlaces, TablePlaces | None]]
-    rows = list(zip(text.rulebook.rules, text.machines, text.cut, strict=True))
-    for rule, places, cut in rows:
-        machine = rule.machine
-        machine.letters = tables.row(places.letters)
-        machine.successors = tables.rows(places.successors, places.width)
-        machine.outputs = tables.truths(places.outputs, places.width)
-        if rule.cut and cut is not None:
-            rule.cut.letters = tables.row(cut.letters)
-            rule.cut.successors = tables.rows(cut.successors, cut.width)
-            # Only 0, 1 and 2 have been written.
-            rule.cut.outputs = tables.rows(cut.outputs, cut.width)  # type: ignore[assignment]
-    compiled = rulebook_of(text.rulebook, own=True)
-    axioms = [
-        replace(axiom, place=place)
-        for axiom, place in zip(compiled.axioms, text.places, strict=True)
-    ]
-    prefixes = compiled.prefixes
-    if isinstance(prefixes, StoredPrefixes):
-        orders = {name: bytes(tables.row(place)) for name, place in text.orders.items()}
-        prefixes = replace(prefixes, orders=orders)
-    return replace(compiled, axioms=tuple(axioms), prefixes=prefixes)
+def _rulebook(*parts: Any) -> CompiledRulebook:
+    """A rulebook of what is kept of it, with the machines for cut traces last."""
+    return replace(CompiledRulebook(*parts[:-1]), prefixes=parts[-1])
+
+
+_RULEBOOK = _of_fields(CompiledRulebook, ["source", "recompile"])
+_KINDS: dict[type, _Kind] = {
+    tuple: _Kind(tuple, lambda *items: items),
+    dict: _Kind(
+        lambda item: [part for pair in item.items() for part in pair],
+        lambda *items: dict(zip(items[::2], items[1::2], strict=True)),
+    ),
+    frozenset: _Kind(sorted, lambda *items: frozenset(items)),
+    bytes: _Kind(lambda item: [tuple(item)], bytes),
+    Fraction: _Kind(attrgetter("numerator", "denominator"), Fraction),
+    ltl.UnaryOperator: _Kind(lambda item: [item.value], ltl.UnaryOperator),
+    ltl.BinaryOperator: _Kind(lambda item: [item.value], ltl.BinaryOperator),
+    ltl.Bound: _of_fields(ltl.Bound, ["span"]),
+    CompiledRulebook: _Kind(_RULEBOOK.parts, _rulebook),
+    **{
+        cls: _of_fields(cls)
+        for cls in (
+            *(ltl.Atom, ltl.QuantityTerm, ltl.Count, ltl.Comparison, ltl.Same, ltl.Constant),
+            *(ltl.Unary, ltl.Binary, Read, Threshold, NumberRead, MealyMonitor),
+            *(CompiledRule, CompiledAxiom, CutTables, StoredPrefixes, Compilation, Dependency),
+            *(model.Variable, model.Exemption, model.RuleParts, model.SourceFile),
+            *(ObjectType, Enumeration, Signal, Quantity, Vocabulary),
+            *(SourceLocation, Label, Fix, Diagnostic),
+        )
+    },
+}
+_NUMBERS = {cls: number for number, cls in enumerate(_KINDS)}
+_MAKE = [kind.make for kind in _KINDS.values()]
+
+
+def written(known: Compilation, given: Sequence[object] = ()) -> bytes:
+    """The file of a compilation. Whoever reads it is ``given`` the same objects."""
+    return _Writer(given).file(known)
+
+
+def compilation_in(tables: MappedTables, given: Sequence[object] = ()) -> Compilation:
+    """The compilation of a file. Raises ValueError, TypeError or LookupError if there is none."""
+    text = json.loads(tables.text)
+    made = [*given, *[_value(value, tables) for value in text["values"]]]
+    numbers, part, place = tables.row(tuple(text["parts"])), made.__getitem__, 0
+    while place < len(numbers):
+        end = place + numbers[place]
+        made.append(_MAKE[numbers[place + 1]](*map(part, numbers[place + 2 : end])))
+        place = end
+    found = made[-1]
+    if not isinstance(found, Compilation):
+        raise ValueError("it says nothing of a rulebook")
+    return found
+
+
+def _value(value: Any, tables: MappedTables) -> object:
+    match value:
+        case [code, first, count]:
+            return tables.row((code, first, count))
+        case [code, first, count, width, are_truths]:
+            return (tables.truths if are_truths else tables.rows)((code, first, count), width)
+    return value
+
+
+class _Writer:
+    """Parts that have been placed: values, which come first, and what is made of them."""
+
+    def __init__(self, given: Sequence[object]) -> None:
+        self._n_given = len(given)
+        self._given = {id(one): number for number, one in enumerate(given)}
+        self._tables = TableWriter()
+        # A value's number is below 0 until it is known how many there are.
+        self._values: dict[tuple[type, object], int] = {}
+        self._parts: dict[tuple[int, ...], int] = {}
+
+    def file(self, known: Compilation) -> bytes:
+        """The whole file."""
+        self._number(known)
+        n_values = len(self._values)
+        numbers: list[int] = []
+        for kind, *parts in self._parts:
+            own = [self._n_given + ~n if n < 0 else self._behind(n, n_values) for n in parts]
+            numbers += [len(own) + 2, kind, *own]
+        text = {
+            "values": [value for _, value in self._values],
+            "parts": self._tables.place(numbers),
+        }
+        return self._tables.file(json.dumps(text, separators=(",", ":")).encode())
+
+    def _behind(self, number: int, n_values: int) -> int:
+        return number if number < self._n_given else number + n_values
+
+    def _number(self, item: object) -> int:
+        if id(item) in self._given:
+            return self._given[id(item)]
+        if item is None or isinstance(item, bool | int | float | str):
+            return self._value(type(item), item)
+        if isinstance(item, tuple) and (rows := self._rows(item)) is not None:
+            return self._value(tuple, rows)
+        cls = type(item) if type(item) in _KINDS else dict  # a view of one, else
+        part = (_NUMBERS[cls], *map(self._number, _KINDS[cls].parts(item)))
+        return self._parts.setdefault(part, self._n_given + len(self._parts))
+
+    def _value(self, cls: type, value: object) -> int:
+        return self._values.setdefault((cls, value), ~len(self._values))
+
+    def _rows(self, item: tuple[Any, ...]) -> tuple[object, ...] | None:
+        """Where the integers of a tuple are, or those of its rows, which may be truth values."""
+        if not item:
+            return None
+        if all(type(one) is int for one in item):
+            return self._tables.place(item)
+        if not all(type(one) is tuple and one and len(one) == len(item[0]) for one in item):
+            return None
+        kinds = {type(one) for row in item for one in row}
+        if kinds == {int} or kinds == {bool}:
+            return (*self._tables.place_rows(item), len(item[0]), kinds == {bool})
+        return None

@@ -4,15 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
-
-from rulec.automata.bundle.bundle_schema import CutMachineEntry
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.automata.outcome_machine import OutcomeMachine
 
-_MADE: dict[int, tuple[CutMachineEntry, OutcomeMachine]] = {}
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CutTables:
+    """The tables of a rule's machine for traces that are cut, as ``OutcomeMachine`` has them."""
+
+    letters: tuple[int, ...]
+    successors: tuple[tuple[int, ...], ...]
+    outputs: tuple[tuple[int, ...], ...]
+    starts: tuple[int, ...]
+
+
+_MADE: dict[int, tuple[CutTables, OutcomeMachine]] = {}
 _MOST_MADE = 1 << 10
 
 
@@ -23,7 +32,7 @@ class StoredPrefixes:
     ``orders`` are those of their states, as far as they have been stored, too.
     """
 
-    entries: Mapping[str, CutMachineEntry | None]
+    entries: Mapping[str, CutTables | None]
     orders: Mapping[str, bytes] = field(default_factory=dict)
 
     def __call__(self, rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
@@ -71,9 +80,8 @@ def _order(machine: OutcomeMachine) -> bytes:
     return b"".join([above.to_bytes(width, "little") for above in machine.above])
 
 
-def _entry(machine: OutcomeMachine | None) -> CutMachineEntry | None:
+def _entry(machine: OutcomeMachine | None) -> CutTables | None:
     if machine is None:
         return None
-    outputs: Any = tuple(map(tuple, machine.outputs))
-    successors = tuple(map(tuple, machine.successors))
-    return CutMachineEntry(machine.letters, successors, outputs, tuple(sorted(machine.starts)))
+    successors, outputs = tuple(map(tuple, machine.successors)), tuple(map(tuple, machine.outputs))
+    return CutTables(machine.letters, successors, outputs, tuple(sorted(machine.starts)))
