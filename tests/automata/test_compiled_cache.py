@@ -116,6 +116,17 @@ def test_another_step_is_compiled_once(folder, no_worker):
     assert max(len(machine.starts) for machine in recalled.values()) > 1
 
 
+def test_what_another_step_has_alike_is_there_once(folder):
+    compiled().at_step(Fraction(1, 10))
+    own = compiled()
+    first, second = zip(own.rules, own.at_step(Fraction(1, 10)).rules, strict=True)
+    assert first[0] is first[1]
+    assert second[0] != second[1]
+    assert own.at_step(Fraction(1, 10)).vocabulary is own.vocabulary
+    alone, beside = (path.stat().st_size for path in reversed(kept()))
+    assert beside < alone
+
+
 def table(machine):
     return machine.reads, machine.letters, rows(machine.successors), rows(machine.outputs)
 

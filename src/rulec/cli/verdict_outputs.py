@@ -77,9 +77,6 @@ def verdict_outputs(
 
     Raises RulecError R0702 if a file cannot be written, R0706.
     """
-    # The types of rulebooks, and msgspec: not for --help.
-    from rulec.report.verdict_findings.verdict_finding import FindingsOf
-
     columns: Mapping[str, type] | None = None
     if with_rows:
         # Arrow: not for --help.
@@ -96,6 +93,9 @@ def verdict_outputs(
                 lines = outputs._text if one.form == "text" else outputs._lines
                 lines.append(files.enter_context(answer_lines(one)))
             else:
+                # Documents in JSON, 12 ms: only where there are findings to be written.
+                from rulec.report.verdict_findings.verdict_finding import FindingsOf
+
                 stream, name = files.enter_context(output_stream(one))
                 writer = finding_writer(one.form, stream, FindingsOf(rules, columns=columns), name)
                 outputs._writers.append((writer, name))
