@@ -1,5 +1,6 @@
 """Settings shared by all tests."""
 
+import gc
 import os
 from pathlib import Path
 from shutil import rmtree
@@ -10,6 +11,7 @@ from hypothesis import HealthCheck, settings
 
 from rulec.automata import compiler, prefix_machines
 from support import hidden_spot
+from support.kept_for_a_run import FOLDER
 from support.remembered_machines import ASKED, remembering
 from support.snapshots import Snapshots
 
@@ -30,6 +32,9 @@ settings.load_profile(os.environ.get("RULEC_TEST_PROFILE", "quick"))
 # As many processes as there are processors run tests; commands in them start no more.
 os.environ.setdefault("RULEC_JOBS", "1")
 
+# As commands have it: what thousands of tests keep need not be looked through so often.
+gc.set_threshold(400_000)
+
 
 def pytest_collection_modifyitems(items):
     """Leave what is marked ``long`` to the long profile, and ``spot`` to who has Spot."""
@@ -43,20 +48,16 @@ def pytest_collection_modifyitems(items):
                 item.add_marker(pytest.mark.skip(reason="Spot is not installed"))
 
 
-_KEPT = "RULEC_TESTS_KEEP"
-"""The folder of what the processes of a run keep, which their first one makes."""
-
-
 def pytest_configure(config):
     """Keep caches for the run, before modules are collected, some of which compile rulebooks.
 
     Tests neither use what the user's own checks have left, nor leave anything there. What one test
     has compiled is not compiled again by another, but in the long profile.
     """
-    if _KEPT not in os.environ:
-        os.environ[_KEPT] = mkdtemp(prefix="rulec-tests-")
-        config.add_cleanup(lambda: rmtree(os.environ.pop(_KEPT)))
-    kept = Path(os.environ[_KEPT])
+    if FOLDER not in os.environ:
+        os.environ[FOLDER] = mkdtemp(prefix="rulec-tests-")
+        config.add_cleanup(lambda: rmtree(os.environ.pop(FOLDER)))
+    kept = Path(os.environ[FOLDER])
     own = kept / os.environ.get("PYTEST_XDIST_WORKER", "alone")
     os.environ["RULEC_CACHE_DIR"] = str(own)
     if hidden_spot.VARIABLE in os.environ:

@@ -1,6 +1,5 @@
 """The registry of codes: each is defined once, beside its pass, used, and asked for by a test."""
 
-import ast
 import re
 from functools import cache
 from importlib import import_module
@@ -27,41 +26,27 @@ def texts_of_tests():
     )
 
 
-def calls(tree, name):
-    return [
-        node
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == name
-    ]
-
-
 @cache
 def defined():
     """Code -> the name that it is bound to, and the module that does so."""
     return {
-        node.value.args[0].value: (node.targets[0].id, PACKAGE / module.name)
+        text: (name, PACKAGE / module.name)
         for module in source_modules()
-        for node in module.tree.body
-        if isinstance(node, ast.Assign) and calls(node, "Code")
+        for text, name in module.codes.items()
     }
 
 
 @cache
 def loaded():
     """Every name that is read somewhere."""
-    return {
-        node.id if isinstance(node, ast.Name) else node.attr
-        for module in source_modules()
-        for node in ast.walk(module.tree)
-        if isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Load)
-    }
+    return frozenset[str]().union(*(module.loaded for module in source_modules()))
 
 
 def test_each_code_stands_in_the_sources_once():
     lines = [line for module in source_modules() for line in module.lines]
     literals = [text for line in lines for text in re.findall(r'"(R\d{4})"', line)]
     assert sorted(literals) == sorted(defined())
-    assert sum(len(calls(module.tree, "Code")) for module in source_modules()) == len(defined())
+    assert sum(module.called.get("Code", 0) for module in source_modules()) == len(defined())
 
 
 def test_the_registry_has_what_is_defined():
@@ -99,7 +84,7 @@ def test_a_code_is_used_and_tested(text):
 
 
 def test_diagnostics_are_made_by_codes():
-    made = {module.name for module in source_modules() if calls(module.tree, "Diagnostic")}
+    made = {module.name for module in source_modules() if "Diagnostic" in module.called}
     assert made == {
         "diagnostics/code.py",
         "rulebook/batch/check_cache.py",  # reads what one has made

@@ -1,6 +1,5 @@
 """A name means one thing, and it is the field's: docs/glossary.md."""
 
-import ast
 import re
 from collections import defaultdict
 from pathlib import Path
@@ -45,7 +44,7 @@ SYLLABLES = re.compile(r"[A-Z][a-z]*|[a-z]+")
 def modules_and_folders():
     """The names in the package, as one reads them in the tree."""
     folders = {path.parent.name for path in PACKAGE.rglob("__init__.py")}
-    return folders | {module.stem for module in source_modules()}
+    return folders | {path.stem for path in PACKAGE.rglob("*.py")}
 
 
 def test_no_private_word_is_a_module():
@@ -66,9 +65,8 @@ def public_classes():
     """Public class -> the modules that define it."""
     seen = defaultdict(list)
     for module in source_modules():
-        for node in module.tree.body:
-            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
-                seen[node.name].append(module.name)
+        for name in module.classes:
+            seen[name].append(module.name)
     return seen
 
 
@@ -85,14 +83,7 @@ def glossary_names():
 
 def names_in_code():
     """Modules, folders, and whatever is defined or annotated in the package."""
-    found = modules_and_folders()
-    for module in source_modules():
-        for node in ast.walk(module.tree):
-            if isinstance(node, ast.ClassDef | ast.FunctionDef):
-                found.add(node.name)
-            elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
-                found.add(node.target.id)
-    return found
+    return modules_and_folders().union(*(module.named for module in source_modules()))
 
 
 def test_what_the_glossary_names_is_in_the_code():

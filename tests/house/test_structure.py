@@ -1,7 +1,5 @@
 """Sizes of the package and of its folders, calls and imports within its functions."""
 
-import ast
-
 import pytest
 
 from support.leftovers import POSITIONAL_CALLS, UNEXPLAINED_IMPORTS, WIDE_FOLDERS
@@ -12,7 +10,6 @@ MOST_LINES = 113_300
 fleets 24,000, ready traces read as columns 500, bounds and proofs 6,000, the words and tools of
 more law 6,500; monitors in C, the compiler without Spot and what can be driven have the rest."""
 MOST_FILES = 15
-MOST_POSITIONAL = 5
 A_FILE_FOR_EACH = {"cli/commands": "verb"}
 """Folders that are as wide as there is something to list."""
 
@@ -39,11 +36,8 @@ def test_a_folder_can_be_seen_at_a_glance(folder):
 def positional_calls():
     """Calls with many positional arguments: the file and what is called."""
     for module in source_modules():
-        for node in ast.walk(module.tree):
-            if isinstance(node, ast.Call):
-                plain = [part for part in node.args if not isinstance(part, ast.Starred)]
-                if len(plain) > MOST_POSITIONAL:
-                    yield f"{module.name} {ast.unparse(node.func)}"
+        for called in module.wide_calls:
+            yield f"{module.name} {called}"
 
 
 def test_no_call_has_more_than_five_positional_arguments():
@@ -61,16 +55,9 @@ def unexplained_imports():
     for module in source_modules():
         if any(line.startswith(REASON_OF_A_FILE) for line in module.lines):
             continue
-        functions = [node for node in ast.walk(module.tree) if isinstance(node, ast.FunctionDef)]
-        inner = {
-            node.lineno
-            for function in functions
-            for node in ast.walk(function)
-            if isinstance(node, ast.Import | ast.ImportFrom)
-        }
-        for number in sorted(inner):
+        for number in sorted(module.inner_imports):
             above = number - 1
-            while above in inner:
+            while above in module.inner_imports:
                 above -= 1
             if "# " not in module.lines[number - 1] and "# " not in module.lines[above - 1]:
                 yield module.name
