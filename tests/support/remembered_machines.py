@@ -21,8 +21,9 @@ def remembering(folder: Path) -> Callable[[Sequence[Job]], Answers]:
     """``compiler.answers_to``, but for what this process or one beside it has asked before.
 
     They keep machines in ``folder``; the second compiler needs no process, in which it would have
-    to be loaded each time. Whatever fails is asked anew, and so is everything while a
-    test has put another worker in the place of Spot's, or is about how it is confined.
+    to be loaded each time, and Spot's waits for the next rulebook. Whatever fails is asked anew,
+    and so is everything while a test has put another worker in the place of Spot's, or is about how
+    it is confined.
     """
 
     def kept(job: Job, choice: str | None) -> Path:
@@ -45,7 +46,7 @@ def remembering(folder: Path) -> Callable[[Sequence[Job]], Answers]:
         if choice == compiler_choice.DIAGRAMS:
             asked, spot = [answer_to(job, diagram_compiler.COMPILER) for job in unknown], ""
         else:
-            asked, spot = ASKED(unknown, time=time) if unknown else ([], "")
+            asked, spot = ASKED(unknown, more_will_come=True, time=time) if unknown else ([], "")
         for job, answer in zip(unknown, asked, strict=True):
             if isinstance(answer, Done):
                 file = kept(job, choice)
