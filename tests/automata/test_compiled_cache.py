@@ -127,6 +127,17 @@ def test_what_another_step_has_alike_is_there_once(folder):
     assert beside < alone
 
 
+def test_rules_with_the_same_tables_read_what_they_read(folder):
+    (folder / "alike.rules").write_text(
+        "rulebook alike\nuse words\n"
+        "hard rule first { require always p }\nhard rule second { require always q }\n"
+    )
+    compiled("alike.rules").prefixes(compiled("alike.rules"))
+    book = compiled("alike.rules")
+    machines_of = book.prefixes(book)
+    assert [machine.reads[0].name for machine in machines_of.values()] == ["p", "q"]
+
+
 def table(machine):
     return machine.reads, machine.letters, rows(machine.successors), rows(machine.outputs)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+    from rulec.automata.mealy_monitor import MealyMonitor
     from rulec.automata.outcome_machine import OutcomeMachine
 
 
@@ -21,7 +22,7 @@ class CutTables:
     starts: tuple[int, ...]
 
 
-_MADE: dict[int, tuple[CutTables, OutcomeMachine]] = {}
+_MADE: dict[tuple[int, int], tuple[CutTables, MealyMonitor, OutcomeMachine]] = {}
 _MOST_MADE = 1 << 10
 
 
@@ -45,8 +46,10 @@ class StoredPrefixes:
             entry = self.entries.get(rule.name)
             found[rule.name] = None
             if entry is not None:
-                known = _MADE.get(id(entry))
-                if known is None or known[0] is not entry:
+                # Rules that read different things may have the same tables.
+                key = id(entry), id(rule.machine)
+                known = _MADE.get(key)
+                if known is None or known[0] is not entry or known[1] is not rule.machine:
                     if len(_MADE) >= _MOST_MADE:
                         _MADE.clear()
                     machine = OutcomeMachine(
@@ -57,8 +60,8 @@ class StoredPrefixes:
                         frozenset(entry.starts),
                         order=self.orders.get(rule.name),
                     )
-                    known = _MADE[id(entry)] = entry, machine
-                found[rule.name] = known[1]
+                    known = _MADE[key] = entry, rule.machine, machine
+                found[rule.name] = known[2]
         return found
 
 
