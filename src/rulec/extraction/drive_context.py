@@ -20,6 +20,7 @@ from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Recording, Side
+from rulec.trace.cells import Cells
 from rulec.trace.end_to_end import EndToEnd
 from rulec.trace.laid_out import LaidOut
 from rulec.trace.plain_arrays import distinct, medians
@@ -234,9 +235,12 @@ class DriveContext:
         by_state = np.zeros(self.states)
         if self.extents.most_off_middle <= _LEAST_OFFSET_M:
             return by_state
-        rows, columns = self.driving_along.nonzero()
-        lane, drive = self.extents.lane[rows, columns], self.spans.number[columns]
-        away = self.extents.off_middle[rows, columns]
+        cells = Cells.at(self.driving_along)
+        rows, columns = cells.rows, cells.columns
+        lane, drive = cells.of(self.extents.lane), self.spans.number[columns]
+        away = cells.of(self.extents.off_middle)
+        if not self._may_be_off(rows, drive, lane, away):
+            return by_state
         of_all: Floats | None = None
         for number in distinct(self.ego_lane).tolist():
             inside = np.flatnonzero(lane == number)
@@ -249,6 +253,28 @@ class DriveContext:
             here = self.ego_lane == number
             by_state[here] = offset[self.spans.number[here]]
         return np.where(np.abs(by_state) > _LEAST_OFFSET_M, by_state, 0.0)
+
+    def _may_be_off(
+        self, rows: NDArray[intp], drive: NDArray[intp], lane: NDArray[intp], away: Floats
+    ) -> bool:
+        """Whether such a median of medians may be greater than ``_LEAST_OFFSET_M`` to some side.
+
+        For that at least half of the values have to be, of half of the participants: in all lanes
+        or in one. That is sooner counted than medians are found.
+        """
+        n_drives, lanes = self.spans.n_drives, self.existing_lanes.shape[1]
+        sides = [np.flatnonzero(away * way > _LEAST_OFFSET_M) for way in (-1, 1)]
+        for groups, size in (
+            (rows * n_drives + drive, n_drives),
+            ((rows * n_drives + drive) * lanes + lane, n_drives * lanes),
+        ):
+            count = np.bincount(groups, minlength=len(self.relevant) * size).reshape(-1, size)
+            for far in sides:
+                beyond = np.bincount(groups[far], minlength=count.size).reshape(count.shape)
+                are_far = (count > 0) & (2 * beyond >= count)
+                if (are_far.any(axis=0) & (2 * are_far.sum(0) >= (count > 0).sum(0))).any():
+                    return True
+        return False
 
     def _offsets(
         self, rows: NDArray[intp], drive: NDArray[intp], away: Floats

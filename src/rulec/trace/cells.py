@@ -37,6 +37,11 @@ class Cells:
         own = (values.take(chosen) for values in (self.rows, self.columns, self.places))
         return Cells(self.shape, *own)
 
+    def in_rows(self, rows: NDArray[intp], n_rows: int) -> Cells:
+        """The same cells in arrays of more rows, of which these have only some."""
+        n_columns, own = self.shape[1], rows.take(self.rows)
+        return Cells((n_rows, n_columns), own, self.columns, own * n_columns + self.columns)
+
     def of(self, values: NDArray[Any]) -> NDArray[Any]:
         """The cells of an array, or of one with a value for each column only."""
         if values.ndim > 1 and len(values) == self.shape[0]:

@@ -116,10 +116,9 @@ def _lamps(context: DriveContext) -> Mapping[Lamp, tuple[Flags, Flags]]:
     return flags
 
 
-@once
-def _own_part(context: DriveContext) -> tuple[NDArray[intp], ...]:
-    """The drive's rows and columns in arrays of the whole recording."""
-    return np.ix_(context.tracks.rows, context.columns)
+def _own_part(context: DriveContext, flags: Flags) -> Flags:
+    """The drive's rows and columns of flags of the whole recording."""
+    return flags.take(context.tracks.rows, axis=0).take(context.columns, axis=1)
 
 
 def _lit(context: DriveContext, lamp: Lamp) -> tuple[Flags, Flags]:
@@ -127,7 +126,7 @@ def _lit(context: DriveContext, lamp: Lamp) -> tuple[Flags, Flags]:
     if lamp not in _lamps(context):
         return np.zeros_like(context.relevant), np.zeros_like(context.relevant)
     lit, told = _lamps(context)[lamp]
-    return lit[_own_part(context)], told[_own_part(context)]
+    return _own_part(context, lit), _own_part(context, told)
 
 
 def _flashing(lit: Flags, context: DriveContext) -> Flags:
@@ -169,7 +168,7 @@ def _far_indicator(context: DriveContext) -> tuple[Flags, Flags]:
 
 def _turning_far(context: DriveContext) -> SignalColumns:
     """The signal of those who have signalled to turn to the far side, and do."""
-    turns, open_end = (flags[_own_part(context)] for flags in _turns(context))
+    turns, open_end = (_own_part(context, flags) for flags in _turns(context))
     lit, told = _far_indicator(context)
     if "arrivals" not in context.recording.complete:
         # Who signals and leaves the map may turn beyond it
@@ -267,8 +266,9 @@ def _about_to_overtake(context: DriveContext) -> SignalColumns:
     """
     far, lane = (1 if context.side == "right" else -1), context.extents.lane
     steps = round(context.thresholds.signalling_s / context.recording.step_s)
-    onward = context.spans.after(lane)
-    pulls_out = onward > lane if far > 0 else onward < lane
+    onward = context.extents.lane_steps
+    pulls_out = onward > 0 if far > 0 else onward < 0
+    pulls_out[:, context.spans.end[context.spans.begins] - 1] = False
     rows = np.flatnonzero(pulls_out.any(axis=1))
     inside = context.on_lanes[rows]
     pulls_out[rows] &= inside & context.spans.after(inside)

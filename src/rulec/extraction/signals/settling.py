@@ -98,6 +98,14 @@ def _next_to(changed: Flags, flags: Flags, spans: EndToEnd) -> Flags:
     """Flags of changed states next to flagged ones, across others that have changed, too."""
     if not changed.any():
         return changed
+    if changed.ndim > 1:
+        found, rows = np.zeros_like(changed), np.flatnonzero(changed.any(axis=1))
+        found[rows] = _beside_flagged(changed[rows], flags[rows], spans)
+        return found
+    return _beside_flagged(changed, flags, spans)
+
+
+def _beside_flagged(changed: Flags, flags: Flags, spans: EndToEnd) -> Flags:
     earlier = np.maximum(spans.latest(~changed), spans.first)
     later = np.minimum(spans.next_state(~changed), spans.end - 1)
     either = [np.take_along_axis(flags, where, axis=-1) for where in (earlier, later)]

@@ -14,7 +14,7 @@ from functools import cached_property
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy import intp
+from numpy import int8, intp
 from numpy.typing import NDArray
 
 from rulec.extraction.tracks.driven_road import DrivenRoad
@@ -82,6 +82,14 @@ class RoadExtents:
         beyond = np.moveaxis(self.left_of, -1, 0) >= 0
         lane: NDArray[intp] = np.clip(beyond.sum(axis=0) - 1, 0, last)
         return lane
+
+    @cached_property
+    def lane_steps(self) -> NDArray[int8]:
+        """By how many lanes farther left, at most one, the middle is a column later."""
+        onward = self.lane[:, 1:] - self.lane[:, :-1]
+        steps: NDArray[int8] = np.zeros(self.lane.shape, dtype=int8)
+        steps[:, :-1] = np.sign(onward)
+        return steps
 
     @cached_property
     def off_middle(self) -> Floats:
@@ -184,7 +192,7 @@ class RoadExtents:
 
 _FIELDS = tuple(field.name for field in fields(RoadExtents))
 
-_LAID = frozenset((*_FIELDS, "s", "lane", "off_middle"))
+_LAID = frozenset((*_FIELDS, "s", "lane", "lane_steps", "off_middle"))
 
 
 class _LaidExtents(RoadExtents):

@@ -49,7 +49,8 @@ def _stopped_for_pedestrian(context: DriveContext) -> SignalColumns:
     if len(_pedestrians(context)):
         rows = _pedestrians(context)
         waited_for = ((_used_ahead(context) > 0) & context.relevant[rows]).any(axis=0)
-        stopped = _stopped(context) & waited_for
+        states = np.flatnonzero(waited_for)
+        stopped[:, states] = _stopped(context, states)
     return SignalColumns(
         about={"stopped_for_pedestrian": stopped},
         only={"stopped_for_pedestrian": context.tracks.of_type("vehicle")},
@@ -116,13 +117,14 @@ def _crossing_uses(
     """
     start, end = stretch
     others, tracks, limits = context.extents, context.tracks, context.thresholds
-    rows, beside = _pedestrians(context), np.zeros_like(context.relevant)
+    rows = _pedestrians(context)
     # Room for who does not walk exactly between the marks
-    beside[rows] = others.s_max[rows] > start - limits.kerb_m
-    beside[rows] &= others.s_min[rows] < end + limits.kerb_m
-    uses, cells = np.zeros(beside.shape, dtype=int), Cells.at(beside)
-    if not len(cells):
-        return uses[rows]
+    beside = others.s_max[rows] > start - limits.kerb_m
+    beside &= others.s_min[rows] < end + limits.kerb_m
+    uses, own = np.zeros(beside.shape, dtype=int), Cells.at(beside)
+    if not len(own):
+        return uses
+    cells = own.in_rows(rows, len(context.relevant))
     edges = (
         np.zeros(context.states, dtype=intp),
         np.full(context.states, context.existing_lanes.shape[1]),
@@ -140,8 +142,8 @@ def _crossing_uses(
     approaches = walks & (towards > np.abs(cells.of(others.along)))
     soon = approaches & (to_road <= towards * limits.about_to_s)
     enters = soon & (to_road <= towards * limits.entering_s)
-    uses.ravel()[cells.places] = np.select([on, enters, soon, waits], [4, 3, 2, 1], 0)
-    return uses[rows]
+    uses.ravel()[own.places] = np.select([on, enters, soon, waits], [4, 3, 2, 1], 0)
+    return uses
 
 
 def _too_late(
@@ -205,18 +207,21 @@ def _behind_another(context: DriveContext, stopped: Flags) -> Flags:
     others, vehicles = context.extents, context.tracks.of_type("vehicle")[:, None]
     waits, lanes = np.zeros_like(stopped), context.lanes_within[0]
     for row in np.flatnonzero(stopped.any(axis=1)):
-        ahead = vehicles & (others.s_min >= others.s_max[row]) & (others.s_min < start)
-        same = (lanes & lanes[row]) != 0
-        waits[row] = stopped[row] & (ahead & same).any(axis=0)
+        at = np.flatnonzero(stopped[row])
+        s_min = others.s_min[:, at]
+        ahead = vehicles & (s_min >= others.s_max[row, at]) & (s_min < start[at])
+        same = (lanes[:, at] & lanes[row, at]) != 0
+        waits[row, at] = (ahead & same).any(axis=0)
     return waits
 
 
-def _stopped(context: DriveContext) -> Flags:
-    """Flags of participants stopped on ego's lanes before the crossing ahead."""
+def _stopped(context: DriveContext, states: NDArray[intp]) -> Flags:
+    """Flags of participants stopped on ego's lanes before the crossing ahead, in some states."""
     start, _ = next_crossing(context)
-    stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
-    way = start - context.extents.s_max
-    stopped: Flags = stands & context.on_lanes & (way >= 0) & (way <= 2 * context.thresholds.zone_m)
+    stands = context.tracks.speed[:, states] * KMH < context.thresholds.standing_kmh
+    way = start[states] - context.extents.s_max[:, states]
+    stopped: Flags = stands & context.on_lanes[:, states]
+    stopped &= (way >= 0) & (way <= 2 * context.thresholds.zone_m)
     return stopped
 
 
