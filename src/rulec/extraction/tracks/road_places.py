@@ -64,7 +64,7 @@ class RoadPlaces:
         for place_m, own in self._lanes_within.items():
             both = zip(own, other.lanes_within(place_m), strict=True)
             joined._lanes_within[place_m] = tuple(and_row(*sets, row) for sets in both)
-        for name in ("s", "lane"):
+        for name in ("s", "lane", "lane_steps"):
             values = getattr(self.extents, name), getattr(other.extents, name)
             joined.extents.__dict__[name] = and_row(*values, row)
         return joined
