@@ -12,7 +12,7 @@ from rulec.recordings.recording import Recording
 from rulec.recordings.sumo.lanelets import net_lanelets
 from rulec.recordings.sumo.net import read_net
 from rulec.scenario.recorded.reference_line import turn
-from support.builders.drive_contexts import context_of
+from support.builders.drive_contexts import along, context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
 NETS = sorted((Path(__file__).parents[2] / "worlds/stored").glob("*.net.xml"))
@@ -103,6 +103,32 @@ def test_one_that_does_not_slow_down_for_ego_was_not_held_up(way, conflict):
     places = np.array([-36.5, -11.5, -11.5 + way, -3])
     found = signals(NORTH, lambda t: np.interp(t, [0, 2.5, 3, 3.5], places), np.pi / 2)
     assert found.world["conflict_from_right"].any() == conflict
+
+
+@pytest.mark.parametrize(("mps", "known"), [(6.0, False), (4.0, True)])
+def test_who_slows_down_no_more_than_its_bend_needs_may_do_so_for_that(mps, known):
+    """From the right it turns into ego's road by a bend of 12 m: at 6 m/s with 3 m/s² across.
+
+    Ego is past the bend's end when the other one, did it keep its 10 m/s, would come there less
+    than a second later; it comes more than a second later. At 4 m/s it waits for ego.
+    """
+    turns = np.linspace(0, np.pi / 2, 19)
+    bend = 12 * np.stack([1 - np.cos(turns), np.sin(turns) - 1], axis=1)
+    road = [
+        straight(1, -60, -12, successors=(2,)),
+        straight(2, -12, 12, predecessors=(1,), successors=(3,), types=INSIDE, junction="x"),
+        straight(3, 12, 120, predecessors=(2, 5)),
+        lanelet(4, [(0, -90), (0, -12)], successors=(5,)),
+        lanelet(5, bend, predecessors=(4,), successors=(3,), types=INSIDE, junction="x"),
+    ]
+    driven = 55.0 + np.cumsum([0.0, *([5.0] * 4), *([mps / 2] * 11)])
+    other = along(8, np.array([(0.0, -90.0), *bend, (120.0, 0.0)]), driven)
+    ego = vehicle(7, {k: (-15 + 5 * k, 0) for k in STEPS}, speed=10)
+    found = replace(recording(road, [ego, other]), complete=frozenset({"YIELD"}))
+    signals = priority_signals(context_of(found, route=("1", "2", "3")))
+    side = "conflict_from_right"
+    assert signals.world[side].any() == known
+    assert signals.unknown[side].any() != known
 
 
 @pytest.mark.parametrize(("at_1_s", "conflict"), [(-30, False), (-26, True)])

@@ -26,6 +26,9 @@ _DRIVES_MPS = 3.0
 _SLOWED = 0.9
 """Who keeps more of its speed was not made to brake: speeds waver by so much on their own."""
 
+_BENDS_MPS2 = 2.0
+"""Who drives round a bend with so much across, as usual, may be slow for the bend alone."""
+
 _BRIEFLY_S = 1.0
 """Speeds are means over so long: who touches the brake for less is not held up."""
 
@@ -128,7 +131,10 @@ def _held_up(
     held_up = bool(soon[decides] and soon[-1])
     # Nor who brakes once ego is gone
     held_up = held_up and _slows_down(context, other, first + decides, int(until))
-    return (int(columns[soon.argmax()]), leaves is not None) if held_up else None
+    if not held_up:
+        return None
+    for_ego = not _bends(context, other, first + decides, comes)
+    return int(columns[soon.argmax()]), leaves is not None and for_ego
 
 
 def _slows_down(context: DriveContext, other: Passage, first: int, last: int) -> bool:
@@ -139,6 +145,16 @@ def _slows_down(context: DriveContext, other: Passage, first: int, last: int) ->
     steps = min(steps, len(travelled) - 1)
     slowest = float((travelled[steps:] - travelled[:-steps]).min()) / steps / step_s
     return slowest < _SLOWED * float(passages.tracks.speed[other.row, first])
+
+
+def _bends(context: DriveContext, other: Passage, first: int, last: int) -> bool:
+    """True if one drives round a bend between two columns so fast that it may be slow for that."""
+    tracks, step_s = context.surroundings.passages.tracks, context.recording.step_s
+    steps = max(round(_BRIEFLY_S / 2 / step_s), 1)
+    heading = np.unwrap(tracks.heading[other.row, first : last + steps + 1])
+    turns = np.abs(heading[steps:] - heading[:-steps]) / steps / step_s
+    across = turns * tracks.speed[other.row, first : first + len(turns)]
+    return bool((across >= _BENDS_MPS2).any())
 
 
 def _decides(context: DriveContext, own: Passage, enters: int) -> int:
