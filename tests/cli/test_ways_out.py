@@ -8,6 +8,7 @@ import pytest
 
 from rulec.cli.main import VERBS, main
 from rulec.cli.usage_help import EXAMPLES
+from rulec.rulebook.files.words_in_files import words_of_vocabularies
 from rulec.version import install_command
 
 
@@ -140,6 +141,18 @@ def test_a_trace_in_the_words_of_another_vocabulary(tmp_path, capsys):
     status, text = said(capsys, "verify", str(trace), "-r", "un-r79")
     assert status == 2
     assert "it is a word of the vocabulary `paper`: judge by a rulebook that uses that" in text
+
+
+def test_a_unit_is_no_word_of_a_vocabulary(tmp_path, capsys):
+    trace = tmp_path / "t.jsonl"
+    trace.write_text(json.dumps({"states": [{"t": 0}]}))
+    status, text = said(capsys, "verify", str(trace), "-r", "esterle2019")
+    assert status == 2
+    assert "  = help: known: `position`, `surface`, `CONGESTED`\n" in text
+    every = words_of_vocabularies()
+    assert every["paper"] >= {"vehicle", "position", "b", "CONGESTED"}
+    assert every["road"].isdisjoint({"t", "m", "km", "road", "v", "o", "default"})
+    assert {"fourth_or_further_lane", "hazard_lights", "gap", "tram"} < every["road"]
 
 
 @pytest.mark.parametrize(

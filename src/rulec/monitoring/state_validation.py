@@ -173,6 +173,13 @@ def check_state(
         _check_value(value, declaration, declaration.parameters, about)
 
 
+_TRUTHS_ELSEWHERE: Mapping[str | float, str] = {
+    **dict.fromkeys(("True", "TRUE", "true", "T", "yes", 1), "write `true`"),
+    **dict.fromkeys(("False", "FALSE", "false", "F", "no", 0), "write `false`"),
+}
+"""How other programs, pandas among them, write what is true or false."""
+
+
 class _About(NamedTuple):
     """What values are checked against, and what messages call their state."""
 
@@ -191,7 +198,9 @@ def _check_value(
         if expected := _misfit(value, declaration):
             way_out = ""
             if isinstance(declaration, Enumeration) and isinstance(value, str):
-                way_out = _suggest(value, declaration.values)
+                way_out = did_you_mean(value, declaration.values)
+            if isinstance(declaration, Signal) and isinstance(value, str | int | float):
+                way_out = _TRUTHS_ELSEWHERE.get(value, "")
             message = f"{where} says `{name}` is {_shown(value)}; {expected}"
             raise UNFITTING_VALUE.error(place, message, help=way_out)
         return
@@ -205,7 +214,8 @@ def _check_value(
     for item, inner in value.items():
         if item not in objects:
             message = f"{where} gives `{name}` for `{item}`, which is not among the objects"
-            raise UNKNOWN_OBJECT.error(place, message, help=_suggest(item, objects))
+            way_out = f'objects have types: write "objects": {{"{item}": "{parameters[0]}"}}'
+            raise UNKNOWN_OBJECT.error(place, message, help=_suggest(item, objects) or way_out)
         if not vocabulary.is_subtype(objects[item], parameters[0]):
             message = (
                 f"{where} gives `{name}` for `{item}`, which is of type `{objects[item]}`; "

@@ -9,20 +9,24 @@ from pathlib import Path
 
 from rulec.diagnostics import RulecError
 from rulec.rulebook.files import search_path as search
+from rulec.syntax.keywords import RESERVED
 
-_COMMENT = re.compile(r"#[^\n]*")
+_NO_WORDS = re.compile(r"#[^\n]*|\([^()]*\)|\bin\s+\S+|\bdefault\s+\S+|\bvocabulary\s+\S+")
+"""Comments, parameters, units, defaults, and the vocabulary's own name."""
+
+_NAME = re.compile(r"\b[^\W\d]\w*")
 
 
 def words_of_vocabularies(search_path: Sequence[Path] = ()) -> dict[str, frozenset[str]]:
-    """The words that occur in each vocabulary outside comments."""
+    """The words that each vocabulary declares: types, signals, quantities, values."""
     found = {}
     for path in search.available_vocabularies(search_path):
         with suppress(RulecError):
             text = search.read_bytes(path).decode(errors="replace")
-            found[path.stem] = frozenset(re.findall(r"\w+", _COMMENT.sub("", text)))
+            found[path.stem] = frozenset(_NAME.findall(_NO_WORDS.sub(" ", text))) - RESERVED
     return found
 
 
 def vocabularies_with(name: str, search_path: Sequence[Path] = ()) -> list[str]:
-    """The vocabularies in which a word occurs outside comments."""
+    """The vocabularies that declare a word."""
     return [one for one, words in words_of_vocabularies(search_path).items() if name in words]

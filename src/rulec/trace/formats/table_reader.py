@@ -89,7 +89,7 @@ def check_columns(columns: Sequence[str], place: SourceLocation) -> None:
     times = Counter(columns)
     for name in columns:
         if not name:
-            raise problem("a column has no name", place)
+            raise problem("a column has no name", place, _INDEX if TRACE in times else _FORM)
         if times[name] > 1:
             raise problem(f"there are two columns `{name}`", place)
         for end, other in ((FROM, TO), (TO, FROM)):
@@ -102,6 +102,8 @@ def check_columns(columns: Sequence[str], place: SourceLocation) -> None:
             way_out = _FORM if near is None else f"if `{near}` is that, call it `{name}`"
             raise problem(f"there is no column `{name}`", place, way_out)
 
+
+_INDEX = "a cell of the first line is empty; pandas writes one, unless it is told `index=False`"
 
 _BOUNDS = "a number known to lie between two others has both: such as 1 and 2.5"
 
@@ -206,7 +208,9 @@ class _Building:
             raise self._problem(
                 f"the step is {_shown(step)}; here it is {expected}",
                 number,
-                "the rows of a trace stand together, in the order of its steps, from 0 on",
+                "a step is a whole number, written without a point: 0, 1, 2"
+                if step_number is None and not is_empty(step)
+                else "the rows of a trace stand together, in the order of its steps, from 0 on",
             )
         if self.now and step_number > current:
             self._end_state()
@@ -341,7 +345,11 @@ class _Building:
 
     def _twice(self, name: str, path: Sequence[str], number: int) -> RulecError:
         about = f" for `{', '.join(path)}`" if path else ""
-        return self._problem(f"step {len(self.states)} gives `{name}` twice{about}", number)
+        near = nearest_name(name, (column for column in OWN if column not in self.table.at))
+        way_out = "" if near is None else f"if `{name}` is `{near}`, call it so"
+        return self._problem(
+            f"step {len(self.states)} gives `{name}` twice{about}", number, way_out
+        )
 
     def _problem(self, message: str, number: int, help_text: str = "") -> RulecError:
         return problem(message, self.table.place(number), help_text)
