@@ -161,6 +161,7 @@ HEAD = "trace,step,object,type,other,p\n"
         ("trace,step,step_s\nt,0,x\n", 2, "`step_s` is `x`", ""),
         ("trace,step,step_s\nt,0,1\nt,1,2\n", 3, "`step_s` is `2`; in the rows before it is 1", ""),
         ("trace,step,step_s\nt,0,?\n", 2, "`step_s` is `?`", ""),
+        ("trace,step,step_s\nt,0,nan\nt,1,nan\n", 2, "`step_s` is `nan`; it is a number", ""),
         ("trace,step,p.from\n", 1, "a column `p.from`, but no `p.to`", "has both"),
         ("trace,step,p.from,p.to\nt,0,1,\n", 2, "`p.to` is empty", "has both"),
         ("trace,step,p.from,p.to\nt,0,?,1\n", 2, "`p.from` is `?`", "has both"),
@@ -315,6 +316,7 @@ def test_parquet_knows_types_of_its_own():
         (gzip.compress(b"", mtime=0), "no Parquet, but data compressed with gzip"),
         (table(trace=["t"], step=pyarrow.array([0.5])), "the step is `0.5`; here it is 0"),
         (table(trace=["t"], p=[True]), "there is no column `step`"),
+        (table(trace=["t"], step=[0], step_s=[float("nan")]), "`step_s` is `nan`; it is a number"),
         (table(trace=["t"], step=[0], p=[[True]]), "the column `p` is of type list"),
         (
             table(trace=["t"], step=[0], p=pyarrow.array([0.1], pyarrow.float32())),

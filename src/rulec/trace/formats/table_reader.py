@@ -219,7 +219,8 @@ class _Building:
         if is_empty(step_s):
             return
         value = self._value(step_s, number)
-        if type(value) not in _NUMBERS:
+        # What is no number is not even equal to itself.
+        if type(value) not in _NUMBERS or value != value:
             raise self._problem(f"`step_s` is {_shown(step_s)}; it is a number of seconds", number)
         if self.step_s is not None and self.step_s != value:
             message = f"`step_s` is {_shown(step_s)}; in the rows before it is {self.step_s:g}"
