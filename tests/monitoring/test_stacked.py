@@ -66,8 +66,8 @@ def test_together_they_get_the_verdicts_of_each(chance):
     for verdict in answers:
         for one in () if isinstance(verdict, NotJudged) else verdict.open:
             # Asked before the names themselves are known
-            is_among = one.depends_on_none_but(some)
-            assert is_among == some.issuperset(one.depends_on)
+            others = one.depends_beyond(some)
+            assert others == set(one.depends_on) - some
     assert [in_plain_words(answer) for answer in answers] == expected
 
 

@@ -244,8 +244,7 @@ class ViolationTally:
                 members.append(drive.arrays.id)
         for result in answer.open:
             self.open_rules[result.rule] = None
-            if not result.depends_on_none_but(self.open_on):
-                self.open_on.update(result.depends_on)
+            self.open_on |= result.depends_beyond(self.open_on)
             self.open_hard += result.strength == "hard"
         for rule in answer.not_judged:
             self.untold.setdefault(rule.rule, {}).update(dict.fromkeys(rule.untold))

@@ -86,23 +86,22 @@ class OpenVerdict:
         binding: Mapping[str, str],
         reasons: Callable[[], OpenReasons],
         *,
-        unknown: Callable[[], frozenset[str]] | None = None,
+        beyond: Callable[[Set[str]], frozenset[str] | None] | None = None,
     ) -> OpenVerdict:
         """An open verdict whose reasons are found when they are asked for.
 
-        ``unknown`` tells names among which are all that it depends on, and takes less time.
+        ``beyond`` tells on what it depends but for some names, if that takes less time.
         """
         result = cls.__new__(cls)
         own = {"rule": rule, "strength": strength, "binding": binding, "_reasons": reasons}
-        result.__dict__.update(own, _unknown=unknown)
+        result.__dict__.update(own, _beyond=beyond)
         return result
 
-    def depends_on_none_but(self, names: Set[str]) -> bool:
-        """Whether ``depends_on`` is among these, told without finding it if that can be."""
-        unknown = self.__dict__.get("_unknown")
-        if unknown is not None and unknown() <= names:
-            return True
-        return frozenset(self.depends_on) <= names
+    def depends_beyond(self, names: Set[str]) -> frozenset[str]:
+        """What of ``depends_on`` is not among these, told without finding it if that can be."""
+        beyond = self.__dict__.get("_beyond")
+        found: frozenset[str] | None = None if beyond is None else beyond(names)
+        return frozenset(self.depends_on) - names if found is None else found
 
     def __getattr__(self, name: str) -> Any:
         # Called only for what is not there.
@@ -110,7 +109,7 @@ class OpenVerdict:
         if reasons is None or name not in OpenReasons._fields:
             raise AttributeError(name)
         self.__dict__.update(reasons()._asdict())
-        for key in ("_reasons", "_unknown"):
+        for key in ("_reasons", "_beyond"):
             self.__dict__.pop(key, None)
         return self.__dict__[name]
 

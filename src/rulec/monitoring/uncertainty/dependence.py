@@ -83,6 +83,10 @@ class Dependence:
                     return tuple([name for name in names if name in needed or name in more])
         return None
 
+    def needs(self, name: str, every: frozenset[str]) -> bool:
+        """Whether all others of these names do not decide, as few pairs tell."""
+        return self._decides(every - {name}, thoroughly=False) is False
+
     def decides(self, names: frozenset[str]) -> bool:
         """Whether completions that agree on these names agree on the outcome."""
         return self._decides(names, thoroughly=True) is True

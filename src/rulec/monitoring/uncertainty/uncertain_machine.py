@@ -136,16 +136,7 @@ class UncertainMachine:
         order: Sequence[str],
     ) -> OpenReasons:
         """Why the answer is open; ``order`` is that of names in the vocabulary."""
-        alternatives = tuple(
-            [
-                PossibleAlternative(_stretches(word.states), own)
-                for word, own in zip(words, constants, strict=True)
-            ]
-        )
-        unknown = tuple(
-            frozenset().union(*names)
-            for names in zip(*(word.unknown for word in words), strict=True)
-        )
+        alternatives, unknown = _told_of(words, constants)
         key = tuple([(x.stretches, tuple(x.constants.items())) for x in alternatives]), unknown
         found = self._reasons.get(key)
         if found is None:
@@ -159,6 +150,24 @@ class UncertainMachine:
             self._reasons[key] = found
         return found
 
+    def depends_beyond(
+        self,
+        words: Sequence[PossibleWord],
+        constants: Sequence[Mapping[str, object]],
+        names: Set[str],
+    ) -> frozenset[str] | None:
+        """On what it depends which of two outcomes words have but for these names.
+
+        A name that decides what all others do not is in every set that decides. None if some is
+        not surely so: then it takes the reasons to know.
+        """
+        alternatives, unknown = _told_of(words, constants)
+        doubtful = _doubtful(alternatives, unknown)
+        others = doubtful - names
+        every = doubtful | {BEFORE} if len(self.machine.starts) > 1 else doubtful
+        dependence = Dependence(self._runs, alternatives, unknown)
+        return others if all(dependence.needs(name, every) for name in others) else None
+
     def _reasons_of(
         self,
         alternatives: Sequence[PossibleAlternative],
@@ -169,9 +178,7 @@ class UncertainMachine:
         pending: tuple[Reason, ...] = ("not over",) if PENDING in outcomes else ()
         if len(outcomes) == 1:
             return OpenReasons(pending)
-        doubtful = frozenset[str]().union(*unknown)
-        if alternatives[1:]:
-            doubtful = doubtful.union(*[own.constants for own in alternatives])
+        doubtful = _doubtful(alternatives, unknown)
         names = [name for name in order if name in doubtful]
         if len(self.machine.starts) > 1:
             names.append(BEFORE)
@@ -390,6 +397,30 @@ class UncertainMachine:
             reached = frozenset(diagram.step(n, here, mask) for here in reached for mask in digits)
         every = frozenset(nodes >> 1 for nodes in reached) - {0}
         return frozenset(x for x in every if not any(y & x == y != x for y in every))
+
+
+def _told_of(
+    words: Sequence[PossibleWord], constants: Sequence[Mapping[str, object]]
+) -> tuple[tuple[PossibleAlternative, ...], tuple[frozenset[str], ...]]:
+    """The letters of words, and for each read the names that are unknown in some of them."""
+    alternatives = tuple(
+        [
+            PossibleAlternative(_stretches(word.states), own)
+            for word, own in zip(words, constants, strict=True)
+        ]
+    )
+    unknown = zip(*(word.unknown for word in words), strict=True)
+    return alternatives, tuple(frozenset().union(*names) for names in unknown)
+
+
+def _doubtful(
+    alternatives: Sequence[PossibleAlternative], unknown: Sequence[frozenset[str]]
+) -> frozenset[str]:
+    """The names on which it may depend."""
+    doubtful = frozenset[str]().union(*unknown)
+    if alternatives[1:]:
+        doubtful = doubtful.union(*[own.constants for own in alternatives])
+    return doubtful
 
 
 def _stretches(states: Sequence[Letters]) -> _Stretches:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from functools import partial
 from typing import TypeVar
 
@@ -36,9 +36,28 @@ class StackedReasons:
 
     def of(self, words: StackedWords, place: int) -> OpenReasons:
         """Why the verdict on one of these words is open."""
+        possible, constants, is_exact = self._possible_words(words, place)
+        found = words.rule.machine.reasons(possible, constants, self._order)
+        found = found._replace(exact=found.exact and is_exact)
+        first, last = words.instances.firsts[place], words.instances.lasts[place]
+        stretch = slice(int(first), int(last) + 1)
+        return told_within_bounds(found, lambda name: self._is_within_bounds(name, stretch))
+
+    def beyond(self, words: StackedWords, place: int, names: Set[str]) -> frozenset[str] | None:
+        """On what it depends but for these names; None if that takes finding all of it."""
+        if unknown_names(words, place) <= names:
+            return frozenset()
+        possible, constants, _ = self._possible_words(words, place)
+        return words.rule.machine.depends_beyond(possible, constants, names)
+
+    def _possible_words(
+        self, words: StackedWords, place: int
+    ) -> tuple[list[PossibleWord], list[Mapping[str, object]], bool]:
+        """One of these words by the values of what does not change, and whether it is exact."""
         own = slice(int(words.bounds[place]), int(words.bounds[place + 1]))
         rule, is_exact = words.rule, words.is_exact
-        possible, constants = [], []
+        possible: list[PossibleWord] = []
+        constants: list[Mapping[str, object]] = []
         for supposed, numbers, letters, entangled in zip(
             words.supposed, words.numbers, words.letters, words.entangled, strict=True
         ):
@@ -67,11 +86,7 @@ class StackedReasons:
             )
             possible.append(word)
             constants.append(_by_name(supposed))
-        found = rule.machine.reasons(possible, constants, self._order)
-        found = found._replace(exact=found.exact and is_exact)
-        first, last = words.instances.firsts[place], words.instances.lasts[place]
-        stretch = slice(int(first), int(last) + 1)
-        return told_within_bounds(found, lambda name: self._is_within_bounds(name, stretch))
+        return possible, constants, is_exact
 
     def _unknown_names(
         self, words: StackedWords, read: int, digits: list[int], own: slice

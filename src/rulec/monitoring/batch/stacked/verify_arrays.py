@@ -20,7 +20,7 @@ from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.columns.columnize import UnencodableError
 from rulec.monitoring.batch.stacked.contradictions import LinkedFacts, contradicted, linked
-from rulec.monitoring.batch.stacked.open_reasons import StackedReasons, unknown_names
+from rulec.monitoring.batch.stacked.open_reasons import StackedReasons
 from rulec.monitoring.batch.stacked.stack import Stack, side_by_side
 from rulec.monitoring.batch.stacked.stack_reader import StackReader
 from rulec.monitoring.batch.stacked.stacked_outcomes import (
@@ -148,9 +148,10 @@ class _StackedRun:
             found = Violation(rule.name, rule.strength, binding, step)
         else:
             why = partial(self._reasons.of, words, place)
-            unknown = partial(unknown_names, words, place)
+            are_two = outcome.answer.best != outcome.answer.worst
+            beyond = partial(self._reasons.beyond, words, place) if are_two else None
             found = OpenVerdict.explained_later(
-                rule.name, rule.strength, binding, why, unknown=unknown
+                rule.name, rule.strength, binding, why, beyond=beyond
             )
         if found is not None:
             self._found[number].append(((rule_number, *chosen), found))
