@@ -1,29 +1,23 @@
 """Floating-car data as SUMO writes them: an element a line, which need no parser of XML.
 
-A line is parted at its quotation marks. What stands between the values of one line stands in all
-of its kind, so that a parser has to look at the first of them only, and texts become numbers many
-at once. Whatever is not so plain is left to who reads all XML, and says what is wrong with it.
+Lines are parted at their quotation marks, all at once. Whatever is not so plain is left to who
+reads all XML, and says what is wrong with it.
 """
 
 from __future__ import annotations
 
-from bisect import bisect_right
-from collections.abc import Callable, Generator, Sequence
-from dataclasses import dataclass, field
-from itertools import chain
-from operator import itemgetter
+from collections.abc import Generator
 from pathlib import Path
 from xml.parsers.expat import ExpatError, ParserCreate
 
 import numpy as np
-from numpy import float64, intp
+from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
 from rulec.files import opened
 from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.sumo.fcd_content import (
-    BODIES,
     FCD,
     LONGEST_ID,
     MICROSECONDS,
@@ -31,35 +25,21 @@ from rulec.recordings.sumo.fcd_content import (
     FloatingCarData,
     fcd_head,
 )
+from rulec.recordings.sumo.plain_elements import (
+    PADDING,
+    Elements,
+    KnownKinds,
+    NotPlainError,
+    TextPlaces,
+    read_elements,
+)
 
-_BLOCK = 1 << 18
+_BLOCK = 1 << 20
 _PRINTABLE = bytes(range(0x20, 0x7F))
-_ATTRIBUTES = ("id", "x", "y", "angle", "speed", "acceleration", "type", "signals")
-_N_NUMBERS = 5
-"""So many of these, behind the first one, are numbers; all but the last one every element has."""
 
 _STEP, _STEP_ENDS = "<timestep time=", "</timestep>"
-
-
-class _NotPlainError(Exception):
-    """Something has to be read as XML is."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Kind:
-    """Lines with the same text between the same attributes.
-
-    ``take`` gives the wanted values, and the lane or edge, of a line's pieces, behind which are the
-    texts for what is missing if it ``lacks`` one.
-    """
-
-    name: str
-    on: str
-    take: Callable[[list[str]], tuple[str, ...]]
-    lacks: bool
-
-
-_FOR_MISSING = (_NO_SIGNALS := "\n", "nan", "")
+_MOST_OF_STEPS = 2
+"""Lines with more quotation marks are elements."""
 
 
 def read_plain_fcd(path: Path) -> FloatingCarData | None:
@@ -75,7 +55,7 @@ def read_plain_fcd(path: Path) -> FloatingCarData | None:
         reader.read(rest)
         for block in blocks:
             reader.read(block)
-    except (_NotPlainError, RulecError, ExpatError, ArithmeticError, LookupError, ValueError):
+    except (NotPlainError, RulecError, ExpatError, ArithmeticError, LookupError, ValueError):
         return None
     finally:
         blocks.close()
@@ -90,11 +70,11 @@ def _blocks(path: Path) -> Generator[bytes, None, None]:
             size += len(block)
             whole, end, after = block.rpartition(b"\n")
             if size > FCD.largest_bytes or not end:
-                raise _NotPlainError
+                raise NotPlainError
             yield rest + whole + end
             rest = after
     if rest:
-        raise _NotPlainError
+        raise NotPlainError
 
 
 def _parted(block: bytes) -> tuple[bytes, bytes]:
@@ -102,7 +82,7 @@ def _parted(block: bytes) -> tuple[bytes, bytes]:
     at = block.find(b"<timestep")
     at = block.rfind(b"\n", 0, at) + 1 if at > 0 else 0
     if not at:
-        raise _NotPlainError
+        raise NotPlainError
     return block[:at], block[at:]
 
 
@@ -115,7 +95,7 @@ def _read_head(head: bytes, data: FloatingCarData) -> None:
             data.head = fcd_head(text)
 
     def definition(*_: object) -> None:
-        raise _NotPlainError
+        raise NotPlainError
 
     parser = ParserCreate()
     parser.StartElementHandler = lambda name, _: names.append(name)
@@ -123,7 +103,7 @@ def _read_head(head: bytes, data: FloatingCarData) -> None:
     parser.CommentHandler = comment
     parser.Parse(head + f"</{FCD.root}>".encode(), True)
     if names != [FCD.root]:
-        raise _NotPlainError
+        raise NotPlainError
 
 
 class _Lines:
@@ -134,149 +114,86 @@ class _Lines:
         self.has_ended = False
         self._n_lines = n_lines
         self._is_in_step = False
-        self._kinds: dict[tuple[str, ...], _Kind] = {}
+        self._kinds: KnownKinds = {}
 
     def read(self, block: bytes) -> None:
-        """Read whole lines. Raises _NotPlainError, or KeyError or ValueError."""
-        if block.translate(None, _PRINTABLE).strip(b"\n"):
-            raise _NotPlainError
-        text = block.decode("ascii")
-        lines = text.split("\n")[:-1]
+        """Read whole lines. Raises NotPlainError, or ValueError, or what expat does."""
+        if not block:
+            return
+        if b"&" in block or block.translate(None, _PRINTABLE).strip(b"\n"):
+            raise NotPlainError
+        text = np.frombuffer(block + bytes(PADDING), np.uint8)
+        ends = np.flatnonzero(text == ord("\n"))
         # One in each line is a tag's: none is in a value
-        if "&" in text or text.count("<") != len(lines):
-            raise _NotPlainError
-        known, found, others = self._kinds, _Elements(len(self.data.moments)), list[int]()
-        for line in lines:
-            pieces = line.split('"')
-            kind = known.get(tuple(pieces[::2]))
-            if kind is None:
-                n_moments = len(self.data.moments)
-                kind = self._other(line, pieces)
-                if kind is None:
-                    others.append(len(found.kinds))
-                    if len(self.data.moments) > n_moments:
-                        found.steps.append(len(found.kinds))
-                    continue
-            if not self._is_in_step:
-                raise _NotPlainError
-            if kind.lacks:
-                pieces += _FOR_MISSING
-            found.kinds.append(kind)
-            found.values.append(kind.take(pieces))
-        if found.kinds:
-            places = found.add_to(self.data)
-            for place, k in places.items():
-                line_number = self._n_lines + k + bisect_right(others, k) + 1
-                self.data.on[place] = found.kinds[k].on, line_number
-        self._n_lines += len(lines)
+        if block.count(b"<") != len(ends):
+            raise NotPlainError
+        lines = TextPlaces(text, np.append(0, ends[:-1] + 1), ends)
+        quotes = np.flatnonzero(text == ord('"'))
+        bounds = np.append(0, np.searchsorted(quotes, ends))
+        counts = np.diff(bounds)
+        borders = np.flatnonzero(counts <= _MOST_OF_STEPS)
+        n_moments, is_in_step = [len(self.data.moments)], [self._is_in_step]
+        for number in borders.tolist():
+            self._pass(lines[number])
+            n_moments.append(len(self.data.moments))
+            is_in_step.append(self._is_in_step)
+        others = np.flatnonzero(counts > _MOST_OF_STEPS)
+        if len(others):
+            behind = np.searchsorted(borders, others)
+            if not np.take(is_in_step, behind).all():
+                raise NotPlainError
+            # Lines without elements have few quotation marks: leave these out, too
+            own = np.repeat(counts > _MOST_OF_STEPS, counts)
+            found = read_elements(
+                lines.part(others),
+                quotes[own],
+                np.append(0, np.cumsum(counts[others])),
+                self._kinds,
+            )
+            _add(self.data, found, np.take(n_moments, behind) - 1)
+            for place, (kind, number) in found.on.items():
+                if place not in self.data.on:
+                    self.data.on[place] = kind, self._n_lines + int(others[number]) + 1
+        self._n_lines += len(ends)
 
-    def _other(self, line: str, pieces: list[str]) -> _Kind | None:
-        """The kind of the first line of its kind; None where a moment begins or ends."""
+    def _pass(self, line: str) -> None:
+        """Go on behind a line where a moment, or all of it, begins or ends."""
         if self.has_ended:
-            raise _NotPlainError
+            raise NotPlainError
+        pieces = line.split('"')
         if pieces[0].lstrip(" ") == _STEP and pieces[2:] in ([">"], ["/>"]):
             moment = round(float(pieces[1]) * MICROSECONDS)
             known = self.data.moments
             if self._is_in_step or (known and moment <= known[-1]):
-                raise _NotPlainError
+                raise NotPlainError
             if not abs(moment) < LARGEST * MICROSECONDS:
-                raise _NotPlainError
+                raise NotPlainError
             known.append(moment)
             self._is_in_step = pieces[2] == ">"
-            return None
-        if line.strip(" ") == _STEP_ENDS and self._is_in_step:
+        elif line.strip(" ") == _STEP_ENDS and self._is_in_step:
             self._is_in_step = False
-            return None
-        if line == f"</{FCD.root}>" and not self._is_in_step:
+        elif line == f"</{FCD.root}>" and not self._is_in_step:
             self.has_ended = True
-            return None
-        kind = self._kinds[tuple(pieces[::2])] = _kind(line, pieces)
-        return kind
+        else:
+            raise NotPlainError
 
 
-@dataclass(slots=True)
-class _Elements:
-    """The elements of some lines: the kind and the wanted ``values`` of each.
-
-    ``steps`` are the numbers of the first one of each moment, of which so many came before.
-    """
-
-    n_moments: int
-    kinds: list[_Kind] = field(default_factory=list)
-    values: list[tuple[str, ...]] = field(default_factory=list)
-    steps: list[int] = field(default_factory=list)
-
-    def add_to(self, data: FloatingCarData) -> dict[str, int]:
-        """Add them to tracks; the lanes and edges that are new, and by which element.
-
-        Raises _NotPlainError, or ValueError.
-        """
-        keys, *numbers, types, lamps, places = zip(*self.values, strict=True)
-        moments = np.searchsorted(self.steps, np.arange(len(keys)), "right") + self.n_moments - 1
-        whose = {key: number for number, key in enumerate(dict.fromkeys(keys))}
-        if len({(key, kind.name) for key, kind in zip(keys, self.kinds, strict=True)}) > len(whose):
-            raise _NotPlainError
-        which = np.fromiter(map(whose.__getitem__, keys), intp, len(keys))
-        order = np.argsort(which, kind="stable")
-        at, rows = moments[order], _rows(numbers)[order]
-        bounds = np.append(np.flatnonzero(np.diff(which[order], prepend=-1)), len(keys)).tolist()
-        for key, start, end in zip(whose, bounds[:-1], bounds[1:], strict=True):
-            own, name = at[start:end], self.kinds[order[start]].name
-            if key not in data.tracks:
-                data.tracks[key] = FcdTrack(name, types[order[start]])
-            track = data.tracks[key]
-            is_twice = not np.diff(own).all() or track.moments[-1:].tolist() == [own[0]]
-            if is_twice or track.element != name or not 0 < len(key) <= LONGEST_ID:
-                raise _NotPlainError
-            track.moments.frombytes(own.tobytes())
-            track.rows.frombytes(rows[start:end, :-1].tobytes())
-            track.accelerations.frombytes(rows[start:end, -1].tobytes())
-        if lamps.count(_NO_SIGNALS) < len(lamps):
-            for key, bits, moment in zip(keys, lamps, moments.tolist(), strict=True):
-                if bits != _NO_SIGNALS:
-                    data.tracks[key].lamps[moment] = int(_number(bits))
-        return {
-            place: places.index(place)
-            for place in dict.fromkeys(places)
-            if place and place not in data.on
-        }
-
-
-def _rows(texts: Sequence[Sequence[str]]) -> NDArray[float64]:
-    """The numbers of elements, a row each, of columns of texts."""
-    numbers = np.fromiter(map(float, chain(*texts)), float, _N_NUMBERS * len(texts[0]))
-    columns = numbers.reshape(_N_NUMBERS, -1)
-    is_known = np.abs(columns) < LARGEST  # NaN is not
-    if not is_known[:-1].all():
-        raise _NotPlainError
-    columns[-1][~is_known[-1]] = np.nan
-    rows: NDArray[float64] = columns.T
-    return rows
-
-
-def _number(text: str) -> float:
-    value = float(text)
-    if not abs(value) < LARGEST:
-        raise _NotPlainError
-    return value
-
-
-def _kind(line: str, pieces: list[str]) -> _Kind:
-    """The kind of an element's line, as a parser understands it."""
-    found: list[tuple[str, list[str]]] = []
-    parser = ParserCreate()
-    parser.ordered_attributes = True
-    parser.StartElementHandler = lambda name, attributes: found.append((name, attributes))
-    parser.Parse(line.encode(), True)
-    ((name, attributes),) = found
-    names = attributes[::2]
-    at = {key: 2 * number + 1 for number, key in enumerate(names)}
-    rides = "vehicle" in names
-    if rides or name not in BODIES or attributes[1::2] != pieces[1::2]:
-        raise _NotPlainError
-    if not set(_ATTRIBUTES[:_N_NUMBERS]) <= set(names) or {"lane", "edge"} <= set(names):
-        raise _NotPlainError
-    on = "lane" if "lane" in names else "edge"
-    empty = {"signals": -3, "acceleration": -2}
-    take = itemgetter(*(at.get(key, empty.get(key, -1)) for key in (*_ATTRIBUTES, on)))
-    return _Kind(name, on, take, lacks=not {*_ATTRIBUTES, on} <= set(names))
+def _add(data: FloatingCarData, found: Elements, moments: NDArray[intp]) -> None:
+    """Add elements to tracks. Raises NotPlainError."""
+    order = np.argsort(found.whose.astype(np.uint32), kind="stable")
+    at, rows, named = moments[order], found.rows[order], found.named[order]
+    bounds = np.searchsorted(found.whose[order], np.arange(len(found.keys) + 1)).tolist()
+    for number, (key, start, end) in enumerate(zip(found.keys, bounds, bounds[1:], strict=False)):
+        own, name = at[start:end], found.names[named[start]]
+        if key not in data.tracks:
+            data.tracks[key] = FcdTrack(name, found.types[number])
+        track = data.tracks[key]
+        is_twice = not np.diff(own).all() or track.moments[-1:].tolist() == [own[0]]
+        are_others = track.element != name or (named[start:end] != named[start]).any()
+        if is_twice or are_others or not 0 < len(key) <= LONGEST_ID:
+            raise NotPlainError
+        track.moments.frombytes(own.tobytes())
+        track.rows.frombytes(rows[start:end, :-1].tobytes())
+        track.accelerations.frombytes(rows[start:end, -1].tobytes())
+    for number, bits in found.lamps.items():
+        data.tracks[found.keys[found.whose[number]]].lamps[int(moments[number])] = bits
