@@ -99,7 +99,11 @@ def test_reasons_are_found_only_where_they_may_have_names_that_are_not_known():
             return OpenReasons(("not told",), names)
 
         return OpenVerdict.explained_later(
-            rule, "hard", {}, reasons, beyond=lambda names: None if set(among) - names else frozenset()
+            rule,
+            "hard",
+            {},
+            reasons,
+            beyond=lambda names: None if set(among) - names else frozenset(),
         )
 
     open_verdicts = (

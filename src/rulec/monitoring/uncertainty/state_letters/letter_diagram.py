@@ -78,7 +78,7 @@ class LetterDiagram:
 
 def _distinct_rows(numbers: Sequence[int], width: int) -> tuple[list[tuple[int, ...]], list[int]]:
     """The rows of so many numbers that there are, and the place of each among them."""
-    places: dict[tuple[int, ...], int] = {}
-    rows = zip(*[iter(numbers)] * width, strict=True)
-    found = [places.setdefault(row, len(places)) for row in rows]
-    return list(places), found
+    rows = list(zip(*[iter(numbers)] * width, strict=True))
+    distinct = list(dict.fromkeys(rows))
+    places = {row: place for place, row in enumerate(distinct)}
+    return distinct, list(map(places.__getitem__, rows))

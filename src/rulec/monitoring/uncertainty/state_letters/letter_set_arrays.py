@@ -24,6 +24,9 @@ _MOST_KEPT = 1 << 18
 
 _UNMET = -1
 
+_FEW_UNMET = 1 << 4
+"""So many letters that have not been met are looked up together."""
+
 
 class LetterSets:
     """The sets of classes of many letters at once, by numbers for what reads may be.
@@ -113,19 +116,26 @@ class LetterSets:
             return table.item(codes)
         found: NDArray[np.intp] = table.take(codes)
         if found.min(initial=0) == _UNMET:
-            for code in distinct(codes[found == _UNMET]).tolist():
-                table[code] = self._of_code(code, key)
+            unmet = distinct(codes[found == _UNMET])
+            if len(unmet) < _FEW_UNMET:
+                for code in unmet.tolist():
+                    table[code] = self._of_code(code, key)
+            else:
+                table[unmet] = self._of_code(unmet.astype(np.intp), key)
             found = table.take(codes)
         return found
 
-    def _of_code(self, code: int, key: Sequence[int | None]) -> Numbers:
-        """The number of the letter of which the reads have these numbers, some by a code."""
-        columns: list[int] = []
+    def _of_code(self, code: Numbers, key: Sequence[int | None]) -> Numbers:
+        """The number of each letter of which the reads have these numbers, some by a code."""
+        columns: list[Numbers] = []
         for read in range(len(key) - 1, -1, -1):
             own = key[read]
             if own is None:
-                code, own = divmod(code, len(self._meanings[read]))
-            columns.append(own)
+                width = len(self._meanings[read])
+                code, rest = code // width, code % width
+                columns.append(rest)
+            else:
+                columns.append(own)
         return self._one_by_one(columns[::-1])
 
     def _one_by_one(self, columns: Sequence[Numbers]) -> Numbers:
