@@ -217,6 +217,24 @@ def test_the_map_makes_ego_brake(road):
     assert found[:6] == "TTTTTT"
 
 
+def test_who_comes_to_a_lane_that_joins_others_may_brake_for_a_gap():
+    ramp = [
+        straight(1, 0, 110, successors=(2,)),
+        straight(2, 110, 1900, predecessors=(1,), types=frozenset({"accessRamp"})),
+    ]
+    ego = car(*BRAKES)
+    found = told(reason_signals, "cause_to_brake", ramp, ego, complete=SIMULATED, route=("1", "2"))
+    # At 20 m/s it looks ahead for 3 s, 50 m and 20 m
+    assert found[:10] == "?" * 10
+    far = [
+        replace(ramp[0], types=frozenset({"accessRamp"})),
+        straight(2, 110, 1900, predecessors=(1,)),
+    ]
+    found = told(reason_signals, "cause_to_brake", far, ego, complete=SIMULATED, route=("1", "2"))
+    assert found[:10] == "?" * 10
+    assert found[30:40] == "F" * 10
+
+
 def test_who_holds_up_others():
     road = [straight(1, 0, 2500, limit_mps=30.0)]
     slow, follower = steady(7, 100, 0, 10, 100), steady(8, 85, 0, 10, 100)

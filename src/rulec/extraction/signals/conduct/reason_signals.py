@@ -20,6 +20,7 @@ from rulec.extraction.signals.measured_numbers import moves
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.recordings.recording import JOINING
 from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.plain_arrays import distinct
 
@@ -53,8 +54,9 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     """Flags of states with a reason to brake, stand or be slow, and of those perhaps with one.
 
     Ego that stands has perhaps broken down, unless its hazard lights are known to be off; one that
-    stands soon, whose drive ends, or that is beside somebody had perhaps something to do. Where
-    not all traffic is recorded it is as far as somebody is recorded ahead.
+    stands soon, whose drive ends, or that is beside somebody had perhaps something to do; so has
+    one before or on a lane that joins others, where it looks for a gap. Where not all traffic is
+    recorded it is as far as somebody is recorded ahead.
     """
     caused = _by_map(context)
     others = _others(context, np.flatnonzero(~caused))
@@ -67,10 +69,24 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     beside = (others.away > _IN_WAY_M) & (others.away <= _COMES_M)
     beside &= np.abs(others.ahead) <= _REACH_M
     perhaps[others.states] |= beside.any(axis=0)
+    perhaps |= _seeks_a_gap(context)
     if "arrivals" not in context.recording.complete:
         farther = (others.ahead > _reach(context)[others.states]) & (others.away <= _ROAD_M)
         perhaps[others.states] |= ~farther.any(axis=0)
     return caused, perhaps & ~caused
+
+
+def _seeks_a_gap(context: DriveContext) -> Flags:
+    """Flags of states in which ego's lane joins others, there or as far ahead as ego looks."""
+    road, seeks = context.road, np.zeros(context.states, dtype=bool)
+    joins = [[x is not None and JOINING in x.types for x in row] for row in road.rows]
+    for number, row in enumerate(joins):
+        for lane in np.flatnonzero(row).tolist():
+            begins, ends = road.borders[number], road.borders[number + 1]
+            ahead = context.ego_extents.s_max[0] + _reach(context) >= begins
+            on_way = ahead & (context.ego_extents.s_min[0] <= ends)
+            seeks |= on_way & (context.ego_lane == lane)
+    return seeks
 
 
 def _shows_no_hazard(context: DriveContext) -> Flags:
