@@ -85,8 +85,34 @@ def test_lanes_that_join_and_leave(tmp_path):
     assert found["b_0"] == "accessRamp"
     assert found["d_0"] == "exitRamp"
     assert "on_0" not in found
-    assert {found.get(f"b_{k}") for k in (1, 2)} == {None}
-    assert {found[f"e_{k}"] for k in (0, 1)} == {"mainCarriageWay"}
+    goes_on = {
+        *(("a", k) for k in (0, 1)),
+        *(("b", k) for k in (1, 2)),
+        *(("c", k) for k in (0, 1)),
+    }
+    goes_on |= {*(("d", k) for k in (1, 2)), *(("e", k) for k in (0, 1))}
+    assert {found[f"{name}_{k}"] for name, k in goes_on} == {"mainCarriageWay"}
+
+
+def test_beside_joining_lanes_of_other_roads_nobody_knows_the_arrows(tmp_path):
+    found = kinds(
+        tmp_path,
+        *(edge("a", "x", "y", 2, ""), edge("b", "y", "z", 3, "")),
+        *(edge("c", "z", "w", 2, ""), edge("off", "z", "s", 1, "")),
+        *(lead("a", "b", (0, 0), (0, 1), (1, 2)), lead("b", "off", (0, 0))),
+        lead("b", "c", (1, 0), (2, 1)),
+    )
+    assert {found.get(f"{name}_{k}") for name, k in (("a", 0), ("a", 1), ("b", 1))} == {None}
+
+
+def test_where_a_motorway_parts_its_lanes_are_for_several_roads(tmp_path):
+    """Its near lane leads to one of two, its far lane to the other, the one between to both."""
+    found = kinds(
+        tmp_path,
+        *(edge("a", "x", "y", 3), edge("b", "y", "z", 2), edge("c", "y", "w", 2)),
+        *(lead("a", "b", (0, 0), (1, 1)), lead("a", "c", (1, 0), (2, 1))),
+    )
+    assert not any(name.startswith("a_") for name in found)
 
 
 @pytest.mark.parametrize("pieces", [1, 2])

@@ -2,9 +2,10 @@
 
 A lane goes on where each lane of its road leads to one of the next road, for the next kilometre or
 up to the net's end: signs and arrows that send lanes to places of their own stand no earlier. A
-road of one lane needs none. Lanes join and leave where links do (``_link`` in the road's type); and
-a lane that comes from another road than those beside it, and ends, is there to join, whatever the
-types are.
+road of one lane needs none. Of a motorway lanes may come beside them and leave there, which send
+those that go on to no place of their own. Lanes join and leave where links do (``_link`` in the
+road's type); and a lane that comes from another road than those beside it, and ends, is there to
+join, whatever the types are.
 """
 
 from __future__ import annotations
@@ -17,7 +18,8 @@ import numpy as np
 from rulec.recordings.sumo.net import SumoNet
 
 _AHEAD_M = 1000.0
-_LINK = "_link"
+_MOTORWAY, _LINK = "motorway", "_link"
+_RAMPS = frozenset({"accessRamp", "exitRamp"})
 _Lanes = Mapping[str, list[str]]
 
 
@@ -44,6 +46,7 @@ def lane_kinds(net: SumoNet, drivable: Set[str]) -> dict[str, str]:
     kinds: dict[str, str] = {}
     for edge, lanes in edges.items():
         through = len(lanes) == 1 or _goes_on(net, edge, edges, onward)
+        motorway = _MOTORWAY in net.edges[edge].type
         joined = any(_LINK in kind for kind in before[edge])
         goes_on = any(onward[lane] for lane in lanes)
         for lane in lanes:
@@ -58,6 +61,10 @@ def lane_kinds(net: SumoNet, drivable: Set[str]) -> dict[str, str]:
                 kinds[lane] = "accessRamp"
             elif goes_on and not onward[lane]:
                 kinds.update(dict.fromkeys(_from_joining(net, lane, edges, back), "accessRamp"))
+        if motorway and not through and _LINK not in net.edges[edge].type:
+            going_on = [lane for lane in lanes if kinds.get(lane) not in _RAMPS]
+            if _stays(net, going_on, onward):
+                kinds.update(dict.fromkeys(going_on, "mainCarriageWay"))
     return kinds
 
 
@@ -75,6 +82,32 @@ def _from_joining(net: SumoNet, lane: str, edges: _Lanes, back: _Lanes) -> list[
             break
         (lane,) = back[lane]
     return []
+
+
+def _stays(net: SumoNet, lanes: list[str], onward: _Lanes) -> bool:
+    """True if these lanes lead on beside each other, wherever others join them or leave."""
+    way, seen = 0.0, set[str]()
+    while lanes and way < _AHEAD_M and any(onward.get(lane) for lane in lanes):
+        following = {net.lanes[end].edge.id for lane in lanes for end in onward.get(lane, [])}
+        if len(following) > 1:
+            return False
+        if following <= seen:
+            break
+        seen |= following
+        lanes = _beside_each_other(net, lanes, onward)
+        way += float(np.hypot(*np.diff(net.lanes[lanes[0]].shape, axis=0).T).sum()) if lanes else 0
+    return bool(lanes)
+
+
+def _beside_each_other(net: SumoNet, lanes: list[str], onward: _Lanes) -> list[str]:
+    """The lanes to which these lead, one each, the farthest from the kerb; none if one has none."""
+    found: list[str] = []
+    for lane in sorted(lanes, key=lambda name: -net.lanes[name].index):
+        after = [end for end in onward.get(lane, []) if end not in found]
+        if not after:
+            return []
+        found.append(max(after, key=lambda name: net.lanes[name].index))
+    return found
 
 
 def _goes_on(net: SumoNet, edge: str, edges: _Lanes, onward: _Lanes) -> bool:
