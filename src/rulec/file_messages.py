@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import errno
 import os
 from pathlib import Path
 
@@ -226,8 +227,17 @@ def reason_in_words(problem: OSError | ValueError) -> str:
 
 
 def unwritable(path: Path, problem: OSError) -> Diagnostic:
+    way_out = ""
+    if isinstance(problem, FileNotFoundError) and not path.parent.exists():
+        way_out = f"make the folder `{path.parent}` first, or give a file in another one"
+    if isinstance(problem, PermissionError):
+        way_out = "change its permissions, or give a file in a folder that you may write to"
+    if problem.errno == errno.ENOSPC:
+        way_out = "make room there, or give a file on another disk"
     return UNWRITABLE_FILE.at(
-        SourceLocation(str(path)), f"the file cannot be written: {reason_in_words(problem)}"
+        SourceLocation(str(path)),
+        f"the file cannot be written: {reason_in_words(problem)}",
+        help=way_out,
     )
 
 

@@ -49,6 +49,25 @@ def test_a_full_disk_is_said(arguments):
     assert b"R0720]: standard output cannot be written to: no space left on device" in done.stderr
 
 
+@pytest.mark.parametrize(
+    ("file", "says"),
+    [
+        (
+            "gone/t.csv",
+            "no such file or directory\n --> gone/t.csv\n  = help: make the folder `gone`",
+        ),
+        (
+            "/dev/full",
+            "no space left on device\n --> /dev/full\n  = help: make room there, or give",
+        ),
+    ],
+)
+def test_a_file_that_cannot_be_written_has_a_way_out(file, says):
+    done = run(["traces", "s1", "-o", file, "--output-format", "csv"])
+    assert done.returncode == 2
+    assert f"error[R0702]: the file cannot be written: {says}" in done.stderr.decode()
+
+
 def test_input_that_cannot_be_read_is_said(tmp_path):
     done = shell(f'"$@" 0> {tmp_path}/written', "check", "-")
     assert done.returncode == 2

@@ -58,6 +58,10 @@ def test_a_folder_without_recordings(folder):
     (problem,) = found.problems
     assert found.paths == ()
     assert "there is no recorded traffic in this folder" in problem.diagnostics[0].message
+    assert "formats that are read" in problem.diagnostics[0].help
+    (folder / "empty" / "t.jsonl").write_text("{}")
+    (problem,) = input_files(["empty"]).problems
+    assert problem.diagnostics[0].help.endswith("traces are given by files, as by `empty/*.jsonl`")
 
 
 def test_a_broken_file_of_a_folder_is_not_passed_over(folder):

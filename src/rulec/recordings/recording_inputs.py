@@ -62,10 +62,21 @@ def input_files(arguments: Sequence[str]) -> InputFiles:
             problems += refused
             if not found and not refused:
                 why = "there is no recorded traffic in this folder, nor below it"
-                problems.append(RECORDING.refused(Path(path), why))
+                problems.append(RECORDING.refused(Path(path), why, help_text=_as_traces(path)))
             paths |= dict.fromkeys(found)
             searched.append(SearchedFolder(path, len(found), others))
     return InputFiles(tuple(paths), tuple(searched), tuple(problems))
+
+
+def _as_traces(folder: str) -> str:
+    """How the traces of a folder are given, if it looks as if there are some; else empty."""
+    for ending in (".jsonl", ".csv", ".parquet"):
+        if any(Path(folder).glob(f"*{ending}")):
+            pattern = Path(folder) / f"*{ending}"
+            return (
+                f"a folder is that of its recordings; traces are given by files, as by `{pattern}`"
+            )
+    return ""
 
 
 def _matching(argument: str, problems: list[RulecError]) -> Sequence[str]:
