@@ -125,6 +125,23 @@ def test_who_gets_up_speed_on_a_lane_that_joins_is_not_overtaken(types):
     assert not found.unknown["being_overtaken"].any() or not types
 
 
+@pytest.mark.parametrize(("ago_s", "known"), [(4, False), (11, True)])
+def test_who_has_joined_gets_up_speed_yet(ago_s, known):
+    """Ego comes at 21 m/s from a lane that joins, and leaves it so long before it is overtaken."""
+    road = [
+        straight(1, -100, 600, left_of=2, types=frozenset({"accessRamp"})),
+        straight(2, -100, 600, 4.0, right_of=1, left_of=3),
+        straight(3, -100, 600, 8.0, right_of=2),
+    ]
+    last = 2 * ago_s + 2
+    ego = vehicle(7, {k: (10.5 * k, 0.0 if k < 2 else 4.0) for k in range(last + 4)}, speed=21)
+    passes = {k: (10.5 * last + 13.0 * (k - last), 8.0) for k in range(last + 4)}
+    other = vehicle(8, passes, speed=26)
+    found = flow_signals(context_of(recording(road, [ego, other]), route=("1",)))
+    assert found.world["being_overtaken"][last]
+    assert found.unknown["being_overtaken"][last] == (not known)
+
+
 @pytest.mark.parametrize(("speed", "known"), [(9, False), (21, True)])
 def test_who_may_have_stood_before_anybody_saw_it_may_set_off(speed, known):
     """To 9 m/s it takes 4.5 s, to 21 m/s 10.5 s."""

@@ -156,8 +156,8 @@ def _being_overtaken(context: DriveContext) -> SignalColumns:
     by, open_end = by & ~joins, open_end & ~joins
     overtaken = by.any(axis=0)
     dense, surely, not_told = _dense_lines(context)
-    # Lanes that move off beside each other do not overtake
-    moot = _sets_off(context) | not_told
+    # Lanes that move off beside each other do not overtake, and who has joined gets up speed yet
+    moot = _sets_off(context) | _has_joined(context, joins) | not_told
     # Where all lanes queue, one that is faster does not overtake (Vienna, Art. 11(6)(a))
     return SignalColumns(
         {"being_overtaken": ~dense & overtaken},
@@ -202,6 +202,14 @@ def _gap_in_lane(context: DriveContext, station: int) -> Floats:
     there = close_by(context) & (relations.station(context) == station) & own_lane
     gap: Floats = np.where(there, relations.gap(context), np.inf).min(axis=0, initial=np.inf)
     return gap
+
+
+def _has_joined(context: DriveContext, joins: Flags) -> Flags:
+    """Flags of states in which ego was on a lane that joins others up to ``setting_off_s`` ago."""
+    spans, joined = context.spans, context.spans.latest(joins)
+    ago = (spans.columns - joined) * context.recording.step_s
+    has_joined: Flags = (joined >= spans.first) & (ago < context.thresholds.setting_off_s)
+    return has_joined
 
 
 def _sets_off(context: DriveContext) -> Flags:
