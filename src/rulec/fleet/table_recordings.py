@@ -82,8 +82,11 @@ def recording_of(table: Any, name: str, roads: Roads) -> Recording:
     maps = table.column(MAP).unique().to_pylist() if MAP in table.column_names else []
     if len(maps) > 1:
         raise no_map(name, f"its rows name {len(maps)} maps")
+    # Arrow, 0.1 s: where there is a table of it, it is loaded.
+    from rulec.trace.formats.arrow.arrow_arrays import cells_in
+
     known = [column for column in table.column_names if column not in (MAP, ROWS)]
-    columns = {column: table.column(column).to_numpy() for column in known}
+    columns = {column: cells_in(table.column(column)) for column in known}
     rows, remark = track_rows_of(table_of(columns, f"tracks of `{name}`"))
     chosen = maps[0] if maps and maps[0] else roads
     if chosen is None:

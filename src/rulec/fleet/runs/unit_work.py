@@ -17,7 +17,8 @@ from rulec.fleet.drive_rows import DriveRows
 from rulec.fleet.finding_columns import Row, arrow_schema, arrow_table
 from rulec.fleet.runs.fleet_folder import READ, STATE, FleetFolder
 from rulec.fleet.runs.fleet_tally import FleetTally, tally_of
-from rulec.fleet.runs.work_units import WorkUnit, table_of_unit
+from rulec.fleet.runs.unit_slices import slices_of_unit
+from rulec.fleet.runs.work_units import WorkUnit
 from rulec.fleet.table_kind import kind_of
 from rulec.fleet.table_recordings import TrackTableJudge
 from rulec.fleet.table_traces import TraceTableJudge
@@ -87,12 +88,17 @@ class UnitWorker:
             yield to_rows.of_nothing({"file": unit.path}, error.diagnostics[0].message)
 
     def _of_table(self, unit: WorkUnit, to_rows: DriveRows) -> Iterator[Row]:
-        table = table_of_unit(unit)
-        if not table.num_rows:
-            return
-        if kind_of(table.column_names) == "tracks":
-            roads = None if self.source.map_path is None else str(self.source.map_path)
-            yield from TrackTableJudge(to_rows, self.request, roads, None).rows(table)
-        else:
-            assumed = Assumptions(self.ends, self.request.assumed, self.request.defaults)
-            yield from TraceTableJudge(to_rows, assumed, None).rows(table)
+        roads = None if self.source.map_path is None else str(self.source.map_path)
+        assumed = Assumptions(self.ends, self.request.assumed, self.request.defaults)
+        judges = {
+            "tracks": TrackTableJudge(to_rows, self.request, roads, None),
+            "traces": TraceTableJudge(to_rows, assumed, None),
+        }
+        slices = slices_of_unit(unit)
+        pyarrow, _ = arrow(unit.path)
+        while (table := next(slices, None)) is not None:
+            rows = judges[kind_of(table.column_names)].rows(table)
+            # Nothing else holds it: it is gone before the next one is read.
+            del table
+            yield from rows
+            pyarrow.default_memory_pool().release_unused()

@@ -3,28 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
-from hashlib import blake2b, sha256
-from typing import Any, NamedTuple
+from hashlib import sha256
+from typing import NamedTuple
 
 import numpy as np
-from numpy import uint64
-from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
 from rulec.files import file_state
-from rulec.fleet.fleet_messages import no_fleet_input
-from rulec.fleet.table_kind import TableKind, keys_of, kind_of
-from rulec.trace.formats.arrow.parquet import arrow
+from rulec.fleet.runs.drive_keys import KeyHashes, keyed_rows, opened_table
 
 MOST_ROWS = 1 << 19
-"""Of a larger table several units are made, so that none takes much memory."""
-
-_BETWEEN_KEYS = "\x1f"
-
-KeyHashes = NDArray[uint64]
-"""Keys of drives as numbers: eight bytes each, however many drives there are."""
+"""Of a larger table several units are made, so that there is work for several processes."""
 
 
 class TablePiece(NamedTuple):
@@ -120,64 +110,15 @@ def _pieces_or_reason(path: str) -> list[tuple[TablePiece, KeyHashes]] | RulecEr
 
 def _pieces(path: str) -> Iterator[tuple[TablePiece, KeyHashes]]:
     """The pieces of a file with the keys in them. Raises RulecError R0710."""
-    with _opened(path) as source:
-        names = source.schema_arrow.names
-        kind = kind_of(names)
-        keys = keys_of(names, kind)
+    with opened_table(path) as source:
         groups: list[int] = []
         found: list[KeyHashes] = []
         rows = 0
         for number in range(source.num_row_groups):
             groups.append(number)
             rows += source.metadata.row_group(number).num_rows
-            # Names and times of nothing but keys are read here
-            table = source.read_row_group(number, columns=keys)
-            found.append(_different(table, keys, kind))
+            # Nothing but keys is read here
+            found += (some.keys for some in keyed_rows(source, [number], whole=False))
             if rows >= MOST_ROWS or number + 1 == source.num_row_groups:
                 yield TablePiece(path, tuple(groups)), np.unique(np.concatenate(found))
                 groups, found, rows = [], [], 0
-
-
-@contextmanager
-def _opened(path: str) -> Iterator[Any]:
-    """A Parquet file; what Arrow says of it becomes a RulecError R0710."""
-    pyarrow, parquet = arrow(path)
-    try:
-        with parquet.ParquetFile(path) as source:
-            yield source
-    except (pyarrow.ArrowException, OSError) as reason:
-        raise no_fleet_input(path, str(reason).split("\n")[0]) from None
-
-
-def _different(table: Any, keys: Sequence[str], kind: TableKind) -> KeyHashes:
-    # Arrow, 0.1 s: where there is a table of it, it is loaded.
-    from rulec.trace.formats.arrow.table_groups import key_texts
-
-    _, texts = key_texts(table, keys, _BETWEEN_KEYS)
-    return np.unique(np.fromiter((_hash(kind, text) for text in texts), uint64, len(texts)))
-
-
-def _hash(kind: TableKind, text: str) -> int:
-    return int.from_bytes(blake2b(f"{kind}{text}".encode(), digest_size=8).digest(), "little")
-
-
-def table_of_unit(unit: WorkUnit) -> Any:
-    """The rows of all drives of a unit, as one Arrow table. Raises RulecError R0710."""
-    # As above.
-    from rulec.trace.formats.arrow.table_groups import joined, key_texts, rows_where
-
-    assert unit.piece is not None, "it is of a table"
-    tables = []
-    for number, piece in enumerate((unit.piece, *unit.further)):
-        with _opened(piece.path) as source:
-            table = source.read_row_groups(list(piece.row_groups))
-        kind = kind_of(table.column_names)
-        keys = keys_of(table.column_names, kind)
-        codes, texts = key_texts(table, keys, _BETWEEN_KEYS)
-        hashes = (_hash(kind, text) for text in texts)
-        if number:
-            kept = [one in unit.spread for one in hashes]
-        else:
-            kept = [one not in unit.others for one in hashes]
-        tables.append(table if all(kept) else rows_where(table, codes, kept))
-    return joined(tables)

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import pyarrow
 from numpy.typing import NDArray
 from pyarrow import types
 
@@ -64,6 +65,47 @@ def codes_in(array: Any) -> tuple[NDArray[Any], Sequence[Any]]:
             codes = np.where(codes < 0, -1, own.take(codes))
             values = list(places)
     return codes.astype(np.int64, copy=False), values
+
+
+def cells_in(column: Any) -> NDArray[Any]:
+    """A table's column: numbers, NaN where one is missing, or objects, None where one is."""
+    array = whole_array(column)
+    kind = array.type.value_type if types.is_dictionary(array.type) else array.type
+    if types.is_string(kind) or types.is_large_string(kind):
+        codes, values = codes_in(array)
+        found = np.empty(len(values) + 1, dtype=object)
+        found[:-1] = values  # the last one stays None
+        return found[codes]
+    if types.is_integer(array.type) or types.is_float64(array.type):
+        numbers, given = numbers_in(array), given_in(array)
+        return numbers if given.all() else np.where(given, numbers, np.nan)
+    cells: NDArray[Any] = column.to_numpy()
+    return cells
+
+
+def flags_in(column: Any) -> NDArray[np.bool_]:
+    """Where a column of truth values has a true one."""
+    array = whole_array(column)
+    return truths_in(array) & given_in(array)
+
+
+def whole_array(column: Any) -> Any:
+    """A column of a table, which may be in pieces, as one array."""
+    return column.combine_chunks() if isinstance(column, pyarrow.ChunkedArray) else column
+
+
+def array_of_truths(flags: NDArray[np.bool_]) -> Any:
+    """Truth values as Arrow's array."""
+    bits = pyarrow.py_buffer(np.packbits(flags, bitorder="little"))
+    return pyarrow.Array.from_buffers(pyarrow.bool_(), len(flags), [None, bits])
+
+
+def one_text(text: str) -> Any:
+    """A text as Arrow's scalar."""
+    data = text.encode()
+    ends = pyarrow.py_buffer(np.array([0, len(data)], dtype=np.int32))
+    whole = [None, ends, pyarrow.py_buffer(data)]
+    return pyarrow.Array.from_buffers(pyarrow.string(), 1, whole)[0]
 
 
 def _bits(buffer: Any, array: Any) -> NDArray[np.bool_]:

@@ -11,6 +11,15 @@ from numpy.typing import NDArray
 from pyarrow import compute, types
 
 from rulec.diagnostics import RulecError, SourceLocation
+from rulec.trace.formats.arrow.arrow_arrays import (
+    array_of_truths,
+    codes_in,
+    flags_in,
+    given_in,
+    numbers_in,
+    one_text,
+    whole_array,
+)
 from rulec.trace.formats.arrow.arrow_blocks import cut
 from rulec.trace.formats.arrow.parquet import check_types
 from rulec.trace.formats.table_reader import STEP, TRACE, Table, check_columns
@@ -56,7 +65,7 @@ def _as_text(column: Any) -> Any:
 
 def _without_nulls(column: Any) -> Any:
     is_text = types.is_string(column.type) or types.is_large_string(column.type)
-    return compute.fill_null(column, "") if is_text else column
+    return compute.fill_null(column, one_text("")) if is_text and column.null_count else column
 
 
 def _starts(columns: Sequence[Any], rows: int) -> list[int]:
@@ -64,7 +73,8 @@ def _starts(columns: Sequence[Any], rows: int) -> list[int]:
     changes: NDArray[np.bool_] = np.zeros(rows, dtype=bool)
     changes[0] = True
     for column in columns:
-        changes[1:] |= compute.not_equal(column.slice(1), column.slice(0, rows - 1)).to_numpy()
+        differs = compute.not_equal(column.slice(1), column.slice(0, rows - 1))
+        changes[1:] |= flags_in(differs)
     return [int(place) for place in np.flatnonzero(changes)]
 
 
@@ -99,10 +109,11 @@ def trace_outlines(table: Any) -> list[TraceOutline]:
 
     Where steps are no whole numbers, nothing is known to lack: whoever reads them says so.
     """
-    names = compute.fill_null(_as_text(_plain(table.column(TRACE))), "")
+    names = _without_nulls(_as_text(_plain(table.column(TRACE))))
     starts = _starts([names], len(table)) if len(table) else []
     try:
-        steps = compute.fill_null(_plain(table.column(STEP)).cast(pyarrow.int64()), -1).to_numpy()
+        array = whole_array(_plain(table.column(STEP)).cast(pyarrow.int64()))
+        steps = np.where(given_in(array), numbers_in(array), -1)
     except (pyarrow.ArrowException, OverflowError):
         steps = None
     found = []
@@ -126,7 +137,7 @@ def without_rows(table: Any, outlines: Sequence[TraceOutline]) -> Any:
     kept: NDArray[np.bool_] = np.ones(len(table), dtype=bool)
     for one in outlines:
         kept[one.first : one.first + one.rows] = False
-    return table.filter(pyarrow.array(kept))
+    return table.filter(array_of_truths(kept))
 
 
 def extent(table: Any) -> tuple[object, ...]:
@@ -145,17 +156,21 @@ def key_texts(table: Any, keys: Sequence[str], between: str) -> tuple[NDArray[np
     if not keys:
         return np.zeros(len(table), dtype=np.int64), [""]
     columns = [_without_nulls(_as_text(_plain(table.column(name)))) for name in keys]
-    whole = columns[0] if len(keys) == 1 else compute.binary_join_element_wise(*columns, between)
+    whole = columns[0] if len(keys) == 1 else compute.binary_join_element_wise(*columns, one_text(between))
     if not len(whole):
         return np.zeros(0, dtype=np.int64), []
-    encoded = whole.combine_chunks().dictionary_encode()
-    encoded = encoded.chunk(0) if isinstance(encoded, pyarrow.ChunkedArray) else encoded
-    return encoded.indices.to_numpy().astype(np.int64), encoded.dictionary.to_pylist()
+    codes, texts = codes_in(whole_array(whole))
+    return codes, [*texts]
 
 
-def rows_where(table: Any, codes: NDArray[np.int64], kept: Sequence[bool]) -> Any:
+def rows_where(table: Any, codes: NDArray[np.int64], kept: NDArray[np.bool_]) -> Any:
     """The rows whose codes are those of what is kept."""
-    return table.filter(pyarrow.array(np.array(kept, dtype=bool)[codes]))
+    return table if kept.all() else table.filter(array_of_truths(kept[codes]))
+
+
+def table_of_batch(batch: Any) -> Any:
+    """A record batch as a table."""
+    return pyarrow.Table.from_batches([batch])
 
 
 def joined(tables: Sequence[Any]) -> Any:

@@ -1,0 +1,168 @@
+"""The rows of a unit's drives, some whole drives after the others, so that few are in memory."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import accumulate
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.fleet.fleet_messages import no_fleet_input
+from rulec.fleet.runs.drive_keys import KeyedRows, KeyHashes, keyed_rows, opened_table
+from rulec.fleet.runs.work_units import TablePiece, WorkUnit
+
+MOST_TOGETHER = 1 << 16
+"""Rows that are judged together; of a longer drive all."""
+
+_FEWEST_MERGED = 1 << 16
+
+
+class _Drives(NamedTuple):
+    """The drives of a unit: their keys, how many rows each has, and its first one in the unit."""
+
+    keys: KeyHashes
+    rows: NDArray[np.int64]
+    first: NDArray[np.int64]
+
+
+class _Group(NamedTuple):
+    """A row group: its file, its number there, and its rows as the unit counts them."""
+
+    path: str
+    number: int
+    start: int
+    stop: int
+
+
+class _Place(NamedTuple):
+    """Rows that have been read: their group's place in the unit, and the first one's number."""
+
+    group: int
+    start: int
+    some: KeyedRows
+
+
+def slices_of_unit(unit: WorkUnit) -> Iterator[Any]:
+    """The rows of a unit's drives as Arrow tables, each of whole drives.
+
+    Drives are in the order of their first rows. A table has ``MOST_TOGETHER`` rows at most, or one
+    drive. Wherever a drive's rows are, they are found; where drives stand together, each row is
+    read once. Raises RulecError R0710.
+    """
+    # Arrow, 0.1 s: where there is a table of it, it is loaded.
+    from rulec.trace.formats.arrow.table_groups import joined
+
+    assert unit.piece is not None, "it is of a table"
+    reader = _Reader(_groups(unit.piece, *unit.further))
+    drives = _drives_of(unit)
+    for own in _together(drives.rows):
+        first, wanted = int(drives.first[own.start]), int(drives.rows[own].sum())
+        yield joined(list(reader.rows_of(drives.keys[own], first, wanted)))
+
+
+def _groups(*pieces: TablePiece) -> list[_Group]:
+    groups: list[_Group] = []
+    start = 0
+    for piece in pieces:
+        with opened_table(piece.path) as source:
+            sizes = [source.metadata.row_group(number).num_rows for number in piece.row_groups]
+        ends = list(accumulate(sizes, initial=start))
+        groups += (
+            _Group(piece.path, number, *span)
+            for number, *span in zip(piece.row_groups, ends[:-1], ends[1:], strict=True)
+        )
+        start = ends[-1]
+    return groups
+
+
+def _drives_of(unit: WorkUnit) -> _Drives:
+    """The drives of a unit by their first rows."""
+    assert unit.piece is not None, "it is of a table"
+    others, spread = (
+        np.fromiter(keys, np.uint64, len(keys)) for keys in (unit.others, unit.spread)
+    )
+    found: list[_Drives] = []
+    start = waiting = 0
+    for number, piece in enumerate((unit.piece, *unit.further)):
+        with opened_table(piece.path) as source:
+            for some in keyed_rows(source, piece.row_groups, whole=False):
+                own = np.isin(some.keys, spread) if number else ~np.isin(some.keys, others)
+                rows = np.bincount(some.codes, minlength=len(own))
+                first = np.zeros(len(own), dtype=np.int64)
+                # What is written last stays.
+                first[some.codes[::-1]] = np.arange(start, start + len(some.codes))[::-1]
+                found.append(_Drives(some.keys[own], rows[own], first[own]))
+                start += len(some.codes)
+                waiting += len(found[-1].keys)
+                if waiting > max(_FEWEST_MERGED, 2 * len(found[0].keys)):
+                    found, waiting = [_merged(found)], 0
+    drives = _merged(found)
+    order = np.argsort(drives.first)
+    return _Drives(*(column[order] for column in drives))
+
+
+def _merged(parts: Sequence[_Drives]) -> _Drives:
+    """Each drive once."""
+    keys, rows, first = (np.concatenate(columns) for columns in zip(*parts, strict=True))
+    order = np.argsort(keys, kind="stable")
+    different, starts = np.unique(keys[order], return_index=True)
+    if not len(keys):
+        return _Drives(keys, rows, first)
+    return _Drives(different, np.add.reduceat(rows[order], starts), first[order][starts])
+
+
+def _together(rows: NDArray[np.int64]) -> Iterator[slice]:
+    """Which drives are judged together, by how many rows each has."""
+    start = total = 0
+    for place, count in enumerate(rows.tolist()):
+        if total and total + count > MOST_TOGETHER:
+            yield slice(start, place)
+            start, total = place, 0
+        total += count
+    if total:
+        yield slice(start, len(rows))
+
+
+class _Reader:
+    """Reads rows of a unit onward, and from further ahead again where drives are mixed."""
+
+    def __init__(self, groups: Sequence[_Group]) -> None:
+        self._groups = groups
+        self._rest: Iterator[_Place] = iter(())
+        self._now: _Place | None = None
+
+    def rows_of(self, keys: KeyHashes, first: int, wanted: int) -> Iterator[Any]:
+        """The rows of some drives: so many are ``wanted``, the first one of which is ``first``."""
+        # As above.
+        from rulec.trace.formats.arrow.table_groups import rows_where
+
+        now = self._now
+        if now is None or not now.start <= first < self._groups[now.group].stop:
+            self._start(first)
+            now = next(self._rest, None)
+        while now is not None:
+            kept = np.isin(now.some.keys, keys)
+            count = int(kept[now.some.codes].sum())
+            wanted -= count
+            if count:
+                yield rows_where(now.some.rows, now.some.codes, kept)
+            self._now = now
+            if wanted <= 0:
+                return
+            now = next(self._rest, None)
+        raise no_fleet_input(self._groups[0].path, "it has changed while it was read")
+
+    def _start(self, row: int) -> None:
+        """Go to the row group that has a row."""
+        group = next(place for place, one in enumerate(self._groups) if row < one.stop)
+        self._rest = self._from(group)
+
+    def _from(self, first: int) -> Iterator[_Place]:
+        for place, group in enumerate(self._groups[first:], first):
+            start = group.start
+            with opened_table(group.path) as source:
+                for some in keyed_rows(source, [group.number], whole=True):
+                    yield _Place(place, start, some)
+                    start += len(some.codes)
