@@ -45,9 +45,12 @@ class TraceTableJudge:
         from rulec.trace.formats.arrow.table_groups import trace_outlines, without_rows
 
         outlines = trace_outlines(rows)
+        is_counted = ROWS in rows.column_names
         cut = []
         for number, one in enumerate(outlines):
-            lacks = one.lacks or lacking(rows.slice(one.first, one.rows), one.rows)
+            lacks = one.lacks
+            if not lacks and is_counted:
+                lacks = lacking(rows.slice(one.first, one.rows), one.rows)
             if self.seen is not None:
                 content = (one.rows, one.states)
                 if not lacks and self.seen.is_other((*own.values(), one.name), content):

@@ -35,6 +35,21 @@ class KeyedRows(NamedTuple):
 
 
 @contextmanager
+def memory_given_back() -> Iterator[None]:
+    """A block in which Arrow takes memory from the system and gives it back.
+
+    What Arrow keeps of its own for later would grow for millions of rows.
+    """
+    pyarrow, _ = arrow("tables of drives")
+    before = pyarrow.default_memory_pool()
+    pyarrow.set_memory_pool(pyarrow.system_memory_pool())
+    try:
+        yield
+    finally:
+        pyarrow.set_memory_pool(before)
+
+
+@contextmanager
 def opened_table(path: str) -> Iterator[Any]:
     """A Parquet file; what Arrow says of it becomes a RulecError R0710."""
     pyarrow, parquet = arrow(path)

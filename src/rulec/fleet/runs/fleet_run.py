@@ -13,6 +13,7 @@ from rulec.diagnostics import RulecError
 from rulec.extraction.selection import RequestedDrives
 from rulec.fleet.carried_rulebook import CompiledRules, carried
 from rulec.fleet.judged_by import JudgedBy, judged_by
+from rulec.fleet.runs.drive_keys import memory_given_back
 from rulec.fleet.runs.fleet_engine import Engine
 from rulec.fleet.runs.fleet_folder import FleetFolder
 from rulec.fleet.runs.fleet_inputs import fleet_inputs
@@ -103,11 +104,12 @@ def run_fleet(
     kept.open(inputs.paths, settings.source, settings.request.egos)
     problems = list(inputs.problems)
     units: list[WorkUnit] = []
-    for unit in work_units(inputs.tables, inputs.recordings):
-        if isinstance(unit, RulecError):
-            problems.append(unit)
-        else:
-            units.append(unit)
+    with memory_given_back():
+        for unit in work_units(inputs.tables, inputs.recordings):
+            if isinstance(unit, RulecError):
+                problems.append(unit)
+            else:
+                units.append(unit)
     worker = UnitWorker(carried_rules, settings.request, settings.source, settings.ends, kept)
     before = {unit.digest for unit in units if kept.is_done(unit)}
     there = [unit for unit in units if unit.digest in before]

@@ -8,8 +8,9 @@ from pathlib import Path
 
 from rulec.trace.formats.arrow.parquet import arrow
 
-_COLUMNS = ("kind", "outcome", "rule", "strength", "ego", "file", "vehicle", "because")
-_NUMBERS = ("duration_s", "distance_m")
+_COLUMNS = ("kind", "outcome", "rule", "ego", "because", "duration_s", "distance_m")
+
+_ROWS_AT_ONCE = 1 << 12
 
 
 @dataclass
@@ -50,10 +51,9 @@ def tally_of(path: Path) -> FleetTally:
     _, parquet = arrow(str(path))
     tally = FleetTally()
     with parquet.ParquetFile(path) as source:
-        columns = [*_COLUMNS, *_NUMBERS]
-        for batch in source.iter_batches(columns=columns):
-            for row in zip(*(batch.column(name).to_pylist() for name in columns), strict=True):
-                kind, outcome, rule, _, ego, _, _, because, duration_s, distance_m = row
+        for batch in source.iter_batches(_ROWS_AT_ONCE, columns=list(_COLUMNS), use_threads=False):
+            for row in zip(*(batch.column(name).to_pylist() for name in _COLUMNS), strict=True):
+                kind, outcome, rule, ego, because, duration_s, distance_m = row
                 if kind == "rule":
                     tally.rules[rule, outcome] += 1
                 elif kind == "drive":

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import accumulate
+from itertools import accumulate, groupby
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -157,12 +157,15 @@ class _Reader:
     def _start(self, row: int) -> None:
         """Go to the row group that has a row."""
         group = next(place for place, one in enumerate(self._groups) if row < one.stop)
-        self._rest = self._from(group)
+        self._rest = _read_from(self._groups, group)
 
-    def _from(self, first: int) -> Iterator[_Place]:
-        for place, group in enumerate(self._groups[first:], first):
-            start = group.start
-            with opened_table(group.path) as source:
-                for some in keyed_rows(source, [group.number], whole=True):
+
+def _read_from(groups: Sequence[_Group], first: int) -> Iterator[_Place]:
+    """The rows of groups from the first one on."""
+    for path, own in groupby(range(first, len(groups)), lambda place: groups[place].path):
+        with opened_table(path) as source:
+            for place in own:
+                start = groups[place].start
+                for some in keyed_rows(source, [groups[place].number], whole=True):
                     yield _Place(place, start, some)
                     start += len(some.codes)

@@ -15,6 +15,7 @@ from rulec.files import files_read, written_whole
 from rulec.fleet.carried_rulebook import CarriedRulebook
 from rulec.fleet.drive_rows import DriveRows
 from rulec.fleet.finding_columns import Row, arrow_schema, arrow_table
+from rulec.fleet.runs.drive_keys import memory_given_back
 from rulec.fleet.runs.fleet_folder import READ, STATE, FleetFolder
 from rulec.fleet.runs.fleet_tally import FleetTally, tally_of
 from rulec.fleet.runs.unit_slices import slices_of_unit
@@ -50,9 +51,10 @@ class UnitWorker:
         The file appears whole, and is the same however often it is written.
         """
         path = self.folder.part(unit)
-        if not self.folder.is_done(unit):
-            self._write(unit, path)
-        return tally_of(path)
+        with memory_given_back():
+            if not self.folder.is_done(unit):
+                self._write(unit, path)
+            return tally_of(path)
 
     def _write(self, unit: WorkUnit, path: Path) -> None:
         _, parquet = arrow(str(path))
@@ -62,8 +64,8 @@ class UnitWorker:
             written_whole(path) as stream,
             parquet.ParquetWriter(stream, arrow_schema(), compression="zstd") as writer,
         ):
-            while chunk := list(islice(rows, _ROWS_AT_ONCE)):
-                writer.write_table(arrow_table(chunk))
+            while len(table := arrow_table(islice(rows, _ROWS_AT_ONCE))):
+                writer.write_table(table)
             beside = {name: then for name, then in sorted(read.items()) if name not in unit.paths}
             writer.add_key_value_metadata({STATE: state, READ: json.dumps(beside)})
 
@@ -95,10 +97,8 @@ class UnitWorker:
             "traces": TraceTableJudge(to_rows, assumed, None),
         }
         slices = slices_of_unit(unit)
-        pyarrow, _ = arrow(unit.path)
         while (table := next(slices, None)) is not None:
             rows = judges[kind_of(table.column_names)].rows(table)
             # Nothing else holds it: it is gone before the next one is read.
             del table
             yield from rows
-            pyarrow.default_memory_pool().release_unused()

@@ -36,6 +36,11 @@ class Coded:
         """The rows whose cell is not empty."""
         return self.codes >= 0
 
+    def given_at(self, rows: slice) -> NDArray[np.bool_]:
+        """Which of some rows have a cell that is not empty, without a look at all the others."""
+        result: NDArray[np.bool_] = self.codes[rows] >= 0
+        return result
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Numbers:
@@ -47,6 +52,10 @@ class Numbers:
     numbers: NDArray[np.float64]
     given: NDArray[np.bool_]
     whole: bool = False
+
+    def given_at(self, rows: slice) -> NDArray[np.bool_]:
+        """Which of some rows have a cell that is not empty."""
+        return self.given[rows]
 
 
 Column = Coded | Numbers
@@ -97,8 +106,8 @@ class Block(Sequence["Trace | RulecError"]):
 
     def step_s(self, place: int) -> float:
         """Step of a trace (s), if nothing about it is odd."""
-        column, row = self.columns.get(STEP_S), self.starts[place]
-        if column is None or not column.given[row]:
+        column, row = self.columns.get(STEP_S), int(self.starts[place])
+        if column is None or not column.given_at(slice(row, row + 1)).all():
             return 1.0
         result = column.numbers if isinstance(column, Numbers) else column.values
         return float(result[row if isinstance(column, Numbers) else column.codes[row]])
@@ -227,7 +236,7 @@ def _outlined_trace(block: Block, outline: BlockPresence, place: int) -> Trace |
             of[last] = value
     own = slice(*outline.starts[place : place + 2].tolist())
     step_s = block.columns.get(STEP_S)
-    is_said = step_s is not None and step_s.given[start]
+    is_said = step_s is not None and step_s.given_at(slice(start, start + 1)).all()
     ((number, _),) = block.rows(start, start + 1)
     return Trace(
         id=outline.names[place],
@@ -249,7 +258,7 @@ def _said_in(
     """What is said of each name in rows, counted from the first one."""
     for name in block.table.names:
         column = block.columns[name]
-        where = np.flatnonzero(column.given[start:stop])
+        where = np.flatnonzero(column.given_at(slice(start, stop)))
         yield name, where, cells_of(column, where + start)
     for name, unknown in block.unknown.items():
         first, last = np.searchsorted(unknown, (start, stop)).tolist()
