@@ -22,6 +22,7 @@ from rulec.extraction.selection import RequestedDrives
 from rulec.fleet import FleetJudge
 from rulec.fleet.carried_rulebook import carried
 from rulec.fleet.judged_by import judged_by
+from rulec.fleet.runs import unit_slices
 from rulec.fleet.runs import work_units as units_module
 from rulec.fleet.runs.fleet_folder import FleetFolder
 from rulec.fleet.runs.fleet_inputs import fleet_inputs
@@ -116,8 +117,9 @@ def test_any_cut_into_files_and_row_groups_has_the_same_findings(
     chunk, traces, expected, tmp_path, monkeypatch
 ):
     for seed in range(chunk * 25, chunk * 25 + 25):
-        # Files are cut into pieces, too
+        # Files are cut into pieces, too, and pieces into slices
         monkeypatch.setattr(units_module, "MOST_ROWS", 20 + seed % 50)
+        monkeypatch.setattr(unit_slices, "MOST_TOGETHER", 10 + seed % 70)
         folder = cut_into(traces, tmp_path / f"in{seed}", seed)
         run([folder], tmp_path / f"out{seed}")
         assert found_in(tmp_path / f"out{seed}") == expected, seed
@@ -125,6 +127,7 @@ def test_any_cut_into_files_and_row_groups_has_the_same_findings(
 
 def test_recordings_that_are_cut_are_put_together(tmp_path, monkeypatch):
     monkeypatch.setattr(units_module, "MOST_ROWS", 30)
+    monkeypatch.setattr(unit_slices, "MOST_TOGETHER", 40)
     table = pyarrow.table(tracks([0, 1]))
     whole = FleetJudge(fleet_rules(), lanes(tmp_path))(table)
     done = run([cut_into(table, tmp_path / "in", 3)], tmp_path / "out", road_map=lanes(tmp_path))
@@ -312,6 +315,17 @@ def test_engines_that_are_not_installed_say_how_to_get_them(folder_of, tmp_path,
             run([folder_of], tmp_path / engine, engine=engine)
         assert f"[{engine}]'`" in raised.value.diagnostics[0].help
         assert not (tmp_path / engine).exists()
+
+
+def test_drives_are_judged_without_pandas(folder_of, tmp_path):
+    """It is not asked for, and would take a third of a second and 40 MB of each process."""
+    parquet.write_table(pyarrow.table(tracks([0, 1])), folder_of / "tracks.parquet")
+    (tmp_path / "pandas.py").write_text("raise SystemExit('pandas is imported')")
+    inputs = [folder_of, "-r", fleet_file(tmp_path), "--map", lanes(tmp_path), "-o", "out"]
+    call = [sys.executable, "-m", "rulec", "fleet", *inputs, "-j", "1"]
+    done = subprocess.run(call, cwd=tmp_path, capture_output=True, check=False)
+    assert (done.returncode, done.stderr) == (1, b"")
+    assert b"16 judged" in done.stdout
 
 
 def test_without_arrow_nothing_is_written(folder_of, tmp_path, monkeypatch):

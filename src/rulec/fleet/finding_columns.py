@@ -81,7 +81,8 @@ def arrow_table(rows: Iterable[Row]) -> Any:
             for name, kind in COLUMNS.items()
         ]
         parts.append(pyarrow.table(arrays, schema=schema))
-    return pyarrow.concat_tables(parts).combine_chunks() if parts else schema.empty_table()
+    whole = pyarrow.concat_tables(parts) if parts else pyarrow.Table.from_batches([], schema)
+    return whole.combine_chunks()
 
 
 def _array(cells: Sequence[Any], kind: type) -> Any:
