@@ -13,7 +13,7 @@ from rulec.fleet.fleet_messages import no_fleet_input
 from rulec.fleet.runs.drive_keys import KeyedRows, KeyHashes, keyed_rows, opened_table
 from rulec.fleet.runs.work_units import TablePiece, WorkUnit
 
-MOST_TOGETHER = 1 << 16
+MOST_TOGETHER = 1 << 15
 """Rows that are judged together; of a longer drive all."""
 
 _FEWEST_MERGED = 1 << 16
