@@ -87,7 +87,11 @@ def arrow_table(rows: Iterable[Row]) -> Any:
 
 def _array(cells: Sequence[Any], kind: type) -> Any:
     # Arrow, 0.1 s: where there is a table of it, it is loaded.
-    from rulec.trace.formats.arrow.arrow_made import array_of_lists, array_of_numbers, array_of_texts
+    from rulec.trace.formats.arrow.arrow_made import (
+        array_of_lists,
+        array_of_numbers,
+        array_of_texts,
+    )
 
     if kind is str:
         return array_of_texts(cells)

@@ -100,7 +100,7 @@ def _drives_of(unit: WorkUnit) -> _Drives:
                     found, waiting = [_merged(found)], 0
     drives = _merged(found)
     order = np.argsort(drives.first)
-    return _Drives(*(column[order] for column in drives))
+    return _Drives(drives.keys[order], drives.rows[order], drives.first[order])
 
 
 def _merged(parts: Sequence[_Drives]) -> _Drives:

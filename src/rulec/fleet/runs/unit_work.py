@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -20,7 +20,7 @@ from rulec.fleet.runs.fleet_folder import READ, STATE, FleetFolder
 from rulec.fleet.runs.fleet_tally import FleetTally, tally_of
 from rulec.fleet.runs.unit_slices import slices_of_unit
 from rulec.fleet.runs.work_units import WorkUnit
-from rulec.fleet.table_kind import kind_of
+from rulec.fleet.table_kind import TableKind, kind_of
 from rulec.fleet.table_recordings import TrackTableJudge
 from rulec.fleet.table_traces import TraceTableJudge
 from rulec.monitoring.assumptions import Assumptions
@@ -92,7 +92,7 @@ class UnitWorker:
     def _of_table(self, unit: WorkUnit, to_rows: DriveRows) -> Iterator[Row]:
         roads = None if self.source.map_path is None else str(self.source.map_path)
         assumed = Assumptions(self.ends, self.request.assumed, self.request.defaults)
-        judges = {
+        judges: Mapping[TableKind, TrackTableJudge | TraceTableJudge] = {
             "tracks": TrackTableJudge(to_rows, self.request, roads, None),
             "traces": TraceTableJudge(to_rows, assumed, None),
         }

@@ -75,7 +75,7 @@ def cells_in(column: Any) -> NDArray[Any]:
         codes, values = codes_in(array)
         found = np.empty(len(values) + 1, dtype=object)
         found[:-1] = values  # the last one stays None
-        return found[codes]
+        return found.take(codes, mode="wrap")
     if types.is_integer(array.type) or types.is_float64(array.type):
         numbers, given = numbers_in(array), given_in(array)
         return numbers if given.all() else np.where(given, numbers, np.nan)

@@ -156,7 +156,11 @@ def key_texts(table: Any, keys: Sequence[str], between: str) -> tuple[NDArray[np
     if not keys:
         return np.zeros(len(table), dtype=np.int64), [""]
     columns = [_without_nulls(_as_text(_plain(table.column(name)))) for name in keys]
-    whole = columns[0] if len(keys) == 1 else compute.binary_join_element_wise(*columns, one_text(between))
+    whole = (
+        columns[0]
+        if len(keys) == 1
+        else compute.binary_join_element_wise(*columns, one_text(between))
+    )
     if not len(whole):
         return np.zeros(0, dtype=np.int64), []
     codes, texts = codes_in(whole_array(whole))
