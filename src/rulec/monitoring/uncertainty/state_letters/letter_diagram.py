@@ -8,7 +8,9 @@ are met.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Sequence, Set
+from itertools import count
 
 from rulec.automata.outcome_machine import OutcomeMachine, bits_of
 
@@ -21,13 +23,15 @@ class LetterDiagram:
 
     def __init__(self, machine: OutcomeMachine) -> None:
         self._n_reads = len(machine.reads)
-        # One more than the class: 0 is for what facts exclude.
-        below = [letter + 1 for letter in machine.letters]
+        below: Sequence[int] = machine.letters
         self._children: list[list[tuple[int, ...]]] = []
         for read in machine.reads:
             rows, below = _distinct_rows(below, read.size)
             self._children.append(rows)
-        self.start = 1 << below[0]
+        if self._children:
+            # One more than the class: 0 is for what facts exclude.
+            self._children[0] = [tuple([letter + 1 for letter in row]) for row in self._children[0]]
+        self.start = 1 << (below[0] if self._children else below[0] + 1)
         self._steps: dict[tuple[int, int, int], int] = {}
 
     def classes(self, cube: Sequence[int]) -> int:
@@ -78,7 +82,7 @@ class LetterDiagram:
 
 def _distinct_rows(numbers: Sequence[int], width: int) -> tuple[list[tuple[int, ...]], list[int]]:
     """The rows of so many numbers that there are, and the place of each among them."""
-    rows = list(zip(*[iter(numbers)] * width, strict=True))
-    distinct = list(dict.fromkeys(rows))
-    places = {row: place for place, row in enumerate(distinct)}
-    return distinct, list(map(places.__getitem__, rows))
+    # A row that is not there yet gets the next number; without a line of Python for each.
+    places: defaultdict[tuple[int, ...], int] = defaultdict(count().__next__)
+    found = list(map(places.__getitem__, zip(*[iter(numbers)] * width, strict=True)))
+    return list(places), found
