@@ -11,6 +11,7 @@ from types import ModuleType
 
 import pytest
 
+from rulec.cli import dataclass_methods
 from rulec.cli.dataclass_methods import dataclass
 
 SAMPLES = '''
@@ -136,9 +137,12 @@ QUESTIONS = [
 ]
 
 
+@pytest.mark.parametrize("few", [0, 1 << 20])
 @pytest.mark.parametrize("question", QUESTIONS)
-def test_late_methods_do_what_pythons_do(question):
-    assert answer(question, LATE) == answer(question, AT_ONCE)
+def test_late_methods_do_what_pythons_do(question, few, monkeypatch):
+    monkeypatch.setattr(dataclass_methods, "_FEW", few)
+    late = samples(dataclass, LATE.__name__)
+    assert answer(question, late) == answer(question, AT_ONCE)
 
 
 def answer(question: str, module: ModuleType) -> str:
@@ -158,6 +162,9 @@ def test_what_contains_itself_is_shown():
 def test_nothing_is_written_before_it_is_looked_up():
     module = samples(dataclass, "rulec.fresh_samples")
     assert not inspect.isfunction(module.Point.__dict__["__init__"])
+    for _ in range(dataclass_methods._FEW):
+        module.Point(1)
+        assert not inspect.isfunction(module.Point.__dict__["__init__"])
     module.Point(1)
     assert inspect.isfunction(module.Point.__dict__["__init__"])
     assert not inspect.isfunction(module.Point.__dict__["__eq__"])

@@ -2,14 +2,15 @@
 
 A command imports hundreds of dataclasses and makes objects of few. Python writes and compiles six
 methods of each when it is imported, which is a fifth of what a short command takes. Here each is
-written when somebody first looks it up; from then on it is a function as any other. Whoever imports
-rulec as a library gets what Python makes.
+written when somebody first looks it up; from then on it is a function as any other. The first few
+objects of a class are made without its `__init__`, which takes longer to write than to do without.
+Whoever imports rulec as a library gets what Python makes.
 """
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, FrozenInstanceError, fields
 from functools import partial
 from inspect import get_annotations  # which `dataclasses` imports, too
@@ -58,7 +59,7 @@ def _late(
     make = _AS_PYTHON_DOES(init=False, repr=False, eq=False, slots=slots, kw_only=kw_only)
     cls: type = make(given)
     methods: dict[str, object] = {
-        "__init__": _Unwritten(cls, "__init__", partial(_init_text, frozen=frozen)),
+        "__init__": _UnwrittenInit(cls, "__init__", partial(_init_text, frozen=frozen)),
         "__repr__": _Unwritten(cls, "__repr__", _repr_text),
     }
     if eq:
@@ -84,6 +85,10 @@ class _Unwritten:
     text: Callable[[type, dict[str, object]], str]
 
     def __get__(self, item: object, owner: type) -> object:
+        return self.written().__get__(item, owner)
+
+    def written(self) -> Any:
+        """The method, which from now on is in its place."""
         names: dict[str, object] = {"_MISSING": MISSING, "_set": object.__setattr__}
         exec(self.text(self.cls, names), names)
         method: Any = names[self.name]
@@ -92,7 +97,57 @@ class _Unwritten:
         if self.name == "__repr__":
             method = recursive_repr()(method)
         setattr(self.cls, self.name, method)
-        return method.__get__(item, owner)
+        return method
+
+
+_FEW = 8
+"""Without an `__init__` of their own these take as long as it takes to write one."""
+
+
+@dataclasses.dataclass(slots=True)
+class _UnwrittenInit(_Unwritten):
+    """An `__init__` that is written once there are more than a few objects."""
+
+    n_objects: int = 0
+    _fields: Sequence[dataclasses.Field[Any]] = ()
+
+    def __get__(self, item: object, owner: type) -> object:
+        if item is None or self.n_objects >= _FEW:
+            return self.written().__get__(item, owner)
+        self.n_objects += 1
+        return partial(self._fill, item)
+
+    def _fill(self, item: Any, /, *given: object, **named: object) -> None:
+        values = self._values(given, named)
+        if values is None:
+            self.written()(item, *given, **named)  # which says what does not fit
+            return
+        for name, value in values.items():
+            object.__setattr__(item, name, value)
+        if hasattr(self.cls, "__post_init__"):
+            item.__post_init__()
+
+    def _values(
+        self, given: Sequence[object], named: Mapping[str, object]
+    ) -> dict[str, object] | None:
+        """What the fields get; None for arguments that are not the method's."""
+        self._fields = self._fields or fields(self.cls)
+        places = [one.name for one in self._fields if one.init and one.kw_only is not True]
+        told = {**dict(zip(places, given, strict=False)), **named}
+        if len(given) > len(places) or len(told) < len(given) + len(named):
+            return None
+        values = {}
+        for field in self._fields:
+            name = field.name
+            if field.init and name in told:
+                values[name] = told.pop(name)
+            elif field.default_factory is not MISSING:
+                values[name] = field.default_factory()
+            elif field.default is not MISSING:
+                values[name] = field.default
+            elif field.init:
+                return None
+        return None if told else values
 
 
 def _init_text(cls: type, names: dict[str, object], *, frozen: bool) -> str:
