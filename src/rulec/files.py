@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import gc
-import gzip
 import os
 import stat
-import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
@@ -279,7 +277,12 @@ class _Unpacking(RawIOBase):
     """The content of a packed file, up to a limit."""
 
     def __init__(self, stream: IO[bytes], path: Path) -> None:
+        # 1 ms: only for what is packed.
+        import gzip
+        import zlib
+
         self._gzip = gzip.GzipFile(fileobj=stream)
+        self._damaged = gzip.BadGzipFile, zlib.error
         self._path = path
 
     def readable(self) -> bool:
@@ -304,7 +307,7 @@ class _Unpacking(RawIOBase):
             data = self._gzip.read(len(buffer))
         except EOFError:
             raise self._refused("it is packed, and ends too soon") from None
-        except (gzip.BadGzipFile, zlib.error):
+        except self._damaged:
             raise self._refused("it is packed, and damaged") from None
         if self._gzip.tell() > LARGEST_UNPACKED:
             raise self._refused(

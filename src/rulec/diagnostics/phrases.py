@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from difflib import get_close_matches
 from functools import lru_cache
 
 _MOST_NAMED = 8
@@ -28,6 +27,9 @@ def nearest_name(name: str, known: Iterable[str], alike: float = 0.6) -> str | N
 
 @lru_cache(maxsize=64)  # one mistake in each row of a file is one search
 def _closest(name: str, known: tuple[str, ...], alike: float) -> list[str]:
+    # 1 ms: only where a name is not known.
+    from difflib import get_close_matches
+
     return get_close_matches(name, known, n=1, cutoff=alike)
 
 

@@ -9,8 +9,7 @@ from rulec.automata.mealy_monitor import Read
 from rulec.automata.outcome_machine import KEPT, VIOLATED, OutcomeMachine, bits_of
 from rulec.monitoring.uncertainty import uncertain_machine
 from rulec.monitoring.uncertainty.prospects import Prospects
-from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
-from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleWord
+from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses, PossibleWord
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine
 from support.generators.seeds import seeds
 

@@ -9,18 +9,15 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.bundle_messages import NO_CRYPTOGRAPHY, NO_KEY, NOT_SIGNED
-from rulec.automata.bundle.minisign import (
-    PublicKey,
-    SignatureFormatError,
-    detached_signature,
-    has_signed,
-    public_key,
-)
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.resource_limits import variable_set
 from rulec.version import install_command
+
+if TYPE_CHECKING:
+    from rulec.automata.bundle.minisign import PublicKey
 
 VARIABLE = "RULEC_REQUIRE_SIGNED"
 """The path of a public key, or the key itself; unset or empty if nothing has to be signed."""
@@ -46,6 +43,9 @@ def check_signed(path: Path, data: bytes) -> None:
     """
     if not (required := os.environ.get(VARIABLE)):
         return
+    # Keys and signatures, 1 ms: only where they are asked for.
+    from rulec.automata.bundle.minisign import detached_signature, has_signed
+
     key = _key(required)
     beside = path.with_name(f"{path.name}.minisig")
     if not beside.is_file():
@@ -83,6 +83,9 @@ def _not_signed(path: Path, message: str) -> RulecError:
 
 
 def _key(required: str) -> PublicKey:
+    # As above.
+    from rulec.automata.bundle.minisign import SignatureFormatError, public_key
+
     try:
         path = Path(required)
         return public_key(_text(path) if path.is_file() else required)

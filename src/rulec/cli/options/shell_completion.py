@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
-from click.shell_completion import CompletionItem
 
 from rulec.diagnostics import RulecError
 from rulec.settings import search_path
+
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
 
 
 def complete_rulebooks(
@@ -45,9 +48,7 @@ def complete_rules(
     except RulecError:
         return []
     return [
-        CompletionItem(rule.name, help=rule.says or None)
-        for rule in rules
-        if rule.name.startswith(incomplete)
+        _item(rule.name, rule.says or None) for rule in rules if rule.name.startswith(incomplete)
     ]
 
 
@@ -69,7 +70,7 @@ def complete_codes(
     from rulec.report.findings.code_registry import all_codes
 
     return [
-        CompletionItem(text, help=code.title)
+        _item(text, code.title)
         for text, code in all_codes().items()
         if text.startswith(incomplete.upper())
     ]
@@ -94,6 +95,13 @@ def _book_names(*, vocabularies: bool = False) -> list[str]:
 
 
 def _named(names: Iterable[str], incomplete: str) -> list[CompletionItem]:
-    fitting = [CompletionItem(name) for name in names if name.startswith(incomplete)]
+    fitting = [_item(name) for name in names if name.startswith(incomplete)]
     # The first has the shell offer files as well, whose paths begin so.
-    return [CompletionItem(incomplete, type="file"), *fitting]
+    return [_item(incomplete, kind="file"), *fitting]
+
+
+def _item(value: str, about: str | None = None, kind: str = "plain") -> CompletionItem:
+    # 0.5 ms: only for shells that ask.
+    from click.shell_completion import CompletionItem
+
+    return CompletionItem(value, type=kind, help=about)

@@ -25,8 +25,7 @@ from rulec.logic.printing import number_in_words
 from rulec.monitoring.uncertainty.dependence import BEFORE, Dependence, PossibleAlternative
 from rulec.monitoring.uncertainty.idle_letters import IdleLetters, idle_letters
 from rulec.monitoring.uncertainty.run_pairs import RunPairs
-from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
-from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleWord
+from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses, PossibleWord
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters, names_of_read
 from rulec.monitoring.verdict import ConditionalOutcome, OpenReasons, OutcomeName, Reason
 

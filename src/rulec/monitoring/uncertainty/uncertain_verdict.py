@@ -16,10 +16,8 @@ from rulec.automata.outcome_machine import KEPT, VIOLATED
 from rulec.monitoring.bindings import Binding, Cast, binding_of, types_of
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.uncertainty.lazy_bindings import ReadBits, doubtful_bindings
-from rulec.monitoring.uncertainty.state_letters.possible_letters import (
-    PossibleLetters,
-    PossibleWord,
-)
+from rulec.monitoring.uncertainty.state_letters.letter_classes import PossibleWord
+from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleLetters
 from rulec.monitoring.uncertainty.suppositions import Suppositions
 from rulec.monitoring.uncertainty.uncertain_machine import (
     Answer,

@@ -6,17 +6,19 @@ from collections.abc import Mapping, Sequence, Set
 from contextlib import suppress
 from itertools import count, repeat
 from operator import itemgetter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rulec.automata.thresholds import EXACT_IN_FLOATS
-from rulec.monitoring.batch.trace_groups import Names
 from rulec.monitoring.state_validation import NUMBERS, TRUTHS
 from rulec.trace.trace_columns import Array, Key, TraceCells, TraceColumns, smallest_unsigned
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, UnknownValue
+
+if TYPE_CHECKING:
+    from rulec.monitoring.batch.trace_groups import Names
 
 _NOT_GIVEN = object()
 _EMPTY: Mapping[str, Any] = {}

@@ -14,8 +14,8 @@ from rulec.logic import formula as ltl
 from rulec.monitoring.batch.stacked.entangled_letters import digits_at
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader, is_partial
 from rulec.monitoring.batch.stacked.stacked_outcomes import StackedWords
+from rulec.monitoring.uncertainty.state_letters.letter_classes import PossibleWord
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
-from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleWord
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
 from rulec.monitoring.uncertainty.within_tolerance import told_within_bounds
 from rulec.monitoring.verdict import OpenReasons

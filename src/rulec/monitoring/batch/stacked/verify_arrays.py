@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from operator import itemgetter
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
@@ -28,14 +28,13 @@ from rulec.monitoring.batch.stacked.stacked_outcomes import (
     outcomes,
 )
 from rulec.monitoring.batch.stacked.stacked_rule import ReadKeys, StackedRule
-from rulec.monitoring.implied_values import with_all_said
 from rulec.monitoring.state_validation import check_objects, check_told
 from rulec.monitoring.uncertainty.judged_rules import JudgedRules, judged_rules
-from rulec.monitoring.uncertainty.suppositions import spelled_out
-from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict, Violation
-from rulec.monitoring.verify import rulebook_for_step, verify_or_reason
 from rulec.trace.trace_arrays import TraceArrays
+
+if TYPE_CHECKING:
+    from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 
 Answer: TypeAlias = Verdict | NotJudged
 
@@ -72,6 +71,13 @@ def _by_states(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> lis
     return list(verify_chunk([trace.trace() for trace in traces], rulebook))
 
 
+def _by_its_states(trace: TraceArrays, rulebook: CompiledRulebook) -> Answer:
+    # As above: only where something is odd.
+    from rulec.monitoring.verify import verify_or_reason
+
+    return verify_or_reason(trace.trace(), rulebook)
+
+
 class _StackedRun:
     """The judgement of traces that say the same names. Raises RulecError, UnencodableError."""
 
@@ -79,7 +85,7 @@ class _StackedRun:
         example = traces[0]
         self._traces = traces
         self._whole_rulebook = rulebook
-        self._rulebook = rules = rulebook_for_step(example.step_s, rulebook)
+        self._rulebook = rules = rulebook.fitted_to(example.step_s)
         key = example.told, example.ends, example.step_s
         known: dict[object, _ReadyRules] = rules.prepared.setdefault(_ReadyRules, {})
         if key not in known:
@@ -110,7 +116,7 @@ class _StackedRun:
                 self._add_closely(number, rule)
         self._odd |= self._stack.odd_traces()
         return [
-            verify_or_reason(trace.trace(), self._whole_rulebook)
+            _by_its_states(trace, self._whole_rulebook)
             if number in self._odd
             else self._verdict(number)
             for number, trace in enumerate(self._traces)
@@ -220,6 +226,11 @@ class _CloseLook:
 
     @cached_property
     def _run(self) -> UncertainRun:
+        # Judging by states, 5 ms: only where arrays do not tell.
+        from rulec.monitoring.implied_values import with_all_said
+        from rulec.monitoring.uncertainty.suppositions import spelled_out
+        from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
+
         vocabulary = self._rulebook.vocabulary
         trace = with_all_said(spelled_out(self._trace.trace(), vocabulary), vocabulary)
         return UncertainRun(trace, self._rulebook)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import product
 from math import prod
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read
@@ -26,7 +26,6 @@ from rulec.logic.kleene import (
     number_of,
     weighted_sum,
 )
-from rulec.monitoring.uncertainty.state_letters.linear_arrangement import LinearPlane, sample_points
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     CompletedView,
     MissingValueError,
@@ -41,6 +40,9 @@ from rulec.trace import Value
 from rulec.vocabulary import Enumeration, Quantity
 from rulec.vocabulary.partial_values import Interval, OneOf
 from rulec.vocabulary.vocabulary_model import choices
+
+if TYPE_CHECKING:
+    from rulec.monitoring.uncertainty.state_letters.linear_arrangement import LinearPlane
 
 Digits: TypeAlias = tuple[int, ...]
 """A digit for each read."""
@@ -218,6 +220,9 @@ def _completed(
     if n_discrete > MOST_COMPLETIONS:
         return None
     planes = [plane for link in cluster.links for plane in _planes(link, reads, view)]
+    # Arrangements of planes, 2 ms: only where numbers that are compared are unknown.
+    from rulec.monitoring.uncertainty.state_letters.linear_arrangement import sample_points
+
     points = sample_points(bounds, planes)
     if points is None or n_discrete * len(points) > MOST_COMPLETIONS:
         return None
@@ -347,4 +352,7 @@ def _planes_of_sum(
                 for item in items:
                     yield from _planes_in(body, {**environment, variable: item}, view)
     if coefficients:
+        # As above.
+        from rulec.monitoring.uncertainty.state_letters.linear_arrangement import LinearPlane
+
         yield from (LinearPlane(coefficients, each) for each in limits)

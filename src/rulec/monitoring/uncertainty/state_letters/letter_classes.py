@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
 from typing import TypeVar
@@ -73,6 +74,31 @@ class LetterClasses:
                     groups[part] = groups.get(part, 0) | self.diagram.classes(narrowed)
             _keep(self._groups, key, {part: classes for part, classes in groups.items() if classes})
         return self._groups[key]
+
+
+@dataclass
+class PossibleWord:
+    """The letters that a rule may read of its objects, state by state.
+
+    ``classes`` are their classes, as bits. ``exact`` is false if there are letters that are not
+    possible, because there was too much to look at. What else there is to say is found when it is
+    asked for.
+    """
+
+    classes: tuple[int, ...]
+    exact: bool
+    find_states: Callable[[], tuple[Letters, ...]]
+    find_unknown: Callable[[], tuple[frozenset[str], ...]]
+
+    @cached_property
+    def states(self) -> tuple[Letters, ...]:
+        """The letters of each state."""
+        return self.find_states()
+
+    @cached_property
+    def unknown(self) -> tuple[frozenset[str], ...]:
+        """For each read the names of values of which some are unknown."""
+        return self.find_unknown()
 
 
 class RuleLetters:

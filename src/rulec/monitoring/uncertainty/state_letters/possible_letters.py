@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
@@ -21,9 +20,12 @@ from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     known_parts,
     local_reads,
 )
-from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses, RuleLetters
+from rulec.monitoring.uncertainty.state_letters.letter_classes import (
+    LetterClasses,
+    PossibleWord,
+    RuleLetters,
+)
 from rulec.monitoring.uncertainty.state_letters.read_digits import (
-    Letters,
     ReadDigits,
     read_digits,
 )
@@ -38,31 +40,6 @@ from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
 
 NOTHING: Mapping[Subject, Value] = {}
 """Nothing is supposed."""
-
-
-@dataclass
-class PossibleWord:
-    """The letters that a rule may read of its objects, state by state.
-
-    ``classes`` are their classes, as bits. ``exact`` is false if there are letters that are not
-    possible, because there was too much to look at. What else there is to say is found when it is
-    asked for.
-    """
-
-    classes: tuple[int, ...]
-    exact: bool
-    find_states: Callable[[], tuple[Letters, ...]]
-    find_unknown: Callable[[], tuple[frozenset[str], ...]]
-
-    @cached_property
-    def states(self) -> tuple[Letters, ...]:
-        """The letters of each state."""
-        return self.find_states()
-
-    @cached_property
-    def unknown(self) -> tuple[frozenset[str], ...]:
-        """For each read the names of values of which some are unknown."""
-        return self.find_unknown()
 
 
 BoundLetters: TypeAlias = dict[tuple[object, ...], RuleLetters]
