@@ -48,13 +48,17 @@ def test_what_was_not_answered_outweighs_what_failed():
 
 
 NOT_FOR_A_RECORDING = {
+    "gzip",
     "lark",
     "matplotlib",
+    "msgspec",
     "networkx",
     "pyarrow",
     "spot",
+    "rulec.automata.bundle.bundle_file",
     "rulec.automata.compiler",
     "rulec.cli.trace_run",
+    "rulec.monitoring.uncertainty.uncertain_verdict",
     "rulec.partition",
     "rulec.scenario.scenario_files",
     "rulec.syntax",
