@@ -101,7 +101,7 @@ def test_time_headway_and_speed_are_of_the_same_speed():
     about = participant_signals(context).about
     speed = ego_signals(context).world["speed"]
     assert speed == pytest.approx(np.full(4, 36.0), abs=0.01)
-    assert about["time_headway"][0, 0] == pytest.approx(about["gap"][0, 0] / 10, abs=0.01)
+    assert about["time_headway"][0] == pytest.approx(about["gap"][0] / 10, abs=0.01)
 
 
 @pytest.mark.parametrize(

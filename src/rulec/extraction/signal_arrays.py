@@ -33,6 +33,13 @@ class Presence(NamedTuple):
     last: int
 
 
+class ToldCells(NamedTuple):
+    """Where presences stand in rows of all states, and which of these to keep, None for all."""
+
+    places: NDArray[intp]
+    kept: NDArray[intp] | None
+
+
 @dataclass(frozen=True, slots=True)
 class WrittenSignals:
     """Signals in columns in which texts are places among the ``texts`` of their names."""
@@ -116,7 +123,7 @@ def _numbers(
     texts = signals.texts.get(name)
     if not isinstance(declaration, Enumeration) or (texts is None and column.dtype.kind != "U"):
         # All values but texts are alike
-        fit = texts is None and fits(name, column.ravel()[:1].tolist(), declaration)
+        fit = texts is None and fits(name, column.flat[:1].tolist(), declaration)
         return column if fit else None
     n_values = len(declaration.values)
     dtype = smallest_unsigned(n_values + 1)
@@ -202,25 +209,31 @@ def with_signals(
     signals: WrittenSignals,
     present: Sequence[Sequence[Presence]],
     spans: EndToEnd,
+    told: ToldCells,
     *,
     defaults: bool,
 ) -> list[TraceArrays]:
     """The traces of drives, in whose objects' order each ``present`` is, with their signals.
 
+    ``told`` are the cells of presences, of which those of ``present`` are kept.
     With ``defaults`` what is unknown is left out, and numbers are as measured.
     """
     columns = signals.columns
     counts = [0, *np.cumsum([len(own) for own in present]).tolist()]
     rows = np.array([presence.row for own in present for presence in own], dtype=intp)
-    told = [(x.first, x.last) for own in present for x in own]
-    every = np.array(told, dtype=intp).reshape(-1, 2)
-    cells, bounds = _cells(rows, every, counts, spans)
+    ranges = [(x.first, x.last) for own in present for x in own]
+    every = np.array(ranges, dtype=intp).reshape(-1, 2)
+    cells = told.places if told.kept is None else told.places.take(told.kept)
+    ends = np.append(0, np.cumsum(every[:, 1] - every[:, 0] + 1))
+    bounds = ends[counts].tolist()
     never = np.zeros(len(cells), dtype=bool)
 
     def gathered(name: str, column: SignalColumn) -> SignalColumn:
         """A signal's values end to end: of the world, or of who is present."""
         if name in columns.world:
             return column
+        if column.ndim == 1:
+            return column if told.kept is None else column.take(told.kept)
         # Much is true of nobody, which is seen sooner than it is gathered
         is_never = column.dtype == bool and not column.any()
         return never if is_never else column.ravel().take(cells)
@@ -259,19 +272,3 @@ def with_signals(
             )
         )
     return found
-
-
-def _cells(
-    rows: NDArray[intp], told: NDArray[intp], counts: Sequence[int], spans: EndToEnd
-) -> tuple[NDArray[intp], list[int]]:
-    """Where the values of each presence stand in rows of all states, one after the other.
-
-    Presences are ``rows`` with their first and last states; those of each drive begin at
-    ``counts``. With where the values of each drive begin, and those of the last one end.
-    """
-    first, last = told.T
-    ends = np.append(0, np.cumsum(last - first + 1))
-    lengths = np.diff(ends)
-    at = rows * spans.n_states + np.repeat(spans.begins, np.diff(counts)) + first
-    cells = np.arange(ends[-1]) + np.repeat(at - ends[:-1], lengths)
-    return cells, ends[counts].tolist()

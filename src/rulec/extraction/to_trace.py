@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signal_arrays import (
     Presence,
+    ToldCells,
     WrittenSignals,
     with_assumed,
     with_likeliest,
@@ -41,6 +42,7 @@ from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.signals.map.road_signals import road_signals
 from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
 from rulec.extraction.signals.map.zone_signals import zone_signals
+from rulec.extraction.signals.measured_numbers import presence_runs, told_cells
 from rulec.extraction.signals.participant_signals import (
     participant_signals,
     safe_gaps,
@@ -52,7 +54,7 @@ from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.logic.formula import Relation
 from rulec.monitoring.explain.margins import Margin
 from rulec.trace import Trace, Value
-from rulec.trace.plain_arrays import distinct, in_order
+from rulec.trace.plain_arrays import distinct
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.vocabulary_projection import known_type
 from rulec.value_display import short_repr
@@ -65,15 +67,14 @@ def presences(context: DriveContext) -> list[list[Presence]]:
     Absences up to ``away_s`` are bridged. Those in which one is not beside the road never are: its
     extents are not known then.
     """
-    drives, rows, first, last = _presences(context)
-    order = in_order(drives)
-    of_row = rows[order].tolist()
-    own = list(map(context.ids.__getitem__, of_row)), of_row, first[order].tolist()
-    every = list(map(Presence._make, zip(*own, last[order].tolist(), strict=True)))
-    ends = np.searchsorted(drives[order], np.arange(context.spans.n_drives + 1)).tolist()
+    runs = presence_runs(context)
+    of_row = runs.rows.tolist()
+    own = list(map(context.ids.__getitem__, of_row)), of_row, runs.first.tolist()
+    every = list(map(Presence._make, zip(*own, runs.last.tolist(), strict=True)))
+    ends = np.searchsorted(runs.drives, np.arange(context.spans.n_drives + 1)).tolist()
     found = [every[begin:end] for begin, end in pairwise(ends)]
-    again = (drives[1:] == drives[:-1]) & (rows[1:] == rows[:-1])
-    for drive in distinct(drives[1:][again]).tolist():
+    again = (runs.drives[1:] == runs.drives[:-1]) & (runs.rows[1:] == runs.rows[:-1])
+    for drive in distinct(runs.drives[1:][again]).tolist():
         found[drive] = _renamed(found[drive], _ids_in(context, drive))
     return found
 
@@ -96,26 +97,6 @@ def _ids_in(context: DriveContext, drive: int) -> frozenset[str]:
     rows = (context.relevant | context.in_sight)[:, columns].any(axis=1)
     bodies = context.tracks.participants
     return frozenset(bodies[row].id for row in np.flatnonzero(rows).tolist())
-
-
-def _presences(context: DriveContext) -> tuple[NDArray[np.intp], ...]:
-    """The drive, and in it the row, first and last state of each presence, those of a row together.
-
-    Who is in sight only, too far away to count, is none.
-    """
-    longest, spans = round(context.thresholds.away_s / context.recording.step_s), context.spans
-    rows, columns = np.nonzero(context.relevant)
-    drives, away, s = spans.number[columns], columns[1:] - columns[:-1], context.extents.s
-    parted = (rows[1:] > rows[:-1]) | (away > longest + 1) | (drives[1:] > drives[:-1])
-    parted |= np.isnan(s[rows, columns])[1:]
-    gaps = np.flatnonzero(~parted & (away > 1))
-    in_gaps = distinct(rows[gaps])
-    unknown, own = np.cumsum(np.isnan(s[in_gaps]), axis=1), np.searchsorted(in_gaps, rows[gaps])
-    parted[gaps] = unknown[own, columns[gaps]] < unknown[own, columns[gaps + 1]]
-    some = np.ones(min(len(rows), 1), dtype=bool)
-    begins, ends = np.append(some, parted), np.append(parted, some)
-    states = columns - spans.first[columns]
-    return drives[begins], rows[begins], states[begins], states[ends]
 
 
 _SIGNALS: tuple[Callable[[DriveContext, SignalNames], SignalColumns], ...] = (
@@ -323,7 +304,11 @@ def to_traces(
             told=None if writer.defaults else frozenset(kinds),
         )
         traces.append(empty)
-    arrays = with_signals(traces, chosen, present, spans, defaults=writer.defaults)
+    cells = told_cells(context)
+    are_known = np.array([kind is not None for kind in kind_of], dtype=bool)
+    kept = None if are_known.all() else np.flatnonzero(are_known[cells.rows])
+    told = ToldCells(cells.places, kept)
+    arrays = with_signals(traces, chosen, present, spans, told, defaults=writer.defaults)
     if writer.bare:
         starts = context.steps[spans.begins].tolist()
         return [

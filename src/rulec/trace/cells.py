@@ -29,6 +29,17 @@ class Cells:
         rows = np.repeat(np.arange(n_rows), np.diff(ends, prepend=0))
         return Cells(flags.shape, rows, places - rows * n_columns, places)
 
+    @staticmethod
+    def of_runs(
+        shape: tuple[int, ...], rows: NDArray[intp], first: NDArray[intp], last: NDArray[intp]
+    ) -> Cells:
+        """Those of runs in rows, from a first to a last column each, one run after the other."""
+        lengths = last - first + 1
+        ends = np.cumsum(lengths)
+        columns = np.arange(lengths.sum()) + np.repeat(first - ends + lengths, lengths)
+        own = np.repeat(rows, lengths)
+        return Cells(shape, own, columns, own * shape[1] + columns)
+
     def __len__(self) -> int:
         return len(self.places)
 

@@ -32,7 +32,7 @@ def speeds(mps, **more):
 def to_other(name, *, mps=10.0, x=30, y=0):
     """The bounds of a number about one that stands, in the second state."""
     bounds = participant_signals(seen(steady(7, 0, 0, mps), steady(8, x + mps / 2, y, 0))).bounds
-    return tuple(float(end[0, 1]) for end in bounds[name])
+    return tuple(float(end[1]) for end in bounds[name])
 
 
 def test_speeds_are_means_over_a_second_or_over_half_a_one_at_the_ends():
@@ -85,7 +85,7 @@ def test_headways_are_quotients_of_what_gaps_and_speeds_may_be():
 
 def test_errors_of_two_speeds_add_up_as_squares():
     bounds = participant_signals(seen(steady(7, 0, 0, 10), steady(8, 30, 0, 5))).bounds
-    low, high = (end[0, 1] for end in bounds["speed_difference"])
+    low, high = (end[1] for end in bounds["speed_difference"])
     wrong = 1.08 * np.sqrt(2)
     assert (low, high) == pytest.approx((18 - wrong, 18 + wrong), abs=0.011)
     # Who stands does so exactly

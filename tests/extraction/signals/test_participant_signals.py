@@ -25,7 +25,7 @@ def context(*others, ego_speed=10.0, **thresholds):
 def about(*others, **more):
     """The first state of each signal, of the first of the others."""
     signals = participant_signals(context(*others, **more))
-    return {name: signals.values(name)[0, 0] for name in signals.about}
+    return {name: signals.values(name).flat[0] for name in signals.about}
 
 
 def test_relations_and_distances():

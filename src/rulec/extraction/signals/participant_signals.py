@@ -23,6 +23,7 @@ from rulec.extraction.signals.measured_numbers import (
     safe_distance,
     safe_distance_error,
     speed_differences,
+    told_cells,
 )
 from rulec.extraction.signals.settling import only_when
 from rulec.extraction.signals.signal_columns import (
@@ -91,19 +92,22 @@ def _lateral(context: DriveContext) -> SignalColumns:
 
 
 def _gap(context: DriveContext) -> SignalColumns:
-    return _measured("gap", relations.gap(context), gap_bounds(context))
+    gap = told_cells(context).of(relations.gap(context))
+    return _measured("gap", gap, gap_bounds(context))
 
 
 def _time_headway(context: DriveContext) -> SignalColumns:
     # The speed that the word `speed` says
-    (speed, _), drives = own_speed(context), moves(context)
-    seconds = relations.gap(context) / np.where(drives, speed, 1.0)
+    told = told_cells(context)
+    speed, drives = told.of(own_speed(context)[0]), told.of(moves(context))
+    seconds = told.of(relations.gap(context)) / np.where(drives, speed, 1.0)
     headway = np.where(drives, np.minimum(seconds, LONGEST_S), LONGEST_S)
     return _measured("time_headway", headway, headway_bounds(context))
 
 
 def _lateral_gap(context: DriveContext) -> SignalColumns:
-    return _measured("lateral_gap", relations.lateral_gap(context), lateral_gap_bounds(context))
+    gap = told_cells(context).of(relations.lateral_gap(context))
+    return _measured("lateral_gap", gap, lateral_gap_bounds(context))
 
 
 def _speed_difference(context: DriveContext) -> SignalColumns:
