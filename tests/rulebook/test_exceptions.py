@@ -2,7 +2,7 @@
 
 import os
 import random
-from itertools import combinations, combinations_with_replacement, product
+from itertools import combinations_with_replacement, product
 
 import pytest
 from hypothesis import given
@@ -75,14 +75,24 @@ def lasting(word, kind, further):
 
 def sequences(phases, word):
     """For every way in which the phases occur in the word: at which instants each one begins."""
-    for starts in combinations(range(len(word)), len(phases)):
-        fits = phases[-1][0][1](word[starts[-1]])
-        for ((_, holds_in), bound), begin, end in zip(phases, starts, starts[1:], strict=False):
-            low, high = bound or (0, None)
-            fits &= all(holds_in(state) for state in word[begin:end])
-            fits &= low <= end - begin and (high is None or end - begin <= high)
-        if fits:
-            yield starts
+    for begin in range(len(word)):
+        yield from sequences_from(begin, phases, word)
+
+
+def sequences_from(begin, phases, word):
+    """Those whose first phase begins there."""
+    ((_, holds_in), bound), *later = phases
+    if not later:
+        if holds_in(word[begin]):
+            yield (begin,)
+        return
+    low, high = bound or (0, None)
+    for end in range(begin + 1, len(word)):
+        if not holds_in(word[end - 1]):
+            return
+        if low <= end - begin and (high is None or end - begin <= high):
+            for starts in sequences_from(end, later, word):
+                yield (begin, *starts)
 
 
 def stretch(starts):
