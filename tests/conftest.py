@@ -12,6 +12,7 @@ from hypothesis import HealthCheck, settings
 from rulec.automata import compiler, prefix_machines
 from support import hidden_spot
 from support.kept_for_a_run import FOLDER
+from support.remembered_books import remember_books
 from support.remembered_machines import ASKED, remembering
 from support.snapshots import Snapshots
 
@@ -66,6 +67,7 @@ def pytest_configure(config):
         (kept / "machines").mkdir(exist_ok=True)
         answers = remembering(kept / "machines")
         compiler.answers_to = prefix_machines.answers_to = answers
+        remember_books()
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,85 @@
+"""Rulebooks that ship, read and compiled once in each process, though many tests ask for the same.
+
+Texts that tests write are read each time; so are those that ship where a command keeps a cache of
+its own, and compiled while machines are not remembered.
+"""
+
+import os
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from pathlib import Path
+
+from rulec import pipeline
+from rulec.automata import compiler
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.compiled_cache import CompiledQuestion
+from rulec.automata.worker import compiler_choice
+from rulec.cache.keeping import is_keeping
+from rulec.diagnostics import Diagnostic, Source
+from rulec.resources import rulebooks_folder
+from rulec.rulebook import loader
+from rulec.rulebook.files import referenced_files
+from rulec.syntax import tree
+
+_PARSED, _COMPILED = loader.parsed, pipeline.compile_source
+
+
+def remember_books() -> None:
+    """Put what remembers in the places of the parser and the compiler of shipped rulebooks."""
+    shipped = str(rulebooks_folder())
+    trees: dict[tuple[str, str], tuple[tree.File, tuple[Diagnostic, ...]]] = {}
+    books: dict[tuple[object, ...], tuple[CompiledRulebook, Sequence[Diagnostic]]] = {}
+    machines_are_remembered = compiler.answers_to
+
+    def parsed(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
+        if is_keeping() or not source.name.startswith(shipped):
+            return _PARSED(source)
+        key = source.name, source.text
+        if key not in trees:
+            trees[key] = _PARSED(source)
+        return trees[key]
+
+    def compile_source(
+        reference: str | Path,
+        search_path: Sequence[str | Path] = (),
+        at: str = "",
+        step_s: Fraction | None = None,
+        *,
+        any_step: bool = False,
+        on_warning: Callable[[Sequence[Diagnostic]], object],
+        question: CompiledQuestion | None = None,
+    ) -> CompiledRulebook:
+        file = loader.find(reference, search_path)
+        is_usual = (
+            question is None
+            and not search_path
+            and file.source.name.startswith(shipped)
+            and compiler.answers_to is machines_are_remembered
+        )
+        choice = os.environ.get(compiler_choice.VARIABLE)
+        key = file.source, at, step_s, any_step, choice
+        if is_usual and key in books:
+            compiled, warnings = books[key]
+            on_warning(warnings)
+            return compiled
+        heard: list[Diagnostic] = []
+
+        def hear(warnings: Sequence[Diagnostic]) -> object:
+            heard.extend(warnings)
+            return on_warning(warnings)
+
+        compiled = _COMPILED(
+            reference,
+            search_path,
+            at,
+            step_s,
+            any_step=any_step,
+            on_warning=hear,
+            question=question,
+        )
+        if is_usual:
+            books[key] = compiled, heard
+        return compiled
+
+    loader.parsed = referenced_files.parsed = parsed
+    pipeline.compile_source = compile_source
