@@ -162,6 +162,33 @@ def test_who_stops_too_far_ahead_lets_one_pass_unless_it_runs_into_it(front, con
     assert signals.world["conflict_from_right"].any() == conflict
 
 
+@pytest.mark.parametrize(
+    ("signs", "first", "expected"),
+    [
+        (("STOP", "STOP"), frozenset(), "no"),
+        (("YIELD", "STOP"), frozenset({"4", "5", "6"}), "yes"),
+        (("STOP", "YIELD"), None, "unknown"),
+        (("STOP", None), None, "yes"),
+        ((None, None), frozenset(), "yes"),
+        # Where all have to stop it is who has come first that counts
+        (("STOP_4_WAY", "STOP_4_WAY"), frozenset(), "yes"),
+    ],
+)
+def test_a_sign_does_not_let_go_first_whom_a_sign_stops_too(signs, first, expected):
+    """Both are on minor roads of one junction; ``first``: the ways that the map lets go first."""
+    own, its = (frozenset({sign} - {None}) for sign in signs)
+    east = [replace(EAST[0], signs=own), replace(EAST[1], first=first), EAST[2]]
+    road = [replace(NORTH[0], signs=its), *NORTH[1:]]
+    ego = vehicle(7, {k: (-20 + 5 * k, 0) for k in STEPS}, speed=10)
+    places = {k: (0, -3 + 10 * (k / 2 - 2.5)) for k in STEPS}
+    other = vehicle(8, places, speed=10, heading=np.pi / 2)
+    found = replace(recording([*east, *road], [ego, other]), complete=frozenset({"YIELD"}))
+    signals = priority_signals(context_of(found, route=("1", "2", "3")))
+    side = "conflict_from_right"
+    assert signals.world[side].any() == (expected == "yes")
+    assert signals.unknown[side].any() == (expected == "unknown")
+
+
 def test_signs_order_a_junction_where_the_map_has_them():
     steady = lambda t: -50.0 + t  # noqa: E731
     free = signals(NORTH, steady, np.pi / 2)

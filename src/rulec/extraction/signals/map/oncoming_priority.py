@@ -9,10 +9,12 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.tracks.junction_passages import Passage
-from rulec.extraction.tracks.junctions import STOP_SIGNS, JunctionWay, approaches
+from rulec.extraction.tracks.junctions import ALL_STOP, STOP_SIGNS, JunctionWay, approaches
 from rulec.recordings.recording import Points, Recording
 
 _GIVES_WAY = STOP_SIGNS | {"YIELD"}
+_ONE_GIVES_WAY = _GIVES_WAY - {ALL_STOP}
+"""Where all have to stop, who has come first goes first."""
 
 _CLEARED_S = 2.0
 """A light that has been red for so long when one gets into the junction was red at its line."""
@@ -49,6 +51,21 @@ def goes_first(recording: Recording, own: JunctionWay, other: JunctionWay) -> bo
         for way in (other, own)
     )
     return mine or not its
+
+
+def is_settled(recording: Recording, own: JunctionWay, other: JunctionWay) -> bool | None:
+    """True if signs stop both ways, and the map says that one's own does not have to wait.
+
+    None if they do, and it does not say who has to; signs then order neither before the other.
+    """
+    stopped = [
+        any(entry.signs & _ONE_GIVES_WAY for entry in approaches(recording, way))
+        for way in (own, other)
+    ]
+    if not all(stopped):
+        return False
+    first = own.lanelets[0].first
+    return None if first is None else not first & other.names
 
 
 def _came_at_red(context: DriveContext, other: Passage) -> bool:

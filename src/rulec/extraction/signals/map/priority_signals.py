@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.conflicts import SLOWEST_MPS, first_column, in_conflict
-from rulec.extraction.signals.map.oncoming_priority import gives_way_to, turns_far
+from rulec.extraction.signals.map.oncoming_priority import gives_way_to, is_settled, turns_far
 from rulec.extraction.signals.map.roundabout_signals import without_junction
 from rulec.extraction.signals.signal_columns import (
     SignalColumn,
@@ -212,13 +212,18 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
         first = max(span.start, begins - shift)
         if not (kinds := _kinds(context, own, other)):
             continue
+        ways = passages.way(own), passages.way(other)
+        from_side = set(kinds) <= set(_SIDES) - {_ONCOMING}
+        settled = from_side and is_settled(context.recording, *ways)
+        if settled:
+            continue
         lead_s = (own.first - other.first) * context.recording.step_s
         yield Encounter(
             kinds=kinds,
             first=first,
             enters=max((enters or 0) - shift, 0),
             last=min(last, context.states - 1),
-            known=known and own.sure and other.sure,
+            known=known and own.sure and other.sure and settled is not None,
             other=other,
             together=abs(lead_s) <= context.thresholds.together_s,
             comes_first=lead_s > context.thresholds.together_s,
