@@ -4,6 +4,7 @@ import subprocess
 import sys
 import time
 from fractions import Fraction
+from functools import cache
 
 import pint
 import pytest
@@ -21,7 +22,12 @@ from rulec.vocabulary.dimensions import (
 from rulec.vocabulary.pint_units import _registry, pint_unit
 from rulec.vocabulary.units import known_unit_names, parse_unit, unit_refusal
 
-PINT = pint.UnitRegistry(non_int_type=Fraction)
+
+@cache
+def of_pint():
+    """Pint's own units, which take most of a second to define."""
+    return pint.UnitRegistry(non_int_type=Fraction)
+
 
 names = st.sampled_from(sorted(UNITS))
 parts = st.builds(
@@ -47,7 +53,7 @@ def test_the_table_says_what_pint_says(name):
     if name != "°":  # Pint takes the sign as an operator's, not as a name
         assert pint_unit(name) == row
     # And Pint as it comes, without our registry: all its sizes but that of degrees are exact.
-    said = PINT.Quantity(Fraction(1), name)
+    said = of_pint().Quantity(Fraction(1), name)
     if row.dimension == ANGLE:
         assert said.to("degree").magnitude == row.factor
     else:
@@ -211,13 +217,13 @@ def test_there_and_back(one, other, number):
 def test_every_unit_of_pint_is_read_or_refused_or_unknown():
     """None of them raises; all that is read is exact and as large as Pint says."""
     read = 0
-    for name in PINT:
+    for name in of_pint():
         found = parse_unit(name)
         if found is None:
             continue
         read += 1
         assert type(found.factor) is Fraction
-        said = float(PINT.Quantity(Fraction(1), name).to_root_units().magnitude)
+        said = float(of_pint().Quantity(Fraction(1), name).to_root_units().magnitude)
         powers = dict(found.dimension.exponents)
         ours = float(found.factor * Fraction(1000) ** powers.get("mass", 0))
         ours *= (3.141592653589793 / 180) ** powers.get("angle", 0)
