@@ -1,10 +1,11 @@
 """Every recording that is at hand: it loads, and its maneuvers are counted and judged."""
 
 import time
+from functools import cache
 
 import pytest
 
-from rulec import compile_rulebook, find_maneuvers, navigation_graph, read_recording
+from rulec import compile_rulebook, find_maneuvers, navigation_graph
 from rulec.diagnostics import RulecError
 from rulec.planning.product.graph_product import count_paths
 from rulec.scenario import load_scenario
@@ -20,9 +21,15 @@ if not FILES:
 PAPER = compile_rulebook("esterle2019")
 
 
+@cache
+def scene(file):
+    """A file's scene, read once for all that is asked about it."""
+    return load_scenario(file)
+
+
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
 def test_its_maneuvers(file):
-    scenario = load_scenario(file)
+    scenario = scene(file)
     found = find_maneuvers(scenario, PAPER)
     assert found.traces >= found.satisfying
     assert found.traces == count_paths(found.graph.trace_graph())
@@ -35,14 +42,14 @@ def test_its_maneuvers(file):
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
 def test_with_eight_regions_too(file):
-    graph = navigation_graph(load_scenario(file), partition="fine")
+    graph = navigation_graph(scene(file), partition="fine")
     assert graph.start in range(len(graph.layers[0].cells))
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
 def test_every_vehicle_can_be_ego(file):
     """From its first moment on; who walks beside the road or is off the map is refused."""
-    recording = read_recording(file)
+    recording = scene(file).account.origin.recording
     refused = []
     for one in recording.participants:
         try:
