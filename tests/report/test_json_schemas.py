@@ -1,6 +1,7 @@
 """Every JSON output has a version and keeps to its published schema."""
 
 import json
+from functools import cache
 from pathlib import Path
 
 import click
@@ -95,6 +96,7 @@ def closed(schema):
     return {"additionalProperties": False, **inner} if "properties" in inner else inner
 
 
+@cache
 def validator(name):
     schema = json.loads((PUBLISHED / f"{name}.json").read_text(encoding="utf-8"))
     Draft202012Validator.check_schema(schema)
