@@ -13,7 +13,7 @@ from rulec.diagnostics import RulecError
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.to_trace import Drive
-from rulec.logic.free_names import names_in
+from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.stacked.verify_arrays import verify_arrays
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation, agreed
 from rulec.recordings.recording import Recording
@@ -103,16 +103,12 @@ class RecordingVerdicts(Rows):
 
         Only what is presumed has, unless defaults have been asked for.
         """
-        declared = self.rules.vocabulary.declarations
-        by_rule = {}
-        for rule in self.rules.rules:
-            missing = set(names_in(rule.formula)) - words
-            by_rule[rule.name] = tuple(
-                name
-                for name, declaration in declared.items()
-                if name in missing and (self.defaults or declaration.presumed)
-            )
-        return by_rule
+        declared = self.rules.vocabulary.declarations.items()
+        have = [name for name, item in declared if self.defaults or item.presumed]
+        missing = {rule.name: names_of(rule.formula) - words for rule in self.rules.rules}
+        return {
+            rule: tuple([name for name in have if name in names]) for rule, names in missing.items()
+        }
 
     def rows(self) -> list[dict[str, Any]]:
         """One row a drive; ``why`` says what there is no verdict for."""
@@ -128,7 +124,7 @@ def names_read(rulebook: CompiledRulebook) -> frozenset[str]:
     if known is None:
         formulas = [rule.formula for rule in rulebook.rules]
         formulas += [axiom.formula for axiom in rulebook.axioms]
-        known = frozenset(name for formula in formulas for name in names_in(formula))
+        known = frozenset().union(*map(names_of, formulas))
         rulebook.prepared[names_read] = known
     return known
 

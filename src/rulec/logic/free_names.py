@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from functools import lru_cache
 
 from rulec.logic import formula as ltl
 from rulec.logic.linear_comparison import comparison
@@ -48,6 +49,12 @@ def names_in(what: ltl.Formula | ltl.Term) -> Iterator[str]:
             yield from names_in(right)
         case ltl.Constant() | ltl.Same():
             return
+
+
+@lru_cache(maxsize=1 << 14)
+def names_of(formula: ltl.Formula) -> frozenset[str]:
+    """The declarations that are read; remembered, since each rule is asked with each fact."""
+    return frozenset(names_in(formula))
 
 
 def rename_variables(formula: ltl.Formula, names: Mapping[str, str]) -> ltl.Formula:

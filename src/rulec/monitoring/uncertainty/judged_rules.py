@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.outcome_machine import OutcomeMachine
-from rulec.logic.free_names import names_in
+from rulec.logic.free_names import names_of
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import RuleNotJudged
@@ -70,7 +70,7 @@ def _judged_rules(
         else:
             machines.append((rule, machine))
     declarations = rulebook.vocabulary.declarations
-    read = {name for rule in rulebook.rules for name in names_in(rule.formula)}
+    read = {name for rule in rulebook.rules for name in names_of(rule.formula)}
     presumed = [name for name, item in declarations.items() if item.presumed and name in read]
     vocabulary = with_untold(rulebook.vocabulary, unknown)
     return JudgedRules(tuple(machines), tuple(not_judged), vocabulary, tuple(presumed))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from functools import cached_property
-from itertools import groupby, product
+from itertools import chain, groupby, product
 from math import prod
 from typing import NamedTuple, TypeAlias
 
@@ -69,6 +69,7 @@ class UncertainMachine:
 
     def __init__(self, machine: OutcomeMachine) -> None:
         self._reads = machine.reads
+        self._names = [names_of_read(read) for read in machine.reads]
         self.machine = machine
         self.monitor = SetMonitor(machine)
         self.classes = LetterClasses(machine)
@@ -289,7 +290,7 @@ class UncertainMachine:
 
         Empty if some word can, whatever the untold names may be.
         """
-        names = frozenset(name for read in self._reads for name in names_of_read(read)) & untold
+        names = untold.intersection(chain.from_iterable(self._names))
         if not names:
             return ()
         if names not in self._untold:
@@ -299,9 +300,7 @@ class UncertainMachine:
 
     def _smallest_lack(self, names: frozenset[str]) -> tuple[str, ...]:
         """Untold names that would all have to be told, in the order in which they are read."""
-        order = dict.fromkeys(
-            name for read in self._reads for name in names_of_read(read) if name in names
-        )
+        order = dict.fromkeys(name for own in self._names for name in own if name in names)
         lacking = list(order)
         for name in order:
             without = [other for other in lacking if other != name]
@@ -391,7 +390,7 @@ class UncertainMachine:
         reached = frozenset({diagram.start})
         for n in range(len(self._reads) - 1, -1, -1):
             digits = [1 << digit for digit in range(self._reads[n].size)]
-            if not untold.isdisjoint(names_of_read(self._reads[n])):
+            if not untold.isdisjoint(self._names[n]):
                 digits = [sum(digits)]
             reached = frozenset(diagram.step(n, here, mask) for here in reached for mask in digits)
         every = frozenset(nodes >> 1 for nodes in reached) - {0}

@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
-from rulec.logic.free_names import names_in
+from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.columns.column_reader import Mask
 from rulec.monitoring.batch.stacked.stack import Places, Stack
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
@@ -43,7 +43,7 @@ def contradicted(linked_facts: Sequence[LinkedFacts], reader: StackReader) -> se
 def linked(facts: Sequence[CompiledAxiom]) -> Iterator[LinkedFacts]:
     """The facts in groups that share no names."""
     while facts:
-        group = related_facts(names_in(facts[0].formula), facts)
+        group = related_facts(names_of(facts[0].formula), facts)
         yield group
         facts = [fact for fact in facts if fact not in group]
 
@@ -79,7 +79,7 @@ def _contradicted_states(
     if not len(doubtful):
         return doubtful
     spots = spots.part(doubtful)
-    names = sorted({name for fact in facts for name in names_in(fact.formula)})
+    names = sorted(frozenset().union(*[names_of(fact.formula) for fact in facts]))
     kinds = _alike(names, reader.stack, spots)
     examples = np.zeros(int(kinds.max()) + 1, dtype=np.intp)
     examples[kinds] = np.arange(len(kinds))

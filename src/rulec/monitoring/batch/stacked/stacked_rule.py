@@ -13,7 +13,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import ThresholdScale, scale
 from rulec.logic import formula as ltl
-from rulec.logic.free_names import names_in
+from rulec.logic.free_names import names_of
 from rulec.logic.kleene import holds
 from rulec.monitoring.batch.stacked.words_together import WordsTogether
 from rulec.monitoring.batch.uncertain.partial_reader import meanings_of
@@ -110,7 +110,7 @@ class StackedRule:
         self.reads = tuple([_stacked(read, vocabulary, keys) for read in rule.machine.reads])
         read_names = frozenset(name for read in self.reads for name in read.names)
         self.facts = related_facts(read_names, rulebook.axioms)
-        self.in_facts = frozenset(name for fact in self.facts for name in names_in(fact.formula))
+        self.in_facts = frozenset().union(*[names_of(fact.formula) for fact in self.facts])
         self.names = read_names | self.in_facts
         self.entangled: EntangledReads | None = local_reads(rule, rulebook)
         self.related = (

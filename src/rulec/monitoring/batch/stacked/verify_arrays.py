@@ -17,7 +17,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.outcome_machine import VIOLATED
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError
-from rulec.logic.free_names import names_in
+from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.columns.columnize import UnencodableError
 from rulec.monitoring.batch.stacked.contradictions import LinkedFacts, contradicted, linked
 from rulec.monitoring.batch.stacked.open_reasons import StackedReasons
@@ -205,7 +205,7 @@ def _ready_rules(example: TraceArrays, rules: CompiledRulebook) -> _ReadyRules:
     check_told(example.told, rules.vocabulary)
     constants = rules.vocabulary.constants
     for fact in rules.axioms:
-        if counts(fact.formula) or not set(constants).isdisjoint(names_in(fact.formula)):
+        if counts(fact.formula) or not set(constants).isdisjoint(names_of(fact.formula)):
             raise UnencodableError  # what it says of values is looked up state by state
     judged = judged_rules(rules, example.told, cut=example.ends == "cut")
     keys: ReadKeys = {}

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
 
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.logic import formula as ltl
-from rulec.logic.free_names import names_in
+from rulec.logic.free_names import names_of
 from rulec.rulebook.rulebook_model import Variable
 from rulec.vocabulary import Vocabulary
 
@@ -18,7 +19,7 @@ def related_facts(
     """The facts that speak of some of these names, or of what such facts speak of."""
     about = set(names)
     found: set[int] = set()
-    waiting = [(number, set(names_in(axiom.formula))) for number, axiom in enumerate(axioms)]
+    waiting = [(number, names_of(axiom.formula)) for number, axiom in enumerate(axioms)]
     while True:
         met = [(number, own) for number, own in waiting if not own.isdisjoint(about)]
         if not met:
@@ -28,6 +29,7 @@ def related_facts(
         waiting = [each for each in waiting if each[0] not in found]
 
 
+@lru_cache(maxsize=1 << 10)  # asked of each fact by each rule
 def keeps_to_its_objects(fact: CompiledAxiom) -> bool:
     """Whether each value of which a fact speaks is one of all of its objects together.
 
