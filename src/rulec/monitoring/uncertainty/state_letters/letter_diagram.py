@@ -8,9 +8,11 @@ are met.
 
 from __future__ import annotations
 
+from array import array
 from collections import defaultdict
 from collections.abc import Sequence, Set
 from itertools import count
+from math import prod
 
 from rulec.automata.outcome_machine import OutcomeMachine, bits_of
 
@@ -18,21 +20,38 @@ MOST_STEPS = 1 << 18
 """Steps of one letter that are kept before all are forgotten."""
 
 
+_BLOCK = 1 << 5
+"""Parts of so many letters, or a few more, are told apart by their bytes."""
+
+
 class LetterDiagram:
     """A machine's letter classes by its reads' digits, the last read being the first level."""
 
     def __init__(self, machine: OutcomeMachine) -> None:
         self._n_reads = len(machine.reads)
-        below: Sequence[int] = machine.letters
         self._children: list[list[tuple[int, ...]]] = []
-        for read in machine.reads:
-            rows, below = _distinct_rows(below, read.size)
-            self._children.append(rows)
+        sizes = [read.size for read in machine.reads]
+        few = next((n for n in range(len(sizes)) if prod(sizes[:n]) >= _BLOCK), len(sizes))
+        # Large tables say the same again and again: parts of them are gone into once.
+        blocks = _blocks(machine.letters, prod(sizes[:few]))
+        distinct = dict.fromkeys(blocks)
+        below = array("i", b"".join(distinct)).tolist()
+        for size in sizes[:few]:
+            below = self._add_level(below, size)
+        nodes = dict(zip(distinct, below, strict=True))
+        below = [nodes[block] for block in blocks]
+        for size in sizes[few:]:
+            below = self._add_level(below, size)
         if self._children:
             # One more than the class: 0 is for what facts exclude.
             self._children[0] = [tuple([letter + 1 for letter in row]) for row in self._children[0]]
         self.start = 1 << (below[0] if self._children else below[0] + 1)
         self._steps: dict[tuple[int, int, int], int] = {}
+
+    def _add_level(self, below: Sequence[int], size: int) -> list[int]:
+        rows, above = _distinct_rows(below, size)
+        self._children.append(rows)
+        return above
 
     def classes(self, cube: Sequence[int]) -> int:
         """The classes, as bits, of letters that have for each read any of its digits, as bits."""
@@ -78,6 +97,12 @@ class LetterDiagram:
                     known |= 1 << children[node][digit]
             self._steps[key] = known
         return known
+
+
+def _blocks(letters: Sequence[int], size: int) -> list[bytes]:
+    data = array("i", letters).tobytes()
+    step = size * array("i").itemsize
+    return [data[start : start + step] for start in range(0, len(data), step)]
 
 
 def _distinct_rows(numbers: Sequence[int], width: int) -> tuple[list[tuple[int, ...]], list[int]]:
