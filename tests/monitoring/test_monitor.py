@@ -167,6 +167,7 @@ def test_what_an_interrupted_step_has_noted_was_none():
         # Names that are no text, as Python code may have them.
         ({7: True}, CAR, "R0502"),
         ({"place": {7: "near"}}, CAR, "R0505"),
+        ({"place": {}}, {7: "car"}, "R0504"),
     ],
 )
 def test_what_is_no_state_is_said_with_its_place_and_changes_nothing(state, objects, code):

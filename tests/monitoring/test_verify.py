@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy
 import pytest
 
 from rulec.automata.compiler import compile_rulebook
@@ -200,6 +201,8 @@ RULES = compile_rulebook(book(rule("A", always(implies(near("x"), Q)), "x: car")
         (trace("ggg", q="true"), "R0503", '`q` is `"true"`', "write `true`"),
         (trace("ggg", q="False"), "R0503", '`q` is `"False"`', "write `false`"),
         (trace("ggg", q=2), "R0503", "`q` is `2`; it is true or false", ""),
+        (trace("ggg", q=numpy.True_), "R0503", "`True (numpy.bool", "`.item()` makes a value"),
+        (trace("ggg", q=None), "R0503", "`None (NoneType)`", "is `rulec.UNKNOWN`"),
         (trace("ggg", q={"car1": True}), "R0503", "`q` is given per object", ""),
         (trace("ggg", light="rad"), "R0503", "one of `red`, `green`", "`red`"),
         (trace("ggg", light=True), "R0503", "`light` is true", ""),

@@ -165,7 +165,7 @@ def missing_value(
 ) -> RulecError:
     """The error (R0504) about a state that lacks the value of a name, asked of objects."""
     name, items = subject
-    of = f" of `{', '.join(items)}`" if items else ""
+    of = f" of `{', '.join(map(str, items))}`" if items else ""  # a program may count its objects
     return MISSING_VALUE.error(
         place,
         f"{where} does not say the `{name}`{of}, which rule `{rule}` needs",

@@ -196,7 +196,7 @@ def _check_value(
     name = declaration.name
     if not parameters:
         if expected := _misfit(value, declaration):
-            way_out = ""
+            way_out = _of_python(value)
             if isinstance(declaration, Enumeration) and isinstance(value, str):
                 way_out = did_you_mean(value, declaration.values)
             if isinstance(declaration, Signal) and isinstance(value, str | int | float):
@@ -223,6 +223,15 @@ def _check_value(
             )
             raise UNKNOWN_OBJECT.error(place, message)
         _check_value(inner, declaration, parameters[1:], about)
+
+
+def _of_python(value: Any) -> str:
+    """What to do with a value that only a program gives, not a file."""
+    if value is None:
+        return "what is not known is `rulec.UNKNOWN`; what has its default is left out"
+    if type(value).__module__ == "numpy":
+        return "`.item()` makes a value of Python's of one of numpy's"
+    return ""
 
 
 def _look(declaration: Declaration, fitting: list[frozenset[str]], *, partial: bool) -> _Look:
@@ -306,7 +315,9 @@ def _shown(value: Any) -> str:
         # Python refuses to write out whole numbers of many thousand digits.
         text = str(value) if value.bit_length() < 200 else "a number of many digits"
     else:
-        text = f"{value} ({type(value).__name__})"
+        kind = type(value)
+        of = "" if kind.__module__ == "builtins" else f"{kind.__module__}."
+        text = f"{value} ({of}{kind.__name__})"
     return f"`{text[:60]}…`" if len(text) > 60 else f"`{text}`"
 
 
