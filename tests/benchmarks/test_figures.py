@@ -1,5 +1,6 @@
 """Benchmarks say what was wanted and whether it was reached, and break when their work does."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -52,6 +53,15 @@ def test_every_benchmark_is_on_the_page():
     programs = {path.stem for path in HERE.glob("*.py") if "\ndef measure(" in path.read_text()}
     assert {name for name in programs if f"\n`{name}`: " in written} == programs
     assert "compiling" in programs
+
+
+def test_every_section_of_the_page_is_one_that_a_benchmark_makes():
+    written = (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
+    sections = re.findall(r"^## (.+)\n\n`(\w+)`: ", written, re.M)
+    assert len(sections) == written.count("\n## ") > 30
+    for title, name in sections:
+        # What a figure is of stands behind a colon.
+        assert f'"{title.partition(":")[0]}' in (HERE / f"{name}.py").read_text(), title
 
 
 def run(*arguments):
