@@ -25,6 +25,7 @@ from rulec.extraction.signal_arrays import (
 from rulec.extraction.signals.clearance_signals import clearance_signals
 from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
 from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
+from rulec.extraction.signals.conduct.next_lane_signals import next_lane_signals
 from rulec.extraction.signals.conduct.reason_signals import reason_signals
 from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
 from rulec.extraction.signals.ego_lanelets import own_lanelets
@@ -114,6 +115,7 @@ _SIGNALS: tuple[Callable[[DriveContext, SignalNames], SignalColumns], ...] = (
     intention_signals,
     merge_signals,
     clearance_signals,
+    next_lane_signals,
     flow_signals,
     lane_change_signals,
     lane_mark_signals,

@@ -8,6 +8,7 @@ import pytest
 from rulec.extraction.signals.clearance_signals import clearance_signals
 from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
 from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
+from rulec.extraction.signals.conduct.next_lane_signals import next_lane_signals
 from rulec.extraction.signals.conduct.reason_signals import reason_signals
 from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
 from rulec.extraction.signals.ego_signals import ego_signals
@@ -39,7 +40,7 @@ GROUPS = (
     zone_signals,
     *(intention_signals, merge_signals, clearance_signals, flow_signals),
     *(lane_change_signals, lane_mark_signals),
-    *(manoeuvre_signals, lamp_signals, reason_signals, turning_conflicts),
+    *(manoeuvre_signals, lamp_signals, reason_signals, turning_conflicts, next_lane_signals),
 )
 LAMPS = frozenset({"left_indicator", "right_indicator", "hazard_lights", "dipped_beam"})
 LAMPS |= frozenset({"main_beam", "front_fog_lamp", "rear_fog_lamp"})

@@ -6,6 +6,7 @@ import numpy as np
 
 from rulec.extraction.drive_context import drive_context
 from rulec.extraction.tracks.driven_road import driven_road, junction_lanelets
+from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.tracks.road_extents import road_extents
 from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.tracks.surroundings import Surroundings
@@ -33,6 +34,23 @@ def context_of(found, route=("1",), side="right", ego=EGO, elsewhere=None, **thr
     places = RoadPlaces(road, tracks, extents, limits, elsewhere=elsewhere, fastest=fastest)
     driven = slice(int(columns[0]), int(columns[-1]) + 1)
     return drive_context(Surroundings(found, tracks), places, side, row, driven)
+
+
+def told_on_both_sides(signals, found, route, **thresholds):
+    """The words of a pass, unknown ones as "?"; they have to be the same in the mirror."""
+    sides = [
+        signals(context_of(found, route, **thresholds)),
+        signals(context_of(mirrored_recording(found), route, "left", **thresholds)),
+    ]
+    told = []
+    for side in sides:
+        words = {}
+        for name, column in {**side.world, **side.about}.items():
+            unknown = side.unknown.get(name, np.zeros(column.shape, dtype=bool))
+            words[name] = np.where(unknown, "?", column).tolist()
+        told.append(words)
+    assert told[0] == told[1]
+    return told[0]
 
 
 def steady(number, x, y, speed=10.0, steps=4, first=0, step_s=0.5, **more):

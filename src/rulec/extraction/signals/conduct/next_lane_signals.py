@@ -1,0 +1,289 @@
+"""Signals of the lanes next to ego's: whether they are free, and whether that can be told.
+
+Whether ego keeps to the kerb's lane as it should depends on the one, whether it may go past another
+one on the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
+
+from rulec.extraction.drive_context import DriveContext, once
+from rulec.extraction.signals import relations
+from rulec.extraction.signals.ego_lanelets import own_lanelets
+from rulec.extraction.signals.map.lanes_ahead import Leads, junctions_ahead
+from rulec.extraction.signals.queues import LOOSE, close_by, lanes_that_go_on, queues_by_lane
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
+from rulec.extraction.signals.signal_passes import Passes, once_a_recording, signals_by
+from rulec.extraction.tracks.road_extents import is_in
+from rulec.extraction.tracks.tracks import Flags, Tracks
+from rulec.recordings.recording import Lanelet, LaneMark, Side
+
+_SOON_M = 10.0
+"""Who is no farther behind ego than this, and what he gains in ``passed_s``, is soon beside it."""
+
+_SOLID = frozenset({"solid", "double_solid"})
+
+_UNSEEN_S = 5.0
+"""For so long one whose track has ended is thought to drive on as before."""
+
+_FASTER_MPS = 10.0
+
+_CHANGE_S = 4.0
+"""So long before its middle crosses the mark who changes lanes has begun to, at the earliest."""
+
+_STANDING_CAMERAS = frozenset(
+    {
+        "CommonRoad scenario",
+        "NGSIM tracks",
+        "highD tracks",
+        "levelX tracks",
+        "INTERACTION tracks",
+    }
+)
+"""Forms of what is recorded from above a stretch of road, or made up for one."""
+
+
+def next_lane_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of whether a lane next to ego's is free for it."""
+    return signals_by(_PASSES, context, names)
+
+
+def _on_far_lane(context: DriveContext) -> SignalColumns:
+    return SignalColumns({"other_lane_available": _far_lane_is_free(context)})
+
+
+def _on_near_lane(context: DriveContext) -> SignalColumns:
+    free = _near_lane_is_free(context)
+    doubtful = _perhaps_on_near_lane(context) | _of_no_use(context) | _goes_back(context)
+    return SignalColumns(
+        {"near_lane_is_free": free}, unknown={"near_lane_is_free": free & doubtful}
+    )
+
+
+def _next_lane(context: DriveContext, side: Side) -> tuple[NDArray[intp], Flags]:
+    """The lane at a side of ego, and where there is one that goes ego's way."""
+    lane = context.ego_lane + (1 if side == "left" else -1)
+    count = context.existing_lanes.shape[1]
+    inside = (lane >= 0) & (lane < count)
+    lane = np.clip(lane, 0, count - 1)
+    return lane, inside & context.existing_lanes[np.arange(context.states), lane]
+
+
+def _far_lane_is_free(context: DriveContext) -> Flags:
+    """Flags of states in which nobody is in, or soon in, the place beside ego on the next lane."""
+    lane, there = _next_lane(context, "left" if context.side == "right" else "right")
+    cells = _on_lane(context, lane, np.flatnonzero(there))
+    gap, station = relations.gap(context)[cells], relations.station(context)[cells]
+    along, own = context.extents.along[cells], context.ego_extents.along[0, cells[1]]
+    near = gap <= np.maximum(along - own, 0.0) * context.thresholds.passed_s + _SOON_M
+    free: Flags = there.copy()
+    beside = station == relations.BESIDE
+    free[cells[1][beside | ((station == relations.IN_FRONT_OF) & near)]] = False
+    return free
+
+
+def _near_lane_is_free(context: DriveContext) -> Flags:
+    """Flags of states in which ego, in the next lane to the kerb, would be at safe distances.
+
+    It cannot go there across a solid line, as beside lanes for who turns off, nor to a bus lane,
+    nor to one that leads elsewhere at the junction that ego gets to within ``preparing_s``.
+    """
+    limits, others, taken = (
+        context.thresholds,
+        context.extents,
+        np.zeros(context.states, dtype=bool),
+    )
+    lane, there = _next_lane(context, context.side)
+    parted = own_lanelets(context).flags(lambda lanelet: _near_mark(lanelet, context) in _SOLID)
+    turned, _ = _sorted_ahead(context)
+    kept = parted | _bus_lane_beside(context) | turned
+    cells = _on_lane(context, lane, np.flatnonzero(there & ~kept))
+    station, gap = relations.station(context)[cells], relations.gap(context)[cells]
+    own = np.maximum(context.ego_extents.along[0, cells[1]], 0.0)
+    other = np.maximum(others.along[cells], 0.0)
+    leads = station == relations.BEHIND
+    behind, ahead = np.where(leads, own, other), np.where(leads, other, own)
+    safe = limits.reaction_s * behind + (behind**2 - ahead**2) / (2 * limits.braking_mps2)
+    taken[cells[1][(station == relations.BESIDE) | (gap < safe)]] = True
+    free: Flags = ~there | ~(taken | kept)
+    return free
+
+
+def _goes_back(context: DriveContext) -> Flags:
+    """Flags of states from which on ego's change to a lane nearer to the kerb takes no longer.
+
+    Whether that lane was free before, for who had to look for room there, nobody can tell.
+    """
+    lane, spans = context.steady_lane, context.spans
+    kerbward = spans.after(lane) - lane
+    changes = kerbward < 0 if context.side == "right" else kerbward > 0
+    steps = round(_CHANGE_S / context.recording.step_s)
+    return spans.within(changes, steps - 1)
+
+
+def _of_no_use(context: DriveContext) -> Flags:
+    """Flags of states in which nobody can tell whether ego has to go to the next lane to the kerb.
+
+    It begins or ends near ego while others go on, as beside a ramp; it is full, but for a hole; ego
+    is in a slow queue itself, with others on the next lane, too; or drivers sort themselves by
+    lanes before a junction, of which nobody knows beyond the map's end.
+    """
+    lane, there = _next_lane(context, context.side)
+    states = np.arange(context.states)
+    side_lane = ~lanes_that_go_on(context)[states, lane]
+    queues, are_slow = queues_by_lane(context)
+    full, own = (queues[LOOSE, states, number] for number in (lane, context.ego_lane))
+    slow = are_slow[states, context.ego_lane]
+    _, sorting = _sorted_ahead(context)
+    map_ends = (
+        context.road.borders[-1] - context.ego_extents.s_max[0] < context.thresholds.approach_m
+    )
+    no_use: Flags = there & (side_lane | full | sorting | map_ends)
+    queues_beside = np.flatnonzero(there & ~no_use & own & slow)
+    used = close_by(context)[:, queues_beside]
+    used &= context.extents.lane[:, queues_beside] == lane[queues_beside]
+    no_use[queues_beside] = used.any(axis=0)
+    return no_use
+
+
+@once
+def _sorted_ahead(context: DriveContext) -> tuple[Flags, Flags]:
+    """Where the next lane to the kerb leads elsewhere than ego, and where drivers choose lanes.
+
+    They do before lights, and where one lane leads to several roads, from ``preparing_s`` before.
+    """
+    lane, there = _next_lane(context, context.side)
+    front, speed = context.ego_extents.s_max[0], np.maximum(context.ego_extents.along[0], 0.0)
+    reach = np.maximum(speed * context.thresholds.preparing_s, context.thresholds.approach_m)
+    elsewhere, sorting = np.zeros((2, context.states), dtype=bool)
+    for junction in junctions_ahead(context):
+        nears = there & (front <= junction.low) & (junction.low - front <= reach)
+        leads = [junction.leads[number] for number in np.minimum(lane, len(junction.leads) - 1)]
+        elsewhere |= nears & np.array([lead is Leads.ELSEWHERE for lead in leads])
+        sorting |= nears & np.array([junction.lit or lead is Leads.BOTH for lead in leads])
+    return elsewhere, sorting & ~elsewhere
+
+
+def _bus_lane_beside(context: DriveContext) -> Flags:
+    """Flags of states in which the next lane to the kerb is for buses, and ego is none."""
+    own, way = own_lanelets(context), -1 if context.side == "right" else 1
+    of_each = np.zeros(len(own.places), dtype=bool)
+    for number, (piece, lane) in enumerate(own.places):
+        row = context.road.rows[piece]
+        beside = row[lane + way] if 0 <= lane + way < len(row) else None
+        of_each[number] = beside is not None and "busLane" in beside.types
+    return of_each[own.number] & ~context.ego_is("bus")
+
+
+def _near_mark(lanelet: Lanelet, context: DriveContext) -> LaneMark | None:
+    return lanelet.right_mark if context.side == "right" else lanelet.left_mark
+
+
+def _perhaps_on_near_lane(context: DriveContext) -> Flags:
+    """Flags of states in which one may be near ego on the next lane to the kerb, but is not seen.
+
+    Its track ended less than ``_UNSEEN_S`` ago, or begins so soon, in sight of ego; it drives on as
+    it did. Nobody is seen behind the last one of all that are recorded on ego's road.
+    Where all traffic is recorded, nobody drives unseen.
+    """
+    if "arrivals" in context.recording.complete:
+        return np.zeros(context.states, dtype=bool)
+    lane, there = _next_lane(context, context.side)
+    perhaps: Flags = there & ~_known_behind(context)
+    others, step_s = context.extents, context.recording.step_s
+    for rows, edge, states in _unseen(context, int(_UNSEEN_S / step_s) + 1):
+        away_s = (states - edge) * step_s
+        place = others.s[rows, edge] + others.along[rows, edge] * away_s
+        near = np.abs(place - context.ego_extents.s[0, states]) < context.thresholds.approach_m
+        near &= (others.lane[rows, edge] == lane[states]) & (np.abs(away_s) < _UNSEEN_S)
+        near &= there[states]
+        perhaps[states[near]] = True
+    return perhaps
+
+
+def _unseen(context: DriveContext, most: int) -> Iterator[tuple[NDArray[intp], ...]]:
+    """The states after others were last seen in a drive, then those before they were first seen.
+
+    Rows, the states in which they were seen, and no more than ``most`` states for each.
+    """
+    spans, seen = context.spans, context.driving_along
+    ends = np.array(spans.bounds[1:], dtype=intp)
+    last = np.maximum.reduceat(np.where(seen, spans.columns, -1), spans.begins, axis=-1)
+    rows, drives = (last >= 0).nonzero()
+    edge = last[rows, drives]
+    yield _around(rows, edge, (edge + 1, np.minimum(edge + most + 1, ends[drives])))
+    first = np.where(seen, spans.columns, spans.n_states)
+    edge = np.minimum.reduceat(first, spans.begins, axis=-1)[rows, drives]
+    yield _around(rows, edge, (np.maximum(edge - most, spans.begins[drives]), edge))
+
+
+def _around(
+    rows: NDArray[intp], edge: NDArray[intp], ranges: tuple[NDArray[intp], NDArray[intp]]
+) -> tuple[NDArray[intp], ...]:
+    """Rows and edges for each state of a range each, and these states."""
+    first, end = ranges
+    lengths = end - first
+    before = np.cumsum(lengths) - lengths
+    states = np.arange(int(lengths.sum())) + np.repeat(first - before, lengths)
+    return np.repeat(rows, lengths), np.repeat(edge, lengths), states
+
+
+def _known_behind(context: DriveContext) -> Flags:
+    """Flags of states in which one that comes from behind would have been recorded.
+
+    Who comes faster by ``_FASTER_MPS`` has to brake for ego only within some distance. So far is
+    seen up to one that is recorded farther behind; and where a camera stands, and records who comes
+    later, up to where anybody on ego's road was first.
+    """
+    limits, own = context.thresholds, np.maximum(context.ego_extents.along[0], 0.0)
+    faster = own + _FASTER_MPS
+    safe = limits.reaction_s * faster + (faster**2 - own**2) / (2 * limits.braking_mps2)
+    rear, others = context.ego_extents.s_min[0], context.extents
+    farthest = np.where(context.going_along, others.s_min, np.inf).min(axis=0, initial=np.inf)
+    arrivals = _records_arrivals(context)
+    if context.own is not context.surroundings and context.recording.whole is None:
+        arrivals |= _some_arrive(context.own.tracks)
+    if context.recording.form in _STANDING_CAMERAS and arrivals:
+        seen = np.where(context.driving_along, others.s_min, np.inf)
+        nearest = np.minimum(rear, seen.min(axis=0, initial=np.inf))
+        first = np.minimum.reduceat(nearest, context.spans.begins)
+        farthest = np.minimum(farthest, context.spans.spread(first))
+    known: Flags = rear - farthest >= safe
+    return known
+
+
+@once_a_recording
+def _records_arrivals(context: DriveContext) -> bool:
+    """True if some vehicle is recorded from later on than the first step.
+
+    Else those are left out that came after it, as in CommonRoad's cuts from longer recordings.
+    """
+    if context.recording.whole is not None:
+        return context.recording.whole.arrivals
+    return _some_arrive(context.surroundings.tracks)
+
+
+def _some_arrive(tracks: Tracks) -> bool:
+    """True if some vehicle is there from later on than the first step."""
+    vehicles = tracks.present[tracks.of_type("vehicle")]
+    return bool((~vehicles[:, :1] & vehicles.any(axis=1, keepdims=True)).any())
+
+
+def _on_lane(
+    context: DriveContext, lane: NDArray[intp], states: NDArray[intp]
+) -> tuple[NDArray[intp], NDArray[intp]]:
+    """Those who go ego's way on a lane, by state, in some states: rows and states."""
+    on_it = is_in(context.lanes_within[0][:, states], lane[states])
+    rows, places = (on_it & context.going_along[:, states]).nonzero()
+    return rows, states[places]
+
+
+_PASSES: Passes = {
+    ("other_lane_available",): _on_far_lane,
+    ("near_lane_is_free",): _on_near_lane,
+}
