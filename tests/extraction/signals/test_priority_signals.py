@@ -64,6 +64,16 @@ def test_who_is_in_conflict(road, side, sign, comes_s, conflict):
     assert not found.unknown[side].any()
 
 
+@pytest.mark.parametrize(("length", "times"), [(12.0, [(1, 3)]), (2.0, [(1, 1), (3, 3)])])
+def test_a_long_one_whose_middle_cuts_a_corner_is_in_the_junction_once(length, times):
+    """A cross of roads 4 m wide; its middle is out of it for one state, on a way of some 7 m."""
+    places = [(-8, 0), (-2, 0), (2.6, 2.8), (3, 1), (8, 0), (12, 0)]
+    body = vehicle(7, dict(enumerate(places)), "truck", length=length, speed=10)
+    found = recording([*EAST, *NORTH], [body])
+    passages = context_of(found, route=("1", "2", "3")).surroundings.passages
+    assert [(x.first, x.last) for x in passages.of_row[0]] == times
+
+
 def test_a_conflict_is_one_of_a_single_junction():
     """Ego's front is in the first junction at 1.5 s, and 30 m on, at 4.5 s, in the second one."""
     road = [

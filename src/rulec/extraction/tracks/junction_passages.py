@@ -217,7 +217,7 @@ def junction_passages(
             chosen = at[where == number]
             inside[rows[chosen], columns[chosen]] = True
             for row in np.flatnonzero(inside.any(axis=1)).tolist():
-                for first, last in _runs(inside[row]):
+                for first, last in _stays(inside[row], tracks, row):
                     passage = _passage(junctions[number].ways, tracks, row, (first, last), number)
                     if passage is None:
                         astray[number].append((row, first, last))
@@ -248,6 +248,26 @@ def _lanelets_until(way: JunctionWay, place: shapely.Point) -> tuple[str, ...]:
 def _runs(flags: Flags) -> Iterator[tuple[int, int]]:
     edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(np.int8)))
     yield from ((int(start), int(end) - 1) for start, end in edges.reshape(-1, 2))
+
+
+def _stays(inside: Flags, tracks: Tracks, row: int) -> Iterator[tuple[int, int]]:
+    """From which column to which one a participant is in a junction, by flags of its middle.
+
+    The middle of a long one cuts corners, and may leave the junction there while its body does not:
+    it stays until it has gone its own length.
+    """
+    runs = list(_runs(inside))
+    body = tracks.participants[row]
+    length = _length(body.outlines, body.states) if len(runs) > 1 else 0.0
+    first, last = runs[0]
+    for begins, ends in runs[1:]:
+        away = slice(last, begins + 1)
+        way = np.hypot(np.diff(tracks.x[row, away]), np.diff(tracks.y[row, away])).sum()
+        if not (tracks.present[row, away].all() and way < length):
+            yield first, last
+            first = begins
+        last = ends
+    yield first, last
 
 
 def _passage(
