@@ -176,10 +176,17 @@ def rows_of(trace: Trace, columns: Sequence[str]) -> Iterator[list[Any]]:
         for item in there:
             yield row(item)
         for item in there:
-            for other in there:
+            beside = _beside(item, state)
+            for other in (other for other in there if other in beside):
                 values = row(item, other)
                 if any(value is not None for value in values[len(OWN) - len(PARTIAL) :]):
                     yield values
+
+
+def _beside(item: str, state: State) -> set[str]:
+    """The few objects of which something is said together with an object."""
+    about: list[Any] = [x.get(item) for x in state.values() if isinstance(x, Mapping)]
+    return {other for value in about if isinstance(value, Mapping) for other in value}
 
 
 def _is_there(item: str, step: int, trace: Trace) -> bool:
