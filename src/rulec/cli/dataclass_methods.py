@@ -204,10 +204,9 @@ def _function(name: str, parameters: Sequence[str], lines: Sequence[str]) -> str
 
 def _refusing(cls: type, what: str, method: str) -> Callable[..., None]:
     """What keeps a frozen object as it is; classes derived from it may have more attributes."""
-    names = {field.name for field in fields(cls)}
 
     def refuse(self: object, name: str, *value: object) -> None:
-        if type(self) is cls or name in names:
+        if type(self) is cls or any(field.name == name for field in fields(cls)):
             raise FrozenInstanceError(f"cannot {what} field {name!r}")
         getattr(super(cls, self), method)(name, *value)
 
