@@ -8,6 +8,7 @@ from rulec.report.pictures.drawing.canvas import Area, LabelText, Polyline
 from rulec.report.pictures.trace_picture import ribbon_entries, ribbon_picture
 from rulec.report.pictures.trace_ribbon import ValueRun, ribbon, value_style
 from rulec.trace import Trace
+from rulec.vocabulary.partial_values import Interval
 
 
 @pytest.fixture(scope="module")
@@ -41,6 +42,21 @@ def test_only_what_violated_rules_read_of_the_objects_in_question(rules):
     found = ribbon(OVERTAKEN, rules, verify(OVERTAKEN, rules))
     assert [row.title for row in found.rows] == ["CONGESTED", "position(v)"]
     assert found.left_out == 2
+
+
+def test_a_number_within_bounds_is_said_with_them(tmp_path):
+    source = tmp_path / "s.rules"
+    source.write_text("rulebook s\nquantity gap in m\nhard rule A { require always gap > 3 m }\n")
+    rules = compile_rulebook(source)
+    gaps = (Interval(4.0, 1000.0), Interval(501.5, 502.5), 502.0)
+    here = trace([{"gap": gap} for gap in gaps], {})
+    (row,) = ribbon(here, rules, verify(here, rules)).rows
+    # All have the same middle; what is said of it differs
+    assert row.runs == (
+        ValueRun(0, 0, 502.0, bounds="4 to 1000"),
+        ValueRun(1, 1, 502.0, bounds="502.0±0.5"),
+        ValueRun(2, 2, 502.0),
+    )
 
 
 def test_colours_mean_something(tmp_path):

@@ -24,13 +24,15 @@ WORD_STYLES = 6
 class ValueRun:
     """A run of states, ``first`` to ``last`` included, with a constant value.
 
-    ``value`` is None where it is ``unknown``, or who it is about is not there.
+    ``value`` is None where it is ``unknown``, or who it is about is not there. A number that is
+    known within bounds is their middle, and ``bounds`` says them, such as ``4 to 1000``.
     """
 
     first: int
     last: int
     value: Value | None
     unknown: bool = False
+    bounds: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +136,6 @@ def _row(
         value_in(state, name, objects, declaration) if present else None
         for state, present in zip(trace.states, there, strict=True)
     ]
-    values = list(map(_known, given))
     error = max((value.error for value in given if isinstance(value, Interval)), default=0.0)
     if not any(there):
         return None
@@ -146,7 +147,7 @@ def _row(
         case Quantity():
             possible = ()
             title += f" in {declaration.unit}" if declaration.unit else ""
-    return RibbonRow(title, objects, possible, tuple(_runs(values, there)), error)
+    return RibbonRow(title, objects, possible, tuple(_runs(given, there)), error)
 
 
 def _about_objects(value: Any) -> Iterable[tuple[str, Any]]:
@@ -166,11 +167,14 @@ def _said(state: State, name: str, objects: Sequence[str]) -> bool:
     return value is not None
 
 
-def _runs(values: Sequence[Value | None], there: Sequence[bool]) -> Iterator[ValueRun]:
+def _runs(given: Sequence[PartialValue | None], there: Sequence[bool]) -> Iterator[ValueRun]:
     at = 0
-    for (value, present), same in groupby(zip(values, there, strict=True)):
+    bounds = [shown(value) if isinstance(value, Interval) else "" for value in given]
+    for (value, said, present), same in groupby(
+        zip(map(_known, given), bounds, there, strict=True)
+    ):
         first, at = at, at + sum(1 for _ in same)
-        yield ValueRun(first, at - 1, value, unknown=present and value is None)
+        yield ValueRun(first, at - 1, value, unknown=present and value is None, bounds=said)
 
 
 _LIGHTS = {"red_light": "red", "amber_light": "yellow", "green_light": "green"}

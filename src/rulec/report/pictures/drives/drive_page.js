@@ -250,7 +250,7 @@ function runAt(row, state) {
 
 function valueAt(row, state) {
   const run = runAt(row, state);
-  const value = run.length < 2 ? "not there" : run[1] === null ? "unknown" : String(run[1]);
+  const value = run.length < 2 ? "not there" : run[1] === null ? "unknown" : String(run[3] ?? run[1]);
   return row.narrowly[state] ? `${value}: ${row.narrowly[state]}` : value;
 }
 

@@ -104,7 +104,7 @@ def _span(links: NDArray[float64]) -> tuple[int, int]:
 
 
 def _row(row: RibbonRow) -> dict[str, Any]:
-    """A row by its runs: last state, value and style; no value where nobody is there."""
+    """A row by its runs: last state, value, style, bounds; no value where nobody is there."""
     number = not row.values
     runs: list[list[Any]] = []
     for run in row.runs:
@@ -114,6 +114,7 @@ def _row(row: RibbonRow) -> dict[str, Any]:
         elif run.value is not None:
             end += [round(float(run.value), 2)] if number else [in_words(run.value)]
             end += ["curve" if number else value_style(row, run.value)]
+            end += [run.bounds] if run.bounds else []
         if runs and runs[-1][1:] == end[1:]:
             runs.pop()
         runs.append(end)
