@@ -85,6 +85,8 @@ class Kind(Generic[Record]):
         if unknown is not None:
             fields = self.structure.__struct_fields__
             help_text = did_you_mean(unknown[1], fields) or f"there are {named(fields)}"
+            if unknown[1] == "version":
+                help_text = _answer_of_rulec(line) or help_text
         if "at `$.objects" in str(problem):
             help_text = 'objects have types: write "objects": {"v1": "car"}'
         choice = _UNKNOWN_CHOICE.search(str(problem))
@@ -92,6 +94,15 @@ class Kind(Generic[Record]):
             choices = get_args(get_type_hints(self.structure)[choice[1]])
             help_text = " or ".join(f'`"{choice[1]}": "{value}"`' for value in choices)
         return self.bad(f"{what}: {words}", place, help_text)
+
+
+def _answer_of_rulec(line: bytes) -> str:
+    """What a line is that `rulec verify` has written, and what reads it; empty if it is none."""
+    if b'"outcome":' in line:
+        return "it is a finding of `rulec verify`, which `rulec rates` counts"
+    if b'"satisfied":' in line:
+        return "it is a verdict of `rulec verify`: give what was judged"
+    return ""
 
 
 def _spelling(text: bytes) -> str:
