@@ -8,8 +8,9 @@ import pytest
 import rulec
 from rulec.analysis.audit.source_audit import audit_source
 from rulec.logic.free_names import names_in
+from rulec.rulebook import loader
 from rulec.rulebook.names.doc_comments import description
-from rulec.syntax import decode, parse, tree
+from rulec.syntax import decode, tree
 from support.builders.national_books import FOLDER, NATIONAL, compiled, read
 
 TOLD = frozenset().union(*(listed.words or () for listed in rulec.formats()))
@@ -33,7 +34,7 @@ def descriptions() -> dict[str, frozenset[str]]:
     """Each word of a shipped file, with what the files say of it."""
     found: dict[str, frozenset[str]] = {}
     for path in sorted(FOLDER.glob("*/*.rules")):
-        file, mistakes = parse(decode(path.name, path.read_bytes()))
+        file, mistakes = loader.parsed(decode(str(path), path.read_bytes()))
         assert mistakes == ()
         for item in _inside(file.items):
             if isinstance(item, tree.SignalItem):
