@@ -215,7 +215,9 @@ def __getattr__(name: str) -> Any:
     # Nothing is imported at the top, see there.
     from importlib import import_module
 
-    return getattr(import_module(module), name)
+    # It is there from now on, and found without asking.
+    found = globals()[name] = getattr(import_module(module), name)
+    return found
 
 
 def __dir__() -> Sequence[str]:
