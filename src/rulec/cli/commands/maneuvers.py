@@ -100,7 +100,6 @@ def command(
     could not be answered, or no hard rule be judged.
     """
     # Maneuvers, 130 ms: not for --help.
-    from rulec.planning.trace_history import read_past
     from rulec.report.maneuvers.maneuver_table import ManeuverCounts
     from rulec.report.maneuvers.maneuver_table import as_text as table_of
 
@@ -109,7 +108,12 @@ def command(
     inputs = _inputs(scenarios)
     several = len(books) * len(inputs.paths) > 1
     machines = [read_machines(book, at) for book in dict.fromkeys(books)]
-    past = None if after is None else read_past(after)
+    past = None
+    if after is not None:
+        # Monitors and formats of traces, 40 ms: only where there is a past.
+        from rulec.planning.trace_history import read_past
+
+        past = read_past(after)
     asked = ManeuverQuestions(*(options.pop(field) for field in ManeuverQuestions.__slots__))
     counts: list[ManeuverCounts] = []
     failed = False
