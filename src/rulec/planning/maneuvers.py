@@ -13,7 +13,6 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.mealy_monitor import stutter_invariant
 from rulec.logic.free_names import names_in
 from rulec.monitoring.state_validation import partial_names
-from rulec.monitoring.uncertainty.uncertain_verdict import uncertain_verdict
 from rulec.monitoring.uncertainty.untold_names import untold_names
 from rulec.monitoring.verdict import CarriedState, RuleNotJudged, Verdict, Violation
 from rulec.planning.product.graph_instances import HARD, SOFT, violations
@@ -25,7 +24,6 @@ from rulec.planning.product.graph_product import (
     explore,
 )
 from rulec.planning.product.node_transformers import NodeTransformers, node_transformers
-from rulec.planning.product.possible_instances import not_judged
 from rulec.planning.ranking.cell_tracks import CellTracks, cell_tracks
 from rulec.planning.ranking.cheapest import Maneuver, cheapest
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant, count_classes, variants
@@ -191,6 +189,9 @@ class Maneuvers(Rows):
         name = self.graph.scenario.name
         if not any(instance.readings for instance in every):
             return Verdict(name, violations(every, maneuver.nodes))
+        # Letters that are not known, 15 ms: only where not all is.
+        from rulec.monitoring.uncertainty.uncertain_verdict import uncertain_verdict
+
         trace = trace_of(self.paths, maneuver.nodes, name)
         past = past_for(self.graph, self.paths, self.rules, (*HARD, *SOFT), self.after)
         return uncertain_verdict(trace, self.rules, past)
@@ -394,7 +395,18 @@ def evaluate(
         past=past,
         after=after,
         violated_before=None if after is None else past.violations,
-        not_judged=tuple(not_judged(paths, rules, past)),
+        not_judged=_not_judged(paths, rules, past),
         reading=reading,
         words=words,
     )
+
+
+def _not_judged(
+    paths: TraceGraph, rules: CompiledRulebook, past: CarriedState
+) -> tuple[RuleNotJudged, ...]:
+    if paths.told is None:
+        return ()
+    # As above: only where not all is known.
+    from rulec.planning.product.possible_instances import not_judged
+
+    return tuple(not_judged(paths, rules, past))

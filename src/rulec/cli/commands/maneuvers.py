@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from itertools import product
@@ -31,6 +31,8 @@ from rulec.report.text.console import print_remark
 
 if TYPE_CHECKING:
     from rulec.planning import Maneuvers
+    from rulec.planning.probability.rule_probability import AlternativeCounts, RuleProbabilities
+    from rulec.planning.ranking.cheapest import Maneuver
     from rulec.recordings.recording_inputs import InputFiles
     from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
 
@@ -191,7 +193,6 @@ class ManeuverQuestions:
     def answered(self, maneuvers: Maneuvers, form: str) -> ManeuverAnswers:
         """The answers, in JSON also what only uncertain scenes have in text."""
         # Maneuvers, 130 ms: they have been found.
-        from rulec.planning.probability import rule_probability
         from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
 
         listed = None if self.n_listed is None else maneuvers.cheapest(self.n_listed, perhaps=True)
@@ -210,16 +211,27 @@ class ManeuverQuestions:
             listed=listed,
             best=best,
             ranked=ranked,
-            chances={
-                maneuver.nodes: rule_probability.rule_probabilities(maneuvers, maneuver)
-                for maneuver in shown
-            }
-            if uncertain
-            else {},
+            chances=_chances(maneuvers, shown) if uncertain else {},
             verdicts={maneuver.nodes: maneuvers.verdict(maneuver) for maneuver in listed or ()}
             if maneuvers.in_doubt
             else {},
-            worlds=rule_probability.alternative_counts(maneuvers) if self.worlds else None,
+            worlds=_worlds(maneuvers) if self.worlds else None,
             prunings=maneuvers.prunings() if self.why else None,
             classes=classes,
         )
+
+
+def _chances(
+    maneuvers: Maneuvers, shown: Iterable[Maneuver]
+) -> dict[tuple[int, ...], RuleProbabilities]:
+    # Probabilities, 15 ms: only where others may go on in several ways.
+    from rulec.planning.probability.rule_probability import rule_probabilities
+
+    return {maneuver.nodes: rule_probabilities(maneuvers, maneuver) for maneuver in shown}
+
+
+def _worlds(maneuvers: Maneuvers) -> list[AlternativeCounts]:
+    # As above.
+    from rulec.planning.probability.rule_probability import alternative_counts
+
+    return alternative_counts(maneuvers)

@@ -10,7 +10,6 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.monitoring.bindings import Binding, Cast, binding_of, types_of
 from rulec.monitoring.uncertainty.lazy_bindings import ReadBits, doubtful_bindings
-from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
 from rulec.monitoring.verdict import CarriedState
 from rulec.trace import TraceGraph
 from rulec.vocabulary import Vocabulary
@@ -30,6 +29,9 @@ def graph_bindings(
     cast = Cast(graph.objects, vocabulary, len(graph.states), graph.present)
     if not cast.has_many(types_of(rule)):
         return cast.bindings(rule)
+    # Words of letters that are not known, 10 ms: only where there are many choices.
+    from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
+
     nodes = _Nodes(graph, read)
     in_nodes = Cast(graph.objects, vocabulary, nodes.ends[-1], nodes.present())
     found = doubtful_bindings(

@@ -19,7 +19,6 @@ from rulec.monitoring.verdict import NO_PAST, CarriedState, Violation
 from rulec.monitoring.verify import run
 from rulec.planning.product.graph_bindings import graph_bindings
 from rulec.planning.product.graph_instance import GraphInstance
-from rulec.planning.product.possible_instances import PossibleNodes
 from rulec.rulebook.rulebook_model import Strength
 from rulec.trace import TraceGraph
 
@@ -58,6 +57,9 @@ def instances(
     possible = None
     doubtful = past.doubtful_rules
     if any(partial) or graph.told is not None or doubtful:
+        # Letters that are not known, 15 ms: only where not all is.
+        from rulec.planning.product.possible_instances import PossibleNodes
+
         possible = PossibleNodes(graph, rulebook, places)
     columns = [
         LetterReader(

@@ -182,11 +182,10 @@ def not_judged(
     graph: TraceGraph, rulebook: CompiledRulebook, past: CarriedState
 ) -> Iterator[RuleNotJudged]:
     """Rules that no path can be known to violate, for want of what the graph does not tell."""
-    if graph.told is not None:
-        possible = PossibleNodes(replace(graph, states=()), rulebook, [])
-        for rule in rulebook.rules:
-            if untold := possible.untold(rule, past):
-                yield RuleNotJudged(rule.name, rule.strength, untold)
+    possible = PossibleNodes(replace(graph, states=()), rulebook, [])
+    for rule in rulebook.rules:
+        if untold := possible.untold(rule, past):
+            yield RuleNotJudged(rule.name, rule.strength, untold)
 
 
 def readings(

@@ -13,8 +13,6 @@ from rulec.logic.printing import number_in_words
 from rulec.monitoring.verdict import OpenVerdict, Verdict, Violation
 from rulec.partition import Cell, NavigationGraph, envelope
 from rulec.planning import Maneuvers, RankedManeuver, RulePruning
-from rulec.planning.probability.rule_probability import RuleProbabilities, RuleProbability
-from rulec.planning.probability.violation_events import MOST_WORLDS
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.penalties import PenaltyRank
 from rulec.report.text.terminal_text import shown_count, table_lines, visible
@@ -23,6 +21,7 @@ from rulec.rulebook.rulebook_model import cited_law
 
 if TYPE_CHECKING:
     from rulec.partition.motion.witness_trajectory import WitnessTrajectory
+    from rulec.planning.probability.rule_probability import RuleProbabilities, RuleProbability
 
 # So many are shown in text; JSON has them all.
 MOST_BINDINGS = 3
@@ -167,6 +166,9 @@ def chance_lines(chances: RuleProbabilities) -> list[str]:
 
 def _of_rule(rule_probability: RuleProbability) -> str:
     if rule_probability.kept is None:
+        # Probabilities have been loaded where there are some.
+        from rulec.planning.probability.violation_events import MOST_WORLDS
+
         return f"not known: more than {MOST_WORLDS:,} worlds make a difference"
     bindings = rule_probability.bindings
     parts = [

@@ -6,18 +6,20 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import prod
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rulec.diagnostics import named
 from rulec.monitoring.verdict import Verdict, Violation
 from rulec.partition import COMFORTABLE, NavigationGraph
 from rulec.planning import Maneuvers, RankedManeuver, RulePruning
-from rulec.planning.probability.rule_probability import AlternativeCounts, RuleProbabilities
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
 from rulec.report.maneuvers import maneuver_blocks
 from rulec.report.text.terminal_text import first_of, shown_count, styled, visible
 from rulec.scenario import Account, Scenario
+
+if TYPE_CHECKING:
+    from rulec.planning.probability.rule_probability import AlternativeCounts, RuleProbabilities
 
 MOST_VIOLATIONS = 6
 """So many of the past's are named in text; JSON has them all."""
