@@ -6,6 +6,7 @@ import pyarrow
 import pytest
 from pyarrow import parquet
 
+from rulec.diagnostics import RulecError
 from rulec.fleet.runs import drive_keys, unit_slices
 from rulec.fleet.runs import work_units as units_module
 from rulec.fleet.runs.unit_slices import slices_of_unit
@@ -68,6 +69,18 @@ def test_slices_hold_whole_drives_however_they_are_cut_and_mixed(seed, tmp_path)
     cuts = sorted(chosen.sample(range(1, len(table)), min(chosen.randint(0, 3), len(table) - 1)))
     parts = slices_in(written(tmp_path, table, cuts, chosen.choice([8, 50, 10_000])))
     checked(parts, drives, rows)
+
+
+def test_a_drive_that_goes_on_with_columns_of_other_types_is_said(tmp_path):
+    table = table_of(3, 20)
+    first, last = table.slice(0, 30), table.slice(30)
+    texts = last.set_column(2, "n", last["n"].cast(pyarrow.string()))
+    paths = [*written(tmp_path, first, [], 100), str(tmp_path / "later.parquet")]
+    parquet.write_table(texts, paths[-1])
+    units = list(work_units(paths, []))
+    with pytest.raises(RulecError, match=r"0.parquet.*other types.*incompatible types.*R0710"):
+        list(slices_of_unit(units[0]))
+    assert [part["trace"].to_pylist() for part in slices_of_unit(units[1])] == [["t2"] * 20]
 
 
 @pytest.mark.parametrize("drives", [10, 100, 1_000])

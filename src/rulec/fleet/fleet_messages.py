@@ -85,6 +85,14 @@ def no_fleet_input(path: str, why: str = "") -> RulecError:
     )
 
 
+def other_types(path: str, why: str) -> RulecError:
+    return NO_DRIVES_TABLE.error(
+        SourceLocation(path),
+        f"a drive of the file goes on where columns are of other types: {why}",
+        help="write all tables of a fleet with the same types",
+    )
+
+
 OTHER_FLEET = Code(
     "R0712",
     title="a folder has findings of another fleet",

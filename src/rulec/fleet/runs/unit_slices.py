@@ -9,9 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.fleet.fleet_messages import no_fleet_input
+from rulec.fleet.fleet_messages import no_fleet_input, other_types
 from rulec.fleet.runs.drive_keys import KeyedRows, KeyHashes, keyed_rows, opened_table
 from rulec.fleet.runs.work_units import TablePiece, WorkUnit
+from rulec.trace.formats.arrow.parquet import arrow
 
 MOST_TOGETHER = 1 << 15
 """Rows that are judged together; of a longer drive all."""
@@ -51,15 +52,24 @@ def slices_of_unit(unit: WorkUnit) -> Iterator[Any]:
     drive. Wherever a drive's rows are, they are found; where drives stand together, each row is
     read once. Raises RulecError R0710.
     """
-    # Arrow, 0.1 s: where there is a table of it, it is loaded.
-    from rulec.trace.formats.arrow.table_groups import joined
-
     assert unit.piece is not None, "it is of a table"
     reader = _Reader(_groups(unit.piece, *unit.further))
     drives = _drives_of(unit)
     for own in _together(drives.rows):
         first, wanted = int(drives.first[own.start]), int(drives.rows[own].sum())
-        yield joined(list(reader.rows_of(drives.keys[own], first, wanted)))
+        # Under no name: it is gone before the next one is read.
+        yield _one_table(list(reader.rows_of(drives.keys[own], first, wanted)), unit.path)
+
+
+def _one_table(parts: Sequence[Any], path: str) -> Any:
+    # Arrow, 0.1 s: where there is a table of it, it is loaded.
+    from rulec.trace.formats.arrow.table_groups import joined
+
+    pyarrow, _ = arrow(path)
+    try:
+        return joined(parts)
+    except pyarrow.ArrowException as reason:
+        raise other_types(path, str(reason).split("\n")[0]) from None
 
 
 def _groups(*pieces: TablePiece) -> list[_Group]:
