@@ -309,8 +309,7 @@ def road_extents(
             bounds[:, standing] = bounds[:, standing, :1]
             left_of[:, :, standing] = left_of[:, :, standing, :1]
     s_min, s_max, d_min, d_max = bounds
-    directions = road.line.headings_at(np.nan_to_num((s_min + s_max) / 2))
-    cos, sin = np.cos(directions), np.sin(directions)
+    directions, cos, sin = road.line.directions_at(np.nan_to_num((s_min + s_max) / 2))
     left_of_min, left_of_max = np.moveaxis(left_of, 1, -1)
     return RoadExtents(
         s_min=s_min,

@@ -19,7 +19,6 @@ from rulec.extraction.tracks.road_extents import (
 )
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
-from rulec.scenario.recorded.reference_line import pieces_at
 
 KMH = 3.6
 """km/h in one m/s."""
@@ -78,7 +77,7 @@ class RoadPlaces:
     def lanes_there(self) -> LaneSets:
         """The sets of the lanes that exist where participants are."""
         lanes = self.road.lanes
-        return lane_sets(lanes.there)[pieces_at(lanes.s, self.extents.s)]
+        return lane_sets(lanes.there)[lanes.pieces_at(self.extents.s)]
 
     @cached_property
     def touched(self) -> LaneSets:

@@ -10,16 +10,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import groupby, pairwise
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy import float64
+from numpy import float64, intp
 from numpy.typing import NDArray
 
 from rulec.recordings.polylines import densified
 from rulec.recordings.recording import Lanelet, Points, Recording
+from rulec.scenario.recorded.borders import Borders
 from rulec.scenario.recorded.joined_outlines import JoinedOutlines
 from rulec.scenario.recorded.reference_line import ReferenceLine, pieces_at
 from rulec.scenario.recorded.route import lanelet_length, lanes_beside
@@ -48,7 +50,7 @@ _AT_ONCE = 1 << 10
 _Values = NDArray[float64]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class Lanes:
     """Bounds of lanes from right to left along the road.
 
@@ -60,6 +62,10 @@ class Lanes:
     bounds: _Values
     straight: _Values
     there: NDArray[np.bool_]
+
+    @cached_property
+    def _borders(self) -> Borders:
+        return Borders(self.s)
 
     def straightened(self, places: Points) -> Points:
         """The ``d`` of places (rows ``s``, ``d``) between the lanes' straight bounds, a column."""
@@ -77,9 +83,9 @@ class Lanes:
         """How far (m) left of each bound (columns) places are."""
         at, off = places[:, 0], places[:, 1]
         # NaN comes out as NaN, wherever it is put
-        before = np.clip(np.searchsorted(self.s, at, "right") - 1, 0, len(self.s) - 2)
-        start = self.s[before]
-        part = np.clip((at - start) / (self.s[before + 1] - start), 0.0, 1.0)
+        before = self._piece(at)
+        start = self.s.take(before)
+        part = np.clip((at - start) / (self.s.take(before + 1) - start), 0.0, 1.0)
         # The axis of the bounds comes first in memory
         first, second = (np.take(self.bounds.T, number, axis=1) for number in (before, before + 1))
         first *= 1 - part
@@ -90,7 +96,14 @@ class Lanes:
 
     def existing_at(self, s: _Values) -> NDArray[np.bool_]:
         """Flags of the lanes (last axis, from the right) that exist at places."""
-        return self.there[pieces_at(self.s, s)]
+        return self.there[self.pieces_at(s)]
+
+    def pieces_at(self, s: _Values) -> NDArray[intp]:
+        """The numbers of the pieces between rows of bounds at places, the nearest beyond them."""
+        return self._piece(np.where(np.isnan(s), 0.0, s))
+
+    def _piece(self, s: _Values) -> NDArray[intp]:
+        return np.minimum(self._borders.before(s), len(self.s) - 2)
 
     def missing(self, start: float, end: float, shift: float) -> tuple[MissingLane, ...]:
         """The gaps of lanes between two places, ``shift`` subtracted from each ``s``."""
@@ -278,11 +291,12 @@ def outline_bounds(
     rows = line.coordinates_of_rows(corners, around, outlines.reach)
     parts = []
     for begin in range(0, len(rows), _AT_ONCE):
-        own = rows[begin : begin + _AT_ONCE]
+        # Corner by corner, so that those of all outlines stand together
+        own = rows[begin : begin + _AT_ONCE].swapaxes(0, 1)
         values = _with_across(own.reshape(-1, 2), across)
-        by_corner = np.moveaxis(values.reshape(len(values), *own.shape[:2]), -1, 0).copy()
-        parts.append((np.minimum.reduce(by_corner).T, np.maximum.reduce(by_corner).T))
-    least, greatest = (np.concatenate(bounds) for bounds in zip(*parts, strict=True))
+        by_corner = values.reshape(len(values), len(own), -1)
+        parts.append((np.minimum.reduce(by_corner, axis=1), np.maximum.reduce(by_corner, axis=1)))
+    least, greatest = (np.concatenate(bounds, axis=1).T for bounds in zip(*parts, strict=True))
     return least, greatest
 
 

@@ -66,6 +66,16 @@ class ReferenceLine:
         headings: _Values = np.arctan2(self.ahead[:, 1], self.ahead[:, 0])
         return headings
 
+    def directions_at(self, s: _Values) -> tuple[_Values, _Values, _Values]:
+        """The same, and their cosines and sines."""
+        pieces = self._piece(s)
+        headings, cosines, sines = (values.take(pieces) for values in self._directions)
+        return headings, cosines, sines
+
+    @cached_property
+    def _directions(self) -> tuple[_Values, _Values, _Values]:
+        return self._headings, np.cos(self._headings), np.sin(self._headings)
+
     def heading_at(self, s: float) -> float:
         """The direction of the piece at ``s``, in radians."""
         return float(self.headings_at(np.array([s]))[0])
@@ -95,7 +105,7 @@ class ReferenceLine:
         return found
 
     def _piece(self, s: _Values) -> NDArray[intp]:
-        return np.clip(np.searchsorted(self.arc, s, "right") - 1, 0, len(self.arc) - 1)
+        return self.piece_fans.at(s)
 
     @cached_property
     def _fans(self) -> LineFans:

@@ -15,6 +15,7 @@ from numpy import bool_, float64, intp
 from numpy.typing import NDArray
 
 from rulec.recordings.recording import Points
+from rulec.scenario.recorded.borders import Borders
 
 _INSIDE = 1e-3
 """Whose foot is nearer to the end of a piece than such a part of it may have another."""
@@ -62,8 +63,17 @@ class PieceFans:
 
     def at(self, s: _Values) -> NDArray[intp]:
         """The numbers of the pieces at places along the line."""
-        arc = self.columns[7]
-        return np.clip(np.searchsorted(arc, s, "right") - 1, 0, len(arc) - 1)
+        return self._borders.before(s)
+
+    @cached_property
+    def _borders(self) -> Borders:
+        return Borders(self.columns[7])
+
+    @cached_property
+    def rows(self) -> _Values:
+        """The columns as rows, which a piece has together in memory."""
+        rows: _Values = self.columns.T.copy()
+        return rows
 
 
 def sure_feet_near(
@@ -147,7 +157,8 @@ def _on(
     fans: PieceFans, x: _Values, y: _Values, pieces: NDArray[intp]
 ) -> tuple[_Values, _Values, NDArray[bool_]]:
     """Frenet coordinates of places by one piece each, and flags of those well inside its fan."""
-    ux, uy, x0, y0, lengths, slope, change, arc = np.take(fans.columns, pieces, axis=1)
+    own = fans.rows.take(pieces, axis=0, mode="clip")
+    ux, uy, x0, y0, lengths, slope, change, arc = np.moveaxis(own, -1, 0)
     dx, dy = x - x0, y - y0
     along = dx * ux + dy * uy
     across = ux * dy - uy * dx

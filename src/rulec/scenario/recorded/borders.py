@@ -1,0 +1,80 @@
+"""Places along a line, told which piece they are in: looked up in a table, not searched for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy import float64, intp
+from numpy.typing import NDArray
+
+_HAIR_M = 1e-6
+"""What cells are found wrong by, of places along a line, is less."""
+
+_FEWEST, _MOST_CELLS, _MOST_TRIED = 8, 1 << 14, 2
+
+_Values = NDArray[float64]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Cells:
+    """Stretches of one length (m), from ``origin`` on, and the last border before each of them.
+
+    No more than ``tried`` borders are within one.
+    """
+
+    origin: float
+    per_m: float
+    before: NDArray[intp]
+    tried: int
+
+
+@dataclass(frozen=True, eq=False)
+class Borders:
+    """Borders between pieces of a line, ascending (m)."""
+
+    places: _Values
+
+    def before(self, s: _Values) -> NDArray[intp]:
+        """The number of the last border that is not behind each place, the first one before it.
+
+        Any for NaN.
+        """
+        cells = self._cells
+        if cells is None:
+            found: NDArray[intp] = np.searchsorted(self.places, s, "right") - 1
+            return np.maximum(found, 0)
+        with np.errstate(invalid="ignore"):
+            own = ((s - cells.origin) * cells.per_m).astype(intp)
+        found = cells.before.take(own, mode="clip")
+        for _ in range(cells.tried):
+            found += self._next.take(found) <= s
+        return found
+
+    @cached_property
+    def _next(self) -> _Values:
+        return np.append(self.places[1:], np.inf)
+
+    @cached_property
+    def _cells(self) -> _Cells | None:
+        """Cells with few borders each; None if they would be many."""
+        # What is before the second border is in the first cell, behind the last but one in the last
+        inner = self.places[1:-1]
+        if len(inner) < _FEWEST:
+            return None
+        usual_m = float(inner[-1] - inner[0]) / (len(inner) - 1)
+        for length_m in (usual_m / 2, usual_m / 8):
+            count = int((inner[-1] - inner[0]) / length_m) + 4
+            if count > _MOST_CELLS:
+                break
+            starts = inner[0] + length_m * np.arange(-1, count - 1)
+            before, last = (
+                np.searchsorted(self.places, starts + more, "right") - 1
+                for more in (-_HAIR_M, length_m + _HAIR_M)
+            )
+            before[0], last[-1] = 0, len(self.places) - 1
+            tried = int((last - before).max())
+            if tried <= _MOST_TRIED:
+                return _Cells(float(starts[0]), 1 / length_m, before, tried)
+        return None
