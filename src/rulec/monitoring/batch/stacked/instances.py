@@ -111,6 +111,14 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
     stack = reader.stack
     if rule.does_nothing([reader.digits(read) for read in rule.reads]):
         return Instances(_NONE, (_NONE,) * len(rule.variables), _NONE, _NONE)
+    # To count takes longest, and is seldom needed to see that nothing happens
+    if rule.counts_everywhere:
+        uncounted = [
+            read.unknown if read.count or read.variables else reader.numbers(read, None)
+            for read in rule.reads
+        ]
+        if not _are_busy(rule, rule.letters.numbers(uncounted)).any():
+            return Instances(_NONE, (_NONE,) * len(rule.variables), _NONE, _NONE)
     every = rule.letters.numbers(numbers_at(rule, reader, None))
     busy = _are_busy(rule, every)
     if not busy.any():

@@ -92,7 +92,8 @@ class StackedRule:
     ``entangled`` are its entangled reads, if its own objects alone decide what these may be, and
     ``related`` the places of all reads that may have to do with each other. ``constants`` are those
     of reads of what never changes, ``hidden`` the names of such in sums and counts.
-    ``words_together`` run many words of the ``letters``.
+    ``counts_everywhere``: it counts objects in all states, whatever its own are. ``words_together``
+    run many words of the ``letters``.
     """
 
     def __init__(
@@ -130,6 +131,7 @@ class StackedRule:
                 if name in constants and not _is_value(read)
             )
         )
+        self.counts_everywhere = any(read.count and not read.variables for read in self.reads)
         self.is_simple = _is_simple(self)
         self._busy_flags: NDArray[np.bool_] = np.zeros(0, dtype=bool)
         self.letters = self._no_letters()
