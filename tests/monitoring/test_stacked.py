@@ -1,5 +1,6 @@
 """Traces in arrays, judged together whatever their objects, get the verdicts of each."""
 
+import itertools
 from dataclasses import replace
 from fractions import Fraction
 
@@ -267,3 +268,29 @@ def test_a_state_that_contradicts_a_fact_is_refused_as_by_itself(near):
     assert isinstance(refused, NotJudged)
     assert "state 1 cannot be: `near(" in str(refused.error)
     assert str(refused.error) == str(verify_or_reason(traces[1], compiled).error)
+
+
+WEATHER = """\
+rulebook weather
+light is one of dry_road, wet_road, icy_road default dry_road
+signal raining default false
+signal fog default false
+fact raining implies not dry_road
+hard rule careful { require never (wet_road and fog) }
+hard rule slow { require never (raining and (icy_road or dry_road and not fog)) }
+"""
+
+
+def test_whatever_was_asked_before_facts_are_contradicted_by_what_is_said_everywhere():
+    compiled = rulec.compile(rulec.parse_rulebook(WEATHER))
+    some = (None, True, False, UNKNOWN)
+    lights, refused = (None, "dry_road", "wet_road", UNKNOWN), 0
+    for light, raining, fog, changes in itertools.product(lights, some, some, (False, True)):
+        said = {"light": light, "raining": raining, "fog": fog}
+        first = {name: value for name, value in said.items() if value is not None}
+        last = first | {"light": "icy_road"} if changes else first
+        trace = Trace("rain", 1.0, {}, (first, last), told=frozenset(first | last))
+        (own,) = verify_arrays([in_arrays(trace, compiled.vocabulary)], compiled)
+        assert in_plain_words(own) == in_plain_words(verify_or_reason(trace, compiled))
+        refused += isinstance(own, NotJudged)
+    assert refused

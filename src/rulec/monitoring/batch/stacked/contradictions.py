@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TypeAlias
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
+from rulec.logic.formula import Atom, atoms_of
 from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.columns.column_reader import Mask
 from rulec.monitoring.batch.stacked.stack import Places, Stack
@@ -16,9 +17,43 @@ from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.completions import can_be
 from rulec.monitoring.uncertainty.state_letters.related_facts import related_facts
 from rulec.trace.plain_arrays import distinct
+from rulec.vocabulary.partial_values import PartialValue
 
-LinkedFacts: TypeAlias = tuple[CompiledAxiom, ...]
-"""Facts that share names."""
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LinkedFacts:
+    """Facts that share names.
+
+    Whether no state can contradict them is remembered by the values that ``signals`` have anywhere.
+    """
+
+    facts: tuple[CompiledAxiom, ...]
+    signals: tuple[str, ...]
+    names: frozenset[str]
+    _kept: dict[tuple[int | None, ...], bool] = field(default_factory=dict, init=False)
+
+    def are_kept(self, reader: StackReader) -> bool:
+        """Whether the values that are met anywhere show that no state contradicts them."""
+        key = tuple([reader.met(name) for name in self.signals])
+        known = self._kept.get(key)
+        if known is None:
+            truths = [reader.truth_anywhere(fact.formula) for fact in self.facts]
+            known = all(bool(truth.true) for truth in truths) or self._can_all_be(reader)
+            self._kept[key] = known
+        return known
+
+    def _can_all_be(self, reader: StackReader) -> bool:
+        """Whether all states say the same, of no object, and this can be."""
+        stack, compared = reader.stack, self.names - set(self.signals)
+        if compared or any(fact.variables for fact in self.facts):
+            return False
+        said: dict[tuple[str, tuple[str, ...]], PartialValue | None] = {
+            (name, ()): reader.only_value(name) for name in self.signals
+        }
+        if None in said.values():
+            return False
+        return can_be(StateView(with_values({}, said), {}, stack.vocabulary), self.facts)
+
 
 _OBJECT = "an object"
 
@@ -31,9 +66,12 @@ def contradicted(linked_facts: Sequence[LinkedFacts], reader: StackReader) -> se
     places = [
         _contradicted_states(group, reader, spots, objects)
         for together in linked_facts
-        for group, spots, objects in _asked(together, reader.stack)
+        if not together.are_kept(reader)
+        for group, spots, objects in _asked(together.facts, reader.stack)
     ]
-    states = distinct(np.concatenate([np.empty(0, dtype=np.intp), *places]))
+    if not places:
+        return set()
+    states = distinct(np.concatenate(places))
     found: list[int] = distinct(
         np.searchsorted(reader.stack.begins, states, side="right") - 1
     ).tolist()
@@ -44,14 +82,17 @@ def linked(facts: Sequence[CompiledAxiom]) -> Iterator[LinkedFacts]:
     """The facts in groups that share no names."""
     while facts:
         group = related_facts(names_of(facts[0].formula), facts)
-        yield group
+        atoms = [atom for fact in group for atom in atoms_of(fact.formula)]
+        signals = dict.fromkeys(atom.name for atom in atoms if isinstance(atom, Atom))
+        names = frozenset(name for fact in group for name in names_of(fact.formula))
+        yield LinkedFacts(group, tuple(signals), names)
         facts = [fact for fact in facts if fact not in group]
 
 
 _Asked = tuple[Sequence[CompiledAxiom], Spots, Mapping[str, str]]
 
 
-def _asked(together: LinkedFacts, stack: Stack) -> Iterator[_Asked]:
+def _asked(together: Sequence[CompiledAxiom], stack: Stack) -> Iterator[_Asked]:
     """Facts that all hold at some spots, and the object that they are about, if any, by type."""
     if not together[0].variables:
         yield together, Spots(np.arange(stack.n_states), {}, whole=True), {}

@@ -272,6 +272,52 @@ class StackReader:
 
         return fold(formula, replace(KLEENE_COLUMNS, proposition=proposition, identity=identity))
 
+    def met(self, name: str) -> int | None:
+        """The values that a signal has anywhere, as bits, 0 if some are not known.
+
+        None for one that no state tells, and that has no default.
+        """
+        if name in self.stack.said:
+            return self._met.values(name)
+        default = self.stack.default(name)
+        return None if default is None or default is UNKNOWN_VALUE else 1 << int(default)
+
+    def only_value(self, name: str) -> PartialValue | None:
+        """The value that a signal has everywhere, unknown if no state tells it; None for several.
+
+        None as well if some are not known.
+        """
+        declaration, met = self.stack.vocabulary.declarations[name], self.met(name)
+        if met is None:
+            return UNKNOWN_VALUE if self.stack.default(name) is UNKNOWN_VALUE else None
+        if met == 0 or met & (met - 1):
+            return None
+        place = met.bit_length() - 1
+        return declaration.values[place] if isinstance(declaration, Enumeration) else bool(place)
+
+    def truth_anywhere(self, formula: ltl.Formula) -> Truth:
+        """Whether a formula without operators of time is true, or false, by the values met.
+
+        Any variable names the same object.
+        """
+
+        def proposition(part: ltl.Proposition) -> Truth:
+            if isinstance(part, ltl.Comparison):
+                return UNKNOWN
+            declaration, met = self.stack.vocabulary.declarations[part.name], self.met(part.name)
+            if not met:
+                return UNKNOWN
+            holds = 1 << 1
+            if isinstance(declaration, Enumeration):
+                assert part.value is not None, "the rulebook has been checked"
+                holds = 1 << declaration.values.index(part.value)
+            return Truth(np.bool_(met == holds), np.bool_(not met & holds))
+
+        def identity(_: ltl.Same) -> Truth:
+            return known(np.True_)
+
+        return fold(formula, replace(KLEENE_COLUMNS, proposition=proposition, identity=identity))
+
     def _compared(self, comparison: ltl.Comparison, spots: Spots, about: str) -> Truth:
         terms = []
         for factor, term in comparison.terms:
