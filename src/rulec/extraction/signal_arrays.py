@@ -19,7 +19,7 @@ from rulec.trace.shared_columns import SharedColumns
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_columns import smallest_unsigned
 from rulec.trace.vocabulary_projection import fits, is_about, known_type
-from rulec.vocabulary import Declaration, Enumeration, Vocabulary
+from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 
 _KINDS: Mapping[str, type] = {"b": bool, "f": float, "i": float, "u": float}
 
@@ -73,6 +73,7 @@ def written(
     # Of many objects there are few types
     known = {own: known_type(own, vocabulary) for own in {tuple(row) for row in types}}
     own_types = [known[tuple(row)] for row in types]
+    suits_of: dict[tuple[str, ...], Flags] = {}
     world, about, only = {}, {}, dict(signals.only)
     texts: dict[str, tuple[str, ...]] = {}
     for name, declaration in vocabulary.declarations.items():
@@ -87,9 +88,12 @@ def written(
             numbers = _numbers(name, signals.about[name], signals, declaration, spans)
             if numbers is not None:
                 about[name] = numbers
-                about_it = {own: is_about(declaration, own, vocabulary) for own in set(own_types)}
-                suits = np.array([about_it[own] for own in own_types], dtype=bool)
-                only[name] = suits & only.get(name, True)
+                suits = suits_of.get(declaration.parameters)
+                if suits is None:
+                    fit = {own: is_about(declaration, own, vocabulary) for own in set(own_types)}
+                    suits = np.array([fit[own] for own in own_types], dtype=bool)
+                    suits_of[declaration.parameters] = suits
+                only[name] = suits & only[name] if name in only else suits
         if isinstance(declaration, Enumeration) and (name in world or name in about):
             texts[name] = declaration.values
     return WrittenSignals(replace(signals, world=world, about=about, only=only), texts)
@@ -121,6 +125,8 @@ def _numbers(
 ) -> SignalColumn | None:
     """A column, texts as places among a declaration's; None if it says anything else."""
     texts = signals.texts.get(name)
+    if isinstance(declaration, Signal) and texts is None and column.dtype == bool:
+        return column
     if not isinstance(declaration, Enumeration) or (texts is None and column.dtype.kind != "U"):
         # All values but texts are alike
         fit = texts is None and fits(name, column.flat[:1].tolist(), declaration)
@@ -150,11 +156,10 @@ def _places_of_texts(column: SignalColumn, values: Sequence[str]) -> NDArray[int
     every = column.ravel()
     # They seldom change, and are slow to compare
     starts = np.flatnonzero(np.append(np.ones(min(len(every), 1), bool), every[1:] != every[:-1]))
-    own, lengths = every[starts], np.diff(starts, append=len(every))
-    places = np.full(len(starts), len(values), dtype=intp)
-    for place, value in enumerate(values):
-        places[own == value] = place
-    return np.repeat(places, lengths).reshape(column.shape)
+    known = {value: place for place, value in enumerate(values)}
+    own = [known.get(text, len(values)) for text in every[starts].tolist()]
+    lengths = np.diff(starts, append=len(every))
+    return np.repeat(np.array(own, dtype=intp), lengths).reshape(column.shape)
 
 
 def _is_told(strange: Flags, unknown: Flags) -> bool:
