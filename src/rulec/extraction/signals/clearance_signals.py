@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import own_lanelets
+from rulec.extraction.signals.measured_numbers import told_cells
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.road_extents import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.trace.cells import Cells
 
 _BESIDE_M = 0.5
 """A vehicle needs so much more room than it is wide."""
@@ -60,15 +60,16 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     one_way = own_lanelets(context).flags(lambda at: context.surroundings.directions(at)[0] is True)
     alone = own_lanes | one_way
     own = np.maximum(context.ego_extents.along[0], 0.0)
-    against = (context.extents.along * KMH < -limits.standing_kmh) & context.relevant
-    against &= context.tracks.of_type("vehicle")[:, None]
-    rows, columns = against.nonzero()
-    comes = np.cos(context.extents.turned[rows, columns]) < 0
-    rows, columns = rows[comes], columns[comes]
-    station = relations.station(context)[rows, columns]
-    closing: Floats = np.maximum(own[columns] - context.extents.along[rows, columns], 0.1)
+    told = told_cells(context)
+    against = told.of(context.extents.along) * KMH < -limits.standing_kmh
+    against &= context.tracks.of_type("vehicle")[told.rows]
+    cells = told.part(np.flatnonzero(against))
+    comes = (np.cos(cells.of(context.extents.turned)) < 0) & cells.of(context.relevant)
+    cells = cells.part(np.flatnonzero(comes))
+    columns, station = cells.columns, cells.of(relations.station(context))
+    closing: Floats = np.maximum(own[columns] - cells.of(context.extents.along), 0.1)
     would_meet = (station == relations.BEHIND) & (
-        relations.gap(context)[rows, columns] / closing < limits.overtaking_s
+        cells.of(relations.gap(context)) / closing < limits.overtaking_s
     )
     steps = round(limits.overtaking_s / context.recording.step_s)
     met, meets = np.zeros((2, context.states), dtype=bool)
@@ -102,11 +103,12 @@ def _obstructed(context: DriveContext) -> Flags:
     """
     own = context.ego_extents
     width = own.d_max[0] - own.d_min[0] + _BESIDE_M
-    stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
     used = own.inside[0] > 0
     used[np.arange(context.states), context.ego_lane] = True
-    counts = context.relevant & stands & (relations.gap(context) <= _OBSTACLE_M)
-    blocked, cells = np.zeros(context.states, dtype=bool), Cells.at(counts)
+    blocked, told = np.zeros(context.states, dtype=bool), told_cells(context)
+    near = told.part(np.flatnonzero(told.of(relations.gap(context)) <= _OBSTACLE_M))
+    stands = near.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
+    cells = near.part(np.flatnonzero(stands & near.of(context.relevant)))
     sets, columns = cells.of(context.lanes_within[0]), cells.columns
     for lane in range(used.shape[1]):
         there = np.flatnonzero(is_in(sets, lane) & used[columns, lane])

@@ -22,6 +22,7 @@ from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import JOINING
 from rulec.scenario.recorded.reference_line import turn
+from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import distinct
 
 _REACH_S, _GENTLE_MPS2, _REACH_M = 3.0, 4.0, 20.0
@@ -257,10 +258,13 @@ def _impedes(context: DriveContext) -> SignalColumns:
 
 def _followed(context: DriveContext) -> Flags:
     """Flags of states in which somebody is behind ego in its lane, near enough to be held up."""
-    station, speed = relations.station(context), context.extents.along
-    behind = context.going_along & (station == relations.IN_FRONT_OF) & context.in_ego_lane
-    near = relations.gap(context) <= FOLLOWS_S * np.maximum(speed, 0.0)
-    followed: Flags = (behind & near).any(axis=0)
+    behind = relations.station(context) == relations.IN_FRONT_OF
+    behind &= context.going_along
+    behind &= context.in_ego_lane
+    cells, followed = Cells.at(behind), np.zeros(context.states, dtype=bool)
+    speed = np.maximum(cells.of(context.extents.along), 0.0)
+    near = cells.of(relations.gap(context)) <= FOLLOWS_S * speed
+    followed[cells.columns[near]] = True
     return followed
 
 
