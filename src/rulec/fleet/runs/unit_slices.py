@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.fleet.fleet_messages import no_fleet_input, other_types
-from rulec.fleet.runs.drive_keys import KeyedRows, KeyHashes, keyed_rows, opened_table
+from rulec.fleet.runs.drive_keys import KeyedRows, keyed_rows, opened_table
 from rulec.fleet.runs.work_units import TablePiece, WorkUnit
 from rulec.trace.formats.arrow.parquet import arrow
 
@@ -21,9 +21,9 @@ _FEWEST_MERGED = 1 << 16
 
 
 class _Drives(NamedTuple):
-    """The drives of a unit: their keys, how many rows each has, and its first one in the unit."""
+    """The drives of a unit: their marks, how many rows each has, and its first one in the unit."""
 
-    keys: KeyHashes
+    marks: NDArray[np.int64]
     rows: NDArray[np.int64]
     first: NDArray[np.int64]
 
@@ -58,7 +58,7 @@ def slices_of_unit(unit: WorkUnit) -> Iterator[Any]:
     for own in _together(drives.rows):
         first, wanted = int(drives.first[own.start]), int(drives.rows[own].sum())
         # Under no name: it is gone before the next one is read.
-        yield _one_table(list(reader.rows_of(drives.keys[own], first, wanted)), unit.path)
+        yield _one_table(list(reader.rows_of(drives.marks[own], first, wanted)), unit.path)
 
 
 def _one_table(parts: Sequence[Any], path: str) -> Any:
@@ -98,28 +98,32 @@ def _drives_of(unit: WorkUnit) -> _Drives:
     for number, piece in enumerate((unit.piece, *unit.further)):
         with opened_table(piece.path) as source:
             for some in keyed_rows(source, piece.row_groups, whole=False):
-                own = np.isin(some.keys, spread) if number else ~np.isin(some.keys, others)
+                which = spread if number else others
+                # Of the first piece all but the others, of further ones what is spread alone.
+                own = np.full(len(some.texts), not number)
+                if len(which):
+                    own ^= np.isin(some.keys(), which)
                 rows = np.bincount(some.codes, minlength=len(own))
                 first = np.zeros(len(own), dtype=np.int64)
                 # What is written last stays.
                 first[some.codes[::-1]] = np.arange(start, start + len(some.codes))[::-1]
-                found.append(_Drives(some.keys[own], rows[own], first[own]))
+                found.append(_Drives(some.marks()[own], rows[own], first[own]))
                 start += len(some.codes)
-                waiting += len(found[-1].keys)
-                if waiting > max(_FEWEST_MERGED, 2 * len(found[0].keys)):
+                waiting += len(found[-1].marks)
+                if waiting > max(_FEWEST_MERGED, 2 * len(found[0].marks)):
                     found, waiting = [_merged(found)], 0
     drives = _merged(found)
     order = np.argsort(drives.first)
-    return _Drives(drives.keys[order], drives.rows[order], drives.first[order])
+    return _Drives(drives.marks[order], drives.rows[order], drives.first[order])
 
 
 def _merged(parts: Sequence[_Drives]) -> _Drives:
     """Each drive once."""
-    keys, rows, first = (np.concatenate(columns) for columns in zip(*parts, strict=True))
-    order = np.argsort(keys, kind="stable")
-    different, starts = np.unique(keys[order], return_index=True)
-    if not len(keys):
-        return _Drives(keys, rows, first)
+    marks, rows, first = (np.concatenate(columns) for columns in zip(*parts, strict=True))
+    order = np.argsort(marks, kind="stable")
+    different, starts = np.unique(marks[order], return_index=True)
+    if not len(marks):
+        return _Drives(marks, rows, first)
     return _Drives(different, np.add.reduceat(rows[order], starts), first[order][starts])
 
 
@@ -143,7 +147,7 @@ class _Reader:
         self._rest: Iterator[_Place] = iter(())
         self._now: _Place | None = None
 
-    def rows_of(self, keys: KeyHashes, first: int, wanted: int) -> Iterator[Any]:
+    def rows_of(self, marks: NDArray[np.int64], first: int, wanted: int) -> Iterator[Any]:
         """The rows of some drives: so many are ``wanted``, the first one of which is ``first``."""
         # As above.
         from rulec.trace.formats.arrow.table_groups import rows_where
@@ -153,7 +157,7 @@ class _Reader:
             self._start(first)
             now = next(self._rest, None)
         while now is not None:
-            kept = np.isin(now.some.keys, keys)
+            kept = np.isin(now.some.marks(), marks)
             count = int(kept[now.some.codes].sum())
             wanted -= count
             if count:
