@@ -2,16 +2,12 @@
 
 Called as ``stand_in.py NAME ARGUMENT…``. The folder in STAND_INS holds what each name pretends to
 be (``NAME.json``), how the tools are to behave (``behaviour.json``), and the journal of all calls.
+It is called a thousand times in a run of the tests, so what few calls need is imported there.
 """
 
 import json
 import os
-import platform
-import subprocess
 import sys
-import sysconfig
-import time
-import types
 from pathlib import Path
 
 FOLDER = Path(os.environ["STAND_INS"])
@@ -19,6 +15,10 @@ FOLDER = Path(os.environ["STAND_INS"])
 
 def pretend(name: str) -> None:
     """Makes this interpreter look like the one that ``NAME.json`` describes."""
+    import platform
+    import sysconfig
+    import types
+
     looks = json.loads((FOLDER / f"{name}.json").read_text())
     sys.version_info = tuple(looks["version"])
     sys.executable = str(FOLDER / name)
@@ -55,6 +55,9 @@ def behave(tool: str) -> None:
         journal.write(json.dumps(call) + "\n")
     plan = json.loads((FOLDER / "behaviour.json").read_text()).get(tool, {})
     if plan.get("waits"):
+        import subprocess
+        import time
+
         helper = subprocess.Popen(["sleep", "60"])  # an installer's own helper process
         (FOLDER / "pids").write_text(f"{os.getpid()} {helper.pid}")
         (FOLDER / f"{tool} is waiting").touch()
