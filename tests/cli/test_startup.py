@@ -260,3 +260,22 @@ def test_there_is_room_for_the_frames_of_all_that_the_program_calls():
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True)
     # A new piece for each call at its boundary is a fault of a page, a thousand times
     assert int(done.stdout) < 1000
+
+
+NOT_WHERE_ALL_IS_KNOWN = {
+    "msgspec",
+    "rulec.monitoring.uncertainty.uncertain_machine",
+    "rulec.planning.probability.rule_probability",
+    "rulec.planning.trace_history",
+}
+
+
+def test_maneuvers_of_which_all_is_known_need_nothing_for_what_is_not():
+    program = (
+        "import sys; from rulec.cli.main import main\n"
+        "main(['maneuvers', 's2', '--step', '0.5', '-r', 'esterle2019'])\n"
+        "print(*sys.modules)"
+    )
+    for _ in range(2):  # the first may have to compile
+        done = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True)
+    assert NOT_WHERE_ALL_IS_KNOWN & set(done.stdout.decode().split()) == set()
