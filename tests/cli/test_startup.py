@@ -263,7 +263,6 @@ def test_there_is_room_for_the_frames_of_all_that_the_program_calls():
 
 
 NOT_WHERE_ALL_IS_KNOWN = {
-    "msgspec",
     "rulec.monitoring.uncertainty.uncertain_machine",
     "rulec.planning.probability.rule_probability",
     "rulec.planning.trace_history",
