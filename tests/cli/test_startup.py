@@ -197,6 +197,7 @@ class Kept:
     def __del__(self):
         print("taken apart")
 def waited():
+    threading.main_thread().join()  # until the end begins, however long the start takes
     time.sleep(0.1)
     print("waited for")
 kept = Kept()
