@@ -58,6 +58,19 @@ def test_a_line_before_the_lanelet_s_end(xs, crosses):
     assert found.world["crosses_stop_line"].tolist() == crosses
 
 
+def test_who_stands_before_a_line_behind_which_its_way_turns_round():
+    """Its front is at the line; a corner is nearest to a place farther round the bend."""
+    back = [(100, 0), (101, 0.8), (101.2, 2), (101, 3.2), (100, 4)]
+    lanes = [
+        road(None, ["STOP"])[0],
+        lanelet(2, back, predecessors=(1,), successors=(3,), types=INSIDE, junction="x"),
+        lanelet(3, [(100, 4), (0, 4)], predecessors=(2,)),
+    ]
+    stands = context(lanes, 90, 94, 97.8, 97.8)
+    assert stands.ego_extents.s_max[0, -1] > stop_line(stands, 0, 0)[1]
+    assert not junction_signals(stands).world["crosses_stop_line"].any()
+
+
 @pytest.mark.parametrize(
     ("xs", "unknown"),
     [

@@ -206,6 +206,19 @@ def own_widths(context: DriveContext) -> Floats:
     return own
 
 
+@once
+def own_front(context: DriveContext) -> Floats:
+    """Where along the road (m) the middle of ego's front is.
+
+    No farther than half its length from ego's own middle: where the road turns round just ahead, a
+    corner of its body is nearest to a place beyond the bend.
+    """
+    lengths = context.spans.spread(context.own.passages.lengths[context.ego.rows])
+    own = context.ego_extents
+    front: Floats = np.minimum(own.s_max[0], own.s[0] + lengths / 2)
+    return front
+
+
 def corner_ahead(context: DriveContext) -> Floats:
     """How far (m) a corner of ego's body reaches along the road beyond the middle of its front."""
     corner: Floats = own_widths(context) / 2 * np.abs(np.sin(context.ego_extents.turned[0]))

@@ -16,6 +16,7 @@ from rulec.extraction.signals.map.priority_signals import (
     passages_of,
 )
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
+from rulec.extraction.signals.measured_numbers import own_front
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.junctions import STOP_SIGNS, all_have_to_stop
@@ -110,7 +111,7 @@ def _traffic_lights(context: DriveContext) -> SignalColumns:
     complete = "light" in context.recording.complete
     if not (nowhere or complete or map_contents(context).lights):
         return SignalColumns()
-    front = context.ego_extents.s_max[0]
+    front = own_front(context)
     light, crosses = _lights(context, front)
     unseen = front + context.thresholds.light_reach_m > context.road.borders[-1]
     return SignalColumns(
@@ -195,7 +196,7 @@ def _within_preparation(flags: Flags, context: DriveContext) -> Flags:
 
 
 def _passes(context: DriveContext, line: float) -> Flags:
-    return context.spans.enters(context.ego_extents.s_max[0] > line)
+    return context.spans.enters(own_front(context) > line)
 
 
 def _crosses_stop_line(context: DriveContext) -> tuple[Flags, Flags]:
@@ -204,7 +205,7 @@ def _crosses_stop_line(context: DriveContext) -> tuple[Flags, Flags]:
     It may if its drive ends while it moves between the places where the line may be.
     """
     crosses, may_cross = np.zeros((2, context.states), dtype=bool)
-    front, moves = context.ego_extents.s_max[0], context.ego.speed[0] * KMH
+    front, moves = own_front(context), context.ego.speed[0] * KMH
     ends, least = context.spans.columns == context.spans.end - 1, context.thresholds.standing_kmh
     for piece in range(len(context.road.rows)):
         if any(row and STOP_SIGNS & row.signs for row in context.road.rows[piece]):

@@ -7,7 +7,7 @@ import numpy as np
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.map.junction_signals import stop_line
-from rulec.extraction.signals.measured_numbers import LONGEST_S, moves, own_speed
+from rulec.extraction.signals.measured_numbers import LONGEST_S, moves, own_front, own_speed
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,
     SignalNames,
@@ -63,7 +63,7 @@ def _way_to_line(context: DriveContext) -> tuple[Floats, tuple[Floats, Floats]]:
 
     Where the map has no line it is at the nearest of the places where it may be.
     """
-    front, place = context.ego_extents.s_max[0], context.tolerances.place_m
+    front, place = own_front(context), context.tolerances.place_m
     touching = context.thresholds.touching_m
     way, near, far = np.zeros((3, context.states))
     for piece in range(len(context.road.rows) - 1, -1, -1):
