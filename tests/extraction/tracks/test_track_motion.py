@@ -113,3 +113,18 @@ def test_a_file_that_contradicts_itself_tells_speeds_no_better():
     assert motion(x, v * 0.0, known=OTHERS).speed_error == pytest.approx(
         motion(x, v * 1.5, known=OTHERS).speed_error
     )
+
+
+def test_at_a_track_s_ends_means_lie_nearer_to_each_other():
+    """The first speed is of a quarter of a second later, and that half a second on of then."""
+    x, v = braking()
+    found = motion(x, 0.0, known=OTHERS)
+    assert found.acceleration[0] == pytest.approx(np.full(30, -5.0))
+    # So what braking changes in the time beside an end is not taken for half of it
+    off = np.abs(found.speed[0] - v)
+    assert off[[0, -1]] == pytest.approx([1.25, 1.25])
+    assert (off <= found.speed_error[0]).all()
+    # Of two places alone there is one speed, and no gain is known
+    short = motion(x[:2], 0.0, known=OTHERS)
+    assert short.acceleration[0] == pytest.approx([0.0, 0.0])
+    assert short.acceleration_error[0] == pytest.approx([np.sqrt(2) / 0.1] * 2)

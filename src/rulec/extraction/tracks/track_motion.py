@@ -95,9 +95,12 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
         own = poses.steers & (differ <= np.maximum(_AGREES * told, _STANDS_MPS))
         vx, vy = np.where(own[:, None], (stated * cos, stated * sin), (vx, vy))
         speed = np.where(own[:, None], stated, speed)
-    gained = (speed[rows, after] - speed[rows, before]) / seconds
     # At a track's ends the mean is of the time beside the state
-    beside = np.abs((before + after) / 2 - np.arange(present.shape[1])) * step_s
+    middle = (before + after) / 2
+    beside = np.abs(middle - np.arange(present.shape[1])) * step_s
+    apart = np.where(own[:, None], after - before, middle[rows, after] - middle[rows, before])
+    apart = np.where(apart > 0, apart * step_s, seconds)
+    gained = (speed[rows, after] - speed[rows, before]) / apart
     error = known.speed_mps / np.where(single, 1.0, seconds)
     error += np.nan_to_num(np.abs(gained) * beside)
     # What contradicts itself is known no better
@@ -109,7 +112,7 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     off = slips.any(axis=1)
     error[off] += np.where(single[off], 0.0, _most_around(slips[off], reach + steps) / seconds[off])
     error = np.where(own[:, None], known.stated_mps or 0.0, error)
-    gained_error = np.hypot(error[rows, after], error[rows, before]) / seconds
+    gained_error = np.hypot(error[rows, after], error[rows, before]) / apart
     return Motion(
         vx=vx,
         vy=vy,
