@@ -74,6 +74,16 @@ def test_a_long_one_whose_middle_cuts_a_corner_is_in_the_junction_once(length, t
     assert [(x.first, x.last) for x in passages.of_row[0]] == times
 
 
+@pytest.mark.parametrize(("length", "sure"), [(12.0, False), (4.0, True)])
+def test_of_who_cuts_a_corner_by_less_than_half_its_length_nobody_knows_the_way(length, sure):
+    """Its middle is in the junction for one state, on a way of 3 m from the one before."""
+    places = [(-5.5, 2.5), (-3, 2), (-2.5, 2.5), (-2.5, 8), (-2.5, 14)]
+    body = vehicle(7, dict(enumerate(places)), "truck", length=length, speed=5)
+    found = recording([*EAST, *NORTH], [body])
+    passages = context_of(found, route=("1", "2", "3")).surroundings.passages
+    assert [x.sure for x in passages.of_row[0]] == [sure]
+
+
 def test_a_conflict_is_one_of_a_single_junction():
     """Ego's front is in the first junction at 1.5 s, and 30 m on, at 4.5 s, in the second one."""
     road = [

@@ -270,6 +270,17 @@ def _stays(inside: Flags, tracks: Tracks, row: int) -> Iterator[tuple[int, int]]
     yield first, last
 
 
+def _touches(tracks: Tracks, row: int, columns: tuple[int, int]) -> bool:
+    """True if somebody's middle is in a junction for too short a way to tell which one it takes.
+
+    That of a long one that cuts a corner may be nearer to other ways than to its own.
+    """
+    first, last = columns
+    x, y = tracks.x[row, first : last + 1], tracks.y[row, first : last + 1]
+    body = tracks.participants[row]
+    return float(np.hypot(np.diff(x), np.diff(y)).sum()) < _length(body.outlines, body.states) / 2
+
+
 def _passage(
     ways: Sequence[JunctionWay], tracks: Tracks, row: int, columns: tuple[int, int], junction: int
 ) -> Passage | None:
@@ -290,6 +301,7 @@ def _passage(
         return None
     close: NDArray[intp] = np.flatnonzero(away < away[best] + _SURE_M)
     sure = whole or all(_is_alike(ways[k], ways[best], points[-1]) for k in close.tolist())
+    sure = sure and not (whole and _touches(tracks, row, (first - 1, last + 1)))
     return Passage(
         row=row,
         junction=junction,
