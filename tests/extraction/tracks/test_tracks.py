@@ -35,8 +35,8 @@ def test_velocities_are_differences_over_the_window_around_a_moment():
     found = tracks(vehicle(7, {0: (0, 0), 1: (5, 0), 2: (15, 0)}, speed=99))
     assert found.vx[0] == pytest.approx([10, 15, 20])
     assert found.speed[0] == pytest.approx([10, 15, 20])
-    # Speeds differ by 5 m/s in half a second at the ends, by 10 m/s in a second between
-    assert found.acceleration[0] == pytest.approx([10, 10, 10])
+    # 10 m/s are of the first half second, 20 of the second one: of half a second later
+    assert found.acceleration[0] == pytest.approx([20, 20, 20])
     wide = tracks(vehicle(7, {0: (0, 0), 1: (5, 0), 2: (15, 0)}), smoothing_s=2.0)
     assert wide.vx[0] == pytest.approx([15, 15, 15])
 
