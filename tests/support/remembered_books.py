@@ -6,8 +6,8 @@ its own, and compiled while machines are not remembered.
 
 import os
 from collections.abc import Callable, Sequence
-from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 from rulec import pipeline
 from rulec.automata import compiler
@@ -42,12 +42,10 @@ def remember_books() -> None:
     def compile_source(
         reference: str | Path,
         search_path: Sequence[str | Path] = (),
-        at: str = "",
-        step_s: Fraction | None = None,
-        *,
-        any_step: bool = False,
+        *place: Any,
         on_warning: Callable[[Sequence[Diagnostic]], object],
         question: CompiledQuestion | None = None,
+        **options: bool,
     ) -> CompiledRulebook:
         file = loader.find(reference, search_path)
         is_usual = (
@@ -57,7 +55,7 @@ def remember_books() -> None:
             and compiler.answers_to is machines_are_remembered
         )
         choice = os.environ.get(compiler_choice.VARIABLE)
-        key = file.source, at, step_s, any_step, choice
+        key = file.source, place, tuple(options.items()), choice
         if is_usual and key in books:
             compiled, warnings = books[key]
             on_warning(warnings)
@@ -68,15 +66,8 @@ def remember_books() -> None:
             heard.extend(warnings)
             return on_warning(warnings)
 
-        compiled = _COMPILED(
-            reference,
-            search_path,
-            at,
-            step_s,
-            any_step=any_step,
-            on_warning=hear,
-            question=question,
-        )
+        asked: Any = {"on_warning": hear, "question": question, **options}
+        compiled = _COMPILED(reference, search_path, *place, **asked)
         if is_usual:
             books[key] = compiled, heard
         return compiled
