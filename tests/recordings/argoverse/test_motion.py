@@ -193,9 +193,11 @@ def test_the_same_scene_by_hand_has_the_same_verdicts(scene, california):
     violated = {ego: {x.rule for x in said[ego].answer.violations} for ego in said}
     # 40 m ahead somebody walks on the crossing; ego drives on through the walker
     assert "give_way_to_pedestrians" in violated["AV"]
-    # A car 1.9 m wide that has gone 3.5 m to the left has crossed the line; ego has not
-    assert "solid_line" in violated["78"]
-    assert "solid_line" not in violated["AV"]
+    # A car 1.9 m wide that has gone 3.5 m to the left has crossed the line, perhaps to turn into a
+    # driveway after the recording's end; ego has not
+    unsure = {ego: {x.rule: x.depends_on for x in said[ego].answer.open} for ego in said}
+    assert "needs_access" in unsure["78"]["solid_line"]
+    assert "solid_line" not in violated["AV"] | unsure["AV"].keys()
 
 
 BAD = {
