@@ -84,6 +84,8 @@ def check_sampled(found, number, chance):
     Fewer if too many of them leave the cells, or keep to where cells meet.
     """
     graph, (step_s, count) = found.graph, states_of(found)
+    if graph.step_s < step_s:
+        return 0  # No drive has states in layers between the recording's own
     every = round(graph.step_s / step_s)
     pairs, compared_so_far = [], 0
     for left in reversed(range(TRIED * number)):

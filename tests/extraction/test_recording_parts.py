@@ -7,12 +7,12 @@ import pytest
 from rulec import read_recording
 from rulec.api.rulebook_compilation import machines
 from rulec.extraction import recording_parts as parting
+from rulec.extraction.recording_parts import looked_at
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.source_tolerances import tolerances_of
 from rulec.extraction.traffic_thresholds import USUAL
 from rulec.extraction.violation_evidence import evidence_of
-from rulec.extraction.whole_recordings import looked_at
 from rulec.monitoring.explain.explanation import explain
 from rulec.recordings.recording import StatedError
 from rulec.recordings.track import Track, TrackOutlines, TrackStates

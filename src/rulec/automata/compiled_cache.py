@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from rulec.automata.outcome_machine import OutcomeMachine
     from rulec.automata.step_compilation import StepCompiler
 
+_Part = TypeVar("_Part")
+
 MOST_FILES = 100
 """So many are kept; those longest unused go first."""
 
@@ -249,9 +251,6 @@ def _one_of(this: _Part, other: _Part) -> _Part:
 
 def _one_rule(this: CompiledRule, other: CompiledRule) -> CompiledRule:
     return _one_of(this, other) if this.certificate == other.certificate else this
-
-
-_Part = TypeVar("_Part")
 
 
 def _depends_on(text: Compilation) -> tuple[object, ...]:

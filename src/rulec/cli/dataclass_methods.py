@@ -133,21 +133,21 @@ class _UnwrittenInit(_Unwritten):
         """What the fields get; None for arguments that are not the method's."""
         self._fields = self._fields or fields(self.cls)
         places = [one.name for one in self._fields if one.init and one.kw_only is not True]
-        told = {**dict(zip(places, given, strict=False)), **named}
-        if len(given) > len(places) or len(told) < len(given) + len(named):
+        arguments = {**dict(zip(places, given, strict=False)), **named}
+        if len(given) > len(places) or len(arguments) < len(given) + len(named):
             return None
         values = {}
         for field in self._fields:
             name = field.name
-            if field.init and name in told:
-                values[name] = told.pop(name)
+            if field.init and name in arguments:
+                values[name] = arguments.pop(name)
             elif field.default_factory is not MISSING:
                 values[name] = field.default_factory()
             elif field.default is not MISSING:
                 values[name] = field.default
             elif field.init:
                 return None
-        return None if told else values
+        return None if arguments else values
 
 
 def _init_text(cls: type, names: dict[str, object], *, frozen: bool) -> str:

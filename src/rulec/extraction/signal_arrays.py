@@ -10,6 +10,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.extraction.presences import Presence
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.tracks.tracks import Flags
 from rulec.scenario.paper_words import PAPER_SURFACE
@@ -24,17 +25,8 @@ from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 _KINDS: Mapping[str, type] = {"b": bool, "f": float, "i": float, "u": float}
 
 
-class Presence(NamedTuple):
-    """An object of a trace: a participant's row, first and last column of its presence."""
-
-    name: str
-    row: int
-    first: int
-    last: int
-
-
-class ToldCells(NamedTuple):
-    """Where presences stand in rows of all states, and which of these to keep, None for all."""
+class WrittenCells(NamedTuple):
+    """Where presences stand in rows of all states, and which are written, None for all of them."""
 
     places: NDArray[intp]
     kept: NDArray[intp] | None
@@ -214,13 +206,13 @@ def with_signals(
     signals: WrittenSignals,
     present: Sequence[Sequence[Presence]],
     spans: EndToEnd,
-    told: ToldCells,
+    own_cells: WrittenCells,
     *,
     defaults: bool,
 ) -> list[TraceArrays]:
     """The traces of drives, in whose objects' order each ``present`` is, with their signals.
 
-    ``told`` are the cells of presences, of which those of ``present`` are kept.
+    ``own_cells`` are the cells of presences, of which those of ``present`` are written.
     With ``defaults`` what is unknown is left out, and numbers are as measured.
     """
     columns = signals.columns
@@ -228,7 +220,7 @@ def with_signals(
     rows = np.array([presence.row for own in present for presence in own], dtype=intp)
     ranges = [(x.first, x.last) for own in present for x in own]
     every = np.array(ranges, dtype=intp).reshape(-1, 2)
-    cells = told.places if told.kept is None else told.places.take(told.kept)
+    cells = own_cells.places if own_cells.kept is None else own_cells.places.take(own_cells.kept)
     ends = np.append(0, np.cumsum(every[:, 1] - every[:, 0] + 1))
     bounds = ends[counts].tolist()
     never = np.zeros(len(cells), dtype=bool)
@@ -238,7 +230,7 @@ def with_signals(
         if name in columns.world:
             return column
         if column.ndim == 1:
-            return column if told.kept is None else column.take(told.kept)
+            return column if own_cells.kept is None else column.take(own_cells.kept)
         # Much is true of nobody, which is seen sooner than it is gathered
         is_never = column.dtype == bool and not column.any()
         return never if is_never else column.ravel().take(cells)

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
-from rulec.extraction.whole_recordings import whole_recording
+from rulec.extraction.recording_parts import whole_recording
 from rulec.recordings.recording import Recording, Rounding
 
 

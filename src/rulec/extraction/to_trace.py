@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import count, pairwise
 from math import hypot
 from typing import NamedTuple, overload
 
@@ -13,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.presences import Presence, presence_cells, presences
 from rulec.extraction.signal_arrays import (
-    Presence,
-    ToldCells,
+    WrittenCells,
     WrittenSignals,
     with_assumed,
     with_likeliest,
@@ -43,7 +42,6 @@ from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.signals.map.road_signals import road_signals
 from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
 from rulec.extraction.signals.map.zone_signals import zone_signals
-from rulec.extraction.signals.measured_numbers import presence_runs, told_cells
 from rulec.extraction.signals.participant_signals import (
     participant_signals,
     safe_gaps,
@@ -55,50 +53,10 @@ from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.logic.formula import Relation
 from rulec.monitoring.explain.margins import Margin
 from rulec.trace import Trace, Value
-from rulec.trace.plain_arrays import distinct
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.vocabulary_projection import known_type
 from rulec.value_display import short_repr
 from rulec.vocabulary import Vocabulary
-
-
-def presences(context: DriveContext) -> list[list[Presence]]:
-    """The contiguous presences of all participants in each drive.
-
-    Absences up to ``away_s`` are bridged. Those in which one is not beside the road never are: its
-    extents are not known then.
-    """
-    runs = presence_runs(context)
-    of_row = runs.rows.tolist()
-    own = list(map(context.ids.__getitem__, of_row)), of_row, runs.first.tolist()
-    every = list(map(Presence._make, zip(*own, runs.last.tolist(), strict=True)))
-    ends = np.searchsorted(runs.drives, np.arange(context.spans.n_drives + 1)).tolist()
-    found = [every[begin:end] for begin, end in pairwise(ends)]
-    again = (runs.drives[1:] == runs.drives[:-1]) & (runs.rows[1:] == runs.rows[:-1])
-    for drive in distinct(runs.drives[1:][again]).tolist():
-        found[drive] = _renamed(found[drive], _ids_in(context, drive))
-    return found
-
-
-def _renamed(presences: Sequence[Presence], ids: frozenset[str]) -> list[Presence]:
-    """The presences of a drive, with names of their own for who comes again."""
-    found: list[Presence] = []
-    for one in presences:
-        if found and found[-1].row == one.row:
-            taken = ids.union(other.name for other in found)
-            name = next(free for k in count(2) if (free := f"{one.name}_{k}") not in taken)
-            one = one._replace(name=name)
-        found.append(one)
-    return found
-
-
-def _ids_in(context: DriveContext, drive: int) -> frozenset[str]:
-    """The names of the participants that a drive is about."""
-    columns = context.spans.slices[drive]
-    rows = (context.relevant | context.in_sight)[:, columns].any(axis=1)
-    bodies = context.tracks.participants
-    return frozenset(bodies[row].id for row in np.flatnonzero(rows).tolist())
-
 
 _SIGNALS: tuple[Callable[[DriveContext, SignalNames], SignalColumns], ...] = (
     ego_signals,
@@ -306,11 +264,11 @@ def to_traces(
             told=None if writer.defaults else frozenset(kinds),
         )
         traces.append(empty)
-    cells = told_cells(context)
+    cells = presence_cells(context)
     are_known = np.array([kind is not None for kind in kind_of], dtype=bool)
     kept = None if are_known.all() else np.flatnonzero(are_known[cells.rows])
-    told = ToldCells(cells.places, kept)
-    arrays = with_signals(traces, chosen, present, spans, told, defaults=writer.defaults)
+    own_cells = WrittenCells(cells.places, kept)
+    arrays = with_signals(traces, chosen, present, spans, own_cells, defaults=writer.defaults)
     if writer.bare:
         starts = context.steps[spans.begins].tolist()
         return [

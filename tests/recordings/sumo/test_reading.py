@@ -106,7 +106,7 @@ def test_who_walks_turns_where_it_stands(tmp_path):
     assert np.degrees(one.states[1].heading) == pytest.approx(-45)
 
 
-def test_who_is_in_parts_lies_along_its_way(tmp_path):
+def test_who_is_articulated_lies_along_its_way(tmp_path):
     """A lorry and its trailer, 16.5 m long, drive 40 m to the east, and 10 m to the north.
 
     SUMO's angle is that of the first part. The rear is 6.5 m before the corner, the middle, 8.25 m
@@ -129,7 +129,7 @@ def test_who_is_in_parts_lies_along_its_way(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("words", "in_parts"),
+    ("words", "articulated"),
     [
         ('vClass="trailer"', True),
         ('vClass="trailer" guiShape="truck"', False),
@@ -140,10 +140,10 @@ def test_who_is_in_parts_lies_along_its_way(tmp_path):
         ('vClass="tram" guiShape="rail/railcar"', True),
     ],
 )
-def test_who_is_in_parts_by_its_shape_or_class(tmp_path, words, in_parts):
+def test_who_is_articulated_by_its_shape_or_class(tmp_path, words, articulated):
     file = tmp_path / "types.rou.xml"
     file.write_text(f'<routes><vType id="t" {words}/></routes>', encoding="utf-8")
-    assert read_vehicle_types([file])["t"].in_parts == in_parts
+    assert read_vehicle_types([file])["t"].articulated == articulated
 
 
 def test_who_jumps_to_another_lane_does_so_with_all_parts(tmp_path):

@@ -7,9 +7,9 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import own_lanelets
-from rulec.extraction.signals.measured_numbers import told_cells
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.road_extents import is_in
@@ -60,10 +60,10 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     one_way = own_lanelets(context).flags(lambda at: context.surroundings.directions(at)[0] is True)
     alone = own_lanes | one_way
     own = np.maximum(context.ego_extents.along[0], 0.0)
-    told = told_cells(context)
-    against = told.of(context.extents.along) * KMH < -limits.standing_kmh
-    against &= context.tracks.of_type("vehicle")[told.rows]
-    cells = told.part(np.flatnonzero(against))
+    present = presence_cells(context)
+    against = present.of(context.extents.along) * KMH < -limits.standing_kmh
+    against &= context.tracks.of_type("vehicle")[present.rows]
+    cells = present.part(np.flatnonzero(against))
     comes = (np.cos(cells.of(context.extents.turned)) < 0) & cells.of(context.relevant)
     cells = cells.part(np.flatnonzero(comes))
     columns, station = cells.columns, cells.of(relations.station(context))
@@ -105,8 +105,8 @@ def _obstructed(context: DriveContext) -> Flags:
     width = own.d_max[0] - own.d_min[0] + _BESIDE_M
     used = own.inside[0] > 0
     used[np.arange(context.states), context.ego_lane] = True
-    blocked, told = np.zeros(context.states, dtype=bool), told_cells(context)
-    near = told.part(np.flatnonzero(told.of(relations.gap(context)) <= _OBSTACLE_M))
+    blocked, present = np.zeros(context.states, dtype=bool), presence_cells(context)
+    near = present.part(np.flatnonzero(present.of(relations.gap(context)) <= _OBSTACLE_M))
     stands = near.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
     cells = near.part(np.flatnonzero(stands & near.of(context.relevant)))
     sets, columns = cells.of(context.lanes_within[0]), cells.columns

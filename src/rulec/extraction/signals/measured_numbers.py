@@ -6,19 +6,15 @@ have nothing to do with each other.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy import intp
-from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import Bounds, rounded_outward
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.trace.cells import Cells
-from rulec.trace.plain_arrays import distinct, in_order
 
 LONGEST_S = 1000.0
 """The longest headway (s), also that of an ego that stands."""
@@ -28,53 +24,6 @@ _ALIKE = 0.17
 
 _AT_LIMIT_MPS = 0.01
 """Limits are written to a hundredth: a simulated speed so near to one is at it."""
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class PresenceRuns:
-    """Presences, drive by drive, and those of a row together.
-
-    The drive, the row, the first and the last state of each, counted from where its drive begins.
-    """
-
-    drives: NDArray[intp]
-    rows: NDArray[intp]
-    first: NDArray[intp]
-    last: NDArray[intp]
-
-
-@once
-def presence_runs(context: DriveContext) -> PresenceRuns:
-    """For how long each participant counts in each drive, absences up to ``away_s`` bridged.
-
-    Who is in sight only, too far away to count, is not present.
-    """
-    longest, spans = round(context.thresholds.away_s / context.recording.step_s), context.spans
-    counting, s = Cells.at(context.relevant), context.extents.s
-    rows, columns = counting.rows, counting.columns
-    drives, away = spans.number[columns], columns[1:] - columns[:-1]
-    parted = (rows[1:] > rows[:-1]) | (away > longest + 1) | (drives[1:] > drives[:-1])
-    parted |= np.isnan(counting.of(s))[1:]
-    gaps = np.flatnonzero(~parted & (away > 1))
-    in_gaps = distinct(rows[gaps])
-    unknown, own = np.cumsum(np.isnan(s[in_gaps]), axis=1), np.searchsorted(in_gaps, rows[gaps])
-    parted[gaps] = unknown[own, columns[gaps]] < unknown[own, columns[gaps + 1]]
-    some = np.ones(min(len(rows), 1), dtype=bool)
-    begins, ends = (np.flatnonzero(np.append(*x)) for x in ((some, parted), (parted, some)))
-    order = in_order(drives[begins])
-    begins, ends = begins[order], ends[order]
-    own = drives[begins]
-    shift = spans.begins[own]
-    return PresenceRuns(own, rows[begins], columns[begins] - shift, columns[ends] - shift)
-
-
-@once
-def told_cells(context: DriveContext) -> Cells:
-    """The cells of presences, one after the other: only of those is anything told."""
-    runs = presence_runs(context)
-    shift = context.spans.begins[runs.drives]
-    shape = context.relevant.shape
-    return Cells.of_runs(shape, runs.rows, runs.first + shift, runs.last + shift)
 
 
 @once
@@ -107,14 +56,14 @@ def speed_bounds(context: DriveContext) -> Bounds:
 
 
 def gap_bounds(context: DriveContext) -> Bounds:
-    """The bounds of gaps (m), of the ``told_cells``, as all that follow."""
+    """The bounds of gaps (m), of the ``presence_cells``, as all that follow."""
     return rounded_outward(*_gaps(context))
 
 
 def headway_bounds(context: DriveContext) -> Bounds:
     """The bounds of headways (s)."""
     near, far = _gaps(context)
-    of_ego = told_cells(context).of
+    of_ego = presence_cells(context).of
     speed, error = map(of_ego, own_speed(context))
     drives = of_ego(moves(context))
     least = np.where(drives, speed - error, 1.0)
@@ -129,14 +78,14 @@ def headway_bounds(context: DriveContext) -> Bounds:
 
 def _gaps(context: DriveContext) -> tuple[Floats, Floats]:
     """The least and the greatest gaps (m) that there may be."""
-    along = told_cells(context).of(relations.way_along(context))
+    along = presence_cells(context).of(relations.way_along(context))
     place = context.tolerances.place_m
     return np.maximum(along - place, 0.0), np.maximum(along + place, 0.0)
 
 
 def lateral_gap_bounds(context: DriveContext) -> Bounds:
     """The bounds of gaps (m) across the road."""
-    across = told_cells(context).of(relations.way_across(context))
+    across = presence_cells(context).of(relations.way_across(context))
     place = context.tolerances.place_m
     return rounded_outward(np.maximum(across - place, 0.0), np.maximum(across + place, 0.0))
 
@@ -144,18 +93,18 @@ def lateral_gap_bounds(context: DriveContext) -> Bounds:
 def difference_bounds(context: DriveContext) -> Bounds:
     """The bounds of differences of speed (km/h)."""
     difference, speeds = speed_differences(context)
-    told = told_cells(context)
-    their_error = np.where(speeds == 0, 0.0, told.of(context.tracks.speed_error))
-    wrong = np.hypot(told.of(context.ego.speed_error[0]), their_error) * KMH
+    cells = presence_cells(context)
+    their_error = np.where(speeds == 0, 0.0, cells.of(context.tracks.speed_error))
+    wrong = np.hypot(cells.of(context.ego.speed_error[0]), their_error) * KMH
     return rounded_outward(difference - wrong, difference + wrong)
 
 
 @once
 def speed_differences(context: DriveContext) -> tuple[Floats, Floats]:
     """By how much (km/h) ego is faster along the road, and the others' speeds, 0 if they stand."""
-    told = told_cells(context)
-    speeds = context.zero_if_standing(told.of(context.extents.along) * KMH)
-    difference: Floats = told.of(context.ego_extents.along[0]) * KMH - speeds
+    cells = presence_cells(context)
+    speeds = context.zero_if_standing(cells.of(context.extents.along) * KMH)
+    difference: Floats = cells.of(context.ego_extents.along[0]) * KMH - speeds
     return difference, speeds
 
 

@@ -9,6 +9,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.following_signals import parts_soon
 from rulec.extraction.signals.map.lanes_ahead import leads_elsewhere
@@ -23,7 +24,6 @@ from rulec.extraction.signals.measured_numbers import (
     safe_distance,
     safe_distance_error,
     speed_differences,
-    told_cells,
 )
 from rulec.extraction.signals.settling import only_when
 from rulec.extraction.signals.signal_columns import (
@@ -92,21 +92,21 @@ def _lateral(context: DriveContext) -> SignalColumns:
 
 
 def _gap(context: DriveContext) -> SignalColumns:
-    gap = told_cells(context).of(relations.gap(context))
+    gap = presence_cells(context).of(relations.gap(context))
     return _measured("gap", gap, gap_bounds(context))
 
 
 def _time_headway(context: DriveContext) -> SignalColumns:
     # The speed that the word `speed` says
-    told = told_cells(context)
-    speed, drives = told.of(own_speed(context)[0]), told.of(moves(context))
-    seconds = told.of(relations.gap(context)) / np.where(drives, speed, 1.0)
+    cells = presence_cells(context)
+    speed, drives = cells.of(own_speed(context)[0]), cells.of(moves(context))
+    seconds = cells.of(relations.gap(context)) / np.where(drives, speed, 1.0)
     headway = np.where(drives, np.minimum(seconds, LONGEST_S), LONGEST_S)
     return _measured("time_headway", headway, headway_bounds(context))
 
 
 def _lateral_gap(context: DriveContext) -> SignalColumns:
-    gap = told_cells(context).of(relations.lateral_gap(context))
+    gap = presence_cells(context).of(relations.lateral_gap(context))
     return _measured("lateral_gap", gap, lateral_gap_bounds(context))
 
 

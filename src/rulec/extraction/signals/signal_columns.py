@@ -23,7 +23,7 @@ class SignalColumns:
     """The signals of a drive, in arrays with a column per state.
 
     ``world``: a value for each state. ``about``: a row of values for each participant, or only
-    those of the ``told_cells`` one after the other.
+    those of the ``presence_cells`` one after the other.
     ``unknown``: where a signal has no value, in the shape of its own array. ``only``: the
     participants that a signal about objects applies to. ``bounds``: the least and the greatest that
     a measured number may be, by the tolerances of its source, in the shape of its own array.

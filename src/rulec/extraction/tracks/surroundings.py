@@ -9,11 +9,11 @@ from functools import cached_property
 import numpy as np
 import shapely
 
+from rulec.extraction.recording_parts import whole_recording
 from rulec.extraction.source_tolerances import Tolerances, tolerances_of
 from rulec.extraction.tracks.junction_passages import JunctionPassages, junction_passages
 from rulec.extraction.tracks.rings import ring_lanelets
 from rulec.extraction.tracks.tracks import ObjectTypes, Tracks
-from rulec.extraction.whole_recordings import whole_recording
 from rulec.recordings.recording import Lanelet, Recording, Side, WholeRecording, is_lane
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import directions_beside, lanelet_area, lanes_beside

@@ -17,10 +17,10 @@ import shapely
 from numpy import bool_, float64, intp
 from numpy.typing import NDArray
 
+from rulec.extraction.recording_parts import looked_at
 from rulec.extraction.source_tolerances import tolerances_of
 from rulec.extraction.tracks.track_motion import Poses, motion_of
 from rulec.extraction.traffic_thresholds import Thresholds
-from rulec.extraction.whole_recordings import looked_at
 from rulec.recordings.recording import Lanelet, Participant, Points, Recording, is_lane
 from rulec.recordings.track import TrackOutlines, TrackStates
 from rulec.scenario.recorded.joined_outlines import JoinedOutlines

@@ -21,9 +21,9 @@ _FEWEST_MERGED = 1 << 16
 
 
 class _Drives(NamedTuple):
-    """The drives of a unit: their marks, how many rows each has, and its first one in the unit."""
+    """The drives of a unit: their hashes, how many rows each has, and its first one in the unit."""
 
-    marks: NDArray[np.int64]
+    hashes: NDArray[np.int64]
     rows: NDArray[np.int64]
     first: NDArray[np.int64]
 
@@ -42,7 +42,7 @@ class _Place(NamedTuple):
 
     group: int
     start: int
-    some: KeyedRows
+    batch: KeyedRows
 
 
 def slices_of_unit(unit: WorkUnit) -> Iterator[Any]:
@@ -58,7 +58,7 @@ def slices_of_unit(unit: WorkUnit) -> Iterator[Any]:
     for own in _together(drives.rows):
         first, wanted = int(drives.first[own.start]), int(drives.rows[own].sum())
         # Under no name: it is gone before the next one is read.
-        yield _one_table(list(reader.rows_of(drives.marks[own], first, wanted)), unit.path)
+        yield _one_table(list(reader.rows_of(drives.hashes[own], first, wanted)), unit.path)
 
 
 def _one_table(parts: Sequence[Any], path: str) -> Any:
@@ -97,33 +97,33 @@ def _drives_of(unit: WorkUnit) -> _Drives:
     start = waiting = 0
     for number, piece in enumerate((unit.piece, *unit.further)):
         with opened_table(piece.path) as source:
-            for some in keyed_rows(source, piece.row_groups, whole=False):
+            for batch in keyed_rows(source, piece.row_groups, whole=False):
                 which = spread if number else others
                 # Of the first piece all but the others, of further ones what is spread alone.
-                own = np.full(len(some.texts), not number)
+                own = np.full(len(batch.texts), not number)
                 if len(which):
-                    own ^= np.isin(some.keys(), which)
-                rows = np.bincount(some.codes, minlength=len(own))
+                    own ^= np.isin(batch.key_hashes(), which)
+                rows = np.bincount(batch.codes, minlength=len(own))
                 first = np.zeros(len(own), dtype=np.int64)
                 # What is written last stays.
-                first[some.codes[::-1]] = np.arange(start, start + len(some.codes))[::-1]
-                found.append(_Drives(some.marks()[own], rows[own], first[own]))
-                start += len(some.codes)
-                waiting += len(found[-1].marks)
-                if waiting > max(_FEWEST_MERGED, 2 * len(found[0].marks)):
+                first[batch.codes[::-1]] = np.arange(start, start + len(batch.codes))[::-1]
+                found.append(_Drives(batch.local_hashes()[own], rows[own], first[own]))
+                start += len(batch.codes)
+                waiting += len(found[-1].hashes)
+                if waiting > max(_FEWEST_MERGED, 2 * len(found[0].hashes)):
                     found, waiting = [_merged(found)], 0
     drives = _merged(found)
     order = np.argsort(drives.first)
-    return _Drives(drives.marks[order], drives.rows[order], drives.first[order])
+    return _Drives(drives.hashes[order], drives.rows[order], drives.first[order])
 
 
 def _merged(parts: Sequence[_Drives]) -> _Drives:
     """Each drive once."""
-    marks, rows, first = (np.concatenate(columns) for columns in zip(*parts, strict=True))
-    order = np.argsort(marks, kind="stable")
-    different, starts = np.unique(marks[order], return_index=True)
-    if not len(marks):
-        return _Drives(marks, rows, first)
+    hashes, rows, first = (np.concatenate(columns) for columns in zip(*parts, strict=True))
+    order = np.argsort(hashes, kind="stable")
+    different, starts = np.unique(hashes[order], return_index=True)
+    if not len(hashes):
+        return _Drives(hashes, rows, first)
     return _Drives(different, np.add.reduceat(rows[order], starts), first[order][starts])
 
 
@@ -147,7 +147,7 @@ class _Reader:
         self._rest: Iterator[_Place] = iter(())
         self._now: _Place | None = None
 
-    def rows_of(self, marks: NDArray[np.int64], first: int, wanted: int) -> Iterator[Any]:
+    def rows_of(self, hashes: NDArray[np.int64], first: int, wanted: int) -> Iterator[Any]:
         """The rows of some drives: so many are ``wanted``, the first one of which is ``first``."""
         # As above.
         from rulec.trace.formats.arrow.table_groups import rows_where
@@ -157,11 +157,11 @@ class _Reader:
             self._start(first)
             now = next(self._rest, None)
         while now is not None:
-            kept = np.isin(now.some.marks(), marks)
-            count = int(kept[now.some.codes].sum())
+            kept = np.isin(now.batch.local_hashes(), hashes)
+            count = int(kept[now.batch.codes].sum())
             wanted -= count
             if count:
-                yield rows_where(now.some.rows, now.some.codes, kept)
+                yield rows_where(now.batch.rows, now.batch.codes, kept)
             self._now = now
             if wanted <= 0:
                 return
@@ -180,6 +180,6 @@ def _read_from(groups: Sequence[_Group], first: int) -> Iterator[_Place]:
         with opened_table(path) as source:
             for place in own:
                 start = groups[place].start
-                for some in keyed_rows(source, [groups[place].number], whole=True):
-                    yield _Place(place, start, some)
-                    start += len(some.codes)
+                for batch in keyed_rows(source, [groups[place].number], whole=True):
+                    yield _Place(place, start, batch)
+                    start += len(batch.codes)

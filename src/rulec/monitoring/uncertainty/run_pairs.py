@@ -264,10 +264,8 @@ def _undecided(pairs: Pairs, first: bytes, second: bytes) -> Pairs | None:
 
 def _behind(machine: OutcomeMachine, state: int, classes: int) -> int:
     """The states, as bits, that some classes lead to."""
-    row, found = machine.successors[state], 0
-    for symbol in bits_of(classes):
-        found |= 1 << row[symbol]
-    return found
+    row = machine.successors[state]
+    return _united([1 << row[symbol] for symbol in bits_of(classes)])
 
 
 def _united(masks: Iterable[int]) -> int:
@@ -279,7 +277,4 @@ def _united(masks: Iterable[int]) -> int:
 
 def _reach(states: int, below: Sequence[int]) -> int:
     """The states, as bits, that come to no more than one of some."""
-    found = 0
-    for state in bits_of(states):
-        found |= below[state]
-    return found
+    return _united([below[state] for state in bits_of(states)])

@@ -38,10 +38,11 @@ MOST_LOOKED_AT = 1 << 21
 MOST_REPETITIONS = 1 << 12
 """A letter is repeated no more often than this."""
 
-_MOST_REMEMBERED = 1 << 14
-
 MOST_STRETCHES = 1 << 10
 """Reasons of a rule are remembered of words of so many stretches together: long ones differ."""
+
+_MOST_REMEMBERED = 1 << 14
+
 _NAMES: Mapping[tuple[int, int], OutcomeName] = {
     (KEPT, KEPT): "kept",
     (VIOLATED, VIOLATED): "violated",
@@ -136,7 +137,7 @@ class UncertainMachine:
         order: Sequence[str],
     ) -> OpenReasons:
         """Why the answer is open; ``order`` is that of names in the vocabulary."""
-        alternatives, unknown = _told_of(words, constants)
+        alternatives, unknown = _possible_alternatives(words, constants)
         key = tuple([(x.stretches, tuple(x.constants.items())) for x in alternatives]), unknown
         found = self._reasons.get(key)
         if found is None:
@@ -161,7 +162,7 @@ class UncertainMachine:
         A name that decides what all others do not is in every set that decides. None if some is
         not surely so: then it takes the reasons to know.
         """
-        alternatives, unknown = _told_of(words, constants)
+        alternatives, unknown = _possible_alternatives(words, constants)
         doubtful = _doubtful(alternatives, unknown)
         others = doubtful - names
         every = doubtful | {BEFORE} if len(self.machine.starts) > 1 else doubtful
@@ -397,7 +398,7 @@ class UncertainMachine:
         return frozenset(x for x in every if not any(y & x == y != x for y in every))
 
 
-def _told_of(
+def _possible_alternatives(
     words: Sequence[PossibleWord], constants: Sequence[Mapping[str, object]]
 ) -> tuple[tuple[PossibleAlternative, ...], tuple[frozenset[str], ...]]:
     """The letters of words, and for each read the names that are unknown in some of them."""

@@ -51,7 +51,7 @@ class NotPlainError(Exception):
 class _Kind:
     """Elements of one ``name`` with the same text ``between`` attributes, which are ``at`` places.
 
-    ``on`` is what is told of where they are, the lane or the edge.
+    ``on`` is the attribute that says where they are: the lane, or the edge.
     """
 
     name: str
@@ -87,7 +87,7 @@ class Elements:
 
     ``named`` has their places among ``names``, ``whose`` those among ``keys``, which are in the
     order in which they come first, as are ``types``, those of the first element of each. ``rows``
-    are the numbers, NaN for an acceleration that is not told. ``on`` has for each lane and edge
+    are the numbers, NaN for a missing acceleration. ``on`` has for each lane and edge
     which of them it is, and the first element there; ``lamps`` are by element.
     """
 
@@ -122,20 +122,20 @@ def read_elements(lines: TextPlaces, quotes: Places, bounds: Places, kinds: Know
             if key in kind.at:
                 place = 2 * kind.at[key]
                 values = _numbers(TextPlaces(lines.text, marks[place] + 1, marks[place + 1]))
-                is_told = np.abs(values) < LARGEST  # NaN is not
+                is_number = np.abs(values) < LARGEST  # NaN is not
                 if key == "acceleration":
-                    values[~is_told] = np.nan
-                elif not is_told.all():
+                    values[~is_number] = np.nan
+                elif not is_number.all():
                     raise NotPlainError
                 if key == "signals":
                     lamps.update(zip(members.tolist(), map(int, values.tolist()), strict=True))
                 else:
                     rows[members, n] = values
     keys, types, places = (TextPlaces(lines.text, *columns[key]) for key in ("id", "type", "on"))
-    firsts, whose = _told_apart(keys)
+    firsts, whose = _distinct_texts(keys)
     on = {
         places[n]: ("lane" if is_lane[n] else "edge", n)
-        for n in _told_apart(places)[0].tolist()
+        for n in _distinct_texts(places)[0].tolist()
         if places.begins[n] < places.ends[n]
     }
     own = firsts.tolist()
@@ -209,7 +209,7 @@ def _numbers(texts: TextPlaces) -> NDArray[float64]:
     return values
 
 
-def _told_apart(texts: TextPlaces) -> tuple[NDArray[intp], NDArray[intp]]:
+def _distinct_texts(texts: TextPlaces) -> tuple[NDArray[intp], NDArray[intp]]:
     """The first of each of those that are the same, in order, and the place of each text's there.
 
     They are told apart by sums of words with weights, and compared then.

@@ -232,8 +232,12 @@ def fcd_participants(
     rows = np.array(track_rows.rows, dtype=float).reshape(-1, 4)
     if track_rows.element == "vehicle":
         rows[:, 2] = _steered(rows, starts)
-    in_parts = track_rows.element == "vehicle" and kind.in_parts
-    rows = _drawn(rows, starts, kind.length) if in_parts else _centres(rows, kind.length)
+    articulated = track_rows.element == "vehicle" and kind.articulated
+    rows = (
+        _centres_along_way(rows, starts, kind.length)
+        if articulated
+        else _centres(rows, kind.length)
+    )
     rows = np.column_stack((rows, _accelerations(track_rows, rows[:, 3], own, step_s)))
     lamps = {int(steps[moment]): _lit(bits) for moment, bits in track_rows.lamps.items()}
     for number, (start, end) in enumerate(zip(starts, [*starts[1:], len(own)], strict=True), 1):
@@ -264,7 +268,9 @@ def _steered(rows: NDArray[float64], starts: NDArray[intp]) -> NDArray[float64]:
     return angles
 
 
-def _drawn(rows: NDArray[float64], starts: NDArray[intp], length: float) -> NDArray[float64]:
+def _centres_along_way(
+    rows: NDArray[float64], starts: NDArray[intp], length: float
+) -> NDArray[float64]:
     """The rows of one in parts, by its middle: there its front was half its length ago.
 
     Its angle in the data is that of its first part. It is turned as its rear lies to its front,

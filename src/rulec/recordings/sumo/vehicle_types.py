@@ -25,11 +25,11 @@ class VehicleType:
     kind: str
     length: float
     width: float
-    in_parts: bool = False
+    articulated: bool = False
 
 
 _CAR = VehicleType("car", 5.0, 1.8)
-_RAIL = VehicleType("train", 135.0, 2.84, in_parts=True)
+_RAIL = VehicleType("train", 135.0, 2.84, articulated=True)
 
 CLASSES: Mapping[str, VehicleType] = MappingProxyType(
     {
@@ -40,7 +40,7 @@ CLASSES: Mapping[str, VehicleType] = MappingProxyType(
         "emergency": VehicleType("priorityVehicle", 6.5, 2.16),
         "delivery": VehicleType("truck", 6.5, 2.16),
         "truck": VehicleType("truck", 7.1, 2.4),
-        "trailer": VehicleType("truck", 16.5, 2.55, in_parts=True),
+        "trailer": VehicleType("truck", 16.5, 2.55, articulated=True),
         "bus": VehicleType("bus", 12.0, 2.5),
         "coach": VehicleType("bus", 14.0, 2.6),
         "motorcycle": VehicleType("motorcycle", 2.2, 0.9),
@@ -49,18 +49,18 @@ CLASSES: Mapping[str, VehicleType] = MappingProxyType(
         "scooter": VehicleType("bicycle", 1.2, 0.5),
         "pedestrian": VehicleType("pedestrian", 0.215, 0.478),
         "wheelchair": VehicleType("pedestrian", 0.8, 0.8),
-        "tram": VehicleType("train", 22.0, 2.4, in_parts=True),
-        "subway": VehicleType("train", 109.5, 3.0, in_parts=True),
-        "rail_urban": VehicleType("train", 109.5, 3.0, in_parts=True),
+        "tram": VehicleType("train", 22.0, 2.4, articulated=True),
+        "subway": VehicleType("train", 109.5, 3.0, articulated=True),
+        "rail_urban": VehicleType("train", 109.5, 3.0, articulated=True),
         "rail": _RAIL,
-        "rail_electric": VehicleType("train", 200.0, 2.95, in_parts=True),
-        "rail_fast": VehicleType("train", 200.0, 2.95, in_parts=True),
+        "rail_electric": VehicleType("train", 200.0, 2.95, articulated=True),
+        "rail_fast": VehicleType("train", 200.0, 2.95, articulated=True),
         "container": VehicleType("unknown", 6.1, 2.59),
     }
 )
 """SUMO's vehicle classes, with the sizes that it gives their vehicles unless a type says other."""
 
-_IN_PARTS = frozenset({"bus/flexible", "truck/semitrailer", "truck/trailer"})
+_ARTICULATED = frozenset({"bus/flexible", "truck/semitrailer", "truck/trailer"})
 _RAIL_SHAPE = "rail"
 """How shapes begin, and which others are, that SUMO draws in parts, each turned as its own way."""
 
@@ -87,12 +87,12 @@ def read_vehicle_types(files: Iterable[Path]) -> dict[str, VehicleType]:
         if element.name == "vType":
             usual = CLASSES.get(element.attributes.get("vClass", "passenger"), _UNKNOWN)
             shape = element.attributes.get("guiShape", "")
-            in_parts = shape in _IN_PARTS or shape.startswith(_RAIL_SHAPE)
+            articulated = shape in _ARTICULATED or shape.startswith(_RAIL_SHAPE)
             types[element.text("id")] = VehicleType(
                 usual.kind,
                 element.positive("length", usual.length),
                 element.positive("width", usual.width),
-                in_parts if shape else usual.in_parts,
+                articulated if shape else usual.articulated,
             )
 
     for path in files:

@@ -7,7 +7,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.extraction.to_trace import presences
+from rulec.extraction.presences import presences
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording, straight
 
