@@ -260,3 +260,12 @@ def test_csv_in_a_pipe(capsys, monkeypatch, tmp_path):
         monkeypatch.setattr("sys.stdin", stream)
         assert main(["verify", "-", "-r", "esterle2019", "--format", "csv"]) == 0
     assert "3 traces: 3 satisfied" in capsys.readouterr().out
+
+
+def test_a_file_whose_traces_share_an_id_is_judged_with_a_warning(verify):
+    again = [line("a", "bb"), line("b", "bb"), line("a", "brrf"), line("a", "bb")]
+    status, out, err = verify(again, [line("a", "bb")])
+    assert (status, "5 traces: 4 satisfied, 1 violated" in out) == (1, True)
+    assert err.count("warning[R0512]") == 1
+    assert "0.jsonl:3\n" in err
+    assert "warning" not in verify([line("a", "bb"), line("b", "bb")], [line("b", "bb")])[2]

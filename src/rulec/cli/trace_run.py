@@ -28,6 +28,7 @@ from rulec.report.verdicts.state_times import StateTimes
 from rulec.resource_limits import REFUSED
 from rulec.trace import Trace
 from rulec.trace.formats.trace_files import Format, format_of, read_chunks
+from rulec.trace.trace_messages import SAME_ID
 
 if TYPE_CHECKING:
     from rulec.code_generation.compiled_c.c_engine import CEngine
@@ -62,7 +63,9 @@ class TraceRun:
             findings: list[VerdictFinding] = []
             rows: list[Mapping[str, object]] = []
             left, traces_before = self.to_explain, self.total.judged
+            ids: set[str] | None = set()
             for traces, place, answer in self._answers(file, form, assumed):
+                ids = self._ids(ids, file, (traces, place, answer))
                 before = len(findings)
                 if isinstance(answer, NotJudged):
                     self._not_judged(file, answer, findings)
@@ -77,6 +80,24 @@ class TraceRun:
             self.to.text(verdict_report.summary(self.total.counts, self.total.not_judged))
         if self.engine is not None:
             self.to.text(verdict_report.judged_by(self.engine.judged, self.engine.compiled_by))
+
+    def _ids(self, ids: set[str] | None, file: str, answer: Answer) -> set[str] | None:
+        """A file's ids so far; none once it has been said that two of its traces share one."""
+        traces, place, verdict = answer
+        if ids is None or verdict.trace is None:
+            return ids
+        if verdict.trace not in ids:
+            ids.add(verdict.trace)
+            return ids
+        trace = traces[place]
+        said = SAME_ID.at(
+            trace.place if isinstance(trace, Trace) else None,
+            f"another trace of `{file}` has the id `{verdict.trace}`, too",
+            help="give each trace an id of its own: verdicts and findings name it by that alone",
+            severity="warning",
+        )
+        self.complaints.add(RulecError(said))
+        return None
 
     def _rows(
         self, file: str, answer: Answer, found: Sequence[VerdictFinding]

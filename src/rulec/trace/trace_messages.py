@@ -51,6 +51,19 @@ NOT_A_TABLE = Code(
     kind="command",
 )
 
+_TRACE = '{"id": "%s", "states": [{"speed": %s, "limit": 50}]}'
+_FAST = f"printf '{_TRACE}\\n' a "
+SAME_ID = Code(
+    "R0512",
+    title="traces of a file share an id",
+    why="Verdicts, findings and tables name a trace by its id alone, so nobody can tell which of "
+    "them is meant. Each is judged by itself all the same. In a table two traces with one id are "
+    "often one, with rows of another trace in between.",
+    bad=_FAST + "60 a 60 > t.jsonl\nrulec verify t.jsonl -r de",
+    good=_FAST + "40 b 40 > t.jsonl\nrulec verify t.jsonl -r de",
+    kind="command",
+)
+
 PARQUET_UNAVAILABLE = Code(
     "R0706",
     title="a Parquet file cannot be read or written here",
