@@ -9,12 +9,14 @@ from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
 from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
 from rulec.extraction.signals.conduct.reason_signals import reason_signals
 from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
+from rulec.extraction.signals.lane_signals import lane_change_signals
 from rulec.extraction.signals.map.crossing_signals import crossing_signals
 from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.recording import Weather
 from support.builders.drive_contexts import along, context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
+from support.generators.random_recordings import lanes
 
 SIMULATED = ("arrivals", "light", "YIELD")
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
@@ -136,6 +138,15 @@ def test_who_turns_round_in_a_junction_or_where_the_road_does():
     assert set(told(manoeuvre_signals, "u_turn", [lanelet(1, line)], turning_round())) == {"F"}
 
 
+@pytest.mark.parametrize("side", ["right", "left"])
+def test_who_turns_round_over_the_next_lane_may_have_changed_to_none(side):
+    found = told(lane_change_signals, "lane_change", lanes(2), turning_round(), side=side)
+    assert (found.count("?"), set(found)) == (1, {"F", "?"})
+    changes = car(*((20.0 + 3 * k, 0.4 * k) for k in range(11)))
+    found = told(lane_change_signals, "lane_change", lanes(2), changes, side=side)
+    assert (found.count("T"), set(found)) == (1, {"F", "T"})
+
+
 def beside_the_road(*more, waits=6):
     """Ego stands 1 m off the lane, whose edge is at y = -2, and drives into it."""
     return car(*([(50.0, -3.0)] * waits), (51, -2.7), (53, -2), (56, -1), (60, 0), *more)
@@ -150,6 +161,23 @@ def test_who_sets_off_from_beside_the_road():
     comes = car((44, -8), (46, -6), (48, -4), (50, -2.5), (53, -1), (57, 0), (62, 0))
     assert "?" in told(manoeuvre_signals, "joins_road", two_way(), comes)
     assert "T" not in told(manoeuvre_signals, "joins_road", two_way(), comes)
+
+
+def test_who_stands_across_on_its_way_round_joins_no_road():
+    """It backs off the road while it turns, stands there with its middle beyond the edge."""
+    there = [(20.0 + 3 * k, 0.0, 0.0) for k in range(10)]
+    round_ = [(50 - k / 3, -k / 9, np.radians(5 * k)) for k in range(37)]
+    waits = [(38.0, -4.0, np.pi)] * 4
+    back = [(36.0 - 3 * k, max(-4.0 + 2 * k, -4), np.pi) for k in range(4)]
+    poses = [*there, *round_, *waits, *back]
+    bodies = [vehicle(7, {k: (x, y)}, heading=way) for k, (x, y, way) in enumerate(poses)]
+    ego = replace(
+        bodies[0],
+        states={k: body.states[k] for k, body in enumerate(bodies)},
+        outlines={k: body.outlines[k] for k, body in enumerate(bodies)},
+    )
+    found = told(manoeuvre_signals, "joins_road", two_way(), ego)
+    assert ("T" in found, "?" in found) == (False, True)
 
 
 BRAKES = [

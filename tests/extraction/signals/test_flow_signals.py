@@ -2,11 +2,13 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from rulec.extraction.signals.flow_signals import flow_signals
+from rulec.extraction.tracks.mirror import mirrored_recording
 from support.builders.drive_contexts import context_of, steady
-from support.builders.recordings import recording, straight, vehicle
+from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
 
 
@@ -394,3 +396,28 @@ def test_one_queue_where_a_world_begins_is_not_one_on_all_lanes(complete, unknow
     signals = flow_signals(context_of(found))
     assert signals.unknown["dense_all_lanes"][0] == unknown
     assert unknown or not signals.world["dense_all_lanes"][0]
+
+
+@pytest.mark.parametrize("side", ["right", "left"])
+@pytest.mark.parametrize(
+    ("slow", "past"),
+    [
+        # 14 m/s behind one at 10, 50 m ahead: beside it within 10 s only later, but out for that
+        (range(50, 130, 5), "FFFTTTTTTTTTTTTF"),
+        # It gets up speed and is not reached: ego goes back, and may have given up
+        (np.cumsum([50, *[9] * 15]), "FFF????????????F"),
+        # Whom ego has not come near to it does not mean to pass
+        (range(180, 260, 5), "FFFFFFFFFFFFFFFF"),
+    ],
+)
+def test_who_overtakes_beyond_the_middle_does_so_from_going_there_until_it_is_back(
+    slow, past, side
+):
+    ys = [0, 0, 1, *[3.5] * 12, 0]
+    ego = vehicle(7, {k: (7.0 * k, y) for k, y in enumerate(ys)}, speed=14)
+    other = vehicle(8, {k: (float(x), 0.0) for k, x in enumerate(slow)}, speed=10)
+    found = recording([straight(1, 0, 500), lanelet(2, [(500, 4), (0, 4)])], [ego, other])
+    found = mirrored_recording(found) if side == "left" else found
+    signals = flow_signals(context_of(found, side=side), {"overtaking"})
+    told = zip(signals.world["overtaking"], signals.unknown["overtaking"], strict=True)
+    assert "".join("?" if dark else "FT"[int(value)] for value, dark in told) == past

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.conduct.manoeuvre_signals import oncoming_side
 from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.queues import (
     LOOSE,
@@ -129,8 +130,36 @@ def _own_lane_queue(context: DriveContext) -> SignalColumns:
 
 
 def _overtaking(context: DriveContext) -> SignalColumns:
+    """Whether ego overtakes, on the oncoming side from where it goes there until it is back.
+
+    Unknown of who goes there behind another and back: it may have given up.
+    """
     overtakes, unsure = _overtakes(context)
+    there, perhaps = oncoming_side(context)
+    if (side := there | perhaps).any():
+        overtakes = overtakes | _meanwhile(context, overtakes, side)
+        unsure = unsure | _meanwhile(context, unsure | _close_behind(context), side)
     return SignalColumns({"overtaking": overtakes}, unknown={"overtaking": unsure & ~overtakes})
+
+
+def _meanwhile(context: DriveContext, flags: Flags, during: Flags) -> Flags:
+    """Flags of states at most ``catching_up_s`` from a flagged one, ``during`` all between."""
+    spans, held = context.spans, flags & during
+    horizon = round(context.thresholds.catching_up_s / context.recording.step_s)
+    before, after = spans.latest(held), spans.next_state(held)
+    earlier = (before > spans.latest(~during)) & (before >= spans.columns - horizon)
+    later = (after < spans.next_state(~during)) & (after <= spans.columns + horizon)
+    return earlier | later
+
+
+def _close_behind(context: DriveContext) -> Flags:
+    """Flags of states in which ego would be at one in the lanes beside it soon, if that stood."""
+    far, _ = _sides(context)
+    reach = context.ego_extents.along * context.thresholds.signalling_s
+    near = (relations.gap(context) <= reach) & (relations.station(context) == relations.BEHIND)
+    near &= (relations.lateral(context) == far) & context.driving_along
+    close: Flags = near.any(axis=0)
+    return close
 
 
 def _begins_to_overtake(context: DriveContext) -> SignalColumns:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
+from rulec.extraction.signals.conduct.manoeuvre_signals import swings_round
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.measured_numbers import own_widths
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, ids_by_state
@@ -54,10 +55,15 @@ def lane_change_signals(context: DriveContext, names: SignalNames = None) -> Sig
 
 
 def _lane_change(context: DriveContext) -> SignalColumns:
+    """Whether ego has changed lanes; unknown within tolerances, and of who turns round.
+
+    Its body swings over the lanes of the road that it comes to.
+    """
     changes = _changes(context)
-    return SignalColumns(
-        {"lane_change": changes}, unknown={"lane_change": _within_tolerance(context, changes)}
-    )
+    unknown = _within_tolerance(context, changes)
+    if changes.any():
+        unknown |= changes & swings_round(context)
+    return SignalColumns({"lane_change": changes}, unknown={"lane_change": unknown})
 
 
 def _lane_is_clear(context: DriveContext) -> SignalColumns:

@@ -106,7 +106,17 @@ def _tells_headings(context: DriveContext, columns: slice) -> bool:
 
 
 def _driving_side(context: DriveContext) -> SignalColumns:
-    """Whether ego is on the other half of a two-way road, along which it drives.
+    there, perhaps = oncoming_side(context)
+    return SignalColumns(
+        {"driving_side": there.astype(int)},
+        unknown={"driving_side": perhaps},
+        texts={"driving_side": _SIDES},
+    )
+
+
+@once
+def oncoming_side(context: DriveContext) -> tuple[Flags, Flags]:
+    """Flags of ego on the other half of a two-way road, along which it drives, and of perhaps so.
 
     Beyond the far edge of the lanes of its direction; nowhere in junctions, nor beyond the map.
     """
@@ -116,12 +126,7 @@ def _driving_side(context: DriveContext) -> SignalColumns:
     two_way = ~one_way & ~not_told
     drives = _along_road(context) & ~_at_junctions(context) & _on_map(context)
     there = drives & two_way & (beyond > loose)
-    perhaps = drives & (beyond > 0) & ((two_way & (beyond <= loose)) | not_told)
-    return SignalColumns(
-        {"driving_side": there.astype(int)},
-        unknown={"driving_side": perhaps},
-        texts={"driving_side": _SIDES},
-    )
+    return there, drives & (beyond > 0) & ((two_way & (beyond <= loose)) | not_told)
 
 
 def _loose(context: DriveContext) -> Floats:
@@ -175,16 +180,24 @@ def _u_turn(context: DriveContext) -> SignalColumns:
     By the whole track: where it has turned round it is on another road. In a junction, and where
     the road itself turns, that is none.
     """
-    turns = _turning_round(context)
+    turns = swings_round(context)
     if turns.any():
         leaves_road = np.abs(context.ego_extents.turned[0]) >= 2 * _ACROSS_RAD
-        turns &= context.spans.any(turns & leaves_road)
+        turns = turns & context.spans.any(turns & leaves_road)
         turns &= ~context.spans.any(_touches_junction(context, turns))
-        ring = context.surroundings.ring(context.side)
-        turns &= ~own_lanelets(context).flags(lambda lanelet: lanelet.id in ring)
     return SignalColumns({"u_turn": turns})
 
 
+def swings_round(context: DriveContext) -> Flags:
+    """Flags of states in which ego is on its way round, but along a ring."""
+    turns = _turning_round(context)
+    if not turns.any():
+        return turns
+    ring = context.surroundings.ring(context.side)
+    return turns & ~own_lanelets(context).flags(lambda lanelet: lanelet.id in ring)
+
+
+@once
 def _turning_round(context: DriveContext) -> Flags:
     """Flags of states in which ego's heading is on its way round."""
     tracks = context.own.tracks
@@ -238,7 +251,7 @@ def _joins_road(context: DriveContext) -> SignalColumns:
     """Whether ego drives onto the road from where it stood beside it.
 
     Of one that comes from beside the road at an angle, or is there when first seen, nobody knows
-    whether a road is there that the map leaves out.
+    whether a road is there that the map leaves out, nor of who turns round what is its road yet.
     """
     outside = (_beyond_near_edge(context) > _loose(context)) & _on_map(context)
     inside, joins = _beyond_near_edge(context) <= 0, np.zeros(context.states, dtype=bool)
@@ -255,6 +268,9 @@ def _joins_road(context: DriveContext) -> SignalColumns:
         span = slice(max(stood, left, state - reach, first - 1) + 1, state + 2)
         if outside[span].any() or stood >= first:
             (joins if stood > left and state - stood <= reach else perhaps)[span] = True
+    if joins.any():
+        round_ = context.spans.within(swings_round(context), reach, around=True)
+        perhaps, joins = perhaps | (joins & round_), joins & ~round_
     return SignalColumns({"joins_road": joins}, unknown={"joins_road": perhaps & ~joins})
 
 
