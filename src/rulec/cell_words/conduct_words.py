@@ -122,7 +122,16 @@ class ConductWords:
         slower = others.may_go_along & (others.along[0] < fast)
         slower &= self._relations.laterals & side > 0
         reach = np.maximum((fast - others.along[0]) * USUAL.catching_up_s, fast * USUAL.passed_s)
-        return _nobody(slower & (self._relations.gaps[0] <= reach))
+        return self._on_own_side() & _nobody(slower & (self._relations.gaps[0] <= reach))
+
+    def _on_own_side(self) -> Flags:
+        """Ego is not beyond the middle of a two-way road, where it overtakes until it is back."""
+        (low, high), frame = self._boxes.d, self._frame
+        if frame.probes.among.side == "right":
+            own: Flags = high + frame.loose_d <= self._straight[-1]
+        else:
+            own = low - frame.loose_d >= self._straight[0]
+        return own | frame.one_way
 
     def _meets_nobody(self) -> Flags:
         """Nobody comes towards ego from now on: who is not there yet may meet it in time."""

@@ -57,7 +57,8 @@ class RoadFrame:
     ``apart_s`` (m) says how far coordinates along it may differ from those along another road on
     the same lanes, ``apart_d`` how far those across it, ``loose_s`` and ``loose_d`` how far
     distances may be wrong for that and since places are known to ``place_m`` only. ``has_rails``:
-    is there a level crossing on it? ``goes_straight``: does it turn in none of its junctions?
+    is there a level crossing on it? ``one_way``: does nobody come the other way on it, surely?
+    ``goes_straight``: does it turn in none of its junctions?
     Raises ValueError: no drive has such a road, or it meets itself.
     """
 
@@ -74,8 +75,9 @@ class RoadFrame:
         self.places: RoadPlaces = among.places(replace(road, line=origin.line, lanes=origin.lanes))
         self.crossings = self._in_scene(road, road.crossings)
         self.junctions = self._in_scene(road, road.junctions)
-        lanelets = (lanelet for row in road.rows for lanelet in row if lanelet is not None)
+        lanelets = [lanelet for row in road.rows for lanelet in row if lanelet is not None]
         self.has_rails = any("level_crossing" in lanelet.types for lanelet in lanelets)
+        self.one_way = all(among.surroundings.directions(one)[0] for one in lanelets)
         turns = (
             road.line.heading_at(end + 1.0) - road.line.heading_at(start - 1.0)
             for start, end in road.junctions

@@ -208,9 +208,10 @@ def near(*bodies, road=None, ego=None):
 
 
 def test_one_that_comes_from_behind_with_blue_lights():
-    assert near(ambulance(-60))[0] == "True"
+    # It may be without its horn, which no source tells
+    assert near(ambulance(-60))[0] == "?"
     # A flash that is dark for half a second is still a flash
-    assert near(ambulance(-60, lamps=(True, False)))[1] == "True"
+    assert near(ambulance(-60, lamps=(True, False)))[1] == "?"
     assert set(near(ambulance(-60, lamps=()))) == {"False"}
     assert near(ambulance(-60, kind="car"))[0] == "False"
     assert near(ambulance(-200))[0] == "False"
@@ -224,25 +225,11 @@ def test_one_that_comes_towards_ego():
     against = [straight(1, -200, 300), lanelet(2, [(300, 4), (-200, 4)])]
     found = near(ambulance(100, -15, 4), road=against)
     # They meet after 4 s: then it drives away behind ego
-    assert found[:7] == ["True"] * 7
+    assert found[:7] == ["?"] * 7
     assert found[10:] == ["False"] * 30
     # On the other carriageway of a divided road it has its own way
     divided = [straight(1, -200, 300), lanelet(2, [(300, 7), (-200, 7)])]
     assert set(near(ambulance(100, -15, 7), road=divided)) == {"False"}
-
-
-def test_one_that_stands_with_its_lights_on():
-    # At an accident, or held up for as long: nobody knows
-    stands = ambulance(20, 0.0)
-    found = near(stands)
-    assert "True" not in found
-    assert found[20] == "?"
-    # Behind ego in a queue for some seconds it does need the way
-    held = {k: (-20 + (5 * max(0, k - 10) if k > 10 else 0), 0.0) for k in range(STEPS)}
-    body = ambulance(-20, 0.0)
-    moving = vehicle(8, held, "priorityVehicle")
-    body = replace(body, states=moving.states, outlines=moving.outlines)
-    assert near(body, ego=steady(7, 0, 0, 10, STEPS))[0] == "True"
 
 
 def test_one_that_waits_at_lights_having_come_towards_ego():
@@ -252,11 +239,11 @@ def test_one_that_waits_at_lights_having_come_towards_ego():
     moving = vehicle(8, places, "priorityVehicle", heading=np.pi)
     body = replace(ambulance(40), states=moving.states, outlines=moving.outlines)
     found = near(body, road=against)
-    assert found[:3] == ["True"] * 3
+    assert found[:3] == ["?"] * 3
     # Ego is 15 m ahead of it after five states, and it stands from the eighth on
     assert set(found[6:]) == {"False"}
     ahead = near(body, road=against, ego=steady(7, -150, 0, 1, STEPS))
-    assert ahead[20] == "True"
+    assert ahead[20] == "?"
 
 
 def test_lights_that_a_file_does_not_tell():
