@@ -156,6 +156,9 @@ class Lanelet:
 NO_LANES = frozenset({"sidewalk", "crosswalk", "border", "parking", "restricted_area"})
 """Types of lanelets that are no part of the carriageway."""
 
+CYCLES_TOO = "cyclesAllowed"
+"""The type of a lane that is reserved for others, and cycles may use as well."""
+
 JOINING = "accessRamp"
 """The type of a lane that ends beside others, to join them."""
 

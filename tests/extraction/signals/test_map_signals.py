@@ -101,6 +101,13 @@ def test_surfaces_by_ego_s_middle():
     ]
 
 
+@pytest.mark.parametrize(("kind", "last"), [("bicycle", "carriageway"), ("car", "bus_lane")])
+def test_a_lane_for_buses_that_cycles_may_use(kind, last):
+    shared = straight(2, 100, 200, types=frozenset({"busLane", "cyclesAllowed"}), predecessors=(1,))
+    ego = vehicle(7, {0: (97.0, 0.0), 1: (103.0, 0.0)}, kind, length=1.6, width=0.6)
+    assert surfaces(ego, [LANES[0], shared]) == ["carriageway", last]
+
+
 def surfaces(bodies, lanes, route=("1", "2")):
     found = map_signals(context_of(recording(lanes, [bodies]), route))
     unknown = found.unknown["surface"].tolist()

@@ -95,9 +95,12 @@ def test_a_lane_for_buses_by_access(tmp_path):
     access = '<access sOffset="0" rule="allow" restriction="bus"/>'
     since_1_8 = '<access sOffset="0" rule="allow"><restriction type="bus"/></access>'
     deny = '<access sOffset="0" rule="deny" restriction="bus"/>'
-    lanes = section(lane(-1, more=access), lane(-2, more=since_1_8), lane(-3, more=deny))
+    shared = access + access.replace("bus", "bicycle")
+    kinds = enumerate((access, since_1_8, deny, shared), 1)
+    lanes = section(*(lane(-number, more=more) for number, more in kinds))
     found = lanelets(tmp_path, road(1, lanes))
-    assert [found[f"1.0.-{n}"].types for n in (1, 2, 3)] == [{"busLane"}, {"busLane"}, set()]
+    types = [found[f"1.0.-{number}"].types for number in range(1, 5)]
+    assert types == [{"busLane"}, {"busLane"}, set(), {"busLane", "cyclesAllowed"}]
 
 
 def test_a_lane_for_both_directions(tmp_path):

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from math import isfinite
 from types import MappingProxyType
 
-from rulec.recordings.recording import LaneMark
+from rulec.recordings.recording import CYCLES_TOO, LaneMark
 
 _Tags = Mapping[str, str]
 
@@ -64,6 +64,8 @@ def _for_whom(allowed: set[str]) -> Iterator[str]:
     motorized = {who for who in allowed if who.partition(":")[0] == "vehicle"}
     if motorized and motorized <= _BUSES:
         yield "busLane" if "vehicle:bus" in motorized else "restricted_area"
+        if "bicycle" in allowed:
+            yield CYCLES_TOO
     elif not motorized and "pedestrian" in allowed:
         yield "sidewalk"
     elif not motorized and "bicycle" in allowed:

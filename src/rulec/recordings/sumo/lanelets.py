@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from rulec.recordings.polylines import parallel_line, without_repeats
-from rulec.recordings.recording import Lanelet, LaneMark, Points
+from rulec.recordings.recording import CYCLES_TOO, Lanelet, LaneMark, Points
 from rulec.recordings.sumo.lane_kinds import lane_kinds
 from rulec.recordings.sumo.net import NetConnection, NetEdge, NetLane, SumoNet
 from rulec.recordings.sumo.right_of_way import (
@@ -216,6 +216,8 @@ def _types(
         yield "sidewalk" if permitted & _WALKERS else "bicycleLane"
     elif permitted & _BUSES and not permitted & {"passenger", "private", "truck"}:
         yield "busLane"
+        if permitted & _RIDERS:
+            yield CYCLES_TOO
     junction = junction_of(lane)
     crosses_rails = junction in net.junctions and net.junctions[junction].type in LEVEL_CROSSINGS
     if crosses_rails:

@@ -23,7 +23,7 @@ from rulec.extraction.signals.signal_columns import (
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.junctions import STOP_SIGNS
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.recordings.recording import Lanelet
+from rulec.recordings.recording import CYCLES_TOO, Lanelet
 from rulec.trace.plain_arrays import distinct
 
 NO_LIMIT_KMH = 1000.0
@@ -178,8 +178,10 @@ def _below_middle(context: DriveContext, middle: Floats, lane: NDArray[intp]) ->
     kinds = [kind for kind in _SURFACES if kind in map_contents(context).types]
     if kinds:
         own = lanelets_at(context, middle, lane)
+        cycles = context.spans.spread(context.ego.of_type("cyclist"))
+        may = cycles & own.flags(_is_of(CYCLES_TOO))
         for kind in kinds:
-            surfaces[own.flags(_is_of(kind))] = _SURFACES[kind]
+            surfaces[own.flags(_is_of(kind)) & ~may] = _SURFACES[kind]
     return surfaces
 
 
