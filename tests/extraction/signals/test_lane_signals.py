@@ -100,6 +100,15 @@ def test_of_who_jumps_to_another_lane_unlit_nobody_knows(y, unknown, lamp):
     assert found.unknown["indicator"].tolist() == [False, False, unknown and not on, False]
 
 
+@pytest.mark.parametrize(("y", "unknown"), [(-2.4, False), (-3.0, True)])
+def test_of_who_jumps_off_the_edge_of_the_road_unlit_nobody_knows(y, unknown):
+    path = {0: (0, y), 1: (0, y), 2: (5, 0), 3: (10, 0)}
+    body = replace(vehicle(7, path), lamps=dict.fromkeys(range(4), frozenset()), shows=INDICATORS)
+    found = changes(body=body)
+    assert not found.world["lane_change"].any()
+    assert found.unknown["indicator"].tolist() == [False, unknown, unknown, False]
+
+
 def clear(x, speed, **thresholds):
     """Is the left lane clear in the state of the change, when ego is at 10 m?"""
     other = steady(8, x - 1.0 * speed, 4, speed=speed)

@@ -108,7 +108,7 @@ def _indicator(context: DriveContext) -> SignalColumns:
     Both at once are no indication, as hazard lights are none; a file that says that these are off
     contradicts itself, and nobody knows what both mean in that drive at other times. Who changes
     lanes has indicated it if it did up to the state before, or while it lay across the mark; of who
-    jumps there nobody knows.
+    jumps there, or off the edge of the road, nobody knows.
     """
     egos = context.ego.participants
     if not context.spans.agreed([ego.lamps and ego.shows >= _INDICATORS for ego in egos]):
@@ -128,8 +128,10 @@ def _indicator(context: DriveContext) -> SignalColumns:
     is_dark = np.array([lamps is not None and not lamps & _INDICATORS for lamps in steps])
     changes = np.flatnonzero(_changes(context) & is_dark)
     codes[changes] = [_shown_across(context, codes, change) for change in changes.tolist()]
-    dark = changes[codes[changes] == 0]
-    unknown[dark[_jumps_across(context, dark)]] = True
+    jumps = _jumps_across(context)
+    unknown[changes] |= (codes[changes] == 0) & jumps[changes]
+    off_the_edge = jumps & ~_changes(context)
+    unknown |= is_dark & (off_the_edge | context.spans.after(off_the_edge))
     return SignalColumns(
         {"indicator": codes},
         unknown={"indicator": unknown},
@@ -152,11 +154,10 @@ def _shown_across(context: DriveContext, codes: NDArray[intp], change: int) -> i
     return int(codes[since + lit[-1]]) if len(lit) else 0
 
 
-def _jumps_across(context: DriveContext, changes: NDArray[intp]) -> Flags:
-    """Flags of those of these changes of lanes in which ego moves across in no time."""
-    lane, left_of = context.steady_lane, context.ego_extents.left_of[0]
-    marks = np.maximum(lane[changes - 1], lane[changes])
-    moved = np.abs(left_of[changes, marks] - left_of[changes - 1, marks])
+def _jumps_across(context: DriveContext) -> Flags:
+    """Flags of states into which ego has moved across in no time, from the one before."""
+    left_of = context.ego_extents.left_of[0]
+    moved = np.abs(left_of - context.spans.before(left_of.T).T).min(axis=1)
     jumps: Flags = moved > _JUMP_MPS * context.recording.step_s
     return jumps
 
