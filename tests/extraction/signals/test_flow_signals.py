@@ -115,7 +115,7 @@ def test_who_sets_off_beside_others_is_not_told_to_be_overtaken(stood_s, known):
     assert found.unknown["being_overtaken"][last] == (not known)
 
 
-@pytest.mark.parametrize("types", [(), ("accessRamp",)])
+@pytest.mark.parametrize("types", [(), ("accessRamp",), ("exitRamp",)])
 def test_who_gets_up_speed_on_a_lane_that_joins_is_not_overtaken(types):
     road = [
         straight(1, -100, 300, left_of=2, types=frozenset(types)),
