@@ -1,5 +1,6 @@
 """Junctions, signals, stop lines and crossings of OpenDRIVE maps."""
 
+import re
 from collections import Counter
 from math import pi
 
@@ -308,3 +309,16 @@ def test_a_junction_with_lights():
     }
     driven = {x.id for x in lanes if not x.types & {"border", "sidewalk", "crosswalk"}}
     assert {x.id for x in lanes if x.lights} == entries & driven
+
+
+@pytest.mark.parametrize(("within", "after", "holds"), [(6, 14, 14), (6, 6, 6), (14, 14, 14)])
+def test_no_limit_holds_within_a_junction_alone(tmp_path, within, after, holds):
+    """Converters write how fast a bend is driven; where the next road begins so it is its limit."""
+    text = t_junction()
+    for number, limit in {1: 14, 4: within, 3: after}.items():
+        kind = f'<type s="0" type="town"><speed max="{limit}"/></type>'
+        head = rf'(<road id="{number}".*?</planView>)'
+        text = re.sub(head, rf"\g<1>{kind}", text, count=1, flags=re.DOTALL)
+    found = read_map(written(tmp_path, text), 0.1)
+    assert found.lanelets["4.0.-1"].limit_mps == holds
+    assert any("speeds of turning" in remark for remark in found.remarks) == (within != holds)

@@ -34,6 +34,7 @@ from rulec.recordings.opendrive.lane_types import (
 )
 from rulec.recordings.opendrive.pieces import RoadPiece, directions, neighbour, pieces_of
 from rulec.recordings.opendrive.signal_catalogues import country_of
+from rulec.recordings.opendrive.turning_speeds import without_turning_speeds
 from rulec.recordings.recording import LONGEST_M, Lanelet, ObservedLight, Points, Side
 from rulec.recordings.road_map import RoadMap
 
@@ -108,7 +109,8 @@ def read_opendrive_map(path: Path) -> RoadMap:
             for lane in section.lanes.values()
         ),
     )
-    lanelets = {x.id: x for x in _lanelets(whole)}
+    within = {whole.id_of(key) for key in whole.lane_keys() if content.roads[key.road].junction}
+    lanelets, slow_turns = without_turning_speeds({x.id: x for x in _lanelets(whole)}, within)
     for road in content.roads.values():
         for crossing in crosswalks(road, pieces[road.id], posted[road.id]):
             lanelets.setdefault(crossing.id, crossing)
@@ -119,7 +121,7 @@ def read_opendrive_map(path: Path) -> RoadMap:
         lanelets=lanelets,
         side=_side(content),
         country=_country(content),
-        remarks=tuple(_remarks(content)),
+        remarks=tuple(_remarks(content, slow_turns)),
     )
 
 
@@ -257,7 +259,7 @@ def _country(content: OpenDrive) -> str:
     return codes.pop() if len(codes) == 1 else ""
 
 
-def _remarks(content: OpenDrive) -> Iterator[str]:
+def _remarks(content: OpenDrive, slow_turns: int) -> Iterator[str]:
     strange: dict[str, None] = {}
     for road in content.roads.values():
         for section in road.sections:
@@ -270,3 +272,8 @@ def _remarks(content: OpenDrive) -> Iterator[str]:
         yield f"lanes of these types are taken to be beside the carriageway: {some}"
     if len({road.left_hand for road in content.roads.values()}) > 1:
         yield "traffic keeps to the left on some roads of the map, and to the right on others"
+    if slow_turns:
+        yield (
+            f"limits of {slow_turns} lanes within junctions are below those before and after: they "
+            "are taken for speeds of turning, and those before hold"
+        )

@@ -1,0 +1,58 @@
+"""Limits within junctions that nobody has posted: the speeds at which ways there are driven.
+
+SUMO's netconvert, and others, write how fast a bend within a junction is driven as if that were the
+limit there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Set
+from dataclasses import replace
+
+from rulec.recordings.recording import Lanelet
+
+
+def without_turning_speeds(
+    lanelets: Mapping[str, Lanelet], inside: Set[str]
+) -> tuple[dict[str, Lanelet], int]:
+    """The lanelets, and how many of those ``inside`` junctions have the limit of the road before.
+
+    No sign holds within a junction alone. So a way through it whose limit is below that of every
+    road that leads to it, and of every road that it leads to, has that of the road that leads there.
+    """
+    found = dict(lanelets)
+    count = 0
+    for name in inside:
+        own = lanelets[name]
+        if own.limit_mps is None:
+            continue
+        before = _limits(lanelets, name, inside, lambda one: one.predecessors)
+        after = _limits(lanelets, name, inside, lambda one: one.successors)
+        if not before or not after or None in before | after:
+            continue
+        lowest = min(limit for limit in before if limit is not None)
+        if own.limit_mps < min(lowest, *(limit for limit in after if limit is not None)):
+            found[name] = replace(own, limit_mps=lowest)
+            count += 1
+    return found, count
+
+
+def _limits(
+    lanelets: Mapping[str, Lanelet],
+    name: str,
+    inside: Set[str],
+    onward: Callable[[Lanelet], tuple[str, ...]],
+) -> set[float | None]:
+    """The limits of the roads at one end of a way through a junction, which may be of pieces."""
+    limits: set[float | None] = set()
+    seen, waiting = {name}, [name]
+    while waiting:
+        for other in onward(lanelets[waiting.pop()]):
+            if other in seen or other not in lanelets:
+                continue
+            seen.add(other)
+            if other in inside:
+                waiting.append(other)
+            else:
+                limits.add(lanelets[other].limit_mps)
+    return limits
