@@ -31,6 +31,8 @@ _SURE_M = 0.4
 
 _LARGEST_TURN = np.pi / 3
 
+_NO_WAY_M = 1e-9
+
 _ALIKE = 0.5
 """Ways whose turns differ by less (rad) lead to the same road."""
 
@@ -160,10 +162,25 @@ class JunctionPassages:
         row = self.tracks.present[passage.row]
         own = slice(passage.first, last + 1)
         places = shapely.points(self.tracks.x[passage.row, own], self.tracks.y[passage.row, own])
-        inside = np.maximum.accumulate(shapely.line_locate_point(line, places))
+        inside = np.maximum.accumulate(_along(line, places))
         end = last + 1 + int((~np.append(row[last + 1 :], False)).argmax())
         beyond = self.travelled[passage.row, last + 1 : end] - self.travelled[passage.row, last]
         return np.concatenate((inside, inside[-1] + beyond))
+
+
+def _along(line: shapely.LineString, places: NDArray[np.object_]) -> Floats:
+    """Arc lengths (m) beside places, before the line's start below 0, and beyond its end above.
+
+    A junction is as large as all of its ways, of which one may begin within it.
+    """
+    points, corners = shapely.get_coordinates(places), shapely.get_coordinates(line)
+    along: Floats = shapely.line_locate_point(line, places)
+    for end, before, beyond in ((0, 1, -1), (-1, -2, 1)):
+        ahead = corners[end] - corners[before]
+        away = (points - corners[end]) @ (ahead / max(float(np.hypot(*ahead)), _NO_WAY_M))
+        at_end = along <= 0 if beyond < 0 else along >= line.length
+        along = np.where(at_end, along + beyond * np.maximum(away, 0.0), along)
+    return along
 
 
 def _gets_to(places: Floats, place: float) -> float | None:

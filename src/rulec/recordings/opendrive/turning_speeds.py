@@ -17,8 +17,8 @@ def without_turning_speeds(
 ) -> tuple[dict[str, Lanelet], int]:
     """The lanelets, and how many of those ``inside`` junctions have the limit of the road before.
 
-    No sign holds within a junction alone. So a way through it whose limit is below that of every
-    road that leads to it, and of every road that it leads to, has that of the road that leads there.
+    No sign holds within a junction alone. So a way through it whose limit is below those of all
+    roads before and after it has that of the road that leads there.
     """
     found = dict(lanelets)
     count = 0
