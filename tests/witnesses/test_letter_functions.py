@@ -29,7 +29,13 @@ from rulec.witnesses.letter_functions import (
     speaks_of_extra,
     truths_of,
 )
-from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, canonical_term, counts_in
+from rulec.witnesses.object_universe import (
+    EXTRA,
+    ObjectUniverse,
+    canonical_term,
+    counts_in,
+    said_of,
+)
 from rulec.witnesses.undecided import UndecidedError
 from support.generators.random_reads import PLAIN_STATES, VOCABULARY, value
 from support.oracles.state_oracle import joined
@@ -161,7 +167,8 @@ def test_bindings_are_all_choices_of_distinct_objects(objects, n_variables):
 def test_axioms_are_said_of_all_objects():
     axiom = Axiom((Variable("o", "thing"),), Atom("q", ("o",)))
     universe = ObjectUniverse(TWO, VOCABULARY, (axiom,))
-    assert list(universe.axiom_formulas()) == [Atom("q", ("x",)), Atom("q", ("y",))]
+    said = [said_of(one, names) for one, names in universe.axiom_bindings()]
+    assert said == [Atom("q", ("x",)), Atom("q", ("y",))]
 
 
 def test_counts_in_a_formula_are_those_outside_of_others():

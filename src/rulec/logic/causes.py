@@ -12,22 +12,10 @@ from itertools import accumulate, compress
 
 from rulec.logic.bounds import PAST, range_of
 from rulec.logic.formula import Binary, BinaryOperator, Formula, Unary, UnaryOperator
-from rulec.logic.semantics import Letter, Semantics, extended_values
+from rulec.logic.semantics import Semantics
 
 _Reason = tuple[Formula, int, int]
 """A part, and the first and the last of the instants at which it decides."""
-
-
-def deciding_instants(
-    formula: Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
-) -> dict[Formula, list[bool]]:
-    """The instants at which a formula and its parts decide its value.
-
-    It is the value at the first instant.
-
-    Bounds are in steps. ValueError as for ``holds``.
-    """
-    return instants_among(extended_values(formula, word, semantics), formula, len(word), semantics)
 
 
 def instants_among(
@@ -36,7 +24,10 @@ def instants_among(
     n_letters: int,
     semantics: Semantics = "stutter",
 ) -> dict[Formula, list[bool]]:
-    """The deciding instants, from the ``extended_values`` on a word of so many letters."""
+    """The instants at which a formula and its parts decide its value at the first instant.
+
+    They are found from the ``extended_values`` on a word of so many letters.
+    """
     length, last = len(known[formula]), n_letters - 1
     onward, backward = _Columns(known), _Columns(known, turned=True)
     # A part begins to decide where its mark is above 0, and ceases to where it is below.

@@ -44,14 +44,6 @@ def truth_values(
     return parts[id(formula)][1][: len(word)]
 
 
-def values_of_parts(
-    formula: ltl.Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
-) -> dict[ltl.Formula, list[bool]]:
-    """Truth values of the formula and of every part. Raises ValueError as ``holds`` does."""
-    parts = extended_values(formula, word, semantics)
-    return {part: values[: len(word)] for part, values in parts.items()}
-
-
 def extended_values(
     formula: ltl.Formula, word: Sequence[Letter], semantics: Semantics
 ) -> dict[ltl.Formula, list[bool]]:

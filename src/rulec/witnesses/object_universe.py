@@ -54,11 +54,6 @@ class ObjectUniverse:
         bound_objects = choices(types, self.objects, self.vocabulary)
         return [dict(zip(names, chosen, strict=True)) for chosen in bound_objects]
 
-    def axiom_formulas(self) -> Iterator[ltl.Formula]:
-        """The axioms, said of the objects."""
-        for axiom, names in self.axiom_bindings():
-            yield said_of(axiom, names)
-
     def axiom_bindings(self) -> Iterator[tuple[Axiom, dict[str, str]]]:
         """Each axiom with each way to bind its variables."""
         of_types: dict[tuple[str, ...], list[tuple[str, ...]]] = {}

@@ -3,7 +3,7 @@
 import pytest
 
 from rulec.diagnostics import RulecError
-from rulec.recordings.encodings.tfrecord import checksum, is_tfrecord, tfrecords
+from rulec.recordings.encodings.tfrecord import checksum, tfrecords
 from rulec.recordings.encodings.wire_format import WireFormat
 from support.builders.waymo_files import crc32c, record
 
@@ -74,9 +74,3 @@ def test_what_nothing_can_follow(tmp_path, content, why):
 def test_an_empty_file(tmp_path):
     with pytest.raises(RulecError, match="it is empty"):
         read(tmp_path, b"")
-
-
-def test_a_file_is_known_by_the_checksum_of_its_first_length():
-    assert is_tfrecord(record(b"one"))
-    assert not is_tfrecord(b"x" + record(b"one")[1:])
-    assert not is_tfrecord(b"short")

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 from rulec.diagnostics import Span
-from rulec.rulebook.elaborate.scope import SIDES
 from rulec.rulebook.names.referenced_names import parts_of
 from rulec.rulebook.resolve import BookNames
 from rulec.syntax import tree
@@ -276,8 +275,3 @@ def _short_form(name: tree.Name, scope: Scope, chain: NamesOfChain) -> Iterator[
             start, source = name.span.start, name.span.source
             yield Occurrence(Span(source, start, start + at), thing)
             yield Occurrence(Span(source, start + at + 1, name.span.end), scope[variable])
-
-
-def is_of_sides(name: str) -> bool:
-    """Tell whether a name is one of the sides that traffic decides about."""
-    return name in SIDES

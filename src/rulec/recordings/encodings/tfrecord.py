@@ -38,14 +38,6 @@ class TfRecord(NamedTuple):
     content: bytes
 
 
-def is_tfrecord(head: bytes) -> bool:
-    """True if the first bytes of a file are a length with its checksum."""
-    if len(head) < HEAD_BYTES:
-        return False
-    _, check = _HEAD.unpack_from(head)
-    return bool(check == masked_checksum(head[:8]))
-
-
 def tfrecords(path: Path, form: WireFormat) -> Iterator[TfRecord | RulecError]:
     """The records of a file, with an error (R0610) in the place of one that is broken.
 

@@ -66,13 +66,6 @@ class ParsedText:
             return start
         return self.starts[number] + start - self.segments[number].start
 
-    def source_offset(self, offset: int) -> int:
-        """The character of the source for one of the text."""
-        if not self.segments:
-            return offset
-        number = max(0, bisect_right(self.starts, offset) - 1)
-        return self.segments[number].start + offset - self.starts[number]
-
     def placed(self, place: SourceLocation) -> SourceLocation:
         """A place of the source as one of the text."""
         if not self.segments or place.file != self.source.name or place.line is None:
