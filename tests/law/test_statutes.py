@@ -1,0 +1,34 @@
+"""Short drives told whole, of which nothing is violated but what the law of the book says.
+
+`statutes/BOOK.toml` has those of a book: what holds throughout, and states a second apart. Sides are absolute.
+"""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from rulec.diagnostics import Source
+from rulec.monitoring.verify import verify
+from rulec.toml import parsed_toml
+from rulec.trace import Trace
+from support.builders.national_books import compiled, read
+
+SITUATIONS = [
+    pytest.param(path.stem, one, id=f"{path.stem}-{one['title']}")
+    for path in sorted((Path(__file__).parent / "statutes").glob("*.toml"))
+    for one in parsed_toml(Source(path.name, path.read_text(encoding="utf-8")), "R0704", "")[
+        "situation"
+    ]
+]
+
+
+@pytest.mark.parametrize(("book", "situation"), SITUATIONS)
+def test_a_drive_violates_what_the_law_says_and_no_more(
+    book: str, situation: dict[str, Any]
+) -> None:
+    states = tuple({**situation["throughout"], **state} for state in situation["states"])
+    trace = Trace("t", 1.0, situation.get("objects", {}), states)
+    found = verify(trace, compiled(book)).violations
+    assert {one.rule for one in found} == set(situation["violated"])
+    assert set(situation["violated"]) <= {rule.name for rule in read(book).rulebook.rules}
