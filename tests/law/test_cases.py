@@ -23,8 +23,8 @@ FOUND_SINCE = {
 }
 """What a law says where who wrote the case found no rule, and one was read since.
 
-Austria: § 26a(2) of the StVO binds in built-up areas alone; so does New South Wales's r. 77, and its r. 164 wants who is
-beside a tram at a stop to wait.
+Austria: § 26a(2) of the StVO binds in built-up areas alone; so does New South Wales's r. 77, and
+its r. 164 wants who is beside a tram at a stop to wait.
 """
 
 

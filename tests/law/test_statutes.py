@@ -1,6 +1,7 @@
 """Short drives told whole, of which nothing is violated but what the law of the book says.
 
-`statutes/BOOK.toml` has those of a book: what holds throughout, and states a second apart. Sides are absolute.
+`statutes/BOOK.toml` has those of a book: what holds throughout, and states a second apart. Sides
+are absolute.
 """
 
 from pathlib import Path
