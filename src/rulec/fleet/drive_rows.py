@@ -13,7 +13,8 @@ from rulec.extraction.to_trace import Drive
 from rulec.fleet.finding_columns import COLUMNS, Cell, Row
 from rulec.fleet.judged_by import JudgedBy
 from rulec.monitoring.moments.exposure import Exposure, exposures
-from rulec.monitoring.moments.road_class import road_class
+from rulec.monitoring.moments.road_class import road_classes
+from rulec.monitoring.moments.trace_truth import tables_of
 from rulec.monitoring.verdict import NotJudged, OutcomeName, Verdict
 from rulec.report.verdict_findings.found_in_drives import DriveFindings
 from rulec.report.verdict_findings.found_in_traces import trace_findings
@@ -129,7 +130,7 @@ class DriveRows:
             "outcome": OUTCOMES[verdict.satisfied],
             "from_s": times[0],
             "to_s": times[1],
-            "road": road_class(trace, self.rules.vocabulary),
+            "road": road_classes(tables_of(trace, self.rules.vocabulary))[0],
             "states": n_states,
             # Each state stands for the time up to the next one, the last for a step, too.
             "duration_s": round(n_states * trace.step_s, 9),

@@ -11,7 +11,7 @@ from rulec.logic.kleene import holds
 from rulec.logic.semantics import truth_values
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.moments import trace_truth
-from rulec.monitoring.moments.trace_truth import ReadyFormula, TraceTruth
+from rulec.monitoring.moments.trace_truth import ReadyFormula, TraceTruth, tables_of
 from rulec.monitoring.state_view import StateView
 from rulec.rulebook.rulebook_model import Variable
 from rulec.trace import Trace
@@ -66,10 +66,17 @@ def word_of(formula, trace, car, first, last):
 
 
 def rows_of(formula, trace, semantics):
+    tables = tables_of(trace, TIMED_VOCABULARY)
+    truth = TraceTruth(tables, semantics, trace.ends)
     return {
-        choice[0]: (int(part.first[row]), int(part.last[row]), part.sure[row], part.possible[row])
-        for part in TraceTruth(trace, TIMED_VOCABULARY, semantics).of(ReadyFormula(formula), X)
-        for row, choice in enumerate(part.choices)
+        tables.objects[item]: (
+            int(part.first[row]),
+            int(part.last[row]),
+            part.sure[row],
+            part.possible[row],
+        )
+        for part in truth.of(ReadyFormula(formula), truth.choices_of(X))
+        for row, (item,) in enumerate(part.choices.items.tolist())
     }
 
 

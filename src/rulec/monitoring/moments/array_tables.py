@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,7 +17,8 @@ class ArrayTables(NameTables):
     """Tables of a trace that is given as arrays; nothing there is about several objects."""
 
     def __init__(self, arrays: TraceArrays, vocabulary: Vocabulary) -> None:
-        super().__init__(arrays.told, arrays.objects, arrays.n_states, vocabulary)
+        last = np.array([arrays.n_states - 1], dtype=np.intp)
+        super().__init__(arrays.told, arrays.objects, last, vocabulary)
         self._arrays = arrays
         state = np.arange(arrays.n_states)
         first, last = arrays.spans[:, :1], arrays.spans[:, 1:]
@@ -30,7 +29,7 @@ class ArrayTables(NameTables):
         """The first and the last state of each object."""
         return self._arrays.spans
 
-    def about_several(self, name: str, rows: Sequence[tuple[int, ...]]) -> ValueRows:
+    def about_several(self, name: str, rows: NDArray[np.intp]) -> ValueRows:
         """The rows of a name, which all have its default."""
         return self._rows(name, None, np.ones((len(rows), self.n_states), dtype=bool))
 

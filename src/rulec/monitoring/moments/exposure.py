@@ -8,7 +8,7 @@ violated if the rule is breached in one of its states. See docs/rates.md.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
@@ -22,9 +22,16 @@ from rulec.diagnostics import SourceLocation
 from rulec.logic.bounds import in_steps
 from rulec.logic.opportunities import breach_of
 from rulec.logic.semantics import steps_to_settle
+from rulec.monitoring.batch.trace_groups import Names
 from rulec.monitoring.moments.stretches import Stretches, opportunity_stretches
-from rulec.monitoring.moments.trace_truth import FormulaTruth, ReadyFormula, TraceTruth
-from rulec.monitoring.verdict import Verdict
+from rulec.monitoring.moments.trace_truth import (
+    Choices,
+    FormulaTruth,
+    ReadyFormula,
+    TraceTruth,
+    tables_of,
+)
+from rulec.monitoring.verdict import OpenVerdict, Verdict, Violation
 from rulec.trace import Trace
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.value_display import short_repr
@@ -61,6 +68,12 @@ class _Watched:
     breach: ReadyFormula
 
 
+Outcome = Literal["violated", "open"]
+
+Chosen = tuple[int, tuple[int, ...]]
+"""A trace, and objects of it, as tables count them."""
+
+
 def exposures(
     trace: Trace | TraceArrays, rulebook: CompiledRulebook, verdict: Verdict
 ) -> dict[str, Exposure]:
@@ -68,20 +81,41 @@ def exposures(
 
     The ``verdict`` on the trace says for which objects a rule is violated or open.
     """
-    outcomes: dict[str, dict[tuple[str, ...], Literal["violated", "open"]]] = {}
-    for result in verdict.open:
-        outcomes.setdefault(result.rule, {})[tuple(result.binding.values())] = "open"
-    for violation in verdict.violations:
-        outcomes.setdefault(violation.rule, {})[tuple(violation.binding.values())] = "violated"
-    left_out = {rule.rule for rule in verdict.not_judged}
-    truth = TraceTruth(trace, rulebook.vocabulary, rulebook.semantics)
-    return {
-        watched.rule.name: _exposure(
-            truth, trace.step_s, watched, outcomes.get(watched.rule.name, {})
-        )
-        for watched in _watched(rulebook, exact_step(trace.step_s))
-        if watched.rule.name not in left_out
-    }
+    tables = tables_of(trace, rulebook.vocabulary)
+    truth = TraceTruth(tables, rulebook.semantics, trace.ends)
+    (found,) = alike_exposures(truth, trace.step_s, rulebook, [verdict], [tuple(trace.objects)])
+    return found
+
+
+def alike_exposures(
+    truth: TraceTruth,
+    step_s: float,
+    rulebook: CompiledRulebook,
+    verdicts: Sequence[Verdict],
+    names: Sequence[Names],
+) -> list[dict[str, Exposure]]:
+    """The exposures of traces that are alike; ``names`` are what each one's objects are called."""
+    outcomes: dict[str, dict[Chosen, Outcome]] = {}
+    for number, (verdict, own) in enumerate(zip(verdicts, names, strict=True)):
+        decided: list[OpenVerdict | Violation] = [*verdict.open, *verdict.violations]
+        item_of = {
+            item: place for place, item in enumerate(own if decided else (), number * len(own))
+        }
+        for found in decided:
+            items = tuple([item_of[item] for item in found.binding.values()])
+            outcome: Outcome = "violated" if isinstance(found, Violation) else "open"
+            outcomes.setdefault(found.rule, {})[number, items] = outcome
+    left_out = [{rule.rule for rule in verdict.not_judged} for verdict in verdicts]
+    result: list[dict[str, Exposure]] = [{} for _ in verdicts]
+    for watched in _watched(rulebook, exact_step(step_s)):
+        rule = watched.rule
+        if all(rule.name in those for those in left_out):
+            continue
+        tally = _tally(truth, watched, outcomes.get(rule.name, {}))
+        for of_trace, those, one in zip(result, left_out, tally.exposures(step_s), strict=True):
+            if rule.name not in those:
+                of_trace[rule.name] = one
+    return result
 
 
 def _watched(rulebook: CompiledRulebook, step_s: Fraction) -> Sequence[_Watched]:
@@ -105,104 +139,116 @@ def _watched_rule(rule: CompiledRule, step_s: Fraction, place: SourceLocation | 
     )
 
 
-def _exposure(
-    truth: TraceTruth,
-    step_s: float,
-    watched: _Watched,
-    outcomes: Mapping[tuple[str, ...], Literal["violated", "open"]],
-) -> Exposure:
-    tally = _Tally(truth.n_states)
-    variables = watched.rule.variables
-    found = set()
+def _tally(truth: TraceTruth, watched: _Watched, outcomes: Mapping[Chosen, Outcome]) -> _Tally:
+    tally = _Tally(truth.tables.last)
+    asked = truth.choices_of(watched.rule.variables)
+    left = dict(outcomes)
     if watched.trigger is None:
-        tally.add_whole(*truth.stretches_of(variables))
+        tally.add_whole(asked.trace, *truth.stretch_of(asked))
     else:
-        for part in truth.of(watched.trigger, variables):
-            at_least, at_most = opportunity_stretches(part.sure, part.possible)
-            tally.add(part, at_least, at_most)
-            decided = [row for row, choice in enumerate(part.choices) if choice in outcomes]
-            for row in decided:
-                choice = part.choices[row]
-                found.add(choice)
-                own = truth.of(watched.breach, variables, choice)
-                tally.violated_in(row, (at_least, at_most), next(own, None), outcomes[choice])
-    for choice, outcome in outcomes.items():
-        if choice not in found:
-            tally.violated_at_all(outcome, is_counted=watched.trigger is None)
-    return tally.exposure(step_s)
+        for part in truth.of(watched.trigger, asked):
+            opportunities = opportunity_stretches(part.sure, part.possible)
+            tally.add(part, opportunities)
+            rows, decided = _decided(part.choices, left)
+            if decided:
+                own = part.choices.at(rows)
+                taken = [stretches.of_rows(rows) for stretches in opportunities]
+                breached = np.zeros((2, len(rows)), dtype=np.intp)
+                for breach in truth.of(watched.breach, own):
+                    breached[:, breach.rows] += _breached(breach, taken)
+                is_open = np.array([outcome == "open" for outcome in decided])
+                tally.violated_in(own.trace, taken, breached, is_open)
+    for (trace, _), outcome in left.items():
+        tally.violated_at_all(trace, outcome, is_counted=watched.trigger is None)
+    return tally
+
+
+def _decided(choices: Choices, left: dict[Chosen, Outcome]) -> tuple[Counts, list[Outcome]]:
+    """The rows of what is violated or open, and which of it, which is taken out."""
+    if not left:
+        return np.zeros(0, dtype=np.intp), []
+    near = np.flatnonzero(np.isin(choices.trace, [trace for trace, _ in left]))
+    those = choices.at(near)
+    rows, found = [], []
+    for row, trace, items in zip(
+        near.tolist(), those.trace.tolist(), those.items.tolist(), strict=True
+    ):
+        outcome = left.pop((trace, tuple(items)), None)
+        if outcome is not None:
+            rows.append(row)
+            found.append(outcome)
+    return np.array(rows, dtype=np.intp), found
+
+
+def _breached(breach: FormulaTruth, opportunities: Sequence[Stretches]) -> Counts:
+    """For each row the opportunities in which a rule is breached for sure, and at most."""
+    flags = breach.sure, breach.possible
+    counts = []
+    for stretches, own in zip(opportunities, flags, strict=True):
+        there = stretches.of_rows(breach.rows)
+        counts.append(there.per_row(len(breach.rows), there.with_some(own)))
+    return np.stack(counts)
 
 
 class _Tally:
-    """Sums over the choices of objects of one rule."""
+    """Sums over the choices of objects of one rule, for each trace."""
 
-    def __init__(self, n_states: int) -> None:
-        self._exposed = np.zeros(n_states, dtype=bool)
-        self._perhaps_exposed = np.zeros(n_states, dtype=bool)
-        self._opportunities = [0, 0]
-        self._violated = [0, 0]
+    def __init__(self, last: Counts) -> None:
+        n_traces, n_states = len(last), int(last.max()) + 1
+        self._there = np.arange(n_states) <= last[:, None]
+        self._exposed = np.zeros((2, n_traces, n_states), dtype=bool)
+        self._opportunities = np.zeros((2, n_traces), dtype=np.intp)
+        self._violated = np.zeros((2, n_traces), dtype=np.intp)
 
-    def add_whole(self, first: Counts, last: Counts) -> None:
+    def add_whole(self, trace: Counts, first: Counts, last: Counts) -> None:
         """Count an opportunity for each choice of objects, as long as they are there."""
-        state = np.arange(len(self._exposed))
-        for begin, end in set(zip(first.tolist(), last.tolist(), strict=True)):
-            self._exposed |= (state >= begin) & (state <= end)
-        self._perhaps_exposed |= self._exposed
-        self._opportunities = [count + len(first) for count in self._opportunities]
+        n_traces, n_states = self._there.shape
+        edges = np.zeros((n_traces, n_states + 1), dtype=np.intp)
+        np.add.at(edges, (trace, first), 1)
+        np.add.at(edges, (trace, last + 1), -1)
+        self._exposed |= np.cumsum(edges, axis=1)[:, :-1] > 0
+        self._opportunities += np.bincount(trace, minlength=n_traces)
 
-    def add(self, part: FormulaTruth, at_least: Stretches, at_most: Stretches) -> None:
+    def add(self, part: FormulaTruth, opportunities: Sequence[Stretches]) -> None:
         """Count opportunities."""
-        n_states = len(self._exposed)
-        self._exposed |= _on_all(part.sure, n_states)
-        self._perhaps_exposed |= _on_all(part.possible, n_states)
-        self._opportunities[0] += len(at_least)
-        self._opportunities[1] += len(at_most)
+        n_traces, n_states = self._there.shape
+        traces, begins = np.unique(part.choices.trace, return_index=True)
+        size = min(n_states, part.sure.shape[1])
+        for level, flags in enumerate((part.sure, part.possible)):
+            exposed = np.logical_or.reduceat(flags[:, :size], begins, axis=0)
+            self._exposed[level, traces, :size] |= exposed
+            own = part.choices.trace[opportunities[level].rows]
+            self._opportunities[level] += np.bincount(own, minlength=n_traces)
 
     def violated_in(
         self,
-        row: int,
-        opportunities: tuple[Stretches, Stretches],
-        breach: FormulaTruth | None,
-        outcome: Literal["violated", "open"],
+        trace: Counts,
+        opportunities: Sequence[Stretches],
+        breached: Counts,
+        is_open: NDArray[np.bool_],
     ) -> None:
-        """Count the opportunities of a row that were taken; the verdict says whether one was."""
-        at_least, at_most = [stretches.of_row(row) for stretches in opportunities]
-        surely = perhaps = 0
-        if breach is not None:
-            surely = int(at_least.with_some(breach.sure).sum())
-            perhaps = int(at_most.with_some(breach.possible).sum())
-        surely = 0 if outcome == "open" else max(surely, 1)
-        perhaps = max(perhaps, surely, 1)
-        self._violated[0] += surely
-        self._violated[1] += perhaps
-        # What is violated was an opportunity, however little is known of its trigger.
-        self._opportunities[0] += max(surely - len(at_least), 0)
-        self._opportunities[1] += max(perhaps - len(at_most), 0)
+        """Count the opportunities of rows that were taken; the verdict says whether one was."""
+        surely = np.where(is_open, 0, np.maximum(breached[0], 1))
+        perhaps = np.maximum(np.maximum(breached[1], surely), 1)
+        for level, taken in enumerate((surely, perhaps)):
+            np.add.at(self._violated[level], trace, taken)
+            # What is violated was an opportunity, however little is known of its trigger.
+            lacks = np.maximum(taken - opportunities[level].per_row(len(trace)), 0)
+            np.add.at(self._opportunities[level], trace, lacks)
 
-    def violated_at_all(self, outcome: Literal["violated", "open"], *, is_counted: bool) -> None:
+    def violated_at_all(self, trace: int, outcome: Outcome, *, is_counted: bool) -> None:
         """Count one opportunity that was taken."""
-        self._violated[0] += outcome == "violated"
-        self._violated[1] += 1
+        taken = np.array([outcome == "violated", True], dtype=np.intp)
+        self._violated[:, trace] += taken
         if not is_counted:
-            self._opportunities[0] += outcome == "violated"
-            self._opportunities[1] += 1
+            self._opportunities[:, trace] += taken
 
-    def exposure(self, step_s: float) -> Exposure:
-        """The sums."""
-        # A stretch counts as one for sure only if it does at most.
+    def exposures(self, step_s: float) -> Iterator[Exposure]:
+        """The sums of each trace."""
         least, most = self._opportunities
-        return Exposure(
-            least,
-            max(least, most),
-            round(int(self._exposed.sum()) * step_s, 9),
-            round(int(self._perhaps_exposed.sum()) * step_s, 9),
-            *self._violated,
-        )
-
-
-def _on_all(flags: NDArray[np.bool_], n_states: int) -> NDArray[np.bool_]:
-    """Where some row has a flag; beyond its end a row repeats what is there."""
-    rows = np.atleast_1d(flags.any(axis=0))
-    result = np.zeros(n_states, dtype=bool)
-    size = min(n_states, len(rows))
-    result[:size] = rows[:size]
-    return result
+        states = (self._exposed & self._there).sum(axis=2)
+        # A stretch counts as one for sure only if it does at most.
+        counts = np.stack([least, np.maximum(least, most), *states, *self._violated], axis=1)
+        for fewest, highest, sure, perhaps, *violated in counts.tolist():
+            seconds = round(sure * step_s, 9), round(perhaps * step_s, 9)
+            yield Exposure(fewest, highest, *seconds, *violated)

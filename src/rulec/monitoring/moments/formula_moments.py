@@ -13,7 +13,12 @@ from rulec.automata.thresholds import exact_step
 from rulec.logic.bounds import NotAMultipleError, in_steps
 from rulec.logic.formula import Formula
 from rulec.monitoring.moments.stretches import Flags, stretches_of
-from rulec.monitoring.moments.trace_truth import FormulaTruth, ReadyFormula, TraceTruth
+from rulec.monitoring.moments.trace_truth import (
+    FormulaTruth,
+    ReadyFormula,
+    TraceTruth,
+    tables_of,
+)
 from rulec.rulebook.asked_formula import FormulaQuery
 from rulec.trace import Trace
 from rulec.trace.trace_arrays import TraceArrays
@@ -42,21 +47,22 @@ def moments(trace: Trace | TraceArrays, query: FormulaQuery) -> list[Moment]:
     are rounded down and up: what both say is sure. Raises NotAMultipleError for such bounds else.
     """
     roundings = _in_steps(trace, query)
-    truth = TraceTruth(trace, query.vocabulary, query.semantics)
-    n_states = truth.n_states
+    tables = tables_of(trace, query.vocabulary)
+    truth, n_states = TraceTruth(tables, query.semantics, trace.ends), tables.n_states
+    asked = truth.choices_of(query.rule.variables)
     found: dict[tuple[str, ...], list[tuple[FormulaTruth, int]]] = {}
     for rounded in roundings:
         ready = ReadyFormula(rounded, place=trace.place if isinstance(trace, Trace) else None)
-        for part in truth.of(ready, query.rule.variables):
+        for part in truth.of(ready, asked):
             for row in np.flatnonzero(part.possible.any(axis=1)).tolist():
-                found.setdefault(part.choices[row], []).append((part, row))
-    names = [variable.name for variable in query.rule.variables]
+                choice = tuple([tables.objects[item] for item in part.choices.items[row]])
+                found.setdefault(choice, []).append((part, row))
     result = []
     for choice, rows in found.items():
         possible = np.any([part.possible[row, :n_states] for part, row in rows], axis=0)
         sure = np.all([part.sure[row, :n_states] for part, row in rows], axis=0)
         sure &= len(rows) == len(roundings)
-        objects = dict(zip(names, choice, strict=True))
+        objects = dict(zip(asked.variables, choice, strict=True))
         result += sorted(_of_one(objects, sure, possible), key=lambda one: one.first)
     return result
 

@@ -1,4 +1,4 @@
-"""What a trace says of names: for each of them a row for each object, a column for each state."""
+"""What traces say of names: for each of them a row for each object, a column for each state."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rulec.monitoring.state_view import value_in, with_values
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.trace import Trace
-from rulec.trace.trace_columns import Array, Key, TraceColumns
+from rulec.trace.trace_columns import Array, TraceColumns
 from rulec.vocabulary import Declaration, Enumeration, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
 from rulec.vocabulary.written_numbers import WrittenNumber
@@ -42,34 +42,47 @@ class ValueRows:
     def at(
         self, *, rows: NDArray[np.intp] | None = None, states: NDArray[np.intp] | None = None
     ) -> ValueRows:
-        """Some of the rows, and some of the columns."""
-        chosen = (slice(None) if rows is None else rows, slice(None) if states is None else states)
+        """Some of the rows, and some of the columns; these may be others in each row."""
+        chosen: Any = (slice(None) if rows is None else rows, slice(None))
+        if states is not None and states.ndim > 1:
+            numbers = np.arange(len(self.values)) if rows is None else rows
+            chosen = numbers[:, None], states
+        elif states is not None:
+            chosen = chosen[0], states
         values = self.values[chosen]
         upper = values if self.upper is self.values else self.upper[chosen]
         return ValueRows(values, upper, self.unknown[chosen])
 
 
 class NameTables(ABC):
-    """Tables of a checked trace, each made when it is first asked for.
+    """Tables of checked traces that are alike, each made when it is first asked for.
 
-    ``objects`` are those of the trace, in its order, with their types, ``spans`` (objects x 2) the
-    first and the last state in which each is there. ``vocabulary`` has unknown defaults for what
-    the source cannot tell.
+    ``objects`` are those of the first trace, in its order, with their types; all traces have as
+    many, of the same types. Rows are those of the first trace's objects, then those of the second
+    one's, and so on; a trace that is shorter than ``n_states`` goes on with whatever. ``last`` is
+    the last state of each trace, ``spans`` (objects x 2) the first and the last state in which each
+    object is there. ``vocabulary`` has unknown defaults for what the source cannot tell.
     """
 
     def __init__(
         self,
         told: frozenset[str] | None,
         objects: Mapping[str, str],
-        n_states: int,
+        last: NDArray[np.intp],
         vocabulary: Vocabulary,
     ) -> None:
         untold = untold_names(vocabulary, told)
         self.vocabulary = with_untold(vocabulary, untold) if untold else vocabulary
         self.objects = tuple(objects)
         self.types = tuple(objects.values())
-        self.n_states = n_states
+        self.last = last
+        self.n_states = int(last.max()) + 1
         self._known: dict[str, ValueRows] = {}
+
+    @property
+    def n_traces(self) -> int:
+        """The number of traces."""
+        return len(self.last)
 
     @property
     @abstractmethod
@@ -77,85 +90,105 @@ class NameTables(ABC):
         """The first and the last state of each object."""
 
     def world(self, name: str) -> ValueRows:
-        """The one row of a name that is about no object."""
+        """The rows of a name that is about no object, one for each trace."""
         if name not in self._known:
             self._known[name] = self._world(name)
         return self._known[name]
 
     def about(self, name: str) -> ValueRows:
-        """The rows of a name that is about one object, one for each of the trace's."""
+        """The rows of a name that is about one object, one for each of the traces'."""
         if name not in self._known:
             self._known[name] = self._about(name)
         return self._known[name]
 
     @abstractmethod
-    def about_several(self, name: str, rows: Sequence[tuple[int, ...]]) -> ValueRows:
-        """The rows of a name for these objects, which are given by their numbers."""
+    def about_several(self, name: str, rows: NDArray[np.intp]) -> ValueRows:
+        """The rows of a name for these objects (rows x parameters), given by their numbers."""
 
     @abstractmethod
     def _world(self, name: str) -> ValueRows:
-        """The row of a name."""
+        """The rows of a name."""
 
     @abstractmethod
     def _about(self, name: str) -> ValueRows:
         """The rows of a name."""
 
 
-class StateTables(NameTables):
-    """Tables of a trace with states."""
+class ColumnTables(NameTables):
+    """Tables of traces that are given as columns, which say all that follows from facts."""
 
-    def __init__(self, trace: Trace, vocabulary: Vocabulary) -> None:
-        super().__init__(trace.told, trace.objects, len(trace.states), vocabulary)
-        if vocabulary.constants or vocabulary.implied:
-            trace = with_all_said(spelled_out(trace, vocabulary), vocabulary)
-        self._present = trace.present
-        self._columns = _columns_of(trace, self.vocabulary)
+    def __init__(
+        self, columns: TraceColumns, vocabulary: Vocabulary, told: frozenset[str] | None = None
+    ) -> None:
+        layout = columns.layout
+        last = (layout.lengths - 1).astype(np.intp)
+        super().__init__(told, columns.objects, last, vocabulary)
+        self._columns = columns
+        step = np.minimum(np.arange(layout.n_steps), last[:, None])
+        self._cells = layout.starts[step] + np.arange(layout.n_traces)[:, None]
 
     @property
     def spans(self) -> NDArray[np.intp]:
         """The first and the last state of each object."""
-        whole = (0, self.n_states - 1)
-        spans = [self._present.get(item, whole) for item in self.objects]
-        return np.array(spans, dtype=np.intp).reshape(-1, 2)
+        spans = np.zeros((self.n_traces, len(self.objects), 2), dtype=np.intp)
+        spans[:, :, 1] = self.last[:, None]
+        for place, item in enumerate(self.objects):
+            if item in self._columns.present:
+                spans[:, place] = self._columns.present[item]
+        return spans.reshape(-1, 2)
+
+    def about_several(self, name: str, rows: NDArray[np.intp]) -> ValueRows:
+        """The rows of a name for these objects (rows x parameters), given by their numbers."""
+        n_objects = len(self.objects)
+        trace, places = rows[:, 0] // n_objects, rows % n_objects
+        codes = places @ n_objects ** np.arange(rows.shape[1])
+        _, first, which = np.unique(codes, return_index=True, return_inverse=True)
+        chosen = [tuple([self.objects[place] for place in row]) for row in places[first].tolist()]
+        stacked = self._stacked(name, chosen)
+        return stacked.at(rows=trace * len(chosen) + which)
 
     def _world(self, name: str) -> ValueRows:
-        return self._stacked([(name, ())])
+        return self._stacked(name, [()])
 
     def _about(self, name: str) -> ValueRows:
-        return self._stacked([(name, (item,)) for item in self.objects])
+        return self._stacked(name, [(item,) for item in self.objects])
 
-    def about_several(self, name: str, rows: Sequence[tuple[int, ...]]) -> ValueRows:
-        """The rows of a name for these objects, which are given by their numbers."""
-        chosen = [(name, tuple([self.objects[place] for place in row])) for row in rows]
-        return self._stacked(chosen)
-
-    def _stacked(self, keys: Sequence[Key]) -> ValueRows:
-        declaration = self.vocabulary.declarations[keys[0][0]] if keys else None
-        columns = self._columns
-        default, is_known = default_of(declaration)
-        kind = type(default)
-        values = np.empty((len(keys), self.n_states), dtype=kind)
+    def _stacked(self, name: str, about: Sequence[tuple[str, ...]]) -> ValueRows:
+        """The rows of a name for these objects of the first trace, then of the second one ..."""
+        columns, cells = self._columns, self._cells
+        default, is_known = default_of(self.vocabulary.declarations[name])
+        shape = (self.n_traces, len(about), self.n_states)
+        values = np.empty(shape, dtype=type(default))
         upper: Array | None = None
-        unknown = np.zeros((len(keys), self.n_states), dtype=bool)
-        for row, key in enumerate(keys):
+        unknown = np.zeros(shape, dtype=bool)
+        for row, items in enumerate(about):
+            key = name, items
             column = columns.values.get(key)
             if column is None:
-                values[row], unknown[row] = default, not is_known
+                values[:, row], unknown[:, row] = default, not is_known
                 continue
-            values[row] = column
+            values[:, row] = column[cells]
             if key in columns.unknown:
-                unknown[row] = columns.unknown[key]
+                unknown[:, row] = columns.unknown[key][cells]
             if key in columns.upper:
                 if upper is None:
                     upper = values.copy()
-                upper[row] = columns.upper[key]
+                upper[:, row] = columns.upper[key][cells]
             elif upper is not None:
-                upper[row] = column
-        return ValueRows(values, _filled(upper, values), unknown)
+                upper[:, row] = values[:, row]
+        flat = (-1, self.n_states)
+        lowest = values.reshape(flat)
+        highest = lowest if upper is None else np.maximum(upper, values).reshape(flat)
+        return ValueRows(lowest, highest, unknown.reshape(flat))
 
 
-def _filled(upper: Array | None, values: Array) -> Array:
-    return values if upper is None else np.maximum(upper, values)
+def tables_of_trace(trace: Trace, vocabulary: Vocabulary) -> NameTables:
+    """Tables of a trace with states."""
+    if vocabulary.constants or vocabulary.implied:
+        trace = with_all_said(spelled_out(trace, vocabulary), vocabulary)
+    untold = untold_names(vocabulary, trace.told)
+    columns = _columns_of(trace, with_untold(vocabulary, untold) if untold else vocabulary)
+    return ColumnTables(columns, vocabulary, trace.told)
 
 
 def default_of(declaration: Declaration | None) -> tuple[bool | float | int, bool]:

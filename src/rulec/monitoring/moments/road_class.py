@@ -1,40 +1,40 @@
-"""The class of road of a drive: what it is on most of the time, as far as that is told."""
+"""The class of road of drives: what they are on most of the time, as far as that is told."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from rulec.monitoring.moments.name_tables import NameTables
-from rulec.monitoring.moments.trace_truth import tables_of
-from rulec.trace import Trace
-from rulec.trace.trace_arrays import TraceArrays
-from rulec.vocabulary import Signal, Vocabulary
+from rulec.monitoring.moments.name_tables import Flags, NameTables
+from rulec.vocabulary import Signal
 
 MOTORWAY, BUILT_UP, OUTSIDE = "motorway", "built-up", "outside"
 """Classes of road: a motorway, any other one within built-up areas, and outside of them."""
 
 
-def road_class(trace: Trace | TraceArrays, vocabulary: Vocabulary) -> str:
-    """The class of most states; empty if most do not tell, or the vocabulary has no words for it.
+def road_classes(tables: NameTables) -> list[str]:
+    """For each trace the class of most states.
 
-    The words are ``motorway`` and ``built_up`` of the vocabulary ``road``.
+    It is empty if most do not tell, or the vocabulary has no words for it, which are ``motorway``
+    and ``built_up`` of the vocabulary ``road``.
     """
-    declared = [vocabulary.declarations.get(name) for name in ("motorway", "built_up")]
+    declared = [tables.vocabulary.declarations.get(name) for name in ("motorway", "built_up")]
     if not all(isinstance(one, Signal) and not one.parameters for one in declared):
-        return ""
-    tables = tables_of(trace, vocabulary)
-    on_motorway, not_on_motorway = _known(tables, "motorway")
-    built_up, not_built_up = _known(tables, "built_up")
+        return [""] * tables.n_traces
+    there = np.arange(tables.n_states) <= tables.last[:, None]
+    on_motorway, not_on_motorway = _known(tables, "motorway", there)
+    built_up, not_built_up = _known(tables, "built_up", there)
     counts = {
-        MOTORWAY: on_motorway.sum(),
-        BUILT_UP: (not_on_motorway & built_up).sum(),
-        OUTSIDE: (not_on_motorway & not_built_up).sum(),
+        MOTORWAY: on_motorway.sum(axis=1),
+        BUILT_UP: (not_on_motorway & built_up).sum(axis=1),
+        OUTSIDE: (not_on_motorway & not_built_up).sum(axis=1),
     }
-    counts[""] = tables.n_states - sum(counts.values())
-    return max(counts, key=lambda name: int(counts[name]))
+    counts[""] = tables.last + 1 - sum(counts.values())
+    most = np.argmax(list(counts.values()), axis=0)
+    return [[*counts][place] for place in most.tolist()]
 
 
-def _known(tables: NameTables, name: str) -> tuple[np.ndarray, np.ndarray]:
+def _known(tables: NameTables, name: str, there: Flags) -> tuple[Flags, Flags]:
     """The states in which a signal is known to be true, and those in which it is not."""
     rows = tables.world(name)
-    return rows.values[0] & ~rows.unknown[0], ~rows.values[0] & ~rows.unknown[0]
+    known = there & ~rows.unknown
+    return rows.values & known, ~rows.values & known

@@ -21,7 +21,7 @@ from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Enumeration
 
 Places = NDArray[np.intp]
-"""Numbers of objects in a trace's order, one a row, or one for all rows."""
+"""Numbers of objects in the tables' order, one a row, or one for all rows."""
 
 _SIDES: Mapping[ltl.Relation, tuple[int, ...]] = {
     "<": (0,),
@@ -58,8 +58,9 @@ class RowEvaluation:
     """The evaluation of formulas on some rows.
 
     ``spans`` (objects x 2) are the first and the last state in which each object is there,
-    ``states`` the states of the trace that the columns show. ``comparisons`` are those of the
-    formula that have been met, by identity: to hash one takes longer than to evaluate it.
+    ``states`` the states of the traces that the columns show, in each row or in all alike.
+    ``comparisons`` are those of the formula that have been met, by identity: to hash one takes
+    longer than to evaluate it. ``trace`` is which trace each row is of, None if there is one.
     """
 
     tables: NameTables
@@ -67,17 +68,20 @@ class RowEvaluation:
     stretches: RowStretches
     states: Places
     comparisons: dict[int, ReadyComparison]
+    trace: Places | None = None
 
     @property
     def n_states(self) -> int:
         """The number of columns."""
-        return len(self.states)
+        return int(self.states.shape[-1])
 
     @property
     def _shows_all(self) -> bool:
-        """Whether the columns are the states of the trace."""
+        """Whether the columns are the states of the traces."""
         n_states = self.tables.n_states
-        return self.n_states == n_states and int(self.states[-1]) == n_states - 1
+        if self.states.ndim > 1 or self.n_states != n_states:
+            return False
+        return int(self.states[-1]) == n_states - 1
 
     def of(self, formula: ltl.Formula, bound: Mapping[str, Places]) -> TruthRows:
         """The truth of a formula; ``bound`` has the objects' places, one a row or one for all."""
@@ -147,14 +151,13 @@ class RowEvaluation:
     ) -> ValueRows:
         """What is said of a name, asked of variables."""
         tables = self.tables
+        states = None if self._shows_all else self.states
         if not arguments:
-            rows = tables.world(name)
-        elif len(arguments) == 1:
-            rows = tables.about(name).at(rows=bound[arguments[0]])
-        else:
-            several = np.broadcast_arrays(*[bound[one] for one in arguments])
-            rows = tables.about_several(name, np.stack(several, axis=1).tolist())
-        return rows if self._shows_all else rows.at(states=self.states)
+            return tables.world(name).at(rows=self.trace, states=states)
+        if len(arguments) == 1:
+            return tables.about(name).at(rows=bound[arguments[0]], states=states)
+        several = np.broadcast_arrays(*[bound[one] for one in arguments])
+        return tables.about_several(name, np.stack(several, axis=1)).at(states=states)
 
     def _comparison(self, comparison: ltl.Comparison, bound: Mapping[str, Places]) -> TruthRows:
         ready = self.comparisons.get(id(comparison))
@@ -179,8 +182,11 @@ class RowEvaluation:
         vocabulary = self.tables.vocabulary
         for place, kind in enumerate(self.tables.types):
             if vocabulary.is_subtype(kind, term.type):
-                body = self.of(term.body, {**bound, term.variable: np.array([place])})
-                first, last = self.spans[place]
+                item = np.array([place])
+                if self.trace is not None:
+                    item = self.trace * len(self.tables.types) + place
+                body = self.of(term.body, {**bound, term.variable: item})
+                first, last = self.spans[item, 0, None], self.spans[item, 1, None]
                 there = (self.states >= first) & (self.states <= last)
                 sure = sure + (body.sure & there)
                 possible = possible + (body.possible & there)

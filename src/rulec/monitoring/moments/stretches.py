@@ -25,10 +25,18 @@ class Stretches:
     def __len__(self) -> int:
         return len(self.rows)
 
-    def of_row(self, row: int) -> Stretches:
-        """The stretches of one row, as that of rows of which it is the only one."""
-        own = self.rows == row
-        return Stretches(np.zeros(int(own.sum()), dtype=np.intp), self.first[own], self.last[own])
+    def of_rows(self, rows: Places) -> Stretches:
+        """The stretches of some rows, ascending, as those of rows of which there are no others."""
+        place = np.minimum(np.searchsorted(rows, self.rows), len(rows) - 1)
+        own = rows[place] == self.rows
+        return Stretches(place[own], self.first[own], self.last[own])
+
+    def per_row(self, n_rows: int, which: Flags | None = None) -> Places:
+        """How many stretches each row has, of all or of those with a flag."""
+        result: Places = np.bincount(
+            self.rows if which is None else self.rows[which], minlength=n_rows
+        )
+        return result
 
     def with_some(self, flags: Flags) -> Flags:
         """For each stretch whether some of its states has a flag (rows x states)."""

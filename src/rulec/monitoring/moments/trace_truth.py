@@ -1,4 +1,4 @@
-"""The truth of formulas at every state of a trace, for all choices of objects together."""
+"""The truth of formulas at every state of traces, for all choices of objects together."""
 
 from __future__ import annotations
 
@@ -14,13 +14,14 @@ from rulec.logic.free_names import variables_of
 from rulec.logic.opportunities import conjuncts, looks_elsewhere
 from rulec.logic.semantics import Semantics, steps_to_settle
 from rulec.monitoring.moments.array_tables import ArrayTables
-from rulec.monitoring.moments.name_tables import NameTables, StateTables
+from rulec.monitoring.moments.name_tables import NameTables, tables_of_trace
 from rulec.monitoring.moments.row_evaluation import Places, ReadyComparison, RowEvaluation
 from rulec.monitoring.moments.truth_rows import RowEnding, RowStretches
 from rulec.resource_limits import LOOKBACK
 from rulec.rulebook.rulebook_model import Variable
 from rulec.trace import Trace
 from rulec.trace.trace_arrays import TraceArrays
+from rulec.trace.trace_model import Ending
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.vocabulary_model import choices
 
@@ -29,16 +30,36 @@ MOST_ENTRIES = 1 << 22
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Choices:
+    """Choices of objects for variables of these names, one a row, those of a ``trace`` together.
+
+    ``items`` (rows x variables) are numbers of objects, as tables count them.
+    """
+
+    variables: tuple[str, ...]
+    trace: Places
+    items: Places
+
+    def __len__(self) -> int:
+        return len(self.trace)
+
+    def at(self, rows: Places) -> Choices:
+        """Some of the rows."""
+        return Choices(self.variables, self.trace[rows], self.items[rows])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class FormulaTruth:
     """The truth of a formula at every state, a row for each choice of objects.
 
-    ``choices`` are the objects by the variables' order, ``first`` and ``last`` (one a row) the
-    states in which all of them are there. ``sure`` and ``possible`` (rows x states) are False
+    ``rows`` are which of the choices that were asked about; ``first`` and ``last`` (one a row) the
+    states in which all their objects are there. ``sure`` and ``possible`` (rows x states) are False
     elsewhere. Behind the last state of a row that goes on for ever are those until nothing changes
     any more.
     """
 
-    choices: tuple[tuple[str, ...], ...]
+    choices: Choices
+    rows: Places
     first: Places
     last: Places
     sure: NDArray[np.bool_]
@@ -48,7 +69,7 @@ class FormulaTruth:
 def tables_of(trace: Trace | TraceArrays, vocabulary: Vocabulary) -> NameTables:
     """What a checked trace says of names."""
     if isinstance(trace, Trace):
-        return StateTables(trace, vocabulary)
+        return tables_of_trace(trace, vocabulary)
     return ArrayTables(trace, vocabulary)
 
 
@@ -73,109 +94,81 @@ class ReadyFormula:
 
 
 class TraceTruth:
-    """What formulas come to on one checked trace."""
+    """What formulas come to on checked traces that are alike, which end as ``ends`` says."""
 
-    def __init__(
-        self, trace: Trace | TraceArrays, vocabulary: Vocabulary, semantics: Semantics
-    ) -> None:
-        self._objects = trace.objects
-        self._tables = tables_of(trace, vocabulary)
-        self.n_states = self._tables.n_states
-        self._places = {item: place for place, item in enumerate(self._tables.objects)}
-        self._spans = self._tables.spans
+    def __init__(self, tables: NameTables, semantics: Semantics, ends: Ending) -> None:
+        self.tables = tables
+        self._spans = tables.spans
         self._ends: RowEnding = "goes on" if semantics == "stutter" else "over"
-        if trace.ends == "cut":
+        if ends == "cut":
             self._ends = "cut"
 
-    def of(
-        self,
-        ready: ReadyFormula,
-        variables: Sequence[Variable] = (),
-        choice: tuple[str, ...] | None = None,
-    ) -> Iterator[FormulaTruth]:
-        """The truth of a formula for every choice of distinct objects that are there together.
+    def of(self, ready: ReadyFormula, asked: Choices) -> Iterator[FormulaTruth]:
+        """The truth of a formula for choices of objects that are there together.
 
-        With a ``choice`` it is that of these objects alone. There are several parts where there is
-        much of it, or rows that end at different states, and none where it is seen to hold nowhere.
+        There are several parts where there is much of it, and none of traces in which it is seen to
+        hold nowhere.
         """
-        if self._never_holds(ready):
-            return
-        if choice is None:
-            rows = self._choices_of(variables)
-        else:
-            rows = np.array([[self._places[item] for item in choice]], dtype=np.intp)
-        for together in self._together(rows, ready.settles):
-            yield self._part(ready, variables, together)
+        rows = np.flatnonzero(self._may_hold(ready)[asked.trace])
+        most = max(1, MOST_ENTRIES // (self.tables.n_states + ready.settles + 1))
+        for begin in range(0, len(rows), most):
+            yield self._part(ready, asked, rows[begin : begin + most])
 
-    def stretches_of(self, variables: Sequence[Variable]) -> tuple[Places, Places]:
-        """The first and the last state in which each choice of objects is there."""
-        return self._stretch(self._choices_of(variables))
-
-    def _choices_of(self, variables: Sequence[Variable]) -> Places:
-        """The choices (rows x variables) as places of objects that are there together."""
-        if not variables:
-            return np.empty((1, 0), dtype=np.intp)
+    def choices_of(self, variables: Sequence[Variable]) -> Choices:
+        """All choices of distinct objects of these types that are there together."""
+        tables = self.tables
         wanted = [variable.type for variable in variables]
-        chosen = choices(wanted, self._objects, self._tables.vocabulary)
-        places = [[self._places[item] for item in row] for row in chosen]
-        rows = np.array(places, dtype=np.intp).reshape(-1, len(variables))
-        first, last = self._stretch(rows)
-        return rows[first <= last]
+        numbers = {str(number): kind for number, kind in enumerate(tables.types)}
+        chosen = [list(map(int, row)) for row in choices(wanted, numbers, tables.vocabulary)]
+        own = np.array(chosen, dtype=np.intp).reshape(len(chosen), len(variables))
+        trace = np.repeat(np.arange(tables.n_traces), len(own))
+        items = np.tile(own, (tables.n_traces, 1)) + (trace * len(numbers))[:, None]
+        every = Choices(tuple([variable.name for variable in variables]), trace, items)
+        first, last = self.stretch_of(every)
+        return every.at(np.flatnonzero(first <= last))
 
-    def _stretch(self, rows: Places) -> tuple[Places, Places]:
-        n_rows, n_variables = rows.shape
-        if not n_variables:
-            whole = np.array([self.n_states - 1] * n_rows, dtype=np.intp)
-            return np.zeros(n_rows, dtype=np.intp), whole
-        spans = self._spans[rows]
+    def stretch_of(self, chosen: Choices) -> tuple[Places, Places]:
+        """The first and the last state in which each choice of objects is there."""
+        if not chosen.variables:
+            return np.zeros(len(chosen), dtype=np.intp), self.tables.last[chosen.trace]
+        spans = self._spans[chosen.items]
         return spans[:, :, 0].max(axis=1), spans[:, :, 1].min(axis=1)
 
-    def _together(self, rows: Places, settles: int) -> Iterator[Places]:
-        """Rows that are evaluated together."""
-        most = max(1, MOST_ENTRIES // (self.n_states + settles + 1))
-        if self._ends != "goes on":
-            groups = [rows]
-        else:
-            _, last = self._stretch(rows)
-            groups = [rows[last == end] for end in np.unique(last)]
-        for group in groups:
-            for begin in range(0, len(group), most):
-                yield group[begin : begin + most]
-
-    def _part(
-        self, ready: ReadyFormula, variables: Sequence[Variable], rows: Places
-    ) -> FormulaTruth:
-        first, last = self._stretch(rows)
-        states = np.arange(self.n_states)
-        end = last
+    def _part(self, ready: ReadyFormula, asked: Choices, rows: Places) -> FormulaTruth:
+        own = asked.at(rows)
+        first, last = self.stretch_of(own)
+        states, end = np.arange(self.tables.n_states), last
         if self._ends == "goes on":
-            # All rows end together; the last state is repeated until nothing changes any more.
-            count = int(last[0]) + 1 + ready.settles
-            states = np.minimum(np.arange(count), int(last[0]))
-            end = np.full_like(last, count - 1)
-        bound = {variable.name: rows[:, place] for place, variable in enumerate(variables)}
+            # The last state is repeated until nothing changes any more.
+            states, end = np.arange(len(states) + ready.settles), last + ready.settles
+            states = np.minimum(states, last[:1] if (last == last[0]).all() else last[:, None])
+        bound = dict(zip(own.variables, own.items.T, strict=True))
         stretches = RowStretches(first[:, None], end[:, None], self._ends)
-        truth = self._evaluation(ready, stretches, states).of(ready.formula, bound)
-        state = np.arange(len(states))
+        truth = self._evaluation(ready, stretches, states, own.trace).of(ready.formula, bound)
+        state = np.arange(states.shape[-1])
         there = (state >= first[:, None]) & (state <= end[:, None])
-        objects = self._tables.objects
         return FormulaTruth(
-            tuple([tuple([objects[place] for place in row]) for row in rows.tolist()]),
-            first,
-            last,
-            truth.sure & there,
-            truth.possible & there,
+            choices=own,
+            rows=rows,
+            first=first,
+            last=last,
+            sure=truth.sure & there,
+            possible=truth.possible & there,
         )
 
-    def _never_holds(self, ready: ReadyFormula) -> bool:
-        """Whether parts that are about no object and of one state tell that it holds nowhere."""
-        begin = np.zeros((1, 1), dtype=np.intp)
-        states = np.arange(self.n_states)
-        stretches = RowStretches(begin, begin + self.n_states - 1, self._ends)
-        evaluation = self._evaluation(ready, stretches, states)
-        return any(not evaluation.of(part, {}).possible.any() for part in ready.world_parts)
+    def _may_hold(self, ready: ReadyFormula) -> NDArray[np.bool_]:
+        """The traces in which it holds nowhere by no part that is about no object and one state."""
+        tables = self.tables
+        states, last = np.arange(tables.n_states), tables.last[:, None]
+        stretches = RowStretches(np.zeros_like(last), last, self._ends)
+        evaluation = self._evaluation(ready, stretches, states, np.arange(tables.n_traces))
+        result = np.ones(tables.n_traces, dtype=bool)
+        for part in ready.world_parts:
+            result &= (evaluation.of(part, {}).possible & (states <= last)).any(axis=1)
+        return result
 
     def _evaluation(
-        self, ready: ReadyFormula, stretches: RowStretches, states: Places
+        self, ready: ReadyFormula, stretches: RowStretches, states: Places, trace: Places
     ) -> RowEvaluation:
-        return RowEvaluation(self._tables, self._spans, stretches, states, ready.comparisons)
+        own = trace if self.tables.n_traces > 1 else None
+        return RowEvaluation(self.tables, self._spans, stretches, states, ready.comparisons, own)
