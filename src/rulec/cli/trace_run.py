@@ -33,9 +33,13 @@ from rulec.trace.trace_messages import SAME_ID
 if TYPE_CHECKING:
     from rulec.code_generation.compiled_c.c_engine import CEngine
     from rulec.monitoring.explain.explanation import Explanation
+    from rulec.monitoring.moments.drive_facts import DriveFacts
 
 Answer = tuple[Sequence[Trace | RulecError], int, Verdict | NotJudged]
 """Traces, which of them, and its verdict, or why there is none."""
+
+AnswerWithFacts = tuple[Answer, "DriveFacts | None"]
+"""Beside an answer what rows of drives say, if they are wanted."""
 
 
 @dataclass
@@ -64,15 +68,15 @@ class TraceRun:
             rows: list[Mapping[str, object]] = []
             left, traces_before = self.to_explain, self.total.judged
             ids: set[str] | None = set()
-            for traces, place, answer in self._answers(file, form, assumed):
-                ids = self._ids(ids, file, (traces, place, answer))
+            for one, facts in self._answers(file, form, assumed):
+                ids = self._ids(ids, file, one)
+                answer = one[-1]
                 before = len(findings)
                 if isinstance(answer, NotJudged):
                     self._not_judged(file, answer, findings)
                 else:
-                    left -= self._judged(file, (traces, place, answer), left, findings)
-                if self.to.to_rows is not None:
-                    rows += self._rows(file, (traces, place, answer), findings[before:])
+                    left -= self._judged(file, one, left, findings)
+                rows += self._rows(file, answer, facts, findings[before:])
             if self.to.wants_findings:
                 drives = self.total.judged - traces_before
                 self.to.found(FoundInRecording(file, "", drives, tuple(findings), tuple(rows)))
@@ -100,19 +104,20 @@ class TraceRun:
         return None
 
     def _rows(
-        self, file: str, answer: Answer, found: Sequence[VerdictFinding]
+        self,
+        file: str,
+        answer: Verdict | NotJudged,
+        facts: DriveFacts | None,
+        found: Sequence[VerdictFinding],
     ) -> Iterator[Mapping[str, object]]:
-        """The rows of a trace, and of what was found of it."""
-        to_rows = self.to.to_rows
-        assert to_rows is not None, "they are wanted"
-        traces, place, verdict = answer
-        own = {"file": file, "vehicle": verdict.trace or ""}
-        if isinstance(verdict, NotJudged):
-            yield to_rows.of_nothing(own, verdict.error.diagnostics[0].message)
+        """The rows of a trace, and of what was found of it, if they are wanted."""
+        own = {"file": file, "vehicle": answer.trace or ""}
+        if self.to.to_rows is None:
             return
-        trace = cast("Trace", traces[place])
-        used = rulebook_for(traces, place, self.rules)
-        yield from to_rows.of_trace(trace, verdict, own, used, found=found)
+        if isinstance(answer, NotJudged):
+            yield self.to.to_rows.of_nothing(own, answer.error.diagnostics[0].message)
+        elif facts is not None:
+            yield from self.to.to_rows.of_trace(facts, answer, own, found)
 
     def _not_judged(self, file: str, answer: NotJudged, findings: list[VerdictFinding]) -> None:
         self.total.not_judged += 1
@@ -169,7 +174,9 @@ class TraceRun:
             findings += trace_findings(file, traces[place], verdict, used, explained)
         return len(explained)
 
-    def _answers(self, file: str, form: Format | None, assumed: Assumptions) -> Iterator[Answer]:
+    def _answers(
+        self, file: str, form: Format | None, assumed: Assumptions
+    ) -> Iterator[AnswerWithFacts]:
         try:
             if file == "-":
                 stream = standard_input()
@@ -180,29 +187,39 @@ class TraceRun:
                 self.opened = True
                 yield from self._in_stream(stream, file, form or format_of(file), assumed)
         except RulecError as error:
-            yield [error], 0, NotJudged(None, error)
+            yield ([error], 0, NotJudged(None, error)), None
 
     def _in_stream(
         self, stream: IO[bytes], name: str, form: Format, assumed: Assumptions
-    ) -> Iterator[Answer]:
+    ) -> Iterator[AnswerWithFacts]:
         """Answers of a stream. Raises RulecError R0718 for too many refused traces in a row."""
         size = None if name == "standard input" else _size(stream)
         refused = 0
         with progress(f"judging {name}", size) as tell:
             for chunk in read_chunks(stream, name, form, together=self.engine is None):
-                for traces, place, answer in self._in_chunk(assumed.of(chunk)):
+                for one, facts in self._in_chunk(assumed.of(chunk)):
+                    answer = one[-1]
                     refused = refused + 1 if isinstance(answer, NotJudged) else 0
                     if isinstance(answer, NotJudged):
                         REFUSED.within(refused, answer.error.diagnostics[0].place, name)
-                    yield traces, place, answer
+                    yield one, facts
                 if size is not None:
                     tell(stream.tell())
 
-    def _in_chunk(self, items: Items) -> Iterator[Answer]:
+    def _in_chunk(self, items: Items) -> Iterator[AnswerWithFacts]:
         judge = partial(verify_items, rulebook=self.rules)
         for traces, answers in (judge if self.engine is None else self.engine.verify_items)(items):
+            facts: Iterator[DriveFacts] = iter(())
+            if self.to.to_rows is not None:
+                # What counts opportunities, 10 ms: only where rows of drives are wanted.
+                from rulec.monitoring.moments.drive_facts import facts_of_many
+
+                answers = list(answers)
+                verdicts = [one if isinstance(one, Verdict) else None for one in answers]
+                facts = iter(facts_of_many(traces, verdicts, self.rules))
             for place, answer in enumerate(answers):
-                yield traces, place, answer
+                own = next(facts, None) if isinstance(answer, Verdict) else None
+                yield (traces, place, answer), own
 
 
 def _size(stream: IO[bytes]) -> int | None:

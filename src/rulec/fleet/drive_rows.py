@@ -12,16 +12,12 @@ from rulec.extraction.recording_verdicts import DriveVerdict, RecordingVerdicts
 from rulec.extraction.to_trace import Drive
 from rulec.fleet.finding_columns import COLUMNS, Cell, Row
 from rulec.fleet.judged_by import JudgedBy
-from rulec.monitoring.moments.exposure import Exposure, exposures
-from rulec.monitoring.moments.road_class import road_classes
-from rulec.monitoring.moments.trace_truth import tables_of
+from rulec.monitoring.moments.drive_facts import DriveFacts, facts_of
+from rulec.monitoring.moments.exposure import Exposure
 from rulec.monitoring.verdict import NotJudged, OutcomeName, Verdict
 from rulec.report.verdict_findings.found_in_drives import DriveFindings
-from rulec.report.verdict_findings.found_in_traces import trace_findings
 from rulec.report.verdict_findings.verdict_finding import COLUMNS as OF_FINDINGS
 from rulec.report.verdict_findings.verdict_finding import VerdictFinding, named_rule
-from rulec.trace import Trace
-from rulec.trace.trace_arrays import TraceArrays
 
 MOVED_M = 0.5
 """Places of recordings waver by less, also of who stands."""
@@ -77,22 +73,15 @@ class DriveRows:
 
     def of_trace(
         self,
-        trace: Trace,
+        facts: DriveFacts,
         verdict: Verdict,
         own: Row,
-        used: CompiledRulebook,
-        *,
-        found: Sequence[VerdictFinding] | None = None,
+        found: Sequence[VerdictFinding],
     ) -> Iterator[Row]:
-        """The rows of a trace; ``own`` are columns that name it, ``used`` fits its step.
-
-        What was ``found`` of it is looked for only if that has not been done before.
-        """
-        times = (0.0, round((len(trace.states) - 1) * trace.step_s, 9))
-        yield self._judged(own, verdict, trace, times)
-        yield from self._rules(own, verdict, trace)
-        if found is None:
-            found = list(trace_findings(str(own.get("file", "")), trace, verdict, used, []))
+        """The rows of a trace, and of what was ``found``; ``own`` are columns that name it."""
+        times = (0.0, round((facts.n_states - 1) * facts.step_s, 9))
+        yield self._judged(own, verdict, facts, times)
+        yield from self._rules(own, verdict, facts)
         yield from self._findings(own, verdict, found)
 
     def of_nothing(self, own: Row, why: str) -> Row:
@@ -108,21 +97,14 @@ class DriveRows:
             yield self.of_nothing(own, verdict.error.diagnostics[0].message)
             return
         times = (drive.time_s(0), drive.time_s(None))
-        yield {
-            **self._judged(own, verdict, drive.arrays, times),
-            "distance_m": driven_m(drive),
-        }
-        yield from self._rules(own, verdict, drive.arrays)
+        facts = facts_of(drive.arrays, self.rules, verdict)
+        yield {**self._judged(own, verdict, facts, times), "distance_m": driven_m(drive)}
+        yield from self._rules(own, verdict, facts)
         yield from self._findings(own, verdict, found)
 
     def _judged(
-        self,
-        own: Row,
-        verdict: Verdict,
-        trace: Trace | TraceArrays,
-        times: tuple[float, float],
+        self, own: Row, verdict: Verdict, facts: DriveFacts, times: tuple[float, float]
     ) -> dict[str, Cell]:
-        n_states = len(trace.states) if isinstance(trace, Trace) else trace.n_states
         return {
             **self.shared,
             **own,
@@ -130,13 +112,13 @@ class DriveRows:
             "outcome": OUTCOMES[verdict.satisfied],
             "from_s": times[0],
             "to_s": times[1],
-            "road": road_classes(tables_of(trace, self.rules.vocabulary))[0],
-            "states": n_states,
+            "road": facts.road,
+            "states": facts.n_states,
             # Each state stands for the time up to the next one, the last for a step, too.
-            "duration_s": round(n_states * trace.step_s, 9),
+            "duration_s": round(facts.n_states * facts.step_s, 9),
         }
 
-    def _rules(self, own: Row, verdict: Verdict, trace: Trace | TraceArrays) -> Iterator[Row]:
+    def _rules(self, own: Row, verdict: Verdict, facts: DriveFacts) -> Iterator[Row]:
         """A row for each rule: the worst of its outcomes, and how often it was put to the test."""
         outcomes: dict[str, str] = dict.fromkeys(self._of_rules, "kept")
         outcomes |= {result.rule: "open" for result in verdict.open}
@@ -144,14 +126,14 @@ class DriveRows:
         not_judged = {rule.rule: rule for rule in verdict.not_judged}
         outcomes |= dict.fromkeys(not_judged, "not_judged")
         shared = {**self.shared, **own, "kind": "rule"}
-        exposure = exposures(trace, self.rules, verdict)
         for name, about in self._of_rules.items():
             row: dict[str, Cell] = {**shared, **about, "outcome": outcomes[name]}
             if name in not_judged:
                 untold = not_judged[name]
                 row |= {"open_on": tuple(untold.untold), "because": untold.why}
-            if name in exposure:
-                row |= {field.name: getattr(exposure[name], field.name) for field in _EXPOSURE}
+            if name in facts.exposure:
+                exposure = facts.exposure[name]
+                row |= {field.name: getattr(exposure, field.name) for field in _EXPOSURE}
             yield row
 
     def _findings(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,8 +12,11 @@ from rulec.fleet.finding_columns import Row
 from rulec.fleet.fleet_messages import cut_drive
 from rulec.fleet.table_kind import FILE, MAP, ROWS, SeenKeys, keys_of, lacking
 from rulec.monitoring.assumptions import Assumptions
-from rulec.monitoring.batch.batch_verify import rulebook_for, verify_items
-from rulec.monitoring.verdict import NotJudged
+from rulec.monitoring.batch.batch_verify import Answer, Items, rulebook_for, verify_items
+from rulec.monitoring.moments.drive_facts import DriveFacts, facts_of_many
+from rulec.monitoring.verdict import NotJudged, Verdict
+from rulec.report.verdict_findings.found_in_traces import trace_findings
+from rulec.report.verdict_findings.verdict_finding import VerdictFinding
 from rulec.trace.formats.table_reader import OBJECT, OTHER, STEP, TRACE
 from rulec.trace.trace_model import Trace
 
@@ -77,17 +80,36 @@ class TraceTableJudge:
                 yield to_rows.of_nothing({**own, "vehicle": one.name}, _why(error))
             return
         for chunk in chunks:
-            judged = verify_items(self.assumed.of(chunk), to_rows.rules)
-            parts = ((traces, *one) for traces, answers in judged for one in enumerate(answers))
-            for traces, place, answer in parts:
-                named = {**own, "vehicle": next(waiting).name}
-                if isinstance(answer, NotJudged):
-                    yield to_rows.of_nothing(named, _why(answer.error))
-                    continue
-                trace = traces[place]
-                assert isinstance(trace, Trace), "it has been judged"
-                used = rulebook_for(traces, place, to_rows.rules)
-                yield from to_rows.of_trace(trace, answer, named, used)
+            for traces, answers in verify_items(self.assumed.of(chunk), to_rows.rules):
+                for place, row in enumerate(self._with_facts(traces, answers)):
+                    named = {**own, "vehicle": next(waiting).name}
+                    if isinstance(row, str):
+                        yield to_rows.of_nothing(named, row)
+                        continue
+                    verdict, facts = row
+                    found = self._found(traces, place, verdict, own)
+                    yield from to_rows.of_trace(facts, verdict, named, found)
+
+    def _with_facts(
+        self, traces: Items, answers: Iterable[Answer]
+    ) -> list[tuple[Verdict, DriveFacts] | str]:
+        """For each trace its verdict and what rates need, or why it has none."""
+        # The reason, and not all that is said with it: a table may have as many as rows.
+        short = [_why(one.error) if isinstance(one, NotJudged) else one for one in answers]
+        verdicts = [None if isinstance(one, str) else one for one in short]
+        facts = iter(facts_of_many(traces, verdicts, self.to_rows.rules))
+        return [one if isinstance(one, str) else (one, next(facts)) for one in short]
+
+    def _found(
+        self, traces: Items, place: int, verdict: Verdict, own: Mapping[str, str]
+    ) -> list[VerdictFinding]:
+        """What was found of a trace, which is made only if something was."""
+        if not verdict.violations and not verdict.open:
+            return []
+        trace = traces[place]
+        assert isinstance(trace, Trace), "it has been judged"
+        used = rulebook_for(traces, place, self.to_rows.rules)
+        return list(trace_findings(own.get(FILE, ""), trace, verdict, used, []))
 
 
 def _why(error: RulecError) -> str:

@@ -1,16 +1,23 @@
 """Opportunities counted by hand, and on random rulebooks beside the verdict."""
 
+from dataclasses import replace
 from fractions import Fraction
+from io import BytesIO
+from random import Random
 
 import pytest
 from hypothesis import Phase, given, settings
 
 from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_in
+from rulec.monitoring.batch.batch_verify import verify_items
+from rulec.monitoring.moments import drive_facts
+from rulec.monitoring.moments.drive_facts import facts_of, facts_of_many
 from rulec.monitoring.moments.exposure import Exposure, exposures
 from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
+from rulec.trace.formats.trace_files import kinds_in, read_chunks, write_traces
 from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.rulebooks import compile_here
 from support.generators.blurred_traces import blurred
@@ -167,12 +174,15 @@ def test_violations_lie_in_opportunities(chance):
     book = rulebook(chance, Fraction(1))
     compiled = compile_here(book, Fraction(1))
     names = {name for rule in book.rules for name in names_in(rule.formula)}
-    for whole in traces(chance, Fraction(1))[:3]:
-        for trace in (whole, blurred(chance, whole, names)):
+    judged = []
+    for whole in traces(chance, Fraction(1)):
+        back = replace(whole, states=whole.states[::-1]) if not whole.present else whole
+        for trace in (whole, back, blurred(chance, whole, names)):
             try:
                 verdict = verify(trace, compiled)
             except RulecError:
                 continue
+            judged.append((trace, verdict))
             found = exposures(trace, compiled, verdict)
             for name, own in found.items():
                 violated = [one for one in verdict.violations if one.rule == name]
@@ -183,3 +193,51 @@ def test_violations_lie_in_opportunities(chance):
                 assert (own.violated > 0) == bool(violated)
                 assert (own.perhaps_violated > 0) == bool(violated or doubtful)
                 assert own.opportunities_s <= own.perhaps_opportunities_s <= len(trace.states)
+    items, verdicts = zip(*judged, strict=True) if judged else ((), ())
+    alone = [facts_of(trace, compiled, verdict) for trace, verdict in judged]
+    assert facts_of_many(items, verdicts, compiled) == alone
+
+
+@pytest.mark.parametrize("form", ["jsonl", "csv", "parquet"])
+def test_traces_of_a_file_have_the_exposures_that_each_has_alone(form, monkeypatch):
+    """Several lengths, stretches of presence and names, in columns as they were read."""
+    compiled = compile_here(parse_rulebook(HEAD + SEQUENCE + PLAIN + COUNTING), Fraction(1, 2))
+    chance = Random(3)
+    drives = [drive(chance, number) for number in range(80)]
+    alone = [facts_of(trace, compiled, verify(trace, compiled)) for trace in drives]
+    assert len({one.n_states for one in alone}) > 2
+    for name in ("r", "p", "c"):
+        assert len({one.exposure[name].violated for one in alone}) > 1
+    monkeypatch.setattr(drive_facts, "facts_of", lambda *_: pytest.fail("one was alone"))
+    stream = BytesIO()
+    write_traces(drives, stream, "t", form, kinds_in(s for x in drives for s in x.states))
+    stream.seek(0)
+    found = []
+    for chunk in read_chunks(stream, "t", form, together=True):
+        for items, answers in verify_items(chunk, compiled):
+            found += facts_of_many(items, list(answers), compiled)
+    assert found == alone
+
+
+PLAIN = (
+    "hard rule p (v: vehicle, w: vehicle) { require always (red implies beside(v) or ahead(w)) }"
+)
+COUNTING = "hard rule c { require always (red implies count v: vehicle (beside(v)) <= 1) }"
+
+
+def drive(chance, number):
+    """What a random vehicle does; a second one of half of them comes later."""
+    n_states = chance.choice([4, 4, 5, 9])
+    cars = [f"{number}.{place}" for place in range(chance.choice([1, 2, 2]))]
+    late = cars[1:] if number % 2 else []
+    states = []
+    for state in range(n_states):
+        there = [car for car in cars if state or car not in late]
+        places = {car: chance.choice(["behind", "beside", "beside", "ahead"]) for car in there}
+        said = {
+            name: {car: places[car] == name for car in there}
+            for name in ("behind", "beside", "ahead")
+        }
+        states.append({"red": chance.random() < 0.7, **said})
+    present = dict.fromkeys(late, (1, n_states - 1))
+    return Trace(f"t{number}", 0.5, dict.fromkeys(cars, "vehicle"), tuple(states), present)

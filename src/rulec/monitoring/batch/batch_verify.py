@@ -16,6 +16,7 @@ from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.batch import trace_groups
+from rulec.monitoring.batch.alike_traces import check_all_said
 from rulec.monitoring.batch.columns.block_columns import BlockGroup, columnize_block, groups_of
 from rulec.monitoring.batch.columns.column_reader import NotGivenError
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
@@ -39,7 +40,7 @@ from rulec.monitoring.verify import rulebook_for_step, rulebook_for_trace, verif
 from rulec.trace import Trace
 from rulec.trace.formats.alike_lines import AlikeLines, LineBlock
 from rulec.trace.formats.table_blocks import Block, OddTableError, outlined
-from rulec.trace.trace_columns import Array, Layout, TraceColumns
+from rulec.trace.trace_columns import TraceColumns
 from rulec.trace.trace_model import check_frame, check_presence
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
@@ -353,45 +354,12 @@ def _verify_block(
     return block, _with_others(answers, block, rulebook)
 
 
-def _changes(values: Array, layout: Layout) -> bool:
-    """Whether a column's value changes within a trace."""
-    first = values[: layout.n_traces]
-    return any(
-        bool(
-            (
-                values[layout.starts[step] : layout.starts[step + 1]]
-                != first[: layout.active(step)]
-            ).any()
-        )
-        for step in range(1, layout.n_steps)
-    )
-
-
 def _verdicts(columns: TraceColumns, rules: CompiledRulebook) -> Sequence[VerdictColumns]:
     """Verdicts on columns that were read from a file. Raises UnencodableError, NotGivenError."""
     if any(counts(axiom.formula) for axiom in rules.axioms):
         raise UnencodableError
-    if any(
-        _changes(values, columns.layout)
-        for (name, _), values in columns.values.items()
-        if name in rules.vocabulary.constants
-    ):
-        raise UnencodableError
-    for cause, effects in rules.vocabulary.implied.items():
-        if any(_lacks(columns, cause, effect) for effect in effects):
-            raise UnencodableError
+    check_all_said(columns, rules.vocabulary)
     return verify_columns(columns, rules)
-
-
-def _lacks(columns: TraceColumns, cause: str, effect: str) -> bool:
-    """Whether in some state a signal is true and another one, which it implies, is not said."""
-    values = columns.values
-    return any(
-        bool(truths.any())
-        and ((effect, items) not in values or bool((~values[effect, items] & truths).any()))
-        for (name, items), truths in values.items()
-        if name == cause
-    )
 
 
 def _verify_block_group(

@@ -43,12 +43,10 @@ class ValueRows:
         self, *, rows: NDArray[np.intp] | None = None, states: NDArray[np.intp] | None = None
     ) -> ValueRows:
         """Some of the rows, and some of the columns; these may be others in each row."""
-        chosen: Any = (slice(None) if rows is None else rows, slice(None))
-        if states is not None and states.ndim > 1:
+        chosen: Any = slice(None) if rows is None else rows
+        if states is not None:
             numbers = np.arange(len(self.values)) if rows is None else rows
             chosen = numbers[:, None], states
-        elif states is not None:
-            chosen = chosen[0], states
         values = self.values[chosen]
         upper = values if self.upper is self.values else self.upper[chosen]
         return ValueRows(values, upper, self.unknown[chosen])

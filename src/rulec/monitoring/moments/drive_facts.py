@@ -1,0 +1,81 @@
+"""What rates need of judged traces beside their verdicts: how long, on what road, how exposed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.diagnostics import RulecError
+from rulec.monitoring.batch.alike_traces import alike_traces
+from rulec.monitoring.batch.trace_groups import Names
+from rulec.monitoring.moments.exposure import Exposure, alike_exposures
+from rulec.monitoring.moments.name_tables import ColumnTables, NameTables
+from rulec.monitoring.moments.road_class import road_classes
+from rulec.monitoring.moments.trace_truth import TraceTruth, tables_of
+from rulec.monitoring.verdict import Verdict
+from rulec.trace import Trace
+from rulec.trace.trace_arrays import TraceArrays
+from rulec.trace.trace_model import Ending
+
+
+@dataclass(frozen=True, slots=True)
+class DriveFacts:
+    """Of a trace its states, ``step_s`` seconds apart, its class of road, and its exposure."""
+
+    n_states: int
+    step_s: float
+    road: str
+    exposure: Mapping[str, Exposure]
+
+
+def facts_of(
+    trace: Trace | TraceArrays, rulebook: CompiledRulebook, verdict: Verdict
+) -> DriveFacts:
+    """The facts of one checked trace."""
+    tables = tables_of(trace, rulebook.vocabulary)
+    names = [tuple(trace.objects)]
+    (found,) = _facts(tables, trace.ends, trace.step_s, rulebook, [verdict], names)
+    return found
+
+
+def facts_of_many(
+    items: Sequence[Trace | RulecError],
+    verdicts: Sequence[Verdict | None],
+    rulebook: CompiledRulebook,
+) -> list[DriveFacts]:
+    """Those of what was read and has a verdict, in order; what is alike is looked at together."""
+    judged = {place: verdict for place, verdict in enumerate(verdicts) if verdict is not None}
+    found: dict[int, DriveFacts] = {}
+    for alike in alike_traces(items, [*judged], rulebook.vocabulary):
+        own = [judged.get(place, _NOTHING) for place in alike.places]
+        names = [alike.names(number) for number in range(len(own))]
+        tables = ColumnTables(alike.columns, rulebook.vocabulary, alike.told)
+        step_s = alike.columns.step_s
+        facts = _facts(tables, alike.ends, step_s, rulebook, own, names)
+        found |= zip(alike.places, facts, strict=True)
+    for place in judged.keys() - found.keys():
+        trace = items[place]
+        assert isinstance(trace, Trace), "it has been judged"
+        found[place] = facts_of(trace, rulebook, judged[place])
+    return [found[place] for place in judged]
+
+
+_NOTHING = Verdict("", ())
+
+
+def _facts(
+    tables: NameTables,
+    ends: Ending,
+    step_s: float,
+    rulebook: CompiledRulebook,
+    verdicts: Sequence[Verdict],
+    names: Sequence[Names],
+) -> list[DriveFacts]:
+    truth = TraceTruth(tables, rulebook.semantics, ends)
+    found = alike_exposures(truth, step_s, rulebook, verdicts, names)
+    columns = tables.last.tolist(), road_classes(tables), found
+    return [
+        DriveFacts(last + 1, step_s, road, exposure)
+        for last, road, exposure in zip(*columns, strict=True)
+    ]
