@@ -10,13 +10,12 @@ from rulec.diagnostics import RulecError
 from rulec.monitoring.batch.alike_traces import alike_traces
 from rulec.monitoring.batch.trace_groups import Names
 from rulec.monitoring.moments.exposure import Exposure, alike_exposures
-from rulec.monitoring.moments.name_tables import ColumnTables, NameTables
+from rulec.monitoring.moments.name_tables import ColumnTables
 from rulec.monitoring.moments.road_class import road_classes
 from rulec.monitoring.moments.trace_truth import TraceTruth, tables_of
 from rulec.monitoring.verdict import Verdict
 from rulec.trace import Trace
 from rulec.trace.trace_arrays import TraceArrays
-from rulec.trace.trace_model import Ending
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +33,8 @@ def facts_of(
 ) -> DriveFacts:
     """The facts of one checked trace."""
     tables = tables_of(trace, rulebook.vocabulary)
-    names = [tuple(trace.objects)]
-    (found,) = _facts(tables, trace.ends, trace.step_s, rulebook, [verdict], names)
+    truth = TraceTruth(tables, rulebook.semantics, trace.ends)
+    (found,) = _facts(truth, trace.step_s, rulebook, [verdict], [tuple(trace.objects)])
     return found
 
 
@@ -51,8 +50,8 @@ def facts_of_many(
         own = [judged.get(place, _NOTHING) for place in alike.places]
         names = [alike.names(number) for number in range(len(own))]
         tables = ColumnTables(alike.columns, rulebook.vocabulary, alike.told)
-        step_s = alike.columns.step_s
-        facts = _facts(tables, alike.ends, step_s, rulebook, own, names)
+        truth = TraceTruth(tables, rulebook.semantics, alike.ends)
+        facts = _facts(truth, alike.columns.step_s, rulebook, own, names)
         found |= zip(alike.places, facts, strict=True)
     for place in judged.keys() - found.keys():
         trace = items[place]
@@ -65,16 +64,14 @@ _NOTHING = Verdict("", ())
 
 
 def _facts(
-    tables: NameTables,
-    ends: Ending,
+    truth: TraceTruth,
     step_s: float,
     rulebook: CompiledRulebook,
     verdicts: Sequence[Verdict],
     names: Sequence[Names],
 ) -> list[DriveFacts]:
-    truth = TraceTruth(tables, rulebook.semantics, ends)
     found = alike_exposures(truth, step_s, rulebook, verdicts, names)
-    columns = tables.last.tolist(), road_classes(tables), found
+    columns = truth.tables.last.tolist(), road_classes(truth.tables), found
     return [
         DriveFacts(last + 1, step_s, road, exposure)
         for last, road, exposure in zip(*columns, strict=True)
