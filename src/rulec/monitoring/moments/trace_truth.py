@@ -170,5 +170,11 @@ class TraceTruth:
     def _evaluation(
         self, ready: ReadyFormula, stretches: RowStretches, states: Places, trace: Places
     ) -> RowEvaluation:
-        own = trace if self.tables.n_traces > 1 else None
-        return RowEvaluation(self.tables, self._spans, stretches, states, ready.comparisons, own)
+        return RowEvaluation(
+            self.tables,
+            self._spans,
+            stretches,
+            states,
+            comparisons=ready.comparisons,
+            trace=trace if self.tables.n_traces > 1 else None,
+        )
