@@ -21,7 +21,13 @@ _EITHER = frozenset(
         *("conflict_from_right", "conflict_on_roundabout", "congested", "crosses_light_line"),
         *("crosses_side_road", "crosses_stop_line", "crossing_kind", "crossing_use"),
         *("crossing_zone", "dense_all_lanes", "distance_to_crossing", "divided", "ego_length"),
-        *("ego_type", "emergency_vehicle_near", "enters_junction", "enters_roundabout"),
+        *(
+            "ego_on_call",
+            "ego_type",
+            "emergency_vehicle_near",
+            "enters_junction",
+            "enters_roundabout",
+        ),
         *("exit_clear", "far_lane_queue", "gap", "give_way_sign", "goes_across", "in_the_road"),
         *("in_way_of_oncoming", "indicator", "junction_zone", "lane", "lane_change"),
         *(

@@ -390,4 +390,24 @@ def test_the_brightest_of_ego_s_lamps(lit, night, expected):
     assert expected in (None, signals.values("headlamps")[0])
     assert signals.world["rear_fog_lamps"].tolist() == [*(["rear_fog_lamp" in lit] * 3), False]
     # Of the others the file says nothing
-    assert signals.world.keys() == {"headlamps", "rear_fog_lamps"}
+    assert signals.world.keys() == {"headlamps", "rear_fog_lamps", "ego_on_call"}
+
+
+@pytest.mark.parametrize(
+    ("kind", "blue", "expected"),
+    [
+        ("priorityVehicle", None, "?" * 8),  # nobody tells of its lamps
+        ("priorityVehicle", (), "F" * 8),
+        ("priorityVehicle", (0, 1, 6, 7), "TTTTTTTT"),  # a flash is dark for a while
+        ("priorityVehicle", (7,), "FFFFFTTT"),
+        ("car", None, "F" * 8),
+        ("vehicle", None, "F" * 8),
+        ("car", (0,), "TTTFFFFF"),  # a police car without its colours
+    ],
+)
+def test_ego_is_on_call_while_its_blue_lights_are_on(kind, blue, expected):
+    ego = vehicle(7, {k: (10.0 * k, 0) for k in range(8)}, kind, speed=20)
+    if blue is not None:
+        lamps = {k: frozenset({"blue_light"} if k in blue else ()) for k in range(8)}
+        ego = replace(ego, shows=frozenset({"blue_light"}), lamps=lamps)
+    assert told(lamp_signals, "ego_on_call", two_way(), ego) == expected

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.conduct.lamp_signals import FLASH_S
 from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import (
@@ -25,8 +26,6 @@ from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import JOINING, Lamp
 
 _PUBLIC = ("bus", "rail_vehicle")
-_FLASH_S = 1.0
-"""Lights that flash are on if they are lit within so long."""
 
 _FACES = -0.5
 """The cosine between the directions of ego's road and of one who has come the other way on it."""
@@ -132,7 +131,7 @@ def _lit(context: DriveContext, lamp: Lamp) -> tuple[Flags, Flags]:
 
 
 def _flashing(lit: Flags, context: DriveContext) -> Flags:
-    return context.spans.within(lit, round(_FLASH_S / context.recording.step_s), around=True)
+    return context.spans.within(lit, round(FLASH_S / context.recording.step_s), around=True)
 
 
 def _comes_near(context: DriveContext) -> Flags:

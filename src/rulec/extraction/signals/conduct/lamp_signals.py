@@ -15,6 +15,8 @@ _FOG_LAMPS: tuple[tuple[str, Lamp], ...] = (
 )
 _HEADLAMPS = ("lamps_off", "dipped_beam", "main_beam")
 _BEAMS = frozenset[Lamp]({"dipped_beam", "main_beam"})
+FLASH_S = 1.0
+"""Lights that flash are on if they are lit within so long."""
 
 
 def lamp_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
@@ -55,6 +57,23 @@ def _fog_lamps(context: DriveContext) -> SignalColumns:
     )
 
 
+def _on_call(context: DriveContext) -> SignalColumns:
+    """Ego's blue lights; who is no emergency vehicle has none, unless they are seen."""
+    egos, spread = context.ego.participants, context.spans.spread
+    may_be = spread([ego.type == "priorityVehicle" for ego in egos])
+    shows = spread(["blue_light" in ego.shows for ego in egos])
+    if not (may_be | shows).any():
+        return SignalColumns({"ego_on_call": may_be})
+    lit = ego_lamps(context)
+    blue = np.array(["blue_light" in (lamps or ()) for lamps in lit], dtype=bool)
+    told = shows & np.array([lamps is not None for lamps in lit], dtype=bool)
+    steps = round(FLASH_S / context.recording.step_s)
+    flashing = context.spans.within(blue[None], steps, around=True)[0]
+    return SignalColumns(
+        {"ego_on_call": flashing}, unknown={"ego_on_call": may_be & ~told & ~flashing}
+    )
+
+
 @once
 def ego_lamps(context: DriveContext) -> list[frozenset[Lamp] | None]:
     """Ego's lamps that are lit, by state; None where the recording does not tell."""
@@ -68,5 +87,6 @@ def ego_lamps(context: DriveContext) -> list[frozenset[Lamp] | None]:
 
 _PASSES: Passes = {
     ("headlamps",): _headlamps,
+    ("ego_on_call",): _on_call,
     ("front_fog_lamps", "rear_fog_lamps"): _fog_lamps,
 }
