@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from rulec.extraction.signals.map.junction_signals import junction_signals
 from rulec.extraction.signals.map.map_signals import (
     NO_CROSSING_M,
     NO_LIMIT_KMH,
@@ -67,6 +68,21 @@ def test_signs_of_lines_hold_until_the_line_is_crossed():
     late = map_signals(context([90, 103, 107], first=signs)).world
     assert late["stop_sign"].tolist() == [True, True, False]
     assert late["no_overtaking_sign"].tolist() == [True, False, False]
+
+
+def test_a_sign_holds_when_one_crosses_its_line_askew():
+    """A corner of the body is 0.2 m ahead of the middle of its front, and over the line before it.
+
+    That middle is at 99.9, 100.1, 100.2, 100.4 and 100.6; who is beyond by up to 0.3 m stands there.
+    """
+    middles = [97.9, 98.1, 98.2, 98.4, 98.6]
+    lanes = [straight(1, 0, 100, successors=(2,), signs=frozenset({"STOP"}))]
+    lanes.append(straight(2, 100, 200, predecessors=(1,)))
+    body = vehicle(7, {k: (x, 0) for k, x in enumerate(middles)}, heading=0.6)
+    askew = context_of(recording(lanes, [body]), ("1", "2"))
+    crosses = junction_signals(askew).world["crosses_stop_line"]
+    assert crosses.tolist() == [False, False, False, True, False]
+    assert map_signals(askew).world["stop_sign"].tolist() == [True, True, True, True, False]
 
 
 def test_the_distance_to_the_next_crossing_is_from_front_to_its_edge():

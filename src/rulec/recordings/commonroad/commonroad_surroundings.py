@@ -62,7 +62,8 @@ def junctions(
     """Lanelet -> the intersection that it lies in, by the file's own intersections.
 
     Ways through an intersection may be of several lanelets, of which it names the first: those that
-    nobody crosses, before others that are crossed, only lead to it.
+    nobody crosses, before others that are crossed, only lead to it, unless their type says that
+    they lie in it, as where one waits for oncoming traffic before one turns across its way.
     """
     waiting = list(intersections)
     crossed = _crossed(list(lanelets.values())) if waiting else set()
@@ -71,7 +72,8 @@ def junctions(
         for start in intersection.starts:
             if start in lanelets:
                 chain = _crossed_after(start, lanelets, crossed)
-                members = chain if start in crossed or not chain else chain - {start}
+                within = start in crossed or "intersection" in lanelets[start].types
+                members = chain | {start} if within else chain
                 inside.update(dict.fromkeys(members or {start}, intersection.id))
     return inside
 

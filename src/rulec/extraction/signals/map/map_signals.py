@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.ego_lanelets import lanelets_at, map_contents, own_lanelets
 from rulec.extraction.signals.map.junction_signals import stop_line
-from rulec.extraction.signals.measured_numbers import corner_ahead
+from rulec.extraction.signals.measured_numbers import corner_ahead, own_front
 from rulec.extraction.signals.settling import only_when
 from rulec.extraction.signals.signal_columns import (
     SignalColumn,
@@ -103,8 +103,7 @@ def _holds_to_line(context: DriveContext, signs: Set[str]) -> Flags:
 
     By where ego's front was one state before, so that it still holds when ego crosses the line.
     """
-    front = context.ego_extents.s_max[0]
-    before, holds = context.spans.before(front), np.zeros(context.states, dtype=bool)
+    before, holds = context.spans.before(own_front(context)), np.zeros(context.states, dtype=bool)
     for piece, row in enumerate(context.road.rows):
         if any(lanelet is not None and signs & lanelet.signs for lanelet in row):
             begins = float(context.road.borders[piece])
