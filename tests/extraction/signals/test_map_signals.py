@@ -73,7 +73,7 @@ def test_signs_of_lines_hold_until_the_line_is_crossed():
 def test_a_sign_holds_when_one_crosses_its_line_askew():
     """A corner of the body is 0.2 m ahead of the middle of its front, and over the line before it.
 
-    That middle is at 99.9, 100.1, 100.2, 100.4 and 100.6; who is beyond by up to 0.3 m stands there.
+    That middle is at 99.9, 100.1, 100.2, 100.4, 100.6 m. Who is beyond by up to 0.3 m stands there.
     """
     middles = [97.9, 98.1, 98.2, 98.4, 98.6]
     lanes = [straight(1, 0, 100, successors=(2,), signs=frozenset({"STOP"}))]
