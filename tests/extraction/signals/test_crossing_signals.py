@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rulec.extraction.signals.map.crossing_signals import crossing_signals
-from support.builders.drive_contexts import context_of, steady
+from support.builders.drive_contexts import along, context_of, steady
 from support.builders.recordings import lanelet, recording, vehicle
 from support.generators.random_recordings import lanes
 
@@ -196,3 +196,50 @@ def test_who_is_about_to_cross_when_first_seen_may_have_come_just_then():
     uses, unknown = over_the_crossing(-0.5, front=58.9, states=5)
     assert set(uses) == {"on_crossing"}
     assert not unknown.any()
+
+
+def side_road(walker, stops_at=None):
+    """T, F or ? by step of 0.5 s: ego comes from the south, turns right at (0, 0), drives off."""
+    inside = {"types": frozenset({"intersection"}), "junction": "x"}
+    bend = [(8 - 8 * np.cos(a), -8 + 8 * np.sin(a)) for a in np.linspace(0, np.pi / 2, 7)]
+    road = [
+        lanelet(1, [(0, -60), (0, -8)], successors=("2",)),
+        lanelet(2, bend, predecessors=("1",), successors=("3",), **inside),
+        lanelet(3, [(8, 0), (80, 0)], predecessors=("2",)),
+        lanelet(4, [(0, -8), (0, 40)], **inside),
+    ]
+    line = np.array([(0, -60), *bend, (80, 0)])
+    way = 30 + 2.5 * np.arange(40)
+    if stops_at is not None:
+        way = np.concatenate([np.minimum(way[:20], stops_at), stops_at + 2.5 * np.arange(20)])
+    places = {k: (12.0, y) for k, y in enumerate(walker)}
+    body = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
+    context = context_of(recording(road, [along(7, line, way), body]), ("1", "2", "3"))
+    found = crossing_signals(context, {"crosses_side_road"})
+    columns = [table["crosses_side_road"][0] for table in (found.about, found.unknown)]
+    told = zip(*columns, strict=True)
+    return "".join("?" if dark else "FT"[int(flag)] for flag, dark in told)
+
+
+# Ego is at the junction, 52 m along, in state 9, and at the walker, some 69 m along, in state 15
+CROSSES = [-6 + 0.6 * k for k in range(40)]
+
+
+def test_one_in_the_side_road_while_ego_goes_by():
+    assert side_road(CROSSES)[9] == "F"  # it is 4 m beyond ego's lane by then
+    assert side_road([y - 3 for y in CROSSES])[9] == "T"
+    assert side_road([2 - y for y in CROSSES])[9] == "T"
+
+
+def test_one_that_ego_lets_go_while_it_waits_in_the_junction():
+    slow = [y - 3 for y in CROSSES]
+    assert side_road(slow, stops_at=64.0)[9] == "F"
+
+
+def test_one_that_waits_until_ego_is_gone():
+    waits = [-3.5] * 18
+    assert side_road([*waits, *(-3.5 + 0.6 * k for k in range(22))])[9] == "T"
+    # It stands there for something else
+    assert side_road([-3.5] * 40)[9] == "F"
+    # Its track ends before it goes
+    assert side_road([-3.5] * 25)[9] == "?"

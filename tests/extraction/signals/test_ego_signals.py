@@ -89,6 +89,15 @@ def test_the_number_of_lanes(count, expected):
     assert set(found["lane"].tolist()) == {"kerb_lane"}
 
 
+@pytest.mark.parametrize(("y", "lane"), [(0, "kerb_lane"), (4, "kerb_lane"), (8, "far_lane")])
+def test_a_hard_shoulder_is_no_lane_to_count(y, lane):
+    """It lies along y = 0, right of two lanes."""
+    shoulder, *driven = lanes(3)
+    road = [replace(shoulder, types=frozenset({"shoulder"})), *driven]
+    found = ego_signals(context_of(recording(road, [steady(7, 0, y)]))).values
+    assert (set(found("lane")), set(found("lanes"))) == ({lane}, {"two_lanes"})
+
+
 @pytest.mark.parametrize(("y", "expected"), [(1.2, False), (1.4, True), (2, True), (2.8, False)])
 def test_straddling_needs_thirty_centimetres_on_each_side(y, expected):
     # 2 m wide; the mark lies at 2 m, the road ends at -2 m

@@ -117,6 +117,36 @@ def test_nobody_goes_to_a_lane_for_buses(kind, free):
     assert signals(lanes, ego(100, y=4), behind)["near_lane_is_free"][0] == free
 
 
+def test_a_hard_shoulder_is_no_lane_beside_ego():
+    road = [
+        replace(straight(1, 0, 600, left_of=2), types=frozenset({"shoulder"})),
+        straight(2, 0, 600, 4, right_of=1),
+    ]
+    found = signals(road, ego(100, y=4), steady(9, 0, 4, 10.0))
+    # There is none to go to, so that nothing is in the way there
+    assert found["near_lane_is_free"][0] == "True"
+    slow = steady(8, 120, 4, 2.0)
+    assert signals(two_lanes(), ego(100), slow)["other_lane_available"][0] == "True"
+    left = [straight(1, 0, 600, left_of=2), replace(road[1], types=road[0].types)]
+    assert signals(left, ego(100), slow)["other_lane_available"][0] == "False"
+
+
+@pytest.mark.parametrize(("x", "free"), [(197, "True"), (199, "?")])
+@pytest.mark.parametrize("kind", ["shoulder", "busLane"])
+def test_nobody_has_to_go_to_a_lane_that_soon_is_one_for_others(kind, x, free):
+    """It is from 300 m on; ego's front, 2 m ahead of its middle, gets there in 10 s from 200 m."""
+    ends = straight(1, 0, 300, left_of=2, successors=(3,))
+    lanes = [
+        ends,
+        straight(2, 0, 300, 4, right_of=1, successors=(4,)),
+        straight(3, 300, 600, left_of=4, predecessors=(1,), types=frozenset({kind})),
+        straight(4, 300, 600, 4, right_of=3, predecessors=(2,)),
+    ]
+    behind = steady(9, 97, 4, 10.0)
+    told = signals(lanes, ego(x, y=4), behind, route=("2", "4"))
+    assert told["near_lane_is_free"][0] == free
+
+
 @pytest.mark.parametrize(("x", "free"), [(547, "True"), (549, "?")])
 def test_before_the_map_s_end_nobody_knows_whether_drivers_sort_themselves(x, free):
     """It ends at 600 m, and ego's front is 2 m ahead of its middle: 51 and 49 m."""

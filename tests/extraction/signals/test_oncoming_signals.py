@@ -105,6 +105,16 @@ def test_a_recording_that_ends_while_both_are_there_tells_that_ego_did_not_wait(
     assert unknown.any()
 
 
+@pytest.mark.parametrize(("reaches_s", "waits"), [(4.5, True), (5.5, False)])
+def test_where_all_have_to_stop_ego_does_not_wait_for_who_comes_later(reaches_s, waits):
+    """Ego gets into the junction at 3.6 s, the other one 0.7 s or 1.7 s later."""
+    stop = {"signs": frozenset({"STOP_4_WAY"})}
+    conflict, unknown = told(at(reaches_s), crossroads(stop, stop))
+    assert conflict.any() == waits
+    assert not unknown.any()
+    assert told(at(reaches_s))[0].any()
+
+
 @pytest.mark.parametrize("reaches_s", [2.0, 9.5], ids=["ego lets it pass", "it is far away"])
 def test_ego_turns_behind_or_long_before_one(reaches_s):
     conflict, unknown = told(at(reaches_s))

@@ -214,6 +214,16 @@ def test_in_the_road_is_about_vulnerable_users():
 
 
 @pytest.mark.parametrize(
+    ("y", "told"), [(-2.1, "F"), (-1.9, "?"), (-1.6, "T"), (2, "T"), (5.9, "?"), (6.1, "F")]
+)
+def test_people_wait_at_the_outer_edges_of_lanes_which_are_at_2_m_and_6_m(y, told):
+    walker = steady(9, 30, y, speed=0, kind="pedestrian", length=0.4, width=0.4)
+    signals = participant_signals(context(walker))
+    unknown = signals.unknown["in_the_road"][0, 0]
+    assert told == ("?" if unknown else "FT"[int(signals.about["in_the_road"][0, 0])])
+
+
+@pytest.mark.parametrize(
     ("along", "across", "goes"), [(0, 1.5, True), (1, -1.5, True), (1.5, 1, False), (0, 0, False)]
 )
 def test_who_goes_across_the_road(along, across, goes):

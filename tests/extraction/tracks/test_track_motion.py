@@ -128,3 +128,23 @@ def test_at_a_track_s_ends_means_lie_nearer_to_each_other():
     short = motion(x[:2], 0.0, known=OTHERS)
     assert short.acceleration[0] == pytest.approx([0.0, 0.0])
     assert short.acceleration_error[0] == pytest.approx([np.sqrt(2) / 0.1] * 2)
+
+
+@pytest.mark.parametrize("step_s", [0.04, 1 / 30, 0.1, 0.12, 0.2, 0.3, 0.4, 0.5])
+def test_speeds_are_means_over_a_second_whatever_the_step(step_s):
+    """Who goes from 10 to 20 m/s at once shows by its mean speeds over how long they are means."""
+    around = round(4 / step_s)
+    t = np.arange(-around, around + 1) * step_s
+    x = np.where(t < 0, 10 * t, 20 * t)
+    found = motion(x, 0.0, known=OTHERS, steers=False, step_s=step_s)
+    inside = slice(round(1 / step_s) + 1, -round(1 / step_s) - 1)
+    means = 10 + 10 * np.clip(t + 0.5, 0, 1)
+    assert found.speed[0, inside] == pytest.approx(means[inside])
+    # A place between two is known no better than they are
+    assert found.speed_error[0, inside] == pytest.approx(0.1)
+    assert found.speed[0, [0, -1]] == pytest.approx([10, 20])
+
+
+def test_steps_longer_than_half_a_second_are_taken_to_the_next_places():
+    found = motion([0, 10, 20, 40, 60], 0.0, known=OTHERS, step_s=1.0)
+    assert found.speed[0] == pytest.approx([10, 10, 15, 20, 20])

@@ -78,6 +78,8 @@ def test_a_walking_area_is_an_outline(tmp_path):
         ({"allow": "bicycle"}, {"bicycleLane"}),
         ({"allow": "bus taxi bicycle"}, {"busLane", "cyclesAllowed", THROUGH}),
         ({"allow": "bus taxi"}, {"busLane", THROUGH}),
+        ({"allow": "emergency authority"}, {"shoulder", THROUGH}),
+        ({"allow": "emergency passenger"}, {THROUGH}),
         ({"allow": "bus passenger"}, {THROUGH}),
         ({"allow": "tram"}, {"restricted_area", "rail"}),
         ({"type": "highway.residential"}, {"urban", "ordinary", THROUGH}),

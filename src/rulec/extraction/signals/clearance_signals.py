@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.ego_lanelets import own_lanelets
+from rulec.extraction.signals.ego_lanelets import own_lanelets, travel_lanes
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.road_extents import is_in
@@ -56,7 +56,7 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     ``near_m``, it is unknown.
     """
     limits = context.thresholds
-    own_lanes = (context.existing_lanes.sum(axis=1) > 1) & ~_beyond_own_lanes(context)
+    own_lanes = (travel_lanes(context).sum(axis=1) > 1) & ~_beyond_own_lanes(context)
     one_way = own_lanelets(context).flags(lambda at: context.surroundings.directions(at)[0] is True)
     alone = own_lanes | one_way
     own = np.maximum(context.ego_extents.along[0], 0.0)

@@ -17,6 +17,9 @@ from rulec.recordings.recording import Lanelet
 
 _Value = TypeVar("_Value")
 
+SHOULDER = "shoulder"
+"""The type of a hard shoulder."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class OwnLanelets:
@@ -89,3 +92,19 @@ def map_contents(context: DriveContext) -> MapContents:
         lights=any(lanelet.lights for lanelet in lanelets),
         marks=any(lanelet.left_mark or lanelet.right_mark for lanelet in lanelets),
     )
+
+
+@once
+def travel_lanes(context: DriveContext) -> Flags:
+    """Flags of the lanes (second axis) beside ego that are there to be driven on, by state.
+
+    All that exist but hard shoulders, which are no part of the carriageway.
+    """
+    if SHOULDER not in map_contents(context).types:
+        return context.existing_lanes
+    rows = context.road.rows
+    shoulders = np.array([[x is not None and SHOULDER in x.types for x in row] for row in rows])
+    travel: Flags = (
+        context.existing_lanes & ~shoulders[context.road.piece(context.ego_extents.s[0])]
+    )
+    return travel

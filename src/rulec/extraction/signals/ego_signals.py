@@ -10,6 +10,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.signals.ego_lanelets import travel_lanes
 from rulec.extraction.signals.measured_numbers import own_speed, speed_bounds
 from rulec.extraction.signals.queues import lanes_that_go_on
 from rulec.extraction.signals.signal_columns import (
@@ -107,7 +108,7 @@ def _nearer_goes_on(context: DriveContext) -> Flags:
     """Flags of states in which a lane nearer to the kerb than ego's goes on."""
     lanes, own = np.arange(context.existing_lanes.shape[1]), context.steady_lane[:, None]
     nearer = lanes < own if context.side == "right" else lanes > own
-    goes_on = context.existing_lanes & lanes_that_go_on(context) & nearer
+    goes_on = travel_lanes(context) & lanes_that_go_on(context) & nearer
     found: Flags = np.any(goes_on, axis=1)
     return found
 
@@ -125,7 +126,7 @@ def _lane_number(context: DriveContext) -> SignalColumns:
 
 
 def _lane_count(context: DriveContext) -> SignalColumns:
-    count = context.existing_lanes.sum(axis=1)
+    count = travel_lanes(context).sum(axis=1)
     return SignalColumns({"lanes": np.clip(count - 1, 0, 2)}, texts={"lanes": _COUNTS})
 
 
@@ -136,15 +137,15 @@ def _lane_position(context: DriveContext) -> SignalColumns:
 
 def _from_kerb(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
     """Indices into ``_LANES`` of lanes by state: 0 at the kerb, 2 farthest, 1 between."""
-    rank, count = _rank(context, lane), context.existing_lanes.sum(axis=1)
+    rank, count = _rank(context, lane), travel_lanes(context).sum(axis=1)
     return np.where(rank <= 0, 0, np.where(rank >= count - 1, 2, 1))
 
 
 def _rank(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
     """How many lanes lie between lanes by state and the kerb."""
-    existing, state = context.existing_lanes, np.arange(len(lane))
-    right: NDArray[intp] = np.cumsum(existing, axis=1)[state, lane] - existing[state, lane]
-    return right if context.side == "right" else existing.sum(axis=1) - 1 - right
+    lanes, state = travel_lanes(context), np.arange(len(lane))
+    right: NDArray[intp] = np.cumsum(lanes, axis=1)[state, lane] - lanes[state, lane]
+    return right if context.side == "right" else lanes.sum(axis=1) - 1 - right
 
 
 def _straddling(context: DriveContext) -> SignalColumns:

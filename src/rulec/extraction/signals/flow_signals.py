@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.manoeuvre_signals import oncoming_side
-from rulec.extraction.signals.ego_lanelets import own_lanelets
+from rulec.extraction.signals.ego_lanelets import own_lanelets, travel_lanes
 from rulec.extraction.signals.queues import (
     LOOSE,
     MEASURED,
@@ -60,7 +60,7 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     that is on half of its lanes or more.
     """
     around, limits, states = vehicles_around(context), context.thresholds, context.states
-    existing = context.existing_lanes
+    existing = travel_lanes(context)
     shape = existing.shape[::-1]
     enough = np.bincount(around.state, minlength=states) >= limits.fewest
 
@@ -203,10 +203,11 @@ def _being_overtaken(context: DriveContext) -> SignalColumns:
 def _dense_lines(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     """Flags of states with queues on all lanes, surely so, and of those where nobody knows."""
     queues, _ = queues_by_lane(context)
-    decides = context.existing_lanes & (lanes_that_decide(context) | queues)
+    lanes = travel_lanes(context)
+    decides = lanes & (lanes_that_decide(context) | queues)
     all_queue = np.logical_and((queues | ~decides).all(axis=-1), decides.any(axis=-1))
     # What a few lanes are is not told of the others, but where the world of all of them ends
-    few = 2 * decides.sum(axis=-1) < context.existing_lanes.sum(axis=-1)
+    few = 2 * decides.sum(axis=-1) < lanes.sum(axis=-1)
     whole = "light" in context.recording.complete
     all_queue &= ~(few & whole)
     # Whom nobody is ahead of goes as fast as it likes, unless that one is not recorded any more

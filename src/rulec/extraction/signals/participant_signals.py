@@ -394,9 +394,19 @@ def _constant(context: DriveContext, flags: list[bool]) -> Flags:
 
 
 def _in_the_road(context: DriveContext) -> SignalColumns:
+    """Whether people are on a lane; unknown at outermost edges of ego's, where they may wait."""
+    unsure, users = np.zeros_like(context.relevant), context.tracks.of_type("vulnerable_user")
+    if len(rows := np.flatnonzero(users)):
+        error = context.tolerances.place_m + np.abs(context.map_offset_m)
+        least = np.maximum(context.thresholds.changed_m, error)
+        lanes, others = context.existing_lanes, context.extents.part(rows, slice(None))
+        for edge in (lanes.argmax(axis=1), lanes.shape[1] - lanes[:, ::-1].argmax(axis=1)):
+            low, high = others.from_bound(edge)
+            unsure[rows] |= np.abs(low + high) / 2 <= least
     return SignalColumns(
         about={"in_the_road": context.tracks.on_lane},
-        only={"in_the_road": context.tracks.of_type("vulnerable_user")},
+        only={"in_the_road": users},
+        unknown={"in_the_road": unsure & context.tracks.on_lane},
     )
 
 

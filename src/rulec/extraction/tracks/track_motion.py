@@ -65,16 +65,16 @@ class Poses:
 def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances) -> Motion:
     """Central differences over ``smoothing_s``, one-sided where a track begins or ends.
 
+    Where that is no whole number of steps, its ends are between two places, along a straight line.
     The speed of what steers is the part along its heading, or what the file states if its stated
     speeds are ``known`` better and agree with its places.
     """
     present = ~np.isnan(poses.x)
-    reach = max(1, round(smoothing_s / 2 / step_s))
-    duration, before, after = _windows(present, reach)
-    rows = np.arange(len(present))[:, None]
+    window = _Window.around(present, max(1.0, smoothing_s / 2 / step_s))
+    columns = np.broadcast_to(np.arange(present.shape[1], dtype=float), present.shape)
+    duration = window.gained(columns)
     seconds = np.where(duration > 0, duration, np.nan) * step_s
-    vx = (poses.x[rows, after] - poses.x[rows, before]) / seconds
-    vy = (poses.y[rows, after] - poses.y[rows, before]) / seconds
+    vx, vy = window.gained(poses.x) / seconds, window.gained(poses.y) / seconds
     # A single moment has no displacement: there the stated speed counts
     cos, sin, stated = np.cos(poses.heading), np.sin(poses.heading), poses.stated
     single = present & (duration == 0)
@@ -96,11 +96,12 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
         vx, vy = np.where(own[:, None], (stated * cos, stated * sin), (vx, vy))
         speed = np.where(own[:, None], stated, speed)
     # At a track's ends the mean is of the time beside the state
-    middle = (before + after) / 2
-    beside = np.abs(middle - np.arange(present.shape[1])) * step_s
-    apart = np.where(own[:, None], after - before, middle[rows, after] - middle[rows, before])
+    begin, end = window.of(columns)
+    middle = (begin + end) / 2
+    beside = np.abs(middle - columns) * step_s
+    apart = np.where(own[:, None], duration, window.gained(middle))
     apart = np.where(apart > 0, apart * step_s, seconds)
-    gained = (speed[rows, after] - speed[rows, before]) / apart
+    gained = window.gained(speed) / apart
     error = known.speed_mps / np.where(single, 1.0, seconds)
     error += np.nan_to_num(np.abs(gained) * beside)
     # What contradicts itself is known no better
@@ -110,9 +111,11 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     slips = np.maximum(_slips(poses, steps, step_s), _seams(poses, step_s))
     slips = np.where(poses.steers[:, None], slips, 0.0)
     off = slips.any(axis=1)
-    error[off] += np.where(single[off], 0.0, _most_around(slips[off], reach + steps) / seconds[off])
+    error[off] += np.where(
+        single[off], 0.0, _most_around(slips[off], window.reach + steps) / seconds[off]
+    )
     error = np.where(own[:, None], known.stated_mps or 0.0, error)
-    gained_error = np.hypot(error[rows, after], error[rows, before]) / apart
+    gained_error = np.hypot(*window.of(error)) / apart
     return Motion(
         vx=vx,
         vy=vy,
@@ -190,13 +193,51 @@ def _differ(
     return np.abs(np.nansum(speed, axis=1) / count - told), told
 
 
-def _windows(present: NDArray[bool_], reach: int) -> tuple[NDArray[intp], ...]:
-    """The lengths (steps), firsts and lasts of unbroken windows around moments."""
-    columns = np.arange(present.shape[1])
-    absent = np.where(present, -1, columns)
-    since = np.maximum.accumulate(absent, axis=1) + 1
-    absent = np.where(present, len(columns), columns)
-    until = np.minimum.accumulate(absent[:, ::-1], axis=1)[:, ::-1] - 1
-    before = np.where(present, np.maximum(columns - reach, since), columns)
-    after = np.where(present, np.minimum(columns + reach, until), columns)
-    return after - before, before, after
+@dataclass(frozen=True, eq=False, slots=True)
+class _Window:
+    """Unbroken windows around moments: the columns of their ends, and of those a step farther in.
+
+    ``part`` is how far the ends are from the latter, as a part of a step; with 0 there are none.
+    """
+
+    rows: NDArray[intp]
+    outer: tuple[NDArray[intp], NDArray[intp]]
+    inner: tuple[NDArray[intp], NDArray[intp]]
+    part: float
+    reach: int
+
+    @staticmethod
+    def around(present: NDArray[bool_], steps: float) -> _Window:
+        """Up to so many steps each way, as far as somebody is there."""
+        reach = ceil(steps - _HAIR)
+        part = steps - (reach - 1)
+        whole = part > 1.0 - _HAIR
+        columns = np.arange(present.shape[1])
+        absent = np.where(present, -1, columns)
+        since = np.maximum.accumulate(absent, axis=1) + 1
+        absent = np.where(present, len(columns), columns)
+        until = np.minimum.accumulate(absent[:, ::-1], axis=1)[:, ::-1] - 1
+
+        def ends(far: int) -> tuple[NDArray[intp], NDArray[intp]]:
+            before = np.where(present, np.maximum(columns - far, since), columns)
+            return before, np.where(present, np.minimum(columns + far, until), columns)
+
+        outer = ends(reach)
+        inner = outer if whole else ends(reach - 1)
+        rows = np.arange(len(present))[:, None]
+        return _Window(rows, outer, inner, 1.0 if whole else part, reach)
+
+    def of(self, values: NDArray[float64]) -> tuple[NDArray[float64], NDArray[float64]]:
+        """Values at both ends, by row and column."""
+        begin, end = (values[self.rows, one] for one in self.outer)
+        if self.part == 1.0:
+            return begin, end
+        inside = [values[self.rows, one] for one in self.inner]
+        return begin + (inside[0] - begin) * (1 - self.part), end + (inside[1] - end) * (
+            1 - self.part
+        )
+
+    def gained(self, values: NDArray[float64]) -> NDArray[float64]:
+        """By how much values change from one end to the other."""
+        begin, end = self.of(values)
+        return end - begin

@@ -26,6 +26,8 @@ from rulec.recordings.sumo.right_of_way import (
 _WALKERS = {"pedestrian", "wheelchair"}
 _RIDERS = {"bicycle", "scooter"}
 _BUSES = {"bus", "coach", "taxi"}
+_SERVICES = {"emergency", "authority", "army"}
+"""Who may drive where others only stop in need."""
 _ALL = frozenset(
     {"passenger", "private", "truck", "trailer", "delivery", "motorcycle", "moped", "hov"}
     | {"evehicle", "emergency", "authority", "army", "vip", "custom1", "custom2"}
@@ -218,6 +220,8 @@ def _types(
         yield "busLane"
         if permitted & _RIDERS:
             yield CYCLES_TOO
+    elif permitted <= _SERVICES:
+        yield "shoulder"
     junction = junction_of(lane)
     crosses_rails = junction in net.junctions and net.junctions[junction].type in LEVEL_CROSSINGS
     if crosses_rails:

@@ -6,7 +6,8 @@ one on the other.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy import intp
@@ -14,19 +15,26 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.ego_lanelets import own_lanelets
+from rulec.extraction.signals.ego_lanelets import SHOULDER, own_lanelets, travel_lanes
 from rulec.extraction.signals.map.lanes_ahead import Leads, junctions_ahead
 from rulec.extraction.signals.queues import LOOSE, close_by, lanes_that_go_on, queues_by_lane
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
-from rulec.extraction.signals.signal_passes import Passes, once_a_recording, signals_by
+from rulec.extraction.signals.signal_passes import (
+    Passes,
+    once_a_recording,
+    once_a_road,
+    signals_by,
+)
 from rulec.extraction.tracks.road_extents import is_in
-from rulec.extraction.tracks.tracks import Flags, Tracks
+from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.recording import Lanelet, LaneMark, Side
 
 _SOON_M = 10.0
 """Who is no farther behind ego than this, and what he gains in ``passed_s``, is soon beside it."""
 
 _SOLID = frozenset({"solid", "double_solid"})
+
+_RESERVED = frozenset({SHOULDER, "busLane"})
 
 _UNSEEN_S = 5.0
 """For so long one whose track has ended is thought to drive on as before."""
@@ -66,12 +74,12 @@ def _on_near_lane(context: DriveContext) -> SignalColumns:
 
 
 def _next_lane(context: DriveContext, side: Side) -> tuple[NDArray[intp], Flags]:
-    """The lane at a side of ego, and where there is one that goes ego's way."""
+    """The lane at a side of ego, and where there is one that goes ego's way, to be driven on."""
     lane = context.ego_lane + (1 if side == "left" else -1)
-    count = context.existing_lanes.shape[1]
+    count = travel_lanes(context).shape[1]
     inside = (lane >= 0) & (lane < count)
     lane = np.clip(lane, 0, count - 1)
-    return lane, inside & context.existing_lanes[np.arange(context.states), lane]
+    return lane, inside & travel_lanes(context)[np.arange(context.states), lane]
 
 
 def _far_lane_is_free(context: DriveContext) -> Flags:
@@ -129,9 +137,10 @@ def _goes_back(context: DriveContext) -> Flags:
 def _of_no_use(context: DriveContext) -> Flags:
     """Flags of states in which nobody can tell whether ego has to go to the next lane to the kerb.
 
-    It begins or ends near ego while others go on, as beside a ramp; it is full, but for a hole; ego
-    is in a slow queue itself, with others on the next lane, too; or drivers sort themselves by
-    lanes before a junction, of which nobody knows beyond the map's end.
+    It begins or ends near ego while others go on, as beside a ramp; it becomes a shoulder or a lane
+    for buses within ``preparing_s``; it is full, but for a hole; ego is in a slow queue itself,
+    with others on the next lane, too; or drivers sort themselves by lanes before a junction, of
+    which nobody knows beyond the map's end.
     """
     lane, there = _next_lane(context, context.side)
     states = np.arange(context.states)
@@ -143,7 +152,7 @@ def _of_no_use(context: DriveContext) -> Flags:
     map_ends = (
         context.road.borders[-1] - context.ego_extents.s_max[0] < context.thresholds.approach_m
     )
-    no_use: Flags = there & (side_lane | full | sorting | map_ends)
+    no_use: Flags = there & (side_lane | full | sorting | map_ends | _reserved_ahead(context, lane))
     queues_beside = np.flatnonzero(there & ~no_use & own & slow)
     used = close_by(context)[:, queues_beside]
     used &= context.extents.lane[:, queues_beside] == lane[queues_beside]
@@ -158,8 +167,7 @@ def _sorted_ahead(context: DriveContext) -> tuple[Flags, Flags]:
     They do before lights, and where one lane leads to several roads, from ``preparing_s`` before.
     """
     lane, there = _next_lane(context, context.side)
-    front, speed = context.ego_extents.s_max[0], np.maximum(context.ego_extents.along[0], 0.0)
-    reach = np.maximum(speed * context.thresholds.preparing_s, context.thresholds.approach_m)
+    front, reach = context.ego_extents.s_max[0], _reach(context)
     elsewhere, sorting = np.zeros((2, context.states), dtype=bool)
     for junction in junctions_ahead(context):
         nears = there & (front <= junction.low) & (junction.low - front <= reach)
@@ -167,6 +175,35 @@ def _sorted_ahead(context: DriveContext) -> tuple[Flags, Flags]:
         elsewhere |= nears & np.array([lead is Leads.ELSEWHERE for lead in leads])
         sorting |= nears & np.array([junction.lit or lead is Leads.BOTH for lead in leads])
     return elsewhere, sorting & ~elsewhere
+
+
+def _reach(context: DriveContext) -> Floats:
+    """How far (m) ahead drivers look when they choose a lane, by state."""
+    speed = np.maximum(context.ego_extents.along[0], 0.0)
+    reach: Floats = np.maximum(
+        speed * context.thresholds.preparing_s, context.thresholds.approach_m
+    )
+    return reach
+
+
+@once_a_road
+def _reserved_from(context: DriveContext) -> Sequence[tuple[int, float]]:
+    """Lanes, and from where on (m) each is a shoulder or for buses, and was for all before."""
+    road = context.road
+    return [
+        (number, float(road.borders[piece + 1]))
+        for piece, rows in enumerate(pairwise(road.rows))
+        for number, (one, beyond) in enumerate(zip(*rows, strict=True))
+        if one and beyond and _RESERVED & beyond.types and not _RESERVED & one.types
+    ]
+
+
+def _reserved_ahead(context: DriveContext, lane: NDArray[intp]) -> Flags:
+    """Flags of states in which a lane will soon be a shoulder or for buses."""
+    front, found = context.ego_extents.s_max[0], np.zeros(context.states, dtype=bool)
+    for number, place in _reserved_from(context):
+        found |= (lane == number) & (front <= place) & (place - front <= _reach(context))
+    return found
 
 
 def _bus_lane_beside(context: DriveContext) -> Flags:

@@ -73,14 +73,52 @@ def _nearest_to_crossing(context: DriveContext) -> SignalColumns:
 
 
 def _crosses_side_road(context: DriveContext) -> SignalColumns:
-    rows, crosses = _pedestrians(context), np.zeros_like(context.relevant)
+    """Who uses the road into which ego turns, and is not let go by ego.
+
+    Who waits in the junction until somebody is across has entered it lawfully.
+    """
+    rows, (crosses, unsure) = _pedestrians(context), np.zeros((2, *context.relevant.shape), bool)
     start, end = _side_road(context)
     if len(rows) and np.isfinite(start).any():
-        crosses[rows] = _crossing_uses(context, (start, end), context.tracks.on_lane) > 0
+        uses = _crossing_uses(context, (start, end), context.tracks.on_lane) > 0
+        if (some := uses.any(axis=1)).any():
+            rows, uses = rows[some], uses[some]
+            taken, open_end = _takes_way(context, rows)
+            crosses[rows], unsure[rows] = uses & taken, uses & open_end
     return SignalColumns(
         about={"crosses_side_road": crosses},
         only={"crosses_side_road": context.tracks.of_type("pedestrian")},
+        unknown={"crosses_side_road": unsure},
     )
+
+
+def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags]:
+    """Flags of those of these rows whose way ego takes from a state on, and where nobody knows.
+
+    They are on the lanes of its direction, and not past its own, while ego goes by or up to
+    ``entering_s`` later; or have stood until it was gone, and gone then. Of whom ego does not reach
+    while both are seen nobody knows.
+    """
+    own, others = context.ego_extents, context.extents.part(rows, slice(None))
+    spans, seen = context.spans, context.relevant[rows]
+    limits, step_s = context.thresholds, context.recording.step_s
+    on_lanes, last = context.on_lanes[rows] & seen, spans.end - 1
+    stands = context.tracks.speed[rows] * KMH < limits.standing_kmh
+    comes = spans.next_state(seen & (own.s_max >= others.s_min))
+    reached, at = comes < spans.end, np.minimum(comes, last)
+    goes = np.minimum(spans.next_state(own.s_min > others.s_max), last)
+    steps_on = spans.next_state(on_lanes)
+    off = ~on_lanes | _past_ego(context, rows)
+    # Across before ego comes, having been on its lanes
+    let_go = np.take_along_axis(off, at, axis=1) & (steps_on < at)
+    by_then = np.minimum(goes + round(limits.entering_s / step_s), last)
+    in_way = np.take_along_axis(spans.next_state(~off), at, axis=1) <= by_then
+    waited = spans.next_state(stands & seen & ~on_lanes) <= np.minimum(steps_on, goes)
+    soon = spans.columns + round(limits.preparing_s / step_s)
+    taken = reached & ~let_go & (in_way | (waited & (steps_on <= soon)))
+    lost = spans.next_state(~seen) <= np.minimum(soon, last)
+    unseen = (steps_on >= spans.end) & (lost | (soon >= spans.end))
+    return taken, ~reached | (~let_go & ~taken & unseen)
 
 
 @once

@@ -9,7 +9,13 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.tracks.junction_passages import Passage
-from rulec.extraction.tracks.junctions import ALL_STOP, STOP_SIGNS, JunctionWay, approaches
+from rulec.extraction.tracks.junctions import (
+    ALL_STOP,
+    STOP_SIGNS,
+    JunctionWay,
+    all_have_to_stop,
+    approaches,
+)
 from rulec.recordings.recording import Points, Recording
 
 _GIVES_WAY = STOP_SIGNS | {"YIELD"}
@@ -30,7 +36,8 @@ def turns_far(context: DriveContext, passage: Passage) -> bool:
 def gives_way_to(context: DriveContext, own: Passage, other: Passage) -> bool:
     """Does ego turn across the way of one that comes towards it, and that goes first?
 
-    That one goes straight on or turns to its near side, and neither signs nor a red light stop it.
+    That one goes straight on or turns to its near side, and neither signs nor a red light stop it;
+    where all have to stop, nor does it enter more than ``together_s`` after ego.
     """
     way_of = context.surroundings.passages.way
     return (
@@ -38,7 +45,17 @@ def gives_way_to(context: DriveContext, own: Passage, other: Passage) -> bool:
         and not turns_far(context, other)
         and goes_first(context.recording, way_of(own), way_of(other))
         and not _came_at_red(context, other)
+        and not _stopped_later(context, own, other)
     )
+
+
+def _stopped_later(context: DriveContext, own: Passage, other: Passage) -> bool:
+    """True where all have to stop, and the other one has got into the junction later."""
+    later_s = (other.first - own.first) * context.recording.step_s
+    if later_s <= context.thresholds.together_s:
+        return False
+    junction = context.surroundings.passages.junctions[own.junction]
+    return all_have_to_stop(context.recording, junction) is True
 
 
 def goes_first(recording: Recording, own: JunctionWay, other: JunctionWay) -> bool:
