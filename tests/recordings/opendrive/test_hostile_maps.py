@@ -56,7 +56,7 @@ def test_the_good_one(tmp_path):
         ('curvEnd="0.02"', 'curvEnd="1e7"', "a road turns round 95,492,966 times"),
         ('curvEnd="0.02"', "", "has no `curvEnd`"),
         ('bU="30"', 'bU="thirty"', "`bU` is `thirty`"),
-        ('<left><lane id="1"', '<left><lane id="-1"', "a lane -1 is among those of `left`"),
+        ('<left><lane id="1"', '<left><lane id="0"', "a lane 0 is among those of `left`"),
         ('id="-2" type="sidewalk"', 'id="-1" type="sidewalk"', "there are two lanes -1"),
         ('id="-2" type="sidewalk"', 'id="-2000" type="sidewalk"', "`id` of a `lane` is `-2000`"),
         ('laneSection s="50"', 'laneSection s="500"', "begins at 500 m, behind the road's end"),

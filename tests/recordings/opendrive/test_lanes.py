@@ -1,5 +1,7 @@
 """Lanes of OpenDRIVE maps: kinds, marks, limits, neighbours, directions, and what they lead to."""
 
+from math import pi
+
 import numpy as np
 import pytest
 
@@ -243,3 +245,28 @@ def test_left_hand_traffic_of_a_real_map():
     # The same road: where it is driven along here, it is driven back there
     for name, lanelet in found.lanelets.items():
         assert lanelet.centre == pytest.approx(other.lanelets[name].centre[::-1], abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("y", "rule", "side"),
+    [(-7, "", "left"), (0, "", "right"), (-7, 'rule="RHT"', "right"), (-30, "", "right")],
+)
+def test_the_side_that_lanes_show_where_no_road_tells_it(tmp_path, y, rule, side):
+    """A lane leads east, right of y = 0; another back, right of its own line, which is north of it.
+
+    Those from y = -7 on have the border at -3.5 in common, on the right of both.
+    """
+    there = road(1, section(lane(-1)), attributes=rule)
+    back = road(2, section(lane(-1)), plan=geometry(x=100, y=y, hdg=pi), attributes=rule)
+    found = read_map(written(tmp_path, document(there, back)), 0.1)
+    assert found.side == side
+    assert any("as its lanes show" in x for x in found.remarks) == (side == "left")
+
+
+def test_a_lane_is_on_the_side_that_its_number_says(tmp_path):
+    """SUMO's netconvert writes lanes of ways on which traffic keeps left among those of `left`."""
+    text = document(road(1, section(lane(-1))))
+    as_written = read_map(written(tmp_path, text), 0.1).lanelets["1.0.-1"]
+    moved = text.replace("right>", "left>")
+    found = read_map(written(tmp_path, moved), 0.1).lanelets["1.0.-1"]
+    assert found.centre.tolist() == as_written.centre.tolist()

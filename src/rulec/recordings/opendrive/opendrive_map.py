@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+import shapely
 
 from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.opendrive.content.elements import Lane, OpenDrive
@@ -35,7 +36,7 @@ from rulec.recordings.opendrive.lane_types import (
 from rulec.recordings.opendrive.pieces import RoadPiece, directions, neighbour, pieces_of
 from rulec.recordings.opendrive.signal_catalogues import country_of
 from rulec.recordings.opendrive.turning_speeds import without_turning_speeds
-from rulec.recordings.recording import LONGEST_M, Lanelet, ObservedLight, Points, Side
+from rulec.recordings.recording import LONGEST_M, Lanelet, ObservedLight, Points, Side, is_lane
 from rulec.recordings.road_map import RoadMap
 
 MOST_PLACES = 2_000_000
@@ -43,6 +44,9 @@ MOST_PLACES = 2_000_000
 
 NARROWEST_M = 0.05
 """Lanes that are nowhere wider are none."""
+
+_SAME_M = 0.3
+"""Ends of borders that are no farther apart are the same."""
 
 UNSEEN = ObservedLight({})
 """A light of which a map does not say what it shows."""
@@ -114,14 +118,15 @@ def read_opendrive_map(path: Path) -> RoadMap:
     for road in content.roads.values():
         for crossing in crosswalks(road, pieces[road.id], posted[road.id]):
             lanelets.setdefault(crossing.id, crossing)
+    side = _side(content, lanelets)
     if not lanelets:
         raise OPENDRIVE.refused(path, "none of its roads has a lane")
     return RoadMap(
         form="OpenDRIVE map",
         lanelets=lanelets,
-        side=_side(content),
+        side=side,
         country=_country(content),
-        remarks=tuple(_remarks(content, slow_turns)),
+        remarks=tuple(_remarks(content, side, slow_turns)),
     )
 
 
@@ -243,12 +248,37 @@ def _stop_line(whole: _Whole, own: LaneFurniture) -> Points | None:
     return places_beside(piece.road, [(s, t) for t in ends])
 
 
-def _side(content: OpenDrive) -> Side | None:
-    """The side of traffic, None if roads differ; on the right where a file does not say."""
+def _side(content: OpenDrive, lanelets: Mapping[str, Lanelet]) -> Side | None:
+    """The side of traffic, None if roads differ.
+
+    It is the right one where a file does not say, unless all lanes show that it is not.
+    """
     rules = {road.left_hand for road in content.roads.values()}
     if len(rules) > 1:
         return None
+    if not any(road.side_told for road in content.roads.values()):
+        return "left" if _sides_shown(lanelets) == {"left"} else "right"
     return "left" if rules.pop() else "right"
+
+
+def _sides_shown(lanelets: Mapping[str, Lanelet]) -> set[Side]:
+    """The sides on which those keep who meet on lanes with one border, of different roads, too."""
+    lanes = [x for x in lanelets.values() if is_lane(x) and not x.junction]
+    borders: dict[Side, list[Points]] = {
+        "right": [x.left for x in lanes],
+        "left": [x.right for x in lanes],
+    }
+    shown: set[Side] = set()
+    for side, lines in borders.items() if lanes else ():
+        starts, ends = (shapely.points([line[at] for line in lines]) for at in (0, -1))
+        near = {"predicate": "dwithin", "distance": _SAME_M}
+        pairs = shapely.STRtree(ends).query(starts, **near).T
+        if any(
+            one != other and shapely.dwithin(ends[one], starts[other], _SAME_M)
+            for one, other in pairs.tolist()
+        ):
+            shown.add(side)
+    return shown
 
 
 def _country(content: OpenDrive) -> str:
@@ -259,7 +289,7 @@ def _country(content: OpenDrive) -> str:
     return codes.pop() if len(codes) == 1 else ""
 
 
-def _remarks(content: OpenDrive, slow_turns: int) -> Iterator[str]:
+def _remarks(content: OpenDrive, side: Side | None, slow_turns: int) -> Iterator[str]:
     strange: dict[str, None] = {}
     for road in content.roads.values():
         for section in road.sections:
@@ -272,6 +302,8 @@ def _remarks(content: OpenDrive, slow_turns: int) -> Iterator[str]:
         yield f"lanes of these types are taken to be beside the carriageway: {some}"
     if len({road.left_hand for road in content.roads.values()}) > 1:
         yield "traffic keeps to the left on some roads of the map, and to the right on others"
+    if side == "left" and not any(road.side_told for road in content.roads.values()):
+        yield "traffic keeps to the left, as its lanes show: no road has a `rule`"
     if slow_turns:
         yield (
             f"limits of {slow_turns} lanes within junctions are below those before and after: they "

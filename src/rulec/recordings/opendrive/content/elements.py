@@ -180,12 +180,16 @@ class RoadStretch:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapRoad:
-    """A road; ``junction`` is the one that it leads through, or empty."""
+    """A road; ``junction`` is the one that it leads through, or empty.
+
+    ``side_told``: does the file say on which side traffic keeps there?
+    """
 
     id: str
     length: float
     junction: str
     left_hand: bool
+    side_told: bool
     line: int
     predecessor: RoadLink | None
     successor: RoadLink | None

@@ -59,6 +59,7 @@ def read_road(tree: Tree) -> MapRoad:
         length=road_length,
         junction="" if junction in ("", "-1") else name(tree, "junction"),
         left_hand=rule == "LHT",
+        side_told=rule != "",
         line=tree.place,
         predecessor=predecessor,
         successor=successor,
@@ -159,10 +160,11 @@ def _sections(lanes: Tree, road_length: float) -> Iterator[LaneSection]:
 
 def _lanes(section: Tree) -> dict[int, Lane]:
     found: dict[int, Lane] = {}
-    for side, sign in (("left", 1), ("center", 0), ("right", -1)):
+    for side in ("left", "center", "right"):
         for tree in [lane for part in section.all(side) for lane in part.all("lane")]:
             lane = _lane(tree)
-            if (lane.id > 0) - (lane.id < 0) != sign:
+            # SUMO's netconvert writes lanes -1 among those of `left` where traffic keeps left
+            if (lane.id == 0) != (side == "center"):
                 raise tree.wrong(f"a lane {lane.id} is among those of `{side}`")
             if lane.id in found:
                 raise tree.wrong(f"there are two lanes {lane.id} in a lane section")
