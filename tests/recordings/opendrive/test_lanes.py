@@ -263,6 +263,18 @@ def test_the_side_that_lanes_show_where_no_road_tells_it(tmp_path, y, rule, side
     assert any("as its lanes show" in x for x in found.remarks) == (side == "left")
 
 
+@pytest.mark.parametrize(
+    ("minor", "lanes", "side"),
+    [(4, (-1,), None), (6, (-1,), "right"), (4, (1, -1), "right"), (5, (-1,), "right")],
+)
+def test_the_side_of_a_version_in_which_no_road_can_tell_it(tmp_path, minor, lanes, side):
+    text = document(road(1, section(*map(lane, lanes))))
+    text = text.replace('revMinor="6"', f'revMinor="{minor}"')
+    found = read_map(written(tmp_path, text), 0.1)
+    assert found.side == side
+    assert any("does not tell the side" in x for x in found.remarks) == (side is None)
+
+
 def test_a_lane_is_on_the_side_that_its_number_says(tmp_path):
     """SUMO's netconvert writes lanes of ways on which traffic keeps left among those of `left`."""
     text = document(road(1, section(lane(-1))))

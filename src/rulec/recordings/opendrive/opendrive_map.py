@@ -251,14 +251,25 @@ def _stop_line(whole: _Whole, own: LaneFurniture) -> Points | None:
 def _side(content: OpenDrive, lanelets: Mapping[str, Lanelet]) -> Side | None:
     """The side of traffic, None if roads differ.
 
-    It is the right one where a file does not say, unless all lanes show that it is not.
+    It is the right one where a file does not say, unless all lanes show that it is not; before
+    version 1.5 no file could say it, so that it is not known if no lanes show it.
     """
     rules = {road.left_hand for road in content.roads.values()}
     if len(rules) > 1:
         return None
     if not any(road.side_told for road in content.roads.values()):
-        return "left" if _sides_shown(lanelets) == {"left"} else "right"
+        shown = _sides_shown(lanelets)
+        if shown == {"left"}:
+            return "left"
+        return "right" if shown or content.has_rules or _leads_both_ways(content) else None
     return "left" if rules.pop() else "right"
+
+
+def _leads_both_ways(content: OpenDrive) -> bool:
+    """True if some road has lanes to drive on at both sides, of which those on its right lead on."""
+    sections = (section for road in content.roads.values() for section in road.sections)
+    driven = ([x.id for x in one.lanes.values() if x.type == "driving"] for one in sections)
+    return any(min(ids, default=0) < 0 < max(ids, default=0) for ids in driven)
 
 
 def _sides_shown(lanelets: Mapping[str, Lanelet]) -> set[Side]:
@@ -302,6 +313,8 @@ def _remarks(content: OpenDrive, side: Side | None, slow_turns: int) -> Iterator
         yield f"lanes of these types are taken to be beside the carriageway: {some}"
     if len({road.left_hand for road in content.roads.values()}) > 1:
         yield "traffic keeps to the left on some roads of the map, and to the right on others"
+    elif side is None:
+        yield "the map does not tell the side on which traffic keeps"
     if side == "left" and not any(road.side_told for road in content.roads.values()):
         yield "traffic keeps to the left, as its lanes show: no road has a `rule`"
     if slow_turns:

@@ -232,9 +232,13 @@ class RoadJunction:
 
 @dataclass(slots=True)
 class OpenDrive:
-    """The content of a file; ``controllers`` have the ids of the signals that they control."""
+    """The content of a file; ``controllers`` have the ids of the signals that they control.
+
+    ``has_rules``: roads of its version may say on which side traffic keeps.
+    """
 
     # Not frozen: it is filled as the file is read
     roads: dict[str, MapRoad]
     junctions: dict[str, RoadJunction]
     controllers: dict[str, tuple[str, ...]]
+    has_rules: bool = True

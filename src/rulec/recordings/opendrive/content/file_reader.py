@@ -28,8 +28,11 @@ def read_file(path: Path) -> OpenDrive:
 def _add(content: OpenDrive, tree: Tree) -> None:
     match tree.name:
         case "header":
-            if (version := text(tree, "revMajor")) not in ("", "1"):
-                why = f"its version is {short(version)}.{short(text(tree, 'revMinor'))}"
+            version, minor = text(tree, "revMajor"), text(tree, "revMinor")
+            # Version 1.4 has no `rule` of roads
+            content.has_rules = minor not in ("0", "1", "2", "3", "4")
+            if version not in ("", "1"):
+                why = f"its version is {short(version)}.{short(minor)}"
                 raise tree.wrong(why, "1.4 to 1.8")
         case "road":
             road = read_road(tree)
