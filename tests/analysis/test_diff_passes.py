@@ -377,3 +377,42 @@ def test_allowed_traces_are_not_witnesses():
     one, other = sides([always(no(P)), always(P)], [X])
     found = compare(one, other)
     assert all(allows(other, trace) for trace in found.first_forbids)
+
+
+BELOW_ZERO = """rulebook {name}
+signal wet default false
+quantity gap in m default 100
+quantity speed in km/h default 0
+quantity grade in m/s^2 default 0
+hard rule r {{ require always ({required}) }}
+"""
+
+
+@pytest.mark.parametrize(
+    ("forbidding", "allowing", "below"),
+    [
+        # Less than two seconds, but four seconds: only for who drives backwards
+        ("gap >= 2 s * speed and not wet", "gap >= 4 s * speed", ()),
+        ("gap >= 2 s * speed", "gap >= 4 s * speed", ("gap", "speed")),
+        ("gap >= 0 m", "true", ("gap",)),
+        ("grade >= -5 m/s^2", "true", ("grade",)),
+    ],
+)
+def test_numbers_are_below_zero_where_nothing_else_shows_the_difference(
+    forbidding, allowing, below
+):
+    books = [
+        parse_rulebook(BELOW_ZERO.format(name=name, required=required))
+        for name, required in (("a", forbidding), ("b", allowing))
+    ]
+    ours, theirs = compile_shared(books, [{"r": book.rules[0]} for book in books])
+    found = compare(ours["r"], theirs["r"], most=3).first_forbids
+    assert found
+    for trace in found:
+        numbers = {
+            name
+            for state in trace.states
+            for name, value in state.items()
+            if not isinstance(value, bool | str) and value < 0
+        }
+        assert numbers == set(below)

@@ -26,6 +26,7 @@ from rulec.vocabulary import (
     Declaration,
     Enumeration,
     ObjectType,
+    Quantity,
     Signal,
     Vocabulary,
 )
@@ -59,7 +60,7 @@ class Contest:
         allowing: Sequence[AnalyzedRule],
         given: Sequence[Axiom] = (),
     ) -> None:
-        self.forbidding, self._allowing = forbidding, allowing
+        self.forbidding, self._allowing, self._given = forbidding, allowing, tuple(given)
         self._universe = _universe(forbidding, allowing, given)
         own = {variable.name: variable.name for variable in forbidding.rule.variables}
         bound = [(forbidding.rule.machine, own, False)]
@@ -85,8 +86,24 @@ class Contest:
         if self._word(alphabet) is None:
             return None
         if not alphabet.is_exact:
-            return counterexample(self.forbidding, self._allowing, axioms)
+            return counterexample(self.forbidding, self._allowing, (*self._given, *axioms))
         return self._trace(alphabet, universe)
+
+    def not_below_zero(self) -> Contest:
+        """The same, in states without numbers below zero that nothing asks for.
+
+        Of a quantity whose default is one, or that a rule compares with one, nobody knows.
+        """
+        rules = [analyzed.rule for analyzed in (self.forbidding, *self._allowing)]
+        declared = self._universe.vocabulary.declarations
+        names = {name for rule in rules for name in declarations_read(rule)}
+        quantities = {
+            name: declared[name]
+            for name in sorted(names - _compared_with_no_more_than_zero(rules))
+            if isinstance(declared[name], Quantity) and (declared[name].default or 0) >= 0
+        }
+        axioms = [said_not_below_zero(name, Itself(item)) for name, item in quantities.items()]
+        return Contest(self.forbidding, self._allowing, (*self._given, *axioms))
 
     def _trace(self, alphabet: JointAlphabet, universe: ObjectUniverse) -> Trace | None:
         word = self._word(alphabet)
@@ -115,12 +132,34 @@ class Contest:
 @lru_cache(maxsize=1024)
 def said_as_usual(name: str, declared: Itself[Declaration]) -> Axiom:
     """That a declaration has its default, for all objects."""
-    declaration = declared.item
-    variables = tuple(
-        Variable(f"o{number}", kind) for number, kind in enumerate(declaration.parameters)
-    )
+    variables = _variables_of(declared.item)
     arguments = tuple(variable.name for variable in variables)
-    return Axiom(variables, _has_default(name, arguments, declaration))
+    return Axiom(variables, _has_default(name, arguments, declared.item))
+
+
+def _variables_of(declaration: Declaration) -> tuple[Variable, ...]:
+    return tuple(Variable(f"o{number}", kind) for number, kind in enumerate(declaration.parameters))
+
+
+@lru_cache(maxsize=1024)
+def said_not_below_zero(name: str, declared: Itself[Declaration]) -> Axiom:
+    """That a quantity is not below zero, for all objects."""
+    variables = _variables_of(declared.item)
+    term = ltl.QuantityTerm(name, tuple(variable.name for variable in variables))
+    return Axiom(variables, ltl.Comparison(((Fraction(1), term),), ">=", Fraction(0)))
+
+
+def _compared_with_no_more_than_zero(rules: Iterable[CompiledRule]) -> frozenset[str]:
+    """The quantities that rules compare by themselves with zero or less."""
+    return frozenset(
+        name
+        for rule in rules
+        for read in rule.machine.reads
+        if isinstance(read, NumberRead) and len(read.terms) == 1
+        for factor, term in read.terms
+        if any(threshold.limit / factor <= 0 for threshold in read.thresholds)
+        for name in names_in(term)
+    )
 
 
 def _has_default(name: str, arguments: tuple[str, ...], declaration: Declaration) -> ltl.Formula:

@@ -9,9 +9,10 @@ as for hitting sets (Reiter 1987), few first, so that plain reasons come first.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
-from itertools import permutations
+from itertools import chain, permutations
 from typing import Literal
 
 from rulec.analysis.counterexample import Contest
@@ -82,9 +83,30 @@ def _compare(first: AnalyzedRule, second: AnalyzedRule, most: int) -> RuleCompar
         return RuleComparison("undecided", undecided=str(problem))
     return RuleComparison(
         relation_of(first_trace, second_trace),
-        () if first_trace is None else diverse_witnesses(contest, first_trace, most),
-        () if second_trace is None else diverse_witnesses(converse, second_trace, most),
+        () if first_trace is None else _witnesses(contest, first_trace, most),
+        () if second_trace is None else _witnesses(converse, second_trace, most),
     )
+
+
+def _witnesses(contest: Contest, first: Trace, most: int) -> tuple[Trace, ...]:
+    """Diverse witnesses, with numbers below zero only where no others as short show any."""
+    traces = diverse_witnesses(contest, first, most)
+    if any(map(_is_below_zero, traces)):
+        with suppress(UndecidedError):
+            above = contest.not_below_zero()
+            plain = above.trace()
+            if plain is not None and len(plain.states) == len(first.states):
+                return diverse_witnesses(above, plain, most)
+    return traces
+
+
+def _is_below_zero(trace: Trace) -> bool:
+    """True if some number in it is below zero."""
+    values = (value for state in trace.states for value in state.values())
+    each = chain.from_iterable(
+        value.values() if isinstance(value, Mapping) else (value,) for value in values
+    )
+    return any(isinstance(value, int | float) and value < 0 for value in each)
 
 
 def relation_of(first_forbids: object, second_forbids: object) -> RuleRelation:
