@@ -98,9 +98,9 @@ class Contest:
         declared = self._universe.vocabulary.declarations
         names = {name for rule in rules for name in declarations_read(rule)}
         quantities = {
-            name: declared[name]
+            name: item
             for name in sorted(names - _compared_with_no_more_than_zero(rules))
-            if isinstance(declared[name], Quantity) and (declared[name].default or 0) >= 0
+            if isinstance(item := declared[name], Quantity) and (item.default or 0) >= 0
         }
         axioms = [said_not_below_zero(name, Itself(item)) for name, item in quantities.items()]
         return Contest(self.forbidding, self._allowing, (*self._given, *axioms))
