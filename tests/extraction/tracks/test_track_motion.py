@@ -33,6 +33,13 @@ def test_stated_speeds_that_agree_with_places_are_taken():
     assert motion(x, v, known=OTHERS).speed[0, 0] == pytest.approx(20 - 1.25)
 
 
+def test_who_backs_up_does_so_whatever_speed_is_stated():
+    x, v = braking()
+    found = motion(-x, v)
+    assert found.vx[0] == pytest.approx(-v)
+    assert found.speed[0] == pytest.approx(v)
+
+
 def test_stated_speeds_that_make_another_way_are_not():
     x, v = braking()
     assert motion(x, v * 1.1).speed[0, 15] == pytest.approx(v[15])

@@ -81,7 +81,8 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     vx, vy = np.where(single, stated * cos, vx), np.where(single, stated * sin, vy)
     speed = np.hypot(vx, vy)
     # A vehicle moves along its heading: a simulated change of lanes in one step is no speed
-    along = np.abs(vx * cos + vy * sin)
+    forward = vx * cos + vy * sin
+    along = np.abs(forward)
     steers = poses.steers & (
         np.nansum(along * speed, axis=1) >= _LEAST_PART * np.nansum(speed**2, axis=1)
     )
@@ -93,7 +94,9 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
         contradicts = np.where(poses.steers & (differ <= _CONTRADICTS * told), differ, 0.0)
     else:
         own = poses.steers & (differ <= np.maximum(_AGREES * told, _STANDS_MPS))
-        vx, vy = np.where(own[:, None], (stated * cos, stated * sin), (vx, vy))
+        # Stated speeds do not say which way
+        way = np.where(forward < 0, -stated, stated)
+        vx, vy = np.where(own[:, None], (way * cos, way * sin), (vx, vy))
         speed = np.where(own[:, None], stated, speed)
     # At a track's ends the mean is of the time beside the state
     begin, end = window.of(columns)
