@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from rulec.extraction.signals.lane_signals import lane_change_signals, lane_mark_signals
@@ -23,6 +24,20 @@ def changes(*others, body=None, side="right", **thresholds):
 def test_the_state_in_which_the_lane_is_another_one():
     assert changes().world["lane_change"].tolist() == [False, False, True, False]
     assert changes(body=steady(7, 0, 0)).world["lane_change"].tolist() == [False] * 4
+
+
+@pytest.mark.parametrize(("x", "known"), [(98, False), (180, True)])
+def test_who_follows_a_way_of_a_lane_that_forks_may_have_changed_to_none(x, known):
+    """It forks at 100 m; ego's middle is 2.2 m to the left of where it was 10 m farther on."""
+    road = [
+        straight(1, 0, 100, successors=(2, 3)),
+        straight(2, 100, 300, left_of=3, predecessors=(1,)),
+        straight(3, 100, 300, 4, right_of=2, predecessors=(1,)),
+    ]
+    ego = vehicle(7, {k: (x + 5.0 * k, min(1.1 * k, 4)) for k in range(6)})
+    found = lane_change_signals(context_of(recording(road, [ego]), ("1", "2")))
+    (change,) = np.flatnonzero(found.world["lane_change"])
+    assert found.unknown["lane_change"][change] == (not known)
 
 
 @pytest.mark.parametrize(

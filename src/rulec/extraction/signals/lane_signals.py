@@ -46,6 +46,9 @@ _JUMP_MPS = 5.0
 _MOVED_OFF_M, _STOOD_S = 1.0, 1.0
 """A box of who is parked wanders by less; who stays there for so long stands."""
 
+_FORK_M = 15.0
+"""So far behind where a lane has forked its ways lie over each other."""
+
 _Marks = tuple[LaneMark | None, LaneMark | None]
 
 
@@ -57,13 +60,29 @@ def lane_change_signals(context: DriveContext, names: SignalNames = None) -> Sig
 def _lane_change(context: DriveContext) -> SignalColumns:
     """Whether ego has changed lanes; unknown within tolerances, and of who turns round.
 
-    Its body swings over the lanes of the road that it comes to.
+    Its body swings over the lanes of the road that it comes to. Nor does anybody know where a lane
+    has just forked: ego may follow one of its ways.
     """
     changes = _changes(context)
     unknown = _within_tolerance(context, changes)
     if changes.any():
         unknown |= changes & swings_round(context)
+        for change in np.flatnonzero(changes & ~unknown).tolist():
+            unknown[change] = _at_fork(context, change)
     return SignalColumns({"lane_change": changes}, unknown={"lane_change": unknown})
+
+
+def _at_fork(context: DriveContext, change: int) -> bool:
+    """True if the lanes that ego changes between have come of one, less than ``_FORK_M`` ago."""
+    road, s = context.road, context.ego_extents.s[0, change - 1 : change + 1]
+    pieces = {int(piece) for piece in road.piece(s)}
+    lanes = context.steady_lane[change - 1 : change + 1].tolist()
+    for piece in pieces:
+        one, other = (road.rows[piece][lane] for lane in lanes)
+        near = s[1] - float(road.borders[piece]) < _FORK_M
+        if one and other and near and set(one.predecessors) & set(other.predecessors):
+            return True
+    return False
 
 
 def _lane_is_clear(context: DriveContext) -> SignalColumns:
