@@ -78,7 +78,7 @@ def test_at_most_a_fifth_of_the_german_rules_read_what_no_format_tells():
     assert {one.rule for one in audit.rules if one.basis == "nothing"} <= set(partly)
 
 
-def test_nearly_three_fifths_of_the_cells_of_the_first_fourteen_books_are_whole():
+def test_three_fifths_of_the_cells_of_the_first_fourteen_books_are_whole():
     page = Path(__file__).parents[2] / "docs" / "coverage.md"
     lines = page.read_text(encoding="utf-8").splitlines()
     (head,) = (line for line in lines if line.startswith("| topic |"))
@@ -90,7 +90,6 @@ def test_nearly_three_fifths_of_the_cells_of_the_first_fourteen_books_are_whole(
     }
     assert len(rows) == 55
     whole = sum(sign == "●" for (_, book), sign in cells.items() if book in FOURTEEN)
-    # Rules that came later have situations by who wrote them, which make no cell whole.
-    assert whole >= 0.59 * len(rows) * len(FOURTEEN)
+    assert whole >= 0.6 * len(rows) * len(FOURTEEN)
     for row in rows:
         assert any(sign[0] in "●◐" for sign in row[1:]), row[0]
