@@ -25,7 +25,7 @@ from rulec.logic.semantics import steps_to_settle
 from rulec.monitoring.batch.trace_groups import Names
 from rulec.monitoring.moments.stretches import Stretches, opportunity_stretches
 from rulec.monitoring.moments.trace_truth import (
-    Choices,
+    ChosenObjects,
     FormulaTruth,
     ReadyFormula,
     TraceTruth,
@@ -163,7 +163,7 @@ def _tally(truth: TraceTruth, watched: _Watched, outcomes: Mapping[Chosen, Outco
     return tally
 
 
-def _decided(choices: Choices, left: dict[Chosen, Outcome]) -> tuple[Counts, list[Outcome]]:
+def _decided(choices: ChosenObjects, left: dict[Chosen, Outcome]) -> tuple[Counts, list[Outcome]]:
     """The rows of what is violated or open, and which of it, which is taken out."""
     if not left:
         return np.zeros(0, dtype=np.intp), []

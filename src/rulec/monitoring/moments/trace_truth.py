@@ -30,7 +30,7 @@ MOST_ENTRIES = 1 << 22
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Choices:
+class ChosenObjects:
     """Choices of objects for variables of these names, one a row, those of a ``trace`` together.
 
     ``items`` (rows x variables) are numbers of objects, as tables count them.
@@ -43,9 +43,9 @@ class Choices:
     def __len__(self) -> int:
         return len(self.trace)
 
-    def at(self, rows: Places) -> Choices:
+    def at(self, rows: Places) -> ChosenObjects:
         """Some of the rows."""
-        return Choices(self.variables, self.trace[rows], self.items[rows])
+        return ChosenObjects(self.variables, self.trace[rows], self.items[rows])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,7 +58,7 @@ class FormulaTruth:
     any more.
     """
 
-    choices: Choices
+    choices: ChosenObjects
     rows: Places
     first: Places
     last: Places
@@ -103,7 +103,7 @@ class TraceTruth:
         if ends == "cut":
             self._ends = "cut"
 
-    def of(self, ready: ReadyFormula, asked: Choices) -> Iterator[FormulaTruth]:
+    def of(self, ready: ReadyFormula, asked: ChosenObjects) -> Iterator[FormulaTruth]:
         """The truth of a formula for choices of objects that are there together.
 
         There are several parts where there is much of it, and none of traces in which it is seen to
@@ -114,7 +114,7 @@ class TraceTruth:
         for begin in range(0, len(rows), most):
             yield self._part(ready, asked, rows[begin : begin + most])
 
-    def choices_of(self, variables: Sequence[Variable]) -> Choices:
+    def choices_of(self, variables: Sequence[Variable]) -> ChosenObjects:
         """All choices of distinct objects of these types that are there together."""
         tables = self.tables
         wanted = [variable.type for variable in variables]
@@ -123,18 +123,18 @@ class TraceTruth:
         own = np.array(chosen, dtype=np.intp).reshape(len(chosen), len(variables))
         trace = np.repeat(np.arange(tables.n_traces), len(own))
         items = np.tile(own, (tables.n_traces, 1)) + (trace * len(numbers))[:, None]
-        every = Choices(tuple([variable.name for variable in variables]), trace, items)
+        every = ChosenObjects(tuple([variable.name for variable in variables]), trace, items)
         first, last = self.stretch_of(every)
         return every.at(np.flatnonzero(first <= last))
 
-    def stretch_of(self, chosen: Choices) -> tuple[Places, Places]:
+    def stretch_of(self, chosen: ChosenObjects) -> tuple[Places, Places]:
         """The first and the last state in which each choice of objects is there."""
         if not chosen.variables:
             return np.zeros(len(chosen), dtype=np.intp), self.tables.last[chosen.trace]
         spans = self._spans[chosen.items]
         return spans[:, :, 0].max(axis=1), spans[:, :, 1].min(axis=1)
 
-    def _part(self, ready: ReadyFormula, asked: Choices, rows: Places) -> FormulaTruth:
+    def _part(self, ready: ReadyFormula, asked: ChosenObjects, rows: Places) -> FormulaTruth:
         own = asked.at(rows)
         first, last = self.stretch_of(own)
         states, end = np.arange(self.tables.n_states), last
