@@ -137,6 +137,13 @@ def test_ego_drives_into_the_side_of_one_that_was_there_first(reaches_s, mps, co
     assert not unknown.any()
 
 
+def test_who_brakes_may_stop_short_of_one_that_was_there_first():
+    """As above, but at 2 m/s from 4.5 s on, as ego gets to its way, for a second."""
+    conflict, unknown = told(at(3.5), ego=np.interp(TIMES, [0, 4.5, 5.5, 14], [32, 54.5, 56.5, 99]))
+    assert not conflict.any()
+    assert unknown.any()
+
+
 def test_who_rolls_on_in_front_of_one_does_not_let_it_pass():
     # It comes at about 5.0 s and has passed at 6.6 s, while ego is on its way from 4.6 to 7.2 s
     conflict, _ = told(at(4.8))

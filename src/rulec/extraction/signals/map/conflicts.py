@@ -83,7 +83,8 @@ def _runs_into(
 ) -> tuple[int, bool] | None:
     """The same of one that got there first: ego drives into its side while it drives on.
 
-    Those who join its way drive in behind it.
+    Those who join its way drive in behind it. Who brakes meanwhile may see it, and stop short of it
+    on lanes that are narrower than a map has them.
     """
     passages = context.surroundings.passages
     (own, enters), (other, passed) = ego, foe
@@ -95,7 +96,9 @@ def _runs_into(
     slowest = passages.tracks.speed[[own.row, other.row], enters:until].min(axis=1, initial=np.inf)
     drive = bool((slowest > (SLOWEST_MPS, _DRIVES_MPS)).all())
     inside = (until - enters) * context.recording.step_s > _BEHIND_S
-    return (max(int(present[0]), first_column(context)), True) if drive and inside else None
+    if not (drive and inside):
+        return None
+    return max(int(present[0]), first_column(context)), not _slows_down(context, own, enters, until)
 
 
 def _column(when: float | None) -> int | None:
