@@ -6,6 +6,7 @@ Ego drives along y = 0 to a junction from x = 100 to 120; states are half a seco
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from rulec.extraction.signals.intention_signals import intention_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
@@ -208,10 +209,9 @@ def near(*bodies, road=None, ego=None):
 
 
 def test_one_that_comes_from_behind_with_blue_lights():
-    # It may be without its horn, which no source tells
-    assert near(ambulance(-60))[0] == "?"
+    assert near(ambulance(-60))[0] == "True"
     # A flash that is dark for half a second is still a flash
-    assert near(ambulance(-60, lamps=(True, False)))[1] == "?"
+    assert near(ambulance(-60, lamps=(True, False)))[1] == "True"
     assert set(near(ambulance(-60, lamps=()))) == {"False"}
     assert near(ambulance(-60, kind="car"))[0] == "False"
     assert near(ambulance(-200))[0] == "False"
@@ -225,11 +225,25 @@ def test_one_that_comes_towards_ego():
     against = [straight(1, -200, 300), lanelet(2, [(300, 4), (-200, 4)])]
     found = near(ambulance(100, -15, 4), road=against)
     # They meet after 4 s: then it drives away behind ego
-    assert found[:7] == ["?"] * 7
+    assert found[:7] == ["True"] * 7
     assert found[10:] == ["False"] * 30
     # On the other carriageway of a divided road it has its own way
     divided = [straight(1, -200, 300), lanelet(2, [(300, 7), (-200, 7)])]
     assert set(near(ambulance(100, -15, 7), road=divided)) == {"False"}
+
+
+def test_one_that_stands_with_its_lights_on():
+    # At an accident, or held up for as long: nobody knows
+    stands = ambulance(20, 0.0)
+    found = near(stands)
+    assert "True" not in found
+    assert found[20] == "?"
+    # Behind ego in a queue for some seconds it does need the way
+    held = {k: (-20 + (5 * max(0, k - 10) if k > 10 else 0), 0.0) for k in range(STEPS)}
+    body = ambulance(-20, 0.0)
+    moving = vehicle(8, held, "priorityVehicle")
+    body = replace(body, states=moving.states, outlines=moving.outlines)
+    assert near(body, ego=steady(7, 0, 0, 10, STEPS))[0] == "True"
 
 
 def test_one_that_waits_at_lights_having_come_towards_ego():
@@ -239,11 +253,19 @@ def test_one_that_waits_at_lights_having_come_towards_ego():
     moving = vehicle(8, places, "priorityVehicle", heading=np.pi)
     body = replace(ambulance(40), states=moving.states, outlines=moving.outlines)
     found = near(body, road=against)
-    assert found[:3] == ["?"] * 3
+    assert found[:3] == ["True"] * 3
     # Ego is 15 m ahead of it after five states, and it stands from the eighth on
     assert set(found[6:]) == {"False"}
     ahead = near(body, road=against, ego=steady(7, -150, 0, 1, STEPS))
-    assert ahead[20] == "?"
+    assert ahead[20] == "True"
+
+
+@pytest.mark.parametrize(("sounds", "expected"), [(True, "True"), (False, "?")])
+def test_lights_without_a_horn_that_is_told(sounds, expected):
+    """Most laws ask for both, some for either."""
+    body = ambulance(-60)
+    lamps = {k: lit_then | ({"horn"} if sounds else set()) for k, lit_then in body.lamps.items()}
+    assert near(replace(body, lamps=lamps, shows=body.shows | {"horn"}))[0] == expected
 
 
 def test_lights_that_a_file_does_not_tell():

@@ -37,18 +37,17 @@ def intention_signals(context: DriveContext, names: SignalNames = None) -> Signa
 
 
 def _emergency_vehicle_near(context: DriveContext) -> SignalColumns:
-    """Unknown wherever one comes near with its lights on: no source has its horn.
-
-    Whom lights alone oblige to nothing (StVO § 38(1), UVC § 11-405) is not to be blamed for them.
-    """
+    """Whether one on call is near; unknown of one that stands, or does not sound a told horn."""
     on_call, not_told = _on_call(context)
-    perhaps, unknown = on_call | not_told, np.zeros(context.states, dtype=bool)
-    if len(rows := np.flatnonzero(perhaps.any(axis=1))):
+    rows = np.flatnonzero((on_call | not_told).any(axis=1))
+    comes, perhaps = np.zeros((2, context.states), dtype=bool)
+    if len(rows):
         near = context.relevant[rows] & _comes_near(context)[rows]
-        unknown = np.any(near & perhaps[rows], axis=0)
+        needs_way = _drives(context, rows) & ~_is_silent(context, rows)
+        comes = np.any(near & on_call[rows] & needs_way, axis=0)
+        perhaps = np.any(near & (not_told[rows] | (on_call[rows] & ~needs_way)), axis=0)
     return SignalColumns(
-        {"emergency_vehicle_near": np.zeros(context.states, dtype=bool)},
-        unknown={"emergency_vehicle_near": unknown},
+        {"emergency_vehicle_near": comes}, unknown={"emergency_vehicle_near": perhaps & ~comes}
     )
 
 
@@ -147,6 +146,23 @@ def _comes_near(context: DriveContext) -> Flags:
     towards = against & (station != relations.IN_FRONT_OF) & ~divided
     comes: Flags = towards | (~against & (station != relations.BEHIND))
     return comes
+
+
+def _drives(context: DriveContext, rows: NDArray[intp]) -> Flags:
+    """Flags of those who drive now, or have or will within ``preparing_s``: no more than held up.
+
+    Of these rows. One that stands for longer, lights on, may be where it was called to.
+    """
+    steps = round(context.thresholds.preparing_s / context.recording.step_s)
+    return context.spans.within(_moves(context)[rows], steps, around=True)
+
+
+def _is_silent(context: DriveContext, rows: NDArray[intp]) -> Flags:
+    """Flags of those of these rows whose horn the recording tells, and which do not sound it."""
+    horn, told = (flags[rows] for flags in _lit(context, "horn"))
+    steps = round(context.thresholds.preparing_s / context.recording.step_s)
+    silent: Flags = told & ~context.spans.within(horn, steps, around=True)
+    return silent
 
 
 def _moves(context: DriveContext) -> Flags:
