@@ -38,7 +38,7 @@ _DRIFT_MPS = 0.2
 TIMES_AS_FAST = 2.0
 """A lane on which several are so many times as fast as slow traffic flows."""
 
-_APART = frozenset({JOINING, "exitRamp"})
+_RAMPS = frozenset({JOINING, "exitRamp"})
 """Types of lanes to join from or to leave by, beside those that go on."""
 
 _SETS_OFF_MPS2 = 2.0
@@ -185,12 +185,12 @@ def _being_overtaken(context: DriveContext) -> SignalColumns:
     by, open_end = _overtaken(context)
     # Who is about to join gets up speed for it, beside others on the lanes that go on; who leaves
     # may be faster than they, too (StVO § 7a), and many lanes between ramps serve for both
-    apart = own_lanelets(context).flags(lambda at: not at.types.isdisjoint(_APART))
-    by, open_end = by & ~apart, open_end & ~apart
+    on_ramp = own_lanelets(context).flags(lambda at: not at.types.isdisjoint(_RAMPS))
+    by, open_end = by & ~on_ramp, open_end & ~on_ramp
     overtaken = by.any(axis=0)
     dense, surely, not_told = _dense_lines(context)
     # Lanes that move off beside each other do not overtake, and who has joined gets up speed yet
-    moot = _sets_off(context) | _has_joined(context, apart) | not_told
+    moot = _sets_off(context) | _has_joined(context, on_ramp) | not_told
     # Where all lanes queue, one that is faster does not overtake (Vienna, Art. 11(6)(a))
     return SignalColumns(
         {"being_overtaken": ~dense & overtaken},
@@ -238,9 +238,9 @@ def _gap_in_lane(context: DriveContext, station: int) -> Floats:
     return gap
 
 
-def _has_joined(context: DriveContext, apart: Flags) -> Flags:
-    """Flags of states in which ego was on a lane apart up to ``setting_off_s`` ago."""
-    spans, joined = context.spans, context.spans.latest(apart)
+def _has_joined(context: DriveContext, on_ramp: Flags) -> Flags:
+    """Flags of states in which ego was on a ramp up to ``setting_off_s`` ago."""
+    spans, joined = context.spans, context.spans.latest(on_ramp)
     ago = (spans.columns - joined) * context.recording.step_s
     has_joined: Flags = (joined >= spans.first) & (ago < context.thresholds.setting_off_s)
     return has_joined

@@ -32,6 +32,7 @@ _SURE_M = 0.4
 _LARGEST_TURN = np.pi / 3
 
 _NO_WAY_M = 1e-9
+"""Corners of a line that are nearer to each other give it no direction."""
 
 _ALIKE = 0.5
 """Ways whose turns differ by less (rad) lead to the same road."""

@@ -200,7 +200,7 @@ def _differ(
 class _Window:
     """Unbroken windows around moments: the columns of their ends, and of those a step farther in.
 
-    ``part`` is how far the ends are from the latter, as a part of a step; with 0 there are none.
+    ``part`` is how far the ends are from the latter, as a part of a step; with 1 they are columns.
     """
 
     rows: NDArray[intp]

@@ -47,7 +47,7 @@ def facts_of_many(
     judged = {place: verdict for place, verdict in enumerate(verdicts) if verdict is not None}
     found: dict[int, DriveFacts] = {}
     for alike in alike_traces(items, [*judged], rulebook.vocabulary):
-        own = [judged.get(place, _NOTHING) for place in alike.places]
+        own = [judged.get(place, _NOT_WANTED) for place in alike.places]
         names = [alike.names(number) for number in range(len(own))]
         tables = ColumnTables(alike.columns, rulebook.vocabulary, alike.told)
         truth = TraceTruth(tables, rulebook.semantics, alike.ends)
@@ -60,7 +60,7 @@ def facts_of_many(
     return [found[place] for place in judged]
 
 
-_NOTHING = Verdict("", ())
+_NOT_WANTED = Verdict("", ())
 
 
 def _facts(

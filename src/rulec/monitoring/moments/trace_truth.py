@@ -157,7 +157,7 @@ class TraceTruth:
         )
 
     def _may_hold(self, ready: ReadyFormula) -> NDArray[np.bool_]:
-        """The traces in which it holds nowhere by no part that is about no object and one state."""
+        """Flags of traces of which no part about one state and no object says: it holds nowhere."""
         tables = self.tables
         states, last = np.arange(tables.n_states), tables.last[:, None]
         stretches = RowStretches(np.zeros_like(last), last, self._ends)

@@ -257,11 +257,11 @@ def _side(content: OpenDrive, lanelets: Mapping[str, Lanelet]) -> Side | None:
     rules = {road.left_hand for road in content.roads.values()}
     if len(rules) > 1:
         return None
-    if not any(road.side_told for road in content.roads.values()):
+    if not any(road.has_rule for road in content.roads.values()):
         shown = _sides_shown(lanelets)
         if shown == {"left"}:
             return "left"
-        return "right" if shown or content.has_rules or _leads_both_ways(content) else None
+        return "right" if shown or content.may_have_rules or _leads_both_ways(content) else None
     return "left" if rules.pop() else "right"
 
 
@@ -315,7 +315,7 @@ def _remarks(content: OpenDrive, side: Side | None, slow_turns: int) -> Iterator
         yield "traffic keeps to the left on some roads of the map, and to the right on others"
     elif side is None:
         yield "the map does not tell the side on which traffic keeps"
-    if side == "left" and not any(road.side_told for road in content.roads.values()):
+    if side == "left" and not any(road.has_rule for road in content.roads.values()):
         yield "traffic keeps to the left, as its lanes show: no road has a `rule`"
     if slow_turns:
         yield (

@@ -1,7 +1,7 @@
 """Limits within junctions that nobody has posted: the speeds at which ways there are driven.
 
-SUMO's netconvert, and others, write how fast a bend within a junction is driven as if that were the
-limit there.
+SUMO's netconvert writes how fast a bend within a junction is driven as if that were the limit
+there.
 """
 
 from __future__ import annotations

@@ -57,7 +57,7 @@ def _fog_lamps(context: DriveContext) -> SignalColumns:
     )
 
 
-def _on_call(context: DriveContext) -> SignalColumns:
+def _ego_on_call(context: DriveContext) -> SignalColumns:
     """Ego's blue lights; who is no emergency vehicle has none, unless they are seen."""
     egos, spread = context.ego.participants, context.spans.spread
     may_be = spread([ego.type == "priorityVehicle" for ego in egos])
@@ -66,11 +66,11 @@ def _on_call(context: DriveContext) -> SignalColumns:
         return SignalColumns({"ego_on_call": may_be})
     lit = ego_lamps(context)
     blue = np.array(["blue_light" in (lamps or ()) for lamps in lit], dtype=bool)
-    told = shows & np.array([lamps is not None for lamps in lit], dtype=bool)
+    recorded = shows & np.array([lamps is not None for lamps in lit], dtype=bool)
     steps = round(FLASH_S / context.recording.step_s)
     flashing = context.spans.within(blue[None], steps, around=True)[0]
     return SignalColumns(
-        {"ego_on_call": flashing}, unknown={"ego_on_call": may_be & ~told & ~flashing}
+        {"ego_on_call": flashing}, unknown={"ego_on_call": may_be & ~recorded & ~flashing}
     )
 
 
@@ -87,6 +87,6 @@ def ego_lamps(context: DriveContext) -> list[frozenset[Lamp] | None]:
 
 _PASSES: Passes = {
     ("headlamps",): _headlamps,
-    ("ego_on_call",): _on_call,
+    ("ego_on_call",): _ego_on_call,
     ("front_fog_lamps", "rear_fog_lamps"): _fog_lamps,
 }

@@ -182,14 +182,14 @@ class RoadStretch:
 class MapRoad:
     """A road; ``junction`` is the one that it leads through, or empty.
 
-    ``side_told``: does the file say on which side traffic keeps there?
+    ``has_rule``: does the file say on which side traffic keeps there?
     """
 
     id: str
     length: float
     junction: str
     left_hand: bool
-    side_told: bool
+    has_rule: bool
     line: int
     predecessor: RoadLink | None
     successor: RoadLink | None
@@ -234,11 +234,11 @@ class RoadJunction:
 class OpenDrive:
     """The content of a file; ``controllers`` have the ids of the signals that they control.
 
-    ``has_rules``: roads of its version may say on which side traffic keeps.
+    ``may_have_rules``: roads of its version may say on which side traffic keeps.
     """
 
     # Not frozen: it is filled as the file is read
     roads: dict[str, MapRoad]
     junctions: dict[str, RoadJunction]
     controllers: dict[str, tuple[str, ...]]
-    has_rules: bool = True
+    may_have_rules: bool = True

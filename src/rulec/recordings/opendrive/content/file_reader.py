@@ -30,7 +30,7 @@ def _add(content: OpenDrive, tree: Tree) -> None:
         case "header":
             version, minor = text(tree, "revMajor"), text(tree, "revMinor")
             # Version 1.4 has no `rule` of roads
-            content.has_rules = minor not in ("0", "1", "2", "3", "4")
+            content.may_have_rules = minor not in ("0", "1", "2", "3", "4")
             if version not in ("", "1"):
                 why = f"its version is {short(version)}.{short(minor)}"
                 raise tree.wrong(why, "1.4 to 1.8")

@@ -59,7 +59,7 @@ def read_road(tree: Tree) -> MapRoad:
         length=road_length,
         junction="" if junction in ("", "-1") else name(tree, "junction"),
         left_hand=rule == "LHT",
-        side_told=rule != "",
+        has_rule=rule != "",
         line=tree.place,
         predecessor=predecessor,
         successor=successor,
