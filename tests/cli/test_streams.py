@@ -1,5 +1,6 @@
 """Pipes, full disks, closed streams and signals: the exit status stays true, no file half-made."""
 
+import json
 import os
 import re
 import signal
@@ -48,6 +49,16 @@ def test_a_full_disk_is_said(arguments):
     done = shell('"$@" >/dev/full', *arguments)
     assert done.returncode == 2
     assert b"R0720]: standard output cannot be written to: no space left on device" in done.stderr
+
+
+def test_an_editor_that_says_goodbye_leaves_no_bug_behind():
+    first = {"id": 1, "method": "initialize", "params": {"capabilities": {}}}
+    said = b""
+    for message in (first, {"id": 2, "method": "shutdown"}, {"method": "exit"}):
+        body = json.dumps({"jsonrpc": "2.0", **message}).encode()
+        said += b"Content-Length: %d\r\n\r\n%s" % (len(body), body)
+    done = run(["lsp"], input=said)
+    assert (done.returncode, done.stderr) == (0, b"")
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 from lsprotocol import types as lsp
@@ -227,4 +228,6 @@ def _between_the_lines(server: EditorSession) -> None:
 def serve() -> None:
     """Serve one editor over standard input and output, until it says to exit."""
     collect_in_pauses()
-    language_server().start_io()
+    # pygls closes what it writes to when it is told to exit, and standard output is still flushed.
+    with open(sys.stdout.fileno(), "wb", closefd=False) as replies:
+        language_server().start_io(stdout=replies)
