@@ -195,8 +195,22 @@ def not_the_same(path: Path, why: str) -> RulecError:
     )
 
 
+_DOCUMENTS = {
+    b"PK\x03\x04": "an office document or another archive",
+    b"\xd0\xcf\x11\xe0": "an office document",
+    b"%PDF": "a PDF",
+}
+"""How files begin that people write texts in and that are none."""
+
+
 def not_utf8(name: str, data: bytes, position: int) -> Diagnostic:
     way_out = "save the file as UTF-8"
+    what = next((words for mark, words in _DOCUMENTS.items() if data.startswith(mark)), "")
+    if what:
+        place = SourceLocation(name, 1, 1, 1, 1)
+        return NOT_UTF8.at(
+            place, f"the file is {what}, no plain text", help="save it as plain text, in UTF-8"
+        )
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         place = SourceLocation(name, 1, 1, 1, 1)
         return NOT_UTF8.at(place, "the file is in UTF-16, not in UTF-8", help=way_out)

@@ -233,6 +233,12 @@ def test_a_file_of_another_kind(tmp_path, monkeypatch, capsys):
     for verb in ("check", "test"):
         status, text = said(capsys, verb, "rules.txt")
         assert (status, "ends in `.rules`: call it `rules.rules`" in text) == (2, True)
+    (tmp_path / "law.docx").write_bytes(b"PK\x03\x04\x14\xa3")
+    (tmp_path / "law.rules").write_bytes(b"%PDF-1.4\n\xe2")
+    status, text = said(capsys, "check", "law.docx")
+    assert (status, "save it as plain text, in UTF-8, with a name" in text) == (2, True)
+    status, text = said(capsys, "check", "law.rules")
+    assert (status, "the file is a PDF, no plain text" in text) == (1, True)
     status, text = said(capsys, "verify", "README.md", "-r", "esterle2019")
     assert (status, text.count("error["), "these are no traces, but text" in text) == (2, 1, True)
     status, text = said(capsys, "maneuvers", "states.jsonl", "-r", "esterle2019")

@@ -124,6 +124,7 @@ FORMULAS = [
     ("speed 3 m", "3", BY_SIGNS),
     ("gap(v) 1.5 m", "1.5", BY_SIGNS),
     ("gap < 1,5 m", ",", "write a point: `1.5`"),
+    ("gap < 1.000,5 m", ",", "write a point: `1000.5`"),
     ("gap < .5 m", ".", "write `0.5`"),
     ("sp\u00adeed > 3", "\u00ad", "delete the character there, which cannot be seen"),
     ("gap < 1 000 m", "000", DIGITS),

@@ -185,6 +185,8 @@ def two_dimensions(
         expected=f"this is {second_kind}",
         help=_unit_help(second, first, scope)
         or _unit_help(first, second, scope)
+        or _other_unit(second, first, scope)
+        or _other_unit(first, second, scope)
         or _kind_help(first, left, second, right),
         labels=(Label(first.span.place, f"this is {first_kind}"), *origins(scope, first, second)),
     )
@@ -194,6 +196,14 @@ def _unit_help(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:
     unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
     bare = isinstance(node, tree.NumberLiteral) and not node.unit
     return f"write the unit, such as `{short(node)} {unit}`" if bare and unit else ""
+
+
+def _other_unit(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:
+    """The way out for a number in a unit of another kind than what it is compared with."""
+    unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
+    if not (isinstance(node, tree.NumberLiteral) and unit):
+        return ""
+    return f"`{short(beside)}` is in {unit}: check the unit of `{short(node)}`"
 
 
 def _kind_help(

@@ -19,6 +19,8 @@ from rulec.rulebook.files.source_walk import SUFFIX, rules_files
 from rulec.source_detection import LEAD_BYTES, beginning_of, first_word_at
 from rulec.work_trees import refuse_no_source
 
+_DOCUMENTS = (".doc", ".docx", ".odt", ".pdf", ".rtf")
+
 BY_PATH = "a file is given by its path, such as `./mine.rules`"
 
 
@@ -63,6 +65,8 @@ def find_rulebook(reference: str | Path, search_path: Sequence[Path]) -> Path:
 def meant_by(name: str, known: Sequence[str], search_path: Sequence[Path]) -> str:
     """What may be meant by a name that nothing has: a file of another ending, a country."""
     if "." in name and _is_file(Path(name)):
+        if Path(name).suffix.lower() in _DOCUMENTS:
+            return f"save it as plain text, in UTF-8, with a name that ends in `{SUFFIX}`"
         if _lead(Path(name)) not in ("rulebook", "vocabulary"):
             return f"this file is no rulebook; `rulec verify {name} -r de` judges traffic by one"
         renamed = Path(name).with_suffix(SUFFIX).name

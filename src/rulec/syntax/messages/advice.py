@@ -68,7 +68,7 @@ def _inside(scene: ParseContext) -> str:
         return _both_ends(found[1], found[2], scene.text_behind)
     if scene.accepted == {"UNIT"}:
         if text == "," and scene.is_number(scene.at + 1):
-            return f"write a point: `{before}.{scene.text_behind}`"
+            return scene.with_a_point()
         if text == "..":
             return _both_ends(before, scene.text_behind, scene.text_at(scene.at + 2))
         return f"say what it counts: `{before} s` or `{before} steps`"

@@ -152,7 +152,7 @@ def _numbers(scene: ParseContext) -> str:
         return ""
     around = scene.is_number(scene.at - 1) and scene.is_number(scene.at + 1)
     if text == "," and around:
-        return f"write a point: `{scene.text_before}.{scene.text_behind}`"
+        return scene.with_a_point()
     if text == "." and scene.quantity and scene.is_number(scene.at + 1):
         return f"write `0.{scene.text_behind}`"
     grouped = "_" in scene.text_before or scene.is_number(scene.at)

@@ -219,7 +219,7 @@ def advise_on_state(scene: ParseContext) -> str:
     if scene.unexpected is None and "NAME" in scene.accepted:
         return "say what holds in this state; a `;` stands only between two states"
     if text == "," and scene.is_number(scene.at - 1) and scene.is_number(scene.at + 1):
-        return f"write a point: `{scene.text_before}.{scene.text_behind}`"
+        return scene.with_a_point()
     if text == ",":
         return "states are separated by `;`, the facts of one state by `and`"
     if text in ("or", "|", "||"):
