@@ -102,17 +102,32 @@ def test_who_is_far_behind_the_next_one_leads_too(front, queues, unknown):
     assert signals.unknown["dense_all_lanes"][0] == unknown
 
 
-@pytest.mark.parametrize(("stood_s", "known"), [(9, False), (11, True)])
-def test_who_sets_off_beside_others_is_not_told_to_be_overtaken(stood_s, known):
-    # Ego stands for 2 s, and goes at 10 m/s for so long, when one at 15 m/s is beside it
-    last = 2 * (2 + stood_s)
-    ego = vehicle(7, {k: (max(k - 4, 0) * 5.0, 0) for k in range(last + 6)})
-    place = (last - 4) * 5.0
+@pytest.mark.parametrize(
+    ("mps", "ago_s", "known"), [(0, 9, False), (0, 11, True), (2, 9, False), (3, 9, True)]
+)
+def test_who_sets_off_beside_others_is_not_told_to_be_overtaken(mps, ago_s, known):
+    """Ego creeps (at 7.2 km/h, not at 10.8) for 2 s, and goes at 10 m/s until 15 m/s pass it."""
+    last = 2 * (2 + ago_s)
+    ego = vehicle(7, {k: (min(k, 4) * mps / 2 + max(k - 4, 0) * 5.0, 0) for k in range(last + 6)})
+    place = ego.states[last].x
     other = vehicle(8, {k: (place + (k - last) * 7.5, 4.0) for k in range(last - 4, last + 6)})
     found = flow_signals(context_of(recording(lanes(2), [ego, other])))
     assert found.world["being_overtaken"][last]
     assert found.whom["being_overtaken"][last] == ("8",)
     assert found.unknown["being_overtaken"][last] == (not known)
+
+
+@pytest.mark.parametrize(("slowest", "known"), [(15, True), (11, True), (8, False)])
+def test_who_falls_back_before_it_gets_past_may_have_given_up(slowest, known):
+    """It comes at 15 m/s, ego goes at 10 m/s; for 2 s it is slower than before."""
+    speeds = [15, 15] + [slowest] * 4 + [15] * 14
+    x = np.cumsum([-12.0] + [mps / 2 for mps in speeds])
+    ego = steady(7, 0, 0, 10, steps=20)
+    other = vehicle(8, {k: (float(x[k]), 4.0) for k in range(20)})
+    whole = replace(recording(lanes(2), [ego, other]), complete=frozenset({"light"}))
+    found = flow_signals(context_of(whole))
+    assert found.world["being_overtaken"][0] == known
+    assert found.unknown["being_overtaken"][0] == (not known)
 
 
 @pytest.mark.parametrize("types", [(), ("accessRamp",), ("exitRamp",)])

@@ -247,20 +247,20 @@ def _has_joined(context: DriveContext, on_ramp: Flags) -> Flags:
 
 
 def _sets_off(context: DriveContext) -> Flags:
-    """Flags of states in which ego has, or may have, stood up to ``setting_off_s`` ago.
+    """Flags of states in which ego has, or may have, crept up to ``setting_off_s`` ago.
 
-    Before its drive began it may have, if ``_SETS_OFF_MPS2`` has made it as fast as it is then;
+    Who creeps goes at walking pace at most, or stands. Before its drive began it may have, if ``_SETS_OFF_MPS2`` has made it as fast as it is then;
     where all traffic is recorded, if that is slow.
     """
     limits, speed, step_s = context.thresholds, context.ego.speed[0], context.recording.step_s
-    stands = speed * KMH < limits.standing_kmh
-    spans, stood = context.spans, context.spans.latest(stands).astype(float)
+    creeps = speed * KMH < limits.walking_pace_kmh
+    spans, crept = context.spans, context.spans.latest(creeps).astype(float)
     at_first = speed[spans.first]
     before = spans.first - np.ceil(at_first / _SETS_OFF_MPS2 / step_s)
     if "light" in context.recording.complete:
         before = np.where(at_first <= _PUT_IN_MPS, before, -np.inf)
-    stood = np.where(stood < spans.first, before, stood)
-    sets_off: Flags = (spans.columns - stood) * step_s < limits.setting_off_s
+    crept = np.where(crept < spans.first, before, crept)
+    sets_off: Flags = (spans.columns - crept) * step_s < limits.setting_off_s
     return sets_off
 
 
@@ -301,8 +301,9 @@ def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
     """Flags of those who overtake ego, and of states after which nobody knows whether one does.
 
     Who overtakes ego is with its middle on the next lane at the far side, clearly faster, and gets
-    past within ``catching_up_s``. Nobody knows of one that is lost from sight before, or that only
-    reaches into that lane.
+    past within ``catching_up_s``. Nobody knows of one that is lost from sight before, that falls
+    back first (whoever gives up and tries again overtakes but once), or that only reaches into that
+    lane.
     """
     limits, station = context.thresholds, relations.station(context)
     _, near = _sides(context)
@@ -311,7 +312,8 @@ def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
     comes &= (relations.lateral(context) == near) & context.going_along
     closing = relations.gap(context) <= faster_mps * limits.passed_s
     rows, states = (comes & (closing | (station == relations.BESIDE))).nonzero()
-    gets_past, lost = (flags[rows, states] for flags in _gets_past(context, distinct(rows)))
+    outcomes = _gets_past(context, distinct(rows), faster_mps)
+    gets_past, unsure = (flags[rows, states] for flags in outcomes)
     next_lane, lanes = _next_lane(context)[states], context.existing_lanes.shape[1]
     there = (next_lane >= 0) & (next_lane < lanes)
     reaches = there & is_in(context.lanes_within[0][rows, states], np.clip(next_lane, 0, lanes - 1))
@@ -319,7 +321,7 @@ def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
     overtaken, open_end = np.zeros_like(comes), np.zeros(context.states, dtype=bool)
     past = inside & gets_past
     overtaken[rows[past], states[past]] = True
-    open_end[states[reaches & (lost | (~inside & gets_past))]] = True
+    open_end[states[reaches & (unsure | (~inside & gets_past))]] = True
     return overtaken, open_end
 
 
@@ -363,19 +365,25 @@ def _next_lane(context: DriveContext) -> NDArray[intp]:
     return next_lane
 
 
-def _gets_past(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags]:
-    """Flags of participants that are past within ``catching_up_s``, and of those lost before.
+def _gets_past(
+    context: DriveContext, rows: NDArray[intp], faster_mps: Floats
+) -> tuple[Flags, Flags]:
+    """Flags of participants that are past within ``catching_up_s``, and of those that may be.
 
-    Of these rows, False in all others.
+    Of these rows, False in all others. They may be if they are lost before, or fall back first:
+    slower than ego by more than speeds may be wrong.
     """
     horizon = round(context.thresholds.catching_up_s / context.recording.step_s)
     spans, states = context.spans, context.spans.columns
     seen = context.relevant[rows]
     past = seen & (relations.station(context)[rows] == relations.BEHIND)
-    gets_past, lost = np.zeros((2, *context.relevant.shape), dtype=bool)
-    gets_past[rows] = spans.within(past, horizon)
-    lost[rows] = ~gets_past[rows] & (spans.next_state(~seen) <= states + horizon)
-    return gets_past, lost
+    falls_back = seen & (faster_mps[rows] < -context.tolerances.speed_mps)
+    is_past = spans.within(past, horizon)
+    at_once = is_past & (spans.next_state(past) <= spans.next_state(falls_back))
+    gets_past, unsure = np.zeros((2, *context.relevant.shape), dtype=bool)
+    gets_past[rows] = at_once
+    unsure[rows] = ~at_once & (is_past | (spans.next_state(~seen) <= states + horizon))
+    return gets_past, unsure
 
 
 _PASSES: Passes = {
