@@ -146,6 +146,20 @@ def test_who_would_have_to_brake_is_disturbed(x, speed, expected):
     assert clear(x, speed) is expected
 
 
+@pytest.mark.parametrize(
+    ("x", "speed", "unknown"),
+    [
+        (11, 15, True),  # 3 m of ego are beside it, at 5 m/s more: 0.6 s
+        (11, 12, False),  # 1.5 s at 2 m/s more
+        (9.9, 15, False),  # ego reaches farther ahead
+    ],
+)
+def test_nobody_knows_whether_one_that_is_about_to_be_past_is_disturbed(x, speed, unknown):
+    found = changes(steady(8, x - 1.0 * speed, 4, speed=speed))
+    assert not found.world["lane_is_clear"][2]
+    assert found.unknown["lane_is_clear"].tolist() == [False, False, unknown, False]
+
+
 def test_comfort_and_reaction_are_thresholds():
     assert clear(-5, 15, disturbing_mps2=2.1)
     assert not clear(-6, 15, reaction_s=1.2)

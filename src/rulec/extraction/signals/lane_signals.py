@@ -86,12 +86,19 @@ def _at_fork(context: DriveContext, change: int) -> bool:
 
 
 def _lane_is_clear(context: DriveContext) -> SignalColumns:
+    """Whether nobody has to brake for ego, in states of its lane changes.
+
+    Unknown where the only ones are about to be past: ego comes in behind them.
+    """
     disturbed = np.zeros(context.relevant.shape, dtype=bool)
+    pulls_away = np.zeros(context.states, dtype=bool)
     changes = np.flatnonzero(_changes(context))
-    disturbed[:, changes] = _disturbed(context, changes)
+    disturbed[:, changes] = found = _disturbed(context, changes)
+    pulls_away[changes] = ~np.any(found & ~_pulls_away(context, changes), axis=0)
     clear: Flags = ~np.any(disturbed, axis=0)
     return SignalColumns(
         {"lane_is_clear": clear},
+        unknown={"lane_is_clear": ~clear & pulls_away},
         whom={"lane_is_clear": ids_by_state(disturbed, context.ids)},
     )
 
@@ -197,6 +204,20 @@ def _disturbed(context: DriveContext, states: NDArray[intp]) -> Flags:
     behind = (station == relations.IN_FRONT_OF) & brakes
     disturbed: Flags = same & (behind | (station == relations.BESIDE))
     return disturbed
+
+
+def _pulls_away(context: DriveContext, states: NDArray[intp]) -> Flags:
+    """Flags of the vehicles that reach farther ahead than ego, and are past within ``reaction_s``.
+
+    Past is who is clear of ego, did both go on as fast as they are in these states.
+    """
+    others, own = context.extents, context.ego_extents
+    front, faster = own.s_max[:, states], others.along[:, states] - own.along[:, states]
+    left = front - others.s_min[:, states]
+    away: Flags = (others.s_max[:, states] > front) & (
+        left < faster * context.thresholds.reaction_s
+    )
+    return away
 
 
 def lane_mark_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
