@@ -249,8 +249,9 @@ def _has_joined(context: DriveContext, on_ramp: Flags) -> Flags:
 def _sets_off(context: DriveContext) -> Flags:
     """Flags of states in which ego has, or may have, crept up to ``setting_off_s`` ago.
 
-    Who creeps goes at walking pace at most, or stands. Before its drive began it may have, if ``_SETS_OFF_MPS2`` has made it as fast as it is then;
-    where all traffic is recorded, if that is slow.
+    Who creeps goes at walking pace at most, or stands. Before its drive began it may have, if
+    ``_SETS_OFF_MPS2`` has made it as fast as it is then; where all traffic is recorded, if that is
+    slow.
     """
     limits, speed, step_s = context.thresholds, context.ego.speed[0], context.recording.step_s
     creeps = speed * KMH < limits.walking_pace_kmh
