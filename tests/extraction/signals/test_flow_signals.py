@@ -7,7 +7,7 @@ import pytest
 
 from rulec.extraction.signals.flow_signals import flow_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
-from support.builders.drive_contexts import context_of, steady
+from support.builders.drive_contexts import along, context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
 
@@ -64,6 +64,21 @@ def test_a_jam_is_on_half_of_the_lanes(count, second, jam):
     assert (found["congested"], found["walking_pace_flow"]) == (jam, jam)
 
 
+@pytest.mark.parametrize(
+    ("beside", "ahead", "told"),
+    [(True, True, True), (False, True, False), (True, False, False)],
+    ids=["a jam", "one lane of two, before a turn", "who leads"],
+)
+def test_who_waits_where_no_jam_may_be_is_not_told_to_be_in_one(beside, ahead, told):
+    start = 10.0 if ahead else -50.0
+    others = [steady(30, 10, 4.0, speed=0)] if beside else []
+    bodies = [steady(7, 0, 0, speed=0), *line(0, 4, start=start), *others]
+    found = flow_signals(context_of(recording(lanes(2), bodies), ("1",)))
+    for word in ("congested", "walking_pace_flow"):
+        assert found.world[word][0]
+        assert found.unknown[word][0] == (not told)
+
+
 def test_a_single_one_that_drives_past_a_jam_is_no_flow():
     ego = steady(7, 0, 0, speed=0)
     assert first(*line(0, 4), steady(30, 10, 4.0, speed=17), ego=ego)["walking_pace_flow"]
@@ -103,10 +118,10 @@ def test_who_is_far_behind_the_next_one_leads_too(front, queues, unknown):
 
 
 @pytest.mark.parametrize(
-    ("mps", "ago_s", "known"), [(0, 9, False), (0, 11, True), (2, 9, False), (3, 9, True)]
+    ("mps", "ago_s", "known"), [(0, 9, False), (0, 11, True), (5, 9, False), (6, 9, True)]
 )
 def test_who_sets_off_beside_others_is_not_told_to_be_overtaken(mps, ago_s, known):
-    """Ego creeps (at 7.2 km/h, not at 10.8) for 2 s, and goes at 10 m/s until 15 m/s pass it."""
+    """Ego creeps (at 18 km/h, not at 21.6) for 2 s, and goes at 10 m/s until 15 m/s pass it."""
     last = 2 * (2 + ago_s)
     ego = vehicle(7, {k: (min(k, 4) * mps / 2 + max(k - 4, 0) * 5.0, 0) for k in range(last + 6)})
     place = ego.states[last].x
@@ -128,6 +143,56 @@ def test_who_falls_back_before_it_gets_past_may_have_given_up(slowest, known):
     found = flow_signals(context_of(whole))
     assert found.world["being_overtaken"][0] == known
     assert found.unknown["being_overtaken"][0] == (not known)
+
+
+def runs(speeds):
+    """Ego's places, and its speeds at most of them, from x = 0; half a second apart."""
+    places = np.concatenate(([0.0], np.cumsum(np.array(speeds[:-1]) * 0.5)))
+    return {k: (x, 0.0) for k, x in enumerate(places.tolist())}
+
+
+CRAWLED = [4.0] * 10 + [12.0] * 24
+GAINING = [0.0] * 4 + [0.4 * k for k in range(30)]
+
+
+@pytest.mark.parametrize(
+    ("speeds", "at", "known"),
+    [(CRAWLED, 20, False), (CRAWLED, 31, True), (GAINING, 33, False)],
+    ids=["5 s after it crawled", "10.5 s after", "still gaining speed after 15 s"],
+)
+def test_who_gets_up_speed_from_a_crawl_sets_off(speeds, at, known):
+    places = runs(speeds)
+    passes = {k: (places[at][0] + (k - at) * 9.0, 4.0) for k in range(at - 4, at + 8)}
+    ego = vehicle(7, places | {at + k: (places[at][0] + 6.0 * k, 0.0) for k in range(1, 8)})
+    found = flow_signals(context_of(recording(lanes(2), [ego, vehicle(8, passes)])))
+    assert found.world["being_overtaken"][at]
+    assert found.unknown["being_overtaken"][at] == (not known)
+
+
+@pytest.mark.parametrize(("ago_s", "known"), [(4, False), (12, True)])
+def test_who_has_turned_into_a_road_gets_up_speed_yet(ago_s, known):
+    """Ego turns right at 8 m/s, and drives on beside one at 15 m/s."""
+    angles = np.radians(np.linspace(90, 0, 19))
+    turn = np.stack((100 + 14 * np.cos(angles), -14 + 14 * np.sin(angles)), axis=1)
+    inside = frozenset({"intersection"})
+    road = [
+        straight(1, -100, 100, successors=(2,)),
+        lanelet(2, turn, predecessors=(1,), successors=(3,), types=inside, junction="x"),
+        lanelet(3, [(114, -14), (114, -300)], predecessors=(2,), left_of=4),
+        lanelet(4, [(118, -14), (118, -300)], right_of=3),
+    ]
+    line = np.concatenate(([(-100.0, 0.0)], turn, [(114.0, -300.0)]))
+    out_m = 200 + 22 + 8.0 * ago_s
+    last = 2 * ago_s + 10
+    ego = along(7, line, out_m + 4.0 * (np.arange(last + 6) - last))
+    beside = along(
+        8,
+        np.array([(118.0, 100.0), (118.0, -300.0)]),
+        114 + 8.0 * ago_s + 7.5 * (np.arange(last + 6) - last),
+    )
+    found = flow_signals(context_of(recording(road, [ego, beside]), ("1", "2", "3")))
+    assert found.world["being_overtaken"][last]
+    assert found.unknown["being_overtaken"][last] == (not known)
 
 
 @pytest.mark.parametrize("types", [(), ("accessRamp",), ("exitRamp",)])

@@ -127,7 +127,8 @@ def pulling_out(lamps, steps=STEPS, at=30):
 
 
 def test_who_signals_and_pulls_out():
-    ego = steady(7, 0, 0, 10, STEPS)
+    # Ego gains 2 m a state on it: it is beside it in 10 s at most from 40 m behind
+    ego = steady(7, -50, 0, 14, STEPS)
     body = pulling_out(lit("left_indicator"))
     found = told("about_to_overtake", lanes(), ego, body, route=("1",))
     # It is in the other lane from state 30 on, and 5 s are 10 states
@@ -140,6 +141,18 @@ def test_who_signals_and_pulls_out():
     unlit = told("about_to_overtake", lanes(), ego, pulling_out(None), route=("1",))
     assert unlit[:19] == ["False"] * 19
     assert unlit[19:30] == ["?"] * 11
+
+
+@pytest.mark.parametrize(("behind_m", "speed"), [(20, 10), (130, 12), (20, 6)])
+def test_who_pulls_out_ahead_of_one_that_does_not_catch_up_with_it_may_just_change_lanes(
+    behind_m, speed
+):
+    ego = steady(7, 10 - behind_m, 0, speed, STEPS)
+    found = told(
+        "about_to_overtake", lanes(), ego, pulling_out(lit("left_indicator")), route=("1",)
+    )
+    assert found[:19] == ["False"] * 19
+    assert found[19:30] == ["?"] * 11
 
 
 def test_who_joins_from_a_lane_that_ends_is_not_about_to_overtake():

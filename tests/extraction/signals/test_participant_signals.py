@@ -289,6 +289,29 @@ def test_who_stands_at_the_edge_of_a_wide_lane_all_the_time_is_parked(y, more, p
 
 
 @pytest.mark.parametrize(
+    ("lamps", "speed", "known"),
+    [
+        ({"left_indicator", "right_indicator"}, 0, False),
+        ({"hazard_lights"}, 0, False),
+        ({"left_indicator"}, 0, True),
+        ({"left_indicator", "right_indicator"}, 5, True),
+    ],
+    ids=["both indicators", "hazard lights", "about to pull out", "it drives"],
+)
+def test_who_stands_in_a_lane_with_hazard_lights_may_have_broken_down(lamps, speed, known):
+    shows = frozenset({"left_indicator", "right_indicator", "hazard_lights"})
+    body = steady(8, 30, 4, speed=speed)
+    body = replace(body, lamps=dict.fromkeys(range(4), frozenset(lamps)), shows=shows)
+    found = recording(
+        [straight(1, 0, 200, left_of=2), straight(2, 0, 200, 4, right_of=1)],
+        [steady(7, 0, 0), body],
+    )
+    signals = participant_signals(context_of(found))
+    assert not signals.values("parked")[0].any()
+    assert signals.unknown["parked"][0].all() == (not known)
+
+
+@pytest.mark.parametrize(
     ("y", "moves_on", "parked"), [(-2.6, False, True), (-2.6, True, False), (-1.4, False, False)]
 )
 def test_who_stands_beside_the_lanes_all_the_time_is_parked(y, moves_on, parked):

@@ -13,6 +13,8 @@ from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.manoeuvre_signals import oncoming_side
 from rulec.extraction.signals.ego_lanelets import own_lanelets, travel_lanes
+from rulec.extraction.signals.map.junction_signals import turn_at
+from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.queues import (
     LOOSE,
     MEASURED,
@@ -44,8 +46,8 @@ _RAMPS = frozenset({JOINING, "exitRamp"})
 _SETS_OFF_MPS2 = 2.0
 """Vehicles gain speed about so hard when they set off."""
 
-_PUT_IN_MPS = 5.0
-"""Simulators put vehicles into traffic: who is as slow then sets off, faster ones drive on."""
+_CRAWLS_MPS = 5.5
+"""Who is as slow and gains speed sets off, though it has not quite stood."""
 
 
 def flow_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
@@ -57,30 +59,45 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     """Whether traffic is slow as a whole, and no lane flows beside the others, nor all but ego's.
 
     Who queues to leave, beside lanes on which traffic flows or nobody is, is in no jam of the road:
-    that is on half of its lanes or more.
+    that is on half of its lanes or more. Unknown on no more than half, where one may wait to turn,
+    those in junctions left out, and for ego if nobody is ahead of it: it may be what the others
+    wait for.
     """
     around, limits, states = vehicles_around(context), context.thresholds, context.states
     existing = travel_lanes(context)
-    shape = existing.shape[::-1]
+    shape, several = existing.shape[::-1], existing.sum(axis=1)
     enough = np.bincount(around.state, minlength=states) >= limits.fewest
+    crosses = np.zeros(len(around.state), dtype=bool)
+    for start, end in context.road.junctions:
+        crosses |= (around.s_max > start) & (around.s_min < end)
 
-    def slow(below_kmh: float) -> Flags:
-        own = around.speed * KMH < below_kmh
+    def used_by(own: Flags) -> NDArray[intp]:
         on_lanes = np.bincount(around.place[own], minlength=existing.size).reshape(shape) > 0
-        there = on_lanes.T & existing
-        called: Flags = enough & (2 * there.sum(axis=1) >= existing.sum(axis=1))
+        used: NDArray[intp] = (on_lanes.T & existing).sum(axis=1)
+        return used
+
+    def slow(below_kmh: float) -> tuple[Flags, Flags]:
+        own = around.speed * KMH < below_kmh
+        called: Flags = enough & (2 * used_by(own) >= several)
         asked = np.flatnonzero(called[around.state])
         if len(asked):
             called &= _is_slow(context, around, asked, below_kmh)
-        return called
+        return called, called & (several > 1) & (2 * used_by(own & ~crosses) <= several)
 
-    congested = slow(limits.congested_kmh)
+    (congested, part), (walking, part_walks) = (
+        slow(below) for below in (limits.congested_kmh, limits.walking_pace_kmh)
+    )
+    leads = np.zeros(states, dtype=bool)
+    if congested.any():
+        leads = np.isinf(_gap_in_lane(context, relations.BEHIND))
+    unknown = congested & (part | leads)
     return SignalColumns(
-        {
-            "congested": congested,
-            "CONGESTED": congested,
-            "walking_pace_flow": slow(limits.walking_pace_kmh),
-        }
+        {"congested": congested, "CONGESTED": congested, "walking_pace_flow": walking},
+        unknown={
+            "congested": unknown,
+            "CONGESTED": unknown,
+            "walking_pace_flow": walking & (part_walks | leads),
+        },
     )
 
 
@@ -190,7 +207,8 @@ def _being_overtaken(context: DriveContext) -> SignalColumns:
     overtaken = by.any(axis=0)
     dense, surely, not_told = _dense_lines(context)
     # Lanes that move off beside each other do not overtake, and who has joined gets up speed yet
-    moot = _sets_off(context) | _has_joined(context, on_ramp) | not_told
+    joined = _was(context, on_ramp) | _was(context, _comes_round(context))
+    moot = _sets_off(context) | joined | not_told
     # Where all lanes queue, one that is faster does not overtake (Vienna, Art. 11(6)(a))
     return SignalColumns(
         {"being_overtaken": ~dense & overtaken},
@@ -238,30 +256,48 @@ def _gap_in_lane(context: DriveContext, station: int) -> Floats:
     return gap
 
 
-def _has_joined(context: DriveContext, on_ramp: Flags) -> Flags:
-    """Flags of states in which ego was on a ramp up to ``setting_off_s`` ago."""
-    spans, joined = context.spans, context.spans.latest(on_ramp)
-    ago = (spans.columns - joined) * context.recording.step_s
-    has_joined: Flags = (joined >= spans.first) & (ago < context.thresholds.setting_off_s)
-    return has_joined
+def _was(context: DriveContext, there: Flags) -> Flags:
+    """Flags of states in which ego was somewhere up to ``setting_off_s`` ago."""
+    spans, last = context.spans, context.spans.latest(there)
+    ago = (spans.columns - last) * context.recording.step_s
+    was_there: Flags = (last >= spans.first) & (ago < context.thresholds.setting_off_s)
+    return was_there
+
+
+def _comes_round(context: DriveContext) -> Flags:
+    """Flags of states in which ego's middle is in a junction where it turns, or joins a ring."""
+    middle, inside = context.ego_extents.s[0], np.zeros(context.states, dtype=bool)
+    rings = [begins for begins, _, at_junction in roundabouts(context) if at_junction]
+    for start, end in context.road.junctions:
+        if start in rings or turn_at(context, start, end) != "straight_on":
+            inside |= (middle >= start) & (middle <= end)
+    return inside
+
+
+def _gains_speed(context: DriveContext) -> Flags:
+    """Flags of states in which ego is faster than ``smoothing_s`` before, or than at first."""
+    speed, spans = context.ego.speed[0], context.spans
+    steps = max(round(context.thresholds.smoothing_s / context.recording.step_s), 1)
+    gains: Flags = speed > speed[np.maximum(spans.columns - steps, spans.first)]
+    return gains | (spans.columns - spans.first < steps)
 
 
 def _sets_off(context: DriveContext) -> Flags:
-    """Flags of states in which ego has, or may have, crept up to ``setting_off_s`` ago.
+    """Flags of states in which ego has, or may have, set off, and gets up speed yet.
 
-    Who creeps goes at walking pace at most, or stands. Before its drive began it may have, if
-    ``_SETS_OFF_MPS2`` has made it as fast as it is then; where all traffic is recorded, if that is
-    slow.
+    It stood up to ``setting_off_s`` ago, or was no faster than ``_CRAWLS_MPS`` then or since when
+    it has gained speed. Before its drive began it may have stood, if ``_SETS_OFF_MPS2`` has made it
+    as fast as it is then; where all traffic is recorded, if that is no faster than one that crawls.
     """
     limits, speed, step_s = context.thresholds, context.ego.speed[0], context.recording.step_s
-    creeps = speed * KMH < limits.walking_pace_kmh
-    spans, crept = context.spans, context.spans.latest(creeps).astype(float)
+    spans, stood = context.spans, context.spans.latest(speed <= _CRAWLS_MPS).astype(float)
     at_first = speed[spans.first]
     before = spans.first - np.ceil(at_first / _SETS_OFF_MPS2 / step_s)
     if "light" in context.recording.complete:
-        before = np.where(at_first <= _PUT_IN_MPS, before, -np.inf)
-    crept = np.where(crept < spans.first, before, crept)
-    sets_off: Flags = (spans.columns - crept) * step_s < limits.setting_off_s
+        before = np.where(at_first <= _CRAWLS_MPS, before, -np.inf)
+    gaining = stood > spans.latest(~_gains_speed(context))
+    stood = np.where(stood < spans.first, before, stood)
+    sets_off: Flags = gaining | ((spans.columns - stood) * step_s < limits.setting_off_s)
     return sets_off
 
 

@@ -84,6 +84,19 @@ def _warning_lights(context: DriveContext) -> SignalColumns:
     )
 
 
+def may_have_broken_down(context: DriveContext) -> Flags:
+    """Flags of those who stand with the indicators of both sides lit, or with hazard lights.
+
+    Nobody knows whether they do not stand for the traffic, or warn of the end of a jam.
+    """
+    left, right, hazard = (
+        _lit(context, lamp)[0] for lamp in ("left_indicator", "right_indicator", "hazard_lights")
+    )
+    both = _flashing(left, context) & _flashing(right, context)
+    warns: Flags = _stands(context) & (both | _flashing(hazard, context))
+    return warns
+
+
 def _hazard_lights(context: DriveContext) -> SignalColumns:
     if "hazard_lights" not in context.surroundings.whole.shows:
         return SignalColumns()
@@ -270,7 +283,8 @@ def _last_seen(context: DriveContext) -> NDArray[intp]:
 def _about_to_overtake(context: DriveContext) -> SignalColumns:
     """The signal of those who have signalled to pull out to the far side, and do so soon.
 
-    Who is on a lane that joins others has to leave it, and overtakes nobody by that.
+    Who is on a lane that joins others has to leave it, and overtakes nobody by that. Unknown of one
+    that ego does not catch up with: they change lanes one after the other, and do not overtake.
     """
     far, lane = (1 if context.side == "right" else -1), context.extents.lane
     steps = round(context.thresholds.signalling_s / context.recording.step_s)
@@ -291,10 +305,18 @@ def _about_to_overtake(context: DriveContext) -> SignalColumns:
         soon &= ~joins
     lit, told = _far_indicator(context)
     ends = _ends_within(context, steps)
+    apart = soon & ~_caught_up(context)
     return SignalColumns(
         about={"about_to_overtake": soon & lit},
-        unknown={"about_to_overtake": np.where(told, lit & ends & ~soon & ~joins, soon)},
+        unknown={"about_to_overtake": np.where(told, lit & ends & ~soon & ~joins, soon) | apart},
     )
+
+
+def _caught_up(context: DriveContext) -> Flags:
+    """Flags of those whom ego would be beside within ``catching_up_s``, at the speeds of both."""
+    faster_mps = context.ego_extents.along - context.extents.along
+    caught_up: Flags = relations.gap(context) <= faster_mps * context.thresholds.catching_up_s
+    return caught_up
 
 
 def _came_up(context: DriveContext) -> SignalColumns:

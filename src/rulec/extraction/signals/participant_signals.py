@@ -12,6 +12,7 @@ from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.following_signals import parts_soon
+from rulec.extraction.signals.intention_signals import may_have_broken_down
 from rulec.extraction.signals.map.lanes_ahead import leads_elsewhere
 from rulec.extraction.signals.measured_numbers import (
     LONGEST_S,
@@ -325,8 +326,11 @@ def _stopped(context: DriveContext) -> SignalColumns:
 
 
 def _parked(context: DriveContext) -> SignalColumns:
-    parked = [body.standing for body in context.tracks.participants]
-    return SignalColumns(about={"parked": _constant(context, parked) | _stays_aside(context)})
+    standing = [body.standing for body in context.tracks.participants]
+    parked = _constant(context, standing) | _stays_aside(context)
+    return SignalColumns(
+        about={"parked": parked}, unknown={"parked": may_have_broken_down(context) & ~parked}
+    )
 
 
 def _stays_aside(context: DriveContext) -> Flags:
