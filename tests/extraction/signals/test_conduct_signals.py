@@ -192,12 +192,18 @@ BRAKES = [
 LONG = [straight(1, 0, 900)]
 
 
-def cause(*others, road=LONG, complete=SIMULATED):
-    return told(reason_signals, "cause_to_brake", road, car(*BRAKES), *others, complete=complete)
+def cause(*others, road=LONG, complete=SIMULATED, behind_m=20):
+    """Is there a cause to brake, for ego and one behind it that does as ego does?"""
+    follower = vehicle(6, {k: (x - behind_m, y) for k, (x, y) in enumerate(BRAKES)})
+    found = [car(*BRAKES), follower, *others]
+    return told(reason_signals, "cause_to_brake", road, *found, complete=complete)
 
 
 def test_nothing_makes_ego_brake():
     assert cause()[:10] == "F" * 10
+    # At 4 m/s² and more with nobody behind by less than 3 s it takes nobody by surprise
+    far = cause(behind_m=70)
+    assert ("?" in far[:6], "T" in far, far[6:10]) == (True, False, "FFFF")
     # What a file has not recorded may: nobody is recorded ahead, or somebody farther than that
     assert cause(complete=("light",))[:10] == "?" * 10
     seen = steady(8, 330, 0, 20, 70)

@@ -56,8 +56,9 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
 
     Ego that stands has perhaps broken down, unless its hazard lights are known to be off; one that
     stands soon, whose drive ends, or that is beside somebody had perhaps something to do; so has
-    one before or on a lane that joins others, where it looks for a gap. Where not all traffic is
-    recorded it is as far as somebody is recorded ahead.
+    one before or on a lane that joins others, where it looks for a gap, and one that brakes hard
+    with nobody near behind, whom it would surprise. Where not all traffic is recorded it is as far
+    as somebody is recorded ahead.
     """
     caused = _by_map(context)
     others = _others(context, np.flatnonzero(~caused))
@@ -71,6 +72,8 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     beside &= np.abs(others.ahead) <= _REACH_M
     perhaps[others.states] |= beside.any(axis=0)
     perhaps |= _seeks_a_gap(context)
+    least = context.ego.acceleration[0] - context.ego.acceleration_error[0]
+    perhaps |= (least <= -context.thresholds.braking_hard_mps2) & ~_followed(context)
     if "arrivals" not in context.recording.complete:
         farther = (others.ahead > _reach(context)[others.states]) & (others.away <= _ROAD_M)
         perhaps[others.states] |= ~farther.any(axis=0)
