@@ -175,6 +175,14 @@ def test_who_waits_in_the_junction_lets_it_pass():
     assert not told(at(5.5), ego=waits)[0].any()
 
 
+@pytest.mark.parametrize(("stops_m", "conflict"), [(57.0, "none"), (57.1, "open"), (57.3, "sure")])
+def test_boxes_that_graze_do_not_tell_that_one_ran_into_who_waits(stops_m, conflict):
+    """At 57 m, 5 m into the turn, a corner of its box is at the edge of the other one's way."""
+    waits = np.interp(TIMES, [0, 4.5, 8, 10, 13.75], [32, stops_m, stops_m, 65, 90])
+    found, unknown = told(at(5.5), ego=waits)
+    assert (found.any(), unknown.any()) == (conflict == "sure", conflict == "open")
+
+
 def test_one_that_has_to_give_way_by_its_sign():
     sign = {"signs": frozenset({"YIELD"})}
     assert not told(at(5.5), crossroads(its_entry=sign))[0].any()

@@ -32,6 +32,9 @@ _BENDS_MPS2 = 2.0
 _BRIEFLY_S = 1.0
 """Speeds are means over so long: who touches the brake for less is not held up."""
 
+_GRAZES_M = 0.15
+"""Boxes that overlap by no more than twice this do not tell that bodies with corners cut do."""
+
 _BEHIND_S = 0.3
 """Who gets to a place so short a time before another one has left it passes behind it."""
 
@@ -59,18 +62,24 @@ def in_conflict(context: DriveContext, ego: Passing, foe: Passing) -> tuple[int,
     waits = speed.min(initial=np.inf) < SLOWEST_MPS
     held_up = _held_up(context, (own, enters, ego[2]), other, foe[1])
     if passed is not None and (leaves is None or passed < leaves) and waits:
-        # Who waits a little too far ahead lets others pass all the same
-        collide = held_up and _collide(context, own, other, slice(enters, passed))
-        return (held_up[0], True) if held_up and collide else None
+        # Who waits a little too far ahead lets others pass all the same, who drive round it
+        if held_up is None or not _collide(context, own, other, slice(enters, passed)):
+            return None
+        return held_up[0], _collide(context, own, other, slice(enters, passed), _GRAZES_M)
     return held_up
 
 
-def _collide(context: DriveContext, own: Passage, other: Passage, columns: slice) -> bool:
-    """True if two bodies overlap in one of the columns, by more than places may be wrong."""
+def _collide(
+    context: DriveContext, own: Passage, other: Passage, columns: slice, least_m: float = 0.0
+) -> bool:
+    """True if two bodies overlap in one of the columns, by more than places may be wrong.
+
+    And by so much of each at least.
+    """
     tracks = context.surroundings.passages.tracks
     ours, theirs = (tracks.participants[passage.row].outlines for passage in (own, other))
     steps = range(tracks.first + columns.start, tracks.first + columns.stop)
-    inner = -context.tolerances.place_m
+    inner = -max(context.tolerances.place_m, least_m)
     return any(
         shapely.Polygon(ours[step]).buffer(inner).intersects(shapely.Polygon(theirs[step]))
         for step in steps
