@@ -77,12 +77,18 @@ def oncoming_facts(world):
         across = crossing.link.turn.upper() == far and other.link.turn.upper() != far
         side = abs(_comes_from(world, crossing.link, other.link))
         if across and side < _TOWARDS_DEG[1] and not _at_red(world, other):
-            sure = grade and side < _TOWARDS_DEG[0]
+            sure = grade and side < _TOWARDS_DEG[0] and not _stops_later(world, crossing, other)
             own, _ = conflict_area(world.net, crossing.link, other.link)
             # It is in the way when it gets there, which may be long after it entered
             begin, end = _occupied(world, crossing, own)
             span = at[0], max(at[1], end if np.isfinite(end) else begin)
             yield Fact(crossing.track.id, "oncoming_priority", *span, sure, other.track.id)
+
+
+def _stops_later(world, crossing, other):
+    """True where all have to stop, and the other one enters later: who comes first goes first."""
+    own, theirs = (world.time(one.track, one.row) for one in (crossing, other))
+    return other.link.state == "w" and theirs > own
 
 
 def _at_red(world, crossing):
