@@ -10,7 +10,7 @@ from support.worlds.simulate import WorldFiles
 from support.worlds.stored import FOLDER
 from support.worlds.truths.crossing_truths import pedestrian_facts
 from support.worlds.truths.passing_truths import near_side_facts
-from support.worlds.truths.priority_truths import roundabout_facts
+from support.worlds.truths.priority_truths import oncoming_facts, roundabout_facts
 from support.worlds.world_state import WorldState
 
 
@@ -146,6 +146,21 @@ def test_who_changes_lanes_at_the_line_drives_on_over_the_junction(lane, starts,
     for file, old, new in (files.net, own, beside + own), (files.data, "n2_n1_1", lane):
         file.write_text(file.read_text(encoding="utf-8").replace(old, new), encoding="utf-8")
     assert [one.link.start for one in WorldState(files, 0.1).crossings] == starts
+
+
+@pytest.mark.parametrize(("enters_s", "sure"), [(0.9, [True]), (1.4, [False])])
+def test_where_all_have_to_stop_who_enters_first_need_not_wait(enters_s, sure, tmp_path):
+    """One turns left and enters at 1 s, one comes towards it; neither stops."""
+    files = WorldFiles(tmp_path)
+    files.net.write_bytes((FOLDER / "all_way_stop.net.xml").read_bytes())
+    times = np.arange(0, 6.05, 0.1)
+    turn = [("A1A0_0", 90.6), (":A0_2_0", 14.19), ("A0B0_0", 90.6)]
+    ahead = [("bottom0A0_0", 97.8), (":A0_7_0", 14.4), ("A0A1_0", 90.6)]
+    _write(
+        files, times, {"turns": (7 * times - 7, *turn), "comes": (7 * (times - enters_s), *ahead)}
+    )
+    facts = oncoming_facts(WorldState(files, 0.1))
+    assert [fact.sure for fact in facts if fact.vehicle == "turns"] == sure
 
 
 @pytest.mark.parametrize(("fastest_mps", "sure"), [(5.0, []), (7.0, [False])])
