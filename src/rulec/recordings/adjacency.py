@@ -124,6 +124,12 @@ def _crossed(lanelets: Iterable[Lanelet]) -> set[str]:
     return {lanes[number].id for number in pairs.ravel().tolist()}
 
 
+def with_untold_neighbours(recording: Recording) -> Recording:
+    """The recording, with neighbours if its map, or its form, names none at all."""
+    told = any(one.left_of or one.right_of for one in recording.lanelets.values())
+    return recording if told else with_neighbours(recording)
+
+
 def with_neighbours(recording: Recording) -> Recording:
     """The recording, with neighbours that its map does not name, and a remark that says so.
 

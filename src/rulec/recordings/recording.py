@@ -153,7 +153,8 @@ class Lanelet:
     first: frozenset[str] | None = None
 
 
-NO_LANES = frozenset({"sidewalk", "crosswalk", "border", "parking", "restricted_area"})
+CROSSWALK = "crosswalk"
+NO_LANES = frozenset({"sidewalk", CROSSWALK, "border", "parking", "restricted_area"})
 """Types of lanelets that are no part of the carriageway."""
 
 CYCLES_TOO = "cyclesAllowed"
@@ -270,7 +271,8 @@ class Recording:
 
     ``form`` is what such a file is called, ``side`` the one on which traffic keeps, None if the
     file does not say, ``country`` its code (ISO 3166) or empty. ``complete`` names kinds of things,
-    signs for one, that the file would have if they were there. ``remarks``: what the file leaves
+    signs for one, that the file would have if they were there, ``lacks`` those that no such file
+    has, crosswalks for one. ``remarks``: what the file leaves
     open, and is taken to be. ``rounding`` is that of a file that is exact otherwise. ``ego`` is the
     participant that the file says to be it, empty if it does not say. ``whole`` is what a part of a
     recording knows of all of it.
@@ -288,6 +290,7 @@ class Recording:
     remarks: tuple[str, ...] = ()
     country: str = ""
     complete: frozenset[str] = frozenset()
+    lacks: frozenset[str] = frozenset()
     weather: Weather = Weather()
     rounding: Rounding | None = None
     ego: str = ""

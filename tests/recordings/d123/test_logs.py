@@ -67,6 +67,18 @@ def test_lanes(tmp_path):
     assert np.ptp(lanes["crosswalk 5"].centre, axis=0) == pytest.approx((0, 12))
 
 
+def test_lanes_side_by_side_are_neighbours_where_none_is_named(tmp_path):
+    """As in logs of data sets whose maps do not name them."""
+    file, town = d123.drive(tmp_path), d123.town()
+    for _, _, said, *_ in town:
+        said.pop("left_lane_id", None)
+        said.pop("right_lane_id", None)
+    d123.write_map(tmp_path, town)
+    recording = read_recording(file)
+    assert recording.lanelets["1"].right_of == "2"
+    assert len(recording.remarks) == 1
+
+
 def test_lights_are_for_the_way_to_their_lane(tmp_path):
     one, *others = read_recording(d123.drive(tmp_path)).lanelets.values()
     (light,) = one.lights_to.values()

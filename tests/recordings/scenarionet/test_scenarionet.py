@@ -8,6 +8,8 @@ import pytest
 
 from rulec import compile_rulebook
 from rulec.diagnostics import RulecError
+from rulec.extraction.selection import RequestedDrives, selected_drives
+from rulec.extraction.tellable_words import told_words
 from rulec.recordings.encodings.wire_format import WireFile
 from rulec.recordings.recording_files import read_recording
 from rulec.recordings.recording_format import RecordingSource
@@ -128,6 +130,41 @@ def test_bounds_are_those_of_a_lane_s_own_outline(tmp_path):
     lane = read(tmp_path, dictionary).lanelets["1"]
     assert lane.left[:, 1] == pytest.approx(1.5)
     assert lane.right[:, 1] == pytest.approx(-1.2)
+
+
+def two_lanes_of_nuplan():
+    """Two lanes side by side, each by its ends and outline alone, which nobody calls neighbours."""
+    dictionary = changed(dataset="nuplan", map="us-ma-boston")
+    dictionary["dynamic_map_states"] = {}
+    lanes = {}
+    for name, y in (("1", 0.0), ("2", 3.2)):
+        low, high = y - 1.6, y + 1.6
+        outline = [[-60.0, low], [40.0, low], [40.0, high], [-60.0, high], [-60.0, low]]
+        ends = [[-60.0, y], [40.0, y]]
+        lanes[name] = {"type": "LANE_SURFACE_STREET", "polyline": ends, "polygon": outline}
+    dictionary["map_features"] = lanes
+    return dictionary
+
+
+def test_lanes_side_by_side_are_neighbours_where_the_conversion_names_none(tmp_path):
+    found = read(tmp_path, two_lanes_of_nuplan())
+    assert (found.lanelets["1"].left_of, found.lanelets["2"].right_of) == ("2", "1")
+    assert found.lanelets["1"].left[:, 1] == pytest.approx(1.6)
+    (remark,) = found.remarks
+    assert "1 and 2" in remark
+
+
+@pytest.mark.parametrize(("drawn", "kept"), [(False, False), (True, True)])
+def test_of_crossings_nothing_is_told_where_the_conversion_leaves_them_out(tmp_path, drawn, kept):
+    """Nobody is about: where crossings are told, ego keeps the rules of crossings."""
+    dictionary = two_lanes_of_nuplan()
+    if drawn:
+        ring = [[0.0, -2.0], [4.0, -2.0], [4.0, 6.0], [0.0, 6.0]]
+        dictionary["map_features"]["9"] = {"type": "CROSSWALK", "polygon": ring}
+    recording = read(tmp_path, dictionary)
+    told = told_words(selected_drives(recording, RequestedDrives(), "some", "right"))
+    words = {"crossing_zone", "distance_to_crossing", "nearest_to_crossing"}
+    assert (words <= told, bool(words & told)) == (kept, kept)
 
 
 def test_lights_of_nuplan(tmp_path):

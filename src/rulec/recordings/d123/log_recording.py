@@ -16,6 +16,7 @@ import numpy as np
 from numpy import float64, int64
 from numpy.typing import NDArray
 
+from rulec.recordings.adjacency import with_untold_neighbours
 from rulec.recordings.argoverse.city_frame import CityPoses, rotations
 from rulec.recordings.argoverse.object_types import RIDES
 from rulec.recordings.argoverse.sweep_boxes import TrackBoxes, participant, with_riders
@@ -86,7 +87,7 @@ def read_d123(path: Path, map_path: Path | None = None) -> Recording:
     road = read_d123_map(map_path or files.map_of(path, data_set, place))
     lights = _lights(path.with_name(files.LIGHTS), sweeps)
     side, country = files.side_and_country(data_set, place)
-    return Recording(
+    recording = Recording(
         name=files.word(about, "log_name") or path.resolve().parent.name,
         step_s=sweeps.step_s,
         lanelets=with_lights(road.lanelets, lights),
@@ -99,6 +100,7 @@ def read_d123(path: Path, map_path: Path | None = None) -> Recording:
         remarks=road.remarks,
         ego=own.id,
     )
+    return with_untold_neighbours(recording)
 
 
 def _form(data_set: str) -> str:

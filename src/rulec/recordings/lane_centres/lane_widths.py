@@ -27,6 +27,8 @@ USUAL_HALF_M = 1.8
 NARROWEST_HALF_M, WIDEST_HALF_M = 0.6, 2.5
 """What is nearer or farther is no bound of this lane: a kerb behind parked cars, for one."""
 
+_WITHIN_M = 0.2
+
 
 class HalfWidths(NamedTuple):
     """How far left and right of the points of its centre a lane's bounds are (m)."""
@@ -119,8 +121,14 @@ def _near_its_line(
 
 
 def _by_area(lane: CentreLane) -> HalfWidths:
-    """By where straight lines across the lane leave its outline."""
-    centre = lane.centre[:, :2]
+    """By where straight lines across the lane leave its outline.
+
+    Those at its ends lie a little within it, for the ends are parts of the outline, too.
+    """
+    centre = lane.centre[:, :2].copy()
+    for end, inner in ((0, 1), (-1, -2)):
+        along = lane.centre[inner, :2] - lane.centre[end, :2]
+        centre[end] += along * min(_WITHIN_M / float(np.hypot(*along)), 0.5)
     ring = shapely.LinearRing(lane.area)
     points = shapely.points(centre)
     widths = []

@@ -19,12 +19,14 @@ class DataSet:
 
     ``whole_map``: limits, kinds of lines, boundaries, stop signs and stop points are those of the
     data set; else the conversion has made them up or left them out. ``has_lights``: it has what
-    lights were seen to show. ``ego_ahead_m``: how far the body's middle is ahead of ego's places.
+    lights were seen to show, ``has_crosswalks`` the crosswalks that there are. ``ego_ahead_m``: how
+    far the body's middle is ahead of ego's places.
     """
 
     title: str = ""
     whole_map: bool = False
     has_lights: bool = False
+    has_crosswalks: bool = False
     ego_ahead_m: float = 0.0
     side: Side | None = None
     country: str = ""
@@ -38,13 +40,13 @@ It is 4.084 m long. Caesar et al., "nuScenes" (CVPR 2020), supplement, has the v
 
 _DATA_SETS: Mapping[str, DataSet] = MappingProxyType(
     {
-        "waymo": DataSet("Waymo", True, True, side="right", country="USA"),
+        "waymo": DataSet("Waymo", True, True, True, side="right", country="USA"),
         "nuscenes": DataSet(ego_ahead_m=_ZOE_AHEAD_M),
         "nuplan": DataSet(has_lights=True),
         "lyft": DataSet(has_lights=True, side="right", country="USA"),
         "argoverse": DataSet(side="right", country="USA"),
-        "argoverse2": DataSet(side="right", country="USA"),
-        "av2": DataSet(side="right", country="USA"),
+        "argoverse2": DataSet(has_crosswalks=True, side="right", country="USA"),
+        "av2": DataSet(has_crosswalks=True, side="right", country="USA"),
     }
 )
 _PLACES: tuple[tuple[str, Side, str], ...] = (

@@ -10,11 +10,12 @@ import numpy as np
 from numpy import float64, int64
 from numpy.typing import NDArray
 
+from rulec.recordings.adjacency import with_untold_neighbours
 from rulec.recordings.encodings.wire_format import WireFormat
 from rulec.recordings.lane_centres.body_tracks import BoxTrack, bridged, gaps_remark, participant
 from rulec.recordings.lane_centres.centre_lanelets import ALL_JUNCTIONS, centre_lanelets
 from rulec.recordings.lane_centres.even_steps import even_steps
-from rulec.recordings.recording import Participant, Recording
+from rulec.recordings.recording import CROSSWALK, Participant, Recording
 from rulec.recordings.scenarionet.data_sets import DataSet, data_set, place_of
 from rulec.recordings.scenarionet.restricted_pickle import read_pickle
 from rulec.recordings.scenarionet.scenario_dictionary import KeyedValue
@@ -75,7 +76,7 @@ def read_scenarionet(path: Path) -> Recording:
     if ego and ego not in scenario.child("tracks").value:
         raise metadata.wrong(f"says that ego is `{ego[:40]}`, who is not in `tracks`")
     title = f" of {known.title}" if known.title else ""
-    return Recording(
+    recording = Recording(
         name=_text(scenario, "id") or path.stem,
         step_s=step_s,
         lanelets=centre_lanelets(features, has_lights=known.has_lights or bool(features.lights)),
@@ -86,8 +87,10 @@ def read_scenarionet(path: Path) -> Recording:
         remarks=(*remarks.found, *gaps_remark(remarks.bridged)),
         country=country or known.country,
         complete=ALL_JUNCTIONS | ({"STOP"} if known.whole_map else frozenset()),
+        lacks=frozenset() if known.has_crosswalks else frozenset({CROSSWALK}),
         ego=ego if any(body.id == ego for body in bodies) else "",
     )
+    return with_untold_neighbours(recording)
 
 
 class _Remarks:

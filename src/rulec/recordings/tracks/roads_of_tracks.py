@@ -11,7 +11,7 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.diagnostics import SourceLocation
-from rulec.recordings.adjacency import with_neighbours
+from rulec.recordings.adjacency import with_untold_neighbours
 from rulec.recordings.map_files import read_map
 from rulec.recordings.recording import Lanelet, Recording
 from rulec.recordings.recording_messages import NET_MISSING, OTHER_NET
@@ -84,8 +84,7 @@ def track_recording(
         complete=roads.complete,
         ego=next((part.ego for part in found if part.ego), ""),
     )
-    told = any(one.left_of or one.right_of for one in roads.lanelets.values())
-    return recording if told else with_neighbours(recording)
+    return with_untold_neighbours(recording)
 
 
 def shifted_to_roads(rows: TrackRows, roads: RoadMap, offset: tuple[float, float]) -> TrackRows:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.map.junction_signals import turn_at
-from rulec.extraction.signals.map.map_signals import next_crossing
+from rulec.extraction.signals.map.map_signals import crossings_told, next_crossing
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
@@ -28,6 +28,8 @@ def crossing_signals(context: DriveContext, names: SignalNames = None) -> Signal
 
 
 def _crossing_use(context: DriveContext) -> SignalColumns:
+    if not crossings_told(context):
+        return SignalColumns()
     rows, used = _pedestrians(context), _used_ahead(context)
     own, unsure = np.zeros(context.relevant.shape, dtype=int), np.zeros_like(context.relevant)
     some = used.any(axis=1)
@@ -45,6 +47,8 @@ def _crossing_use(context: DriveContext) -> SignalColumns:
 
 
 def _stopped_for_pedestrian(context: DriveContext) -> SignalColumns:
+    if not crossings_told(context):
+        return SignalColumns()
     stopped = np.zeros_like(context.relevant)
     if len(_pedestrians(context)):
         rows = _pedestrians(context)
@@ -59,6 +63,8 @@ def _stopped_for_pedestrian(context: DriveContext) -> SignalColumns:
 
 
 def _nearest_to_crossing(context: DriveContext) -> SignalColumns:
+    if not crossings_told(context):
+        return SignalColumns()
     start, _ = next_crossing(context)
     way = np.where(context.going_along, start - context.extents.s_max, np.inf)
     ahead = np.where((way >= 0) & (way <= context.thresholds.approach_m), way, np.inf)

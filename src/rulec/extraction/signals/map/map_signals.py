@@ -23,7 +23,7 @@ from rulec.extraction.signals.signal_columns import (
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.junctions import STOP_SIGNS
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.recordings.recording import CYCLES_TOO, Lanelet
+from rulec.recordings.recording import CROSSWALK, CYCLES_TOO, Lanelet
 from rulec.trace.plain_arrays import distinct
 
 NO_LIMIT_KMH = 1000.0
@@ -52,6 +52,8 @@ def map_signals(context: DriveContext, names: SignalNames = None) -> SignalColum
 
 
 def _distance_to_crossing(context: DriveContext) -> SignalColumns:
+    if not crossings_told(context):
+        return SignalColumns()
     distance, place = distance_to_crossing(context), context.tolerances.place_m
     nearer, farther = (_to_crossing(context, way * place) for way in (-1, 1))
     return SignalColumns(
@@ -61,6 +63,8 @@ def _distance_to_crossing(context: DriveContext) -> SignalColumns:
 
 
 def _crossing_zone(context: DriveContext) -> SignalColumns:
+    if not crossings_told(context):
+        return SignalColumns()
     distance, zone = distance_to_crossing(context), context.thresholds.zone_m
     near, unknown = distance <= zone, abs(distance - zone) < context.tolerances.place_m
     unknown = _in_doubt(context, near, unknown)
@@ -113,6 +117,11 @@ def _holds_to_line(context: DriveContext, signs: Set[str]) -> Flags:
                     there = (before >= begins) & (before <= line)
                     holds |= there & (context.ego_lane == lane)
     return holds
+
+
+def crossings_told(context: DriveContext) -> bool:
+    """True if the map would have the pedestrian crossings that there are."""
+    return CROSSWALK not in context.recording.lacks or CROSSWALK in map_contents(context).types
 
 
 def distance_to_crossing(context: DriveContext) -> Floats:
