@@ -1,7 +1,7 @@
 """Short drives told whole, of which nothing is violated but what the law of the book says.
 
 `statutes/BOOK.toml` has those of a book: what holds throughout, and states a second apart. Sides
-are absolute.
+are absolute. `asked` has what an examiner would ask, each drive with the books that it asks.
 """
 
 from pathlib import Path
@@ -15,20 +15,36 @@ from rulec.toml import parsed_toml
 from rulec.trace import Trace
 from support.builders.national_books import compiled, read
 
-SITUATIONS = [
-    pytest.param(path.stem, one, id=f"{path.stem}-{one['title']}")
-    for path in sorted((Path(__file__).parent / "statutes").glob("*.toml"))
-    for one in parsed_toml(Source(path.name, path.read_text(encoding="utf-8")), "R0704", "")[
-        "situation"
+
+def situations(folder: str) -> list[tuple[str, dict[str, Any]]]:
+    """Each situation of a folder's files, with its file's stem."""
+    return [
+        (path.stem, one)
+        for path in sorted((Path(__file__).parent / folder).glob("*.toml"))
+        for one in parsed_toml(Source(path.name, path.read_text(encoding="utf-8")), "R0704", "")[
+            "situation"
+        ]
     ]
+
+
+SITUATIONS = [
+    pytest.param(book, one, id=f"{book}-{one['title']}") for book, one in situations("statutes")
+]
+ASKED = [
+    pytest.param(book, one, id=f"{book}-{one['title']}")
+    for _, one in situations("asked")
+    for book in one["law"]
 ]
 
 
-@pytest.mark.parametrize(("book", "situation"), SITUATIONS)
+@pytest.mark.parametrize(("book", "situation"), SITUATIONS + ASKED)
 def test_a_drive_violates_what_the_law_says_and_no_more(
     book: str, situation: dict[str, Any]
 ) -> None:
-    states = tuple({**situation["throughout"], **state} for state in situation["states"])
+    states = tuple(
+        {**situation["throughout"], **state}
+        for state in situation["states"] * situation.get("repeated", 1)
+    )
     trace = Trace("t", 1.0, situation.get("objects", {}), states)
     found = verify(trace, compiled(book)).violations
     assert {one.rule for one in found} == set(situation["violated"])
