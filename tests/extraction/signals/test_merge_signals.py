@@ -134,9 +134,28 @@ def test_who_is_abreast():
     same = steady(3, 92, 0, 0, steps=8)
     found = signals(lanes(), beside, ahead, same)
     # Middles of 4 m long bodies: ego is at 60 in state 1, at 97 and 99 in states 3 and 4, and from
-    # there on beyond the narrowing
+    # there on beyond the narrowing, which is 36 m ahead of the one that it left behind
     abreast = found.about["abreast_at_narrowing"]
-    assert [np.flatnonzero(row).tolist() for row in abreast] == [[1], [3], []]
+    assert [np.flatnonzero(row).tolist() for row in abreast] == [[], [3], []]
+
+
+@pytest.mark.parametrize(
+    ("xs", "told"),
+    [
+        ((60, 82, 83, 83), "T"),
+        ((60, 82, 82, 82), "F"),
+        ((60, 82), "?"),
+        ((60, 82, 100, 113), "T"),
+        ((60, 82, 100, 115), "F"),
+    ],
+)
+def test_who_is_abreast_comes_to_the_narrowing_with_ego(xs, told):
+    """Beside ego in state 1; 15 or 16 m before the narrowing when ego gets there, gone, or ahead."""
+    other = vehicle(1, {k: (x, 4) for k, x in enumerate(xs)})
+    found = signals(lanes(), other, xs=(60, 80, 95, 110))
+    abreast = found.about["abreast_at_narrowing"][0]
+    unknown = found.unknown["abreast_at_narrowing"][0]
+    assert ("?" if unknown[1] else "FT"[int(abreast[1])]) == told
 
 
 def test_a_drive_of_one_state_and_one_that_begins_beyond():

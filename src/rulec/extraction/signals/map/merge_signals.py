@@ -23,6 +23,9 @@ from rulec.recordings.recording import Lanelet
 _TAPERED = 0.6
 """A lane that ends is narrower at its end than this part of what it was."""
 
+_JUST_BEFORE_M = 15.0
+"""Who is farther from the narrowing when ego gets there need not be let in yet."""
+
 _RAMPS = frozenset({"accessRamp", "exitRamp"})
 """Who joins from an acceleration lane gives way, and who leaves a road does not go on beside it."""
 
@@ -41,11 +44,13 @@ def _narrowings(context: DriveContext) -> SignalColumns:
         on_one = (lane == right) | (lane == right + 1)
         before = on_one & (front > place - reach) & (front <= place)
         other = np.where(lane == right, right + 1, right)
+        there, lost = _there_with_ego(context, place) if before.any() else (False, False)
         beside = before & _beside_in(context, other) if before.any() else False
         if sure:
             narrowing |= before
             merged |= on_one & (front > place) & (front <= place + reach)
-            abreast |= beside
+            abreast |= beside & there
+            perhaps_abreast |= beside & lost
         else:
             perhaps |= on_one & (np.abs(front - place) <= reach)
             perhaps_abreast |= beside
@@ -58,6 +63,21 @@ def _narrowings(context: DriveContext) -> SignalColumns:
             "abreast_at_narrowing": perhaps_abreast & ~abreast,
         },
     )
+
+
+def _there_with_ego(context: DriveContext, place: float) -> tuple[Flags, Flags]:
+    """Flags of those who are at a narrowing, not ahead, when ego gets there, and of those lost.
+
+    Those are not recorded then, or ego does not get there. Who is ahead of ego then comes before it
+    anyway.
+    """
+    arrives = context.spans.next_state(context.ego_extents.s_max[0] > place)
+    never = arrives >= context.spans.end
+    then = np.where(never, context.spans.columns, arrives)
+    seen = context.relevant[:, then] & ~never
+    ahead = relations.station(context)[:, then] == relations.BEHIND
+    there: Flags = seen & ~ahead & (context.extents.s_max[:, then] >= place - _JUST_BEFORE_M)
+    return there, ~seen
 
 
 def _beside_in(context: DriveContext, lane: NDArray[intp]) -> Flags:
