@@ -150,7 +150,7 @@ def test_who_is_abreast():
     ],
 )
 def test_who_is_abreast_comes_to_the_narrowing_with_ego(xs, told):
-    """Beside ego in state 1; 15 or 16 m before the narrowing when ego gets there, gone, or ahead."""
+    """Beside ego in state 1; 15 or 16 m before the narrowing as ego gets there, gone, or ahead."""
     other = vehicle(1, {k: (x, 4) for k, x in enumerate(xs)})
     found = signals(lanes(), other, xs=(60, 80, 95, 110))
     abreast = found.about["abreast_at_narrowing"][0]
