@@ -160,6 +160,17 @@ def test_nobody_knows_whether_one_that_is_about_to_be_past_is_disturbed(x, speed
     assert found.unknown["lane_is_clear"].tolist() == [False, False, unknown, False]
 
 
+@pytest.mark.parametrize(("mps", "unknown"), [(0.0, True), (2.0, False)])
+def test_who_stands_and_drifts_across_a_mark_does_not_surely_disturb_others(mps, unknown):
+    """It drifts by 0.1 m/s, and is 0.3 m beyond the mark from state 23 on."""
+    places = {k: (mps * k / 2, 1.18 + 0.05 * k) for k in range(30)}
+    ego = vehicle(7, places, speed=mps)
+    other = steady(8, places[23][0] - 15 - 5.0 * 23, 4, speed=10, steps=30)
+    found = lane_change_signals(context_of(recording(lanes(2), [ego, other]), ("1",)))
+    assert np.flatnonzero(~found.world["lane_is_clear"]).tolist() == [23]
+    assert found.unknown["lane_is_clear"][23] == unknown
+
+
 def test_comfort_and_reaction_are_thresholds():
     assert clear(-5, 15, disturbing_mps2=2.1)
     assert not clear(-6, 15, reaction_s=1.2)

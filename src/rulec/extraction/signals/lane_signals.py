@@ -88,7 +88,8 @@ def _at_fork(context: DriveContext, change: int) -> bool:
 def _lane_is_clear(context: DriveContext) -> SignalColumns:
     """Whether nobody has to brake for ego, in states of its lane changes.
 
-    Unknown where the only ones are about to be past: ego comes in behind them.
+    Unknown where the only ones are about to be past: ego comes in behind them. And if ego stands by
+    its speed, whose places drift across the mark: nothing stands and changes lanes.
     """
     disturbed = np.zeros(context.relevant.shape, dtype=bool)
     pulls_away = np.zeros(context.states, dtype=bool)
@@ -96,9 +97,10 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
     disturbed[:, changes] = found = _disturbed(context, changes)
     pulls_away[changes] = ~np.any(found & ~_pulls_away(context, changes), axis=0)
     clear: Flags = ~np.any(disturbed, axis=0)
+    stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
     return SignalColumns(
         {"lane_is_clear": clear},
-        unknown={"lane_is_clear": ~clear & pulls_away},
+        unknown={"lane_is_clear": ~clear & (pulls_away | stands)},
         whom={"lane_is_clear": ids_by_state(disturbed, context.ids)},
     )
 
