@@ -183,6 +183,21 @@ def test_boxes_that_graze_do_not_tell_that_one_ran_into_who_waits(stops_m, confl
     assert (found.any(), unknown.any()) == (conflict == "sure", conflict == "open")
 
 
+@pytest.mark.parametrize(("place_m", "conflict"), [(54.0, False), (55.0, True)])
+def test_who_creeps_on_behind_one_that_does_not_brake_lets_it_pass(place_m, conflict):
+    """At 1.1 m/s from so far along on, for 3 s: from 55 m on it would touch the other one."""
+    places = [32, place_m, place_m + 3.4, place_m + 8, 95]
+    found, unknown = told(at(5.5), ego=np.interp(TIMES, [0, 4.5, 7.5, 9, 13.75], places))
+    assert (found.any(), unknown.any()) == (conflict, False)
+
+
+def test_of_who_creeps_behind_one_that_is_all_but_past_nobody_knows_that_it_hinders_it():
+    creeps = np.interp(TIMES, [0, 4.5, 7.5, 9, 13.75], [32, 53, 56.4, 61, 95])
+    found, unknown = told(at(5.2), ego=creeps)
+    assert not found.any()
+    assert unknown.any()
+
+
 def test_one_that_has_to_give_way_by_its_sign():
     sign = {"signs": frozenset({"YIELD"})}
     assert not told(at(5.5), crossroads(its_entry=sign))[0].any()

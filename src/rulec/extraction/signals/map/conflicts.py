@@ -61,12 +61,31 @@ def in_conflict(context: DriveContext, ego: Passing, foe: Passing) -> tuple[int,
     speed = context.surroundings.passages.tracks.speed[own.row, enters:passed]
     waits = speed.min(initial=np.inf) < SLOWEST_MPS
     held_up = _held_up(context, (own, enters, ego[2]), other, foe[1])
-    if passed is not None and (leaves is None or passed < leaves) and waits:
-        # Who waits a little too far ahead lets others pass all the same, who drive round it
-        if held_up is None or not _collide(context, own, other, slice(enters, passed)):
-            return None
-        return held_up[0], _collide(context, own, other, slice(enters, passed), _GRAZES_M)
+    if held_up is not None and passed is not None and (leaves is None or passed < leaves):
+        return _let_pass(context, (own, slice(enters, passed)), other, held_up, waits=waits)
     return held_up
+
+
+def _let_pass(
+    context: DriveContext,
+    ego: tuple[Passage, slice],
+    other: Passage,
+    held_up: tuple[int, bool],
+    *,
+    waits: bool,
+) -> tuple[int, bool] | None:
+    """The same of one that has passed while ego was in columns where ways meet, and before it.
+
+    Who waits a little too far ahead lets others pass all the same, who drive round it. So does who
+    creeps on behind them. It is not sure if they brake, as it may be for it.
+    """
+    own, there = ego
+    if _collide(context, own, other, there):
+        return (held_up[0], _collide(context, own, other, there, _GRAZES_M)) if waits else held_up
+    present = np.flatnonzero(context.surroundings.passages.tracks.present[other.row])
+    first = max(int(present[0]), own.first)
+    brakes = not waits and _slows_down(context, other, first, there.stop)
+    return (held_up[0], False) if brakes else None
 
 
 def _collide(
@@ -93,7 +112,7 @@ def _runs_into(
     """The same of one that got there first: ego drives into its side while it drives on.
 
     Those who join its way drive in behind it. Who brakes meanwhile may see it, and stop short of it
-    on lanes that are narrower than a map has them.
+    on lanes that are narrower than a map has them; and who creeps on behind it does not touch it.
     """
     passages = context.surroundings.passages
     (own, enters), (other, passed) = ego, foe
@@ -107,7 +126,9 @@ def _runs_into(
     inside = (until - enters) * context.recording.step_s > _BEHIND_S
     if not (drive and inside):
         return None
-    return max(int(present[0]), first_column(context)), not _slows_down(context, own, enters, until)
+    creeps = slowest[0] < _DRIVES_MPS and not _collide(context, own, other, slice(enters, until))
+    sure = not creeps and not _slows_down(context, own, enters, until)
+    return max(int(present[0]), first_column(context)), sure
 
 
 def _column(when: float | None) -> int | None:
