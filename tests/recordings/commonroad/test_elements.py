@@ -173,6 +173,10 @@ def test_lights(read, light, lights):
         ("C-USA", "R1-3", "STOP_4_WAY"),
         ("USA", "206", "UNKNOWN"),
         ("USA", " R10-11 ", "NO_TURN_ON_RED"),
+        ("USA", "R1-2", "YIELD"),
+        ("FRA", "AB3a", "YIELD"),
+        ("GBR", "602", "YIELD"),
+        ("ESP", "r3", "PRIORITY"),
         ("ESP", "r305", "NO_OVERTAKING_START"),
         ("ITA", "274", "MAX_SPEED"),
         ("AUS", "274", "MAX_SPEED"),
@@ -205,6 +209,31 @@ def test_the_lowest_limit_holds_and_none_may_be_infinite(read):
 
     assert found("inf") == inf
     assert found("13.5", "inf", "8.25") == 8.25
+
+
+@pytest.mark.parametrize(
+    ("sign", "plate", "name", "limit"),
+    [
+        ("274", None, "MAX_SPEED", 13.5),
+        ("274", "1001-30", "MAX_SPEED", 13.5),  # for so many metres
+        ("274", "1053-35", "UNKNOWN", None),  # when wet
+        ("274", "1040-30", "UNKNOWN", None),  # at these hours
+        ("276", "1049-13", "UNKNOWN", None),  # for vehicles of more than 3.5 t
+    ],
+)
+def test_of_signs_that_hold_for_some_nothing_is_known(read, sign, plate, name, limit):
+    """As of a ban of overtaking for lorries, which is none for ego's car."""
+    value = "<additionalValue>13.5</additionalValue>"
+    posts = f"<trafficSignElement><trafficSignID>{sign}</trafficSignID>{value}</trafficSignElement>"
+    if plate is not None:
+        posts += f"<trafficSignElement><trafficSignID>{plate}</trafficSignID></trafficSignElement>"
+    lanelet = read(
+        ("ZAM_", "DEU_"),
+        (RIGHT, f'{RIGHT}<trafficSignRef ref="7"/>'),
+        ("  <obstacle", f'<trafficSign id="7">{posts}</trafficSign><obstacle'),
+    ).lanelets["1"]
+    assert lanelet.signs - ({"UNKNOWN"} if limit else set()) == {name}
+    assert lanelet.limit_mps == limit
 
 
 @pytest.mark.parametrize(

@@ -88,6 +88,49 @@ s13 PEDESTRIANS_CROSSING
 )
 
 
+_MORE: Mapping[str, Mapping[str, str]] = MappingProxyType(
+    {
+        "AUS": _signs("R1-3 ROUNDABOUT, R4-1 MAX_SPEED"),
+        "BEL": _signs("""
+B1 YIELD, B5 STOP, B9 PRIORITY, B15 RIGHT_OF_WAY, D5 ROUNDABOUT, C35 NO_OVERTAKING_START
+"""),
+        "CHE": _signs("""
+2.30 MAX_SPEED, 2.41.1 ROUNDABOUT, 2.44 NO_OVERTAKING_START, 3.01 STOP, 3.02 YIELD,
+3.03 PRIORITY
+"""),
+        "ESP": _signs("R3 PRIORITY, R402 ROUNDABOUT"),
+        "FRA": _signs("AB3A YIELD, AB4 STOP, AB6 PRIORITY, B3 NO_OVERTAKING_START"),
+        "GBR": _signs("601.1 STOP, 602 YIELD, 632 NO_OVERTAKING_START, 670 MAX_SPEED"),
+        "JPN": _signs("330 STOP"),
+        "NLD": _signs("""
+A1 MAX_SPEED, B1 PRIORITY, B6 YIELD, B7 STOP, D1 ROUNDABOUT, F1 NO_OVERTAKING_START
+"""),
+        "POL": _signs("""
+A-7 YIELD, B-20 STOP, B-25 NO_OVERTAKING_START, B-33 MAX_SPEED, C-12 ROUNDABOUT, D-1 PRIORITY
+"""),
+        "SWE": _signs("""
+B1 YIELD, B2 STOP, B4 PRIORITY, C27 NO_OVERTAKING_START, C31 MAX_SPEED, D3 ROUNDABOUT
+"""),
+        "USA": _signs("R1-2 YIELD, R4-1 NO_OVERTAKING_START"),
+    }
+)
+"""Signs that countries' own catalogues have, in capitals, and `commonroad-io` has not."""
+
+CATALOGUED = frozenset({*_COUNTRIES, *_MORE} - {"CHN", "ITA"})
+"""The countries of whose catalogues something is known here, besides Germany."""
+
+_PLATES = _signs("""
+1020-30 ADDITION_RESIDENTS_PERMITTED, 1022-10 ADDITION_BICYCLES_PERMITTED,
+1024-10 ADDITION_CARS_PERMITTED, 1026-36 ADDITION_AGRICULTURE_PERMITTED,
+1026-37 ADDITION_FOREST_PERMITTED, 1026-38 ADDITION_AGRICULTURE_FOREST_PERMITTED,
+1031-52 ADDITION_GREEN_STICKER_PERMITTED, 1040-30 ADDITION_TIME_PERIOD_PERMITTED,
+1048-12 ADDITION_MOTOR_VEHICLES_ALLOWED_MASS_3_5_TONS, 1049-13 ADDITION_MIN_MASS_3_5_TONS,
+1052-31 ADDITION_NO_WATER_POLLUTANTS_LOADED, 1053-33 ALLOWED_MASS_7_5_TONS,
+1053-34 ADDITION_VALID_ON_SHOULDER, 1053-35 ADDITION_VALID_WHEN_WET
+""")
+_FIRST_PLATE = 226
+"""Plates below signs that say for whom or when these hold, and the number of the first one."""
+
 _LATER_IN_USA = ("STOP", "STOP_4_WAY", "NO_TURN_ON_RED", "ONEWAY")
 
 
@@ -99,7 +142,8 @@ def signs_by_number(country: str) -> dict[int, str]:
         return dict(enumerate(names or [MAX_SPEED]))
     # Signs that are not about driving are left out between the last ones
     *first, crossing, arrow = _GERMANY.values()
-    return {**dict(enumerate(first)), 92: crossing, 170: arrow}
+    plates = dict(enumerate(_PLATES.values(), _FIRST_PLATE))
+    return {**dict(enumerate(first)), 92: crossing, 170: arrow, **plates}
 
 
 class SignElement(NamedTuple):
@@ -110,8 +154,14 @@ class SignElement(NamedTuple):
 
 
 def read_sign(tree: Tree, country: str) -> tuple[SignElement, ...]:
-    """The signs on a post, by the ids of a country (ISO 3166)."""
-    return tuple([_element(child, country) for child in tree.all("trafficSignElement")])
+    """The signs on a post, by the ids of a country (ISO 3166).
+
+    Of those above a plate that says for whom or when they hold nothing is known.
+    """
+    found = tuple([_element(child, country) for child in tree.all("trafficSignElement")])
+    if not any(one.name in _PLATES.values() for one in found):
+        return found
+    return tuple([SignElement(UNKNOWN, None) for _ in found])
 
 
 def _element(tree: Tree, country: str) -> SignElement:
@@ -125,7 +175,19 @@ def _element(tree: Tree, country: str) -> SignElement:
 def sign_name(number: str, country: str) -> str:
     """The name of a sign by the id of a country (ISO 3166), ``UNKNOWN`` if it has none here."""
     names = _COUNTRIES.get(country, _GERMANY)
-    return MAX_SPEED if number == _GERMAN_MAX_SPEED else names.get(number, UNKNOWN)
+    if number == _GERMAN_MAX_SPEED:
+        return MAX_SPEED
+    return names.get(number) or _PLATES.get(number) or _more(number, country)
+
+
+def national_sign(number: str, country: str) -> str:
+    """The name of a sign in a country's own catalogue, in Germany's if no country is given."""
+    own = not country or country == "DEU" or country in _COUNTRIES
+    return sign_name(number, country) if own else _more(number, country)
+
+
+def _more(number: str, country: str) -> str:
+    return _MORE.get(country, {}).get(number.upper(), UNKNOWN)
 
 
 def speed_limit(tree: Tree) -> float:

@@ -5,17 +5,12 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, UNKNOWN, sign_name
+from rulec.recordings.commonroad.traffic_signs import CATALOGUED, MAX_SPEED, UNKNOWN, national_sign
 from rulec.recordings.lanelet2.lane_tags import velocity
 from rulec.recordings.lanelet2.region_codes import sign_parts
 
 AUTOWARE_SIGNS = {"stop_sign": "STOP", "yield_sign": "YIELD"}
 """Subtypes without a country."""
-
-_TABLES = "DEU USA ESP AUS RUS ARG BEL FRA GRC HRV PRI"
-"""Countries of whose signs CommonRoad has the numbers."""
-
-_MORE_SIGNS = {("USA", "R1-2"): "YIELD", ("JPN", "330"): "STOP"}
 
 _GERMAN_LIMIT = re.compile(r"de[ _:-]?274[-_](\d{1,3})$", re.IGNORECASE)
 
@@ -37,14 +32,12 @@ def sign_of(kind: str) -> Sign:
     if (limit := _GERMAN_LIMIT.match(kind)) is not None and int(limit[1]) > 1:
         return Sign(MAX_SPEED, int(limit[1]) / 3.6)
     country, number = sign_parts(kind)
-    if (more := _MORE_SIGNS.get((country, number.upper()))) is not None:
-        return Sign(more)
-    if country and country not in _TABLES:
+    if country and country not in CATALOGUED | {"DEU"}:
         return Sign(UNKNOWN)
     if country:
         spelled = (number, number.replace("_", "-"), number.replace("_", "."))
         tried = (*spelled, *(word.upper() for word in spelled))
-        names = (sign_name(word, country) for word in tried)
+        names = (national_sign(word, country) for word in tried)
         return Sign(next((name for name in names if name != UNKNOWN), UNKNOWN))
     speed = velocity(kind)
     return Sign(UNKNOWN) if speed is None else Sign(MAX_SPEED, speed)

@@ -10,7 +10,7 @@ from collections.abc import Collection, Mapping
 from types import MappingProxyType
 from typing import NamedTuple
 
-from rulec.recordings.commonroad.traffic_signs import UNKNOWN, sign_name
+from rulec.recordings.commonroad.traffic_signs import CATALOGUED, UNKNOWN, national_sign
 from rulec.recordings.opendrive.content.elements import RoadSignal
 
 _LIGHTS = frozenset({"1000001", *(f"10000{number:02}" for number in (8, 9, 10, 11, 12))})
@@ -41,16 +41,13 @@ _CODES: Mapping[str, str] = MappingProxyType(
         "CH": "CHE",
         "NL": "NLD",
         "JP": "JPN",
+        "PL": "POL",
         "GERMANY": "DEU",
     }
 )
 """The codes of countries of two letters, which the standard has since 1.6, and of three."""
 
 _GERMAN = frozenset({"", "DEU", "OPENDRIVE", "OPEN_DRIVE"})
-_CATALOGUES = frozenset(["USA", "ESP", "AUS", "RUS", "ARG", "BEL", "FRA", "GRC", "HRV"])
-"""Of other countries nothing is known here."""
-
-_MORE_IN_USA: Mapping[str, str] = MappingProxyType({"R1-2": "YIELD"})
 
 HOLDS_ON: Mapping[str, frozenset[str]] = MappingProxyType(
     {
@@ -97,13 +94,12 @@ def sign_of(signal: RoadSignal) -> CatalogueSign | None:
     country = country_of(signal.country)
     if signal.dynamic or not signal.type or signal.type in ("-1", "none"):
         return None
-    if country not in _GERMAN | _CATALOGUES:
+    if country not in _GERMAN | CATALOGUED:
         return None
     numbered = country if country not in _GERMAN else ""
-    more = _MORE_IN_USA if country == "USA" else {}
     whole = f"{signal.type}-{signal.subtype}"
     for number in (whole, f"{signal.type}.{signal.subtype}", signal.type):
-        name = more.get(number) or sign_name(number, numbered)
+        name = national_sign(number, numbered)
         if name != UNKNOWN:
             return CatalogueSign(name, _limit(signal, country) if name == "MAX_SPEED" else None)
     return None
