@@ -79,6 +79,28 @@ def test_who_waits_where_no_jam_may_be_is_not_told_to_be_in_one(beside, ahead, t
         assert found.unknown[word][0] == (not told)
 
 
+def test_traffic_that_has_been_slow_for_less_than_10_s_may_be_no_jam():
+    """All go at 10 m/s for 2 s, and then at 1 m/s, 11 s long."""
+    along_m = np.cumsum([0.0] + [5.0] * 4 + [0.5] * 22)
+
+    def at(number, x, y):
+        return vehicle(number, {k: (x + float(far), y) for k, far in enumerate(along_m)})
+
+    others = [at(20 + k, 10.0 * (k + 1), 0.0) for k in range(4)]
+    bodies = [at(7, 0.0, 0.0), *others, at(30, 10.0, 4.0)]
+    found = flow_signals(context_of(recording(lanes(2), bodies), ("1",)))
+    slow, unknown = found.world["congested"], found.unknown["congested"]
+    begins = int(np.flatnonzero(slow)[0])
+    assert slow[begins:].all()
+    # It was not slow a state before
+    assert np.flatnonzero(unknown).tolist() == list(range(begins, begins + 19))
+    # Of a drive that begins in one nobody knows how long it has been there, but where all is known
+    jam = recording(lanes(2), [steady(7, 0, 0, 1), *line(1, 4), steady(30, 10, 4, 1)])
+    assert not flow_signals(context_of(jam, ("1",))).unknown["congested"].any()
+    whole = replace(jam, complete=frozenset({"light"}))
+    assert flow_signals(context_of(whole, ("1",))).unknown["congested"].all()
+
+
 def test_a_single_one_that_drives_past_a_jam_is_no_flow():
     ego = steady(7, 0, 0, speed=0)
     assert first(*line(0, 4), steady(30, 10, 4.0, speed=17), ego=ego)["walking_pace_flow"]

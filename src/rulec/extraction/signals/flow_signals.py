@@ -46,6 +46,9 @@ _RAMPS = frozenset({JOINING, "exitRamp"})
 _SETS_OFF_MPS2 = 2.0
 """Vehicles gain speed about so hard when they set off."""
 
+_JAM_S = 10.0
+"""Traffic that has been slow for less may be so where somebody pulls in or turns off."""
+
 _CRAWLS_MPS = 5.5
 """Who is as slow and gains speed sets off, though it has not quite stood."""
 
@@ -61,7 +64,7 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     Who queues to leave, beside lanes on which traffic flows or nobody is, is in no jam of the road:
     that is on half of its lanes or more. Unknown on no more than half, where one may wait to turn,
     those in junctions left out, and for ego if nobody is ahead of it: it may be what the others
-    wait for.
+    wait for. Nor is it a jam yet that came up less than ``_JAM_S`` ago.
     """
     around, limits, states = vehicles_around(context), context.thresholds, context.states
     existing = travel_lanes(context)
@@ -87,18 +90,30 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     (congested, part), (walking, part_walks) = (
         slow(below) for below in (limits.congested_kmh, limits.walking_pace_kmh)
     )
-    leads = np.zeros(states, dtype=bool)
+    moot = np.zeros(states, dtype=bool)
     if congested.any():
-        leads = np.isinf(_gap_in_lane(context, relations.BEHIND))
-    unknown = congested & (part | leads)
+        moot = np.isinf(_gap_in_lane(context, relations.BEHIND)) | _comes_up(context, congested)
+    unknown = congested & (part | moot)
     return SignalColumns(
         {"congested": congested, "CONGESTED": congested, "walking_pace_flow": walking},
         unknown={
             "congested": unknown,
             "CONGESTED": unknown,
-            "walking_pace_flow": walking & (part_walks | leads),
+            "walking_pace_flow": walking & (part_walks | moot),
         },
     )
+
+
+def _comes_up(context: DriveContext, slow: Flags) -> Flags:
+    """Flags of states up to ``_JAM_S`` after traffic was not slow, as far as that is recorded.
+
+    Where all traffic is, ego was not in any before its drive began.
+    """
+    spans, before = context.spans, context.spans.latest(~slow)
+    ago_s = (spans.columns - before) * context.recording.step_s
+    told = (before >= spans.first) | ("light" in context.recording.complete)
+    comes_up: Flags = told & (ago_s < _JAM_S)
+    return comes_up
 
 
 def _is_slow(
