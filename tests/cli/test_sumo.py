@@ -70,7 +70,8 @@ def test_a_net_without_recorded_traffic(tmp_path, files, capfd):
     traces = tmp_path / "traces.jsonl"
     traces.write_text("", encoding="utf-8")
     assert main(["verify", str(traces), "-r", "gb", "--map", files[1]]) == 2
-    assert "--map is for recorded traffic" in capfd.readouterr().err
+    said = capfd.readouterr().err
+    assert "--map is for recorded traffic, and no file looks like it; add `--input" in said
 
 
 def test_the_net_alone(files, capfd):

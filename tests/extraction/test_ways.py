@@ -83,16 +83,16 @@ def test_a_gap_in_the_recording_parts_the_drive():
 
 
 @pytest.mark.parametrize(
-    "one",
+    ("one", "why"),
     [
-        along((10, 30), (20, 30)),  # 28 m beside the lane
-        along((20, 0), (10, 0), heading=pi),  # against its direction
-        along((10, 0)),  # at one moment only
+        (along((10, 30), (20, 30)), "it is never on a lane that leads its way"),  # 28 m beside it
+        (along((20, 0), (10, 0), heading=pi), "it is never on a lane that leads its way"),
+        (along((10, 0)), "it is there at one moment only"),
     ],
 )
-def test_who_drives_on_no_lane(one):
+def test_who_drives_on_no_lane(one, why):
     (answer,) = Drives(recording([straight(1, 0, 100)], [one]), "right").of("7")
-    assert answer == NoDrive("7", "it is never on a lane that leads its way")
+    assert answer == NoDrive("7", why)
 
 
 def test_who_does_not_drive():

@@ -131,6 +131,7 @@ HEAD = "trace,step,object,type,other,p\n"
             "call it `step`",
         ),
         ("step,p\n0,true\n", 1, "there is no column `trace`", "the first columns are"),
+        ("track,time\na,0\n", 1, "there is no column `trace`", "(`--input-format tracks`)"),
         ("time;speed\n", 1, "names are separated by semicolons", "separate the cells by commas"),
         ("trace;step\n", 1, "names are separated by semicolons", "separate the cells by commas"),
         ("step\ttrace\n", 1, "names are separated by tabs", "separate the cells by commas"),

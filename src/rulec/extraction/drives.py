@@ -172,7 +172,9 @@ class Drives:
         """The drives of a participant along stretches of road."""
         ego = self._tracks.participants[row].id
         if not stretches:
-            yield NoDrive(ego, "it is never on a lane that leads its way")
+            is_brief = len(self._tracks.participants[row].states) < FEWEST_STATES
+            why = "there at one moment only" if is_brief else "never on a lane that leads its way"
+            yield NoDrive(ego, f"it is {why}")
         for number, stretch in enumerate(stretches, 1):
             name = ego if number == 1 else f"{ego}#{number}"
             yield self._drive(row, name, stretch)

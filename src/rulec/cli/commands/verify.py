@@ -151,7 +151,10 @@ def command(
         for path in inputs.paths:
             if path != STANDARD_INPUT:
                 check_readable(Path(path))
-        raise click.UsageError(f"{option} is for recorded traffic, and there is none.")
+        raise click.UsageError(
+            f"{option} is for recorded traffic, and no file looks like it; add `--input-format "
+            "tracks`, or another of `rulec formats`, to hear what is missing"
+        )
     if ends is not None and recordings:
         raise click.UsageError("--end is for traces; a recording is always cut.")
     if engine == "c" and recordings:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -170,7 +171,7 @@ def unread_remark(unread: Iterable[str], kinds: Sequence[ColumnKind]) -> str:
 def _missing(
     table: ColumnTable, kind: ColumnKind, unread: Sequence[str], required: Sequence[str]
 ) -> RulecError:
-    near = nearest_name(kind.name, [name.strip() for name in unread])
+    near = _with_unit(kind, unread) or nearest_name(kind.name, [name.strip() for name in unread])
     why = f"it has no column `{kind.name}`" + (f", but `{short(near)}`" if near else "")
     also = [name for name in kind.also if name != kind.name][:4]
     way_out = (
@@ -183,6 +184,13 @@ def _missing(
     return table.refused(why, expected=expected, help_text=way_out)
 
 
+def _with_unit(kind: ColumnKind, unread: Iterable[str]) -> str | None:
+    """A heading with something behind the name, such as `x [m]`."""
+    names = (kind.name, *kind.also)
+    bare = ((name, re.match(r"\w*", name.strip().casefold())) for name in unread)
+    return next((name for name, found in bare if found and found[0] in names), None)
+
+
 def _check_full(columns: Columns, name: str, kind: ColumnKind) -> None:
     texts, numbers = columns.texts, columns.numbers
     empty = texts[name].having("") if kind.is_text else np.isnan(numbers[name])
@@ -192,7 +200,10 @@ def _check_full(columns: Columns, name: str, kind: ColumnKind) -> None:
         if kind.is_text:
             raise columns.wrong(row, why, "expected a value")
         raise columns.wrong(
-            row, f"{why}, or says that it is none, as `nan` does", "expected a number"
+            row,
+            f"{why}, or says that it is none, as `nan` does",
+            "expected a number",
+            "leave the row out, or write the number that is meant",
         )
 
 

@@ -100,12 +100,16 @@ def check_columns(columns: Sequence[str], place: SourceLocation) -> None:
         if name not in times:
             near = nearest_name(name, columns)
             way_out = _FORM if near is None else f"if `{near}` is that, call it `{name}`"
+            if name == TRACE:
+                way_out = f"{way_out}; {_TRACKS}"
             raise problem(f"there is no column `{name}`", place, way_out)
 
 
 _INDEX = "a cell of the first line is empty; pandas writes one, unless it is told `index=False`"
 
 _BOUNDS = "a number known to lie between two others has both: such as 1 and 2.5"
+
+_TRACKS = "tables of recorded traffic have `track`, `t`, `x`, `y` (`--input-format tracks`)"
 
 _FORM = "the first columns are `trace`, `step`, `object`, `type`; further ones are named for values"
 
