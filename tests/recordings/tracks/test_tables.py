@@ -214,7 +214,7 @@ def test_a_file_of_traces_is_none(tmp_path):
     [
         ("trak,t,x,y", "a,0,20,0", None, "it has no column `track`, but `trak`"),
         ("track,t,x,speed", "a,0,20,0", None, "it has no column `y`"),
-        ("track,t [s],x [m],y [m]", "a,0,20,0", None, "it has no column `t`, but `t [s]`"),
+        ("track,t,x,y [m]", "a,0,20,0", None, "it has no column `y`, but `y [m]`"),
         (HEAD, "a,0.3,2O,0", 5, "column `x` holds `2O`"),
         (HEAD, "a,0.3,inf,0", 5, "column `x` holds `inf`"),
         (HEAD, "a,0.3,,0", 5, "column `x` is empty here"),
