@@ -64,6 +64,17 @@ def test_who_is_in_conflict(road, side, sign, comes_s, conflict):
     assert not found.unknown[side].any()
 
 
+@pytest.mark.parametrize(("first_y", "told"), [(4.5, "F"), (1, "?"), (-2, "?"), (-9, "T")])
+def test_who_is_in_a_junction_when_a_recording_begins(first_y, told):
+    """Ego has its front in the other's way at first; that one is beyond, there too, or comes."""
+    ego = vehicle(7, {k: (-2 + 5 * k, 0) for k in range(8)}, speed=10)
+    other = vehicle(8, {k: (0, first_y + 5 * k) for k in range(8)}, speed=10, heading=np.pi / 2)
+    found = replace(recording([*EAST, *NORTH], [ego, other]), complete=frozenset({"YIELD"}))
+    words = priority_signals(context_of(found, route=("1", "2", "3")))
+    side = "conflict_from_right"
+    assert ("?" if words.unknown[side].any() else "FT"[int(words.world[side].any())]) == told
+
+
 @pytest.mark.parametrize(("length", "times"), [(12.0, [(1, 3)]), (2.0, [(1, 1), (3, 3)])])
 def test_a_long_one_whose_middle_cuts_a_corner_is_in_the_junction_once(length, times):
     """A cross of roads 4 m wide; its middle is out of it for one state, on a way of some 7 m."""

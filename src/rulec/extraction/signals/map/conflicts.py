@@ -54,10 +54,13 @@ def in_conflict(context: DriveContext, ego: Passing, foe: Passing) -> tuple[int,
     """
     own, other = ego[0], foe[0]
     (enters, leaves), (comes, passed) = (tuple(map(_column, when[1:])) for when in (ego, foe))
-    if enters is None:
+    if enters is None or (passed is not None and passed <= enters):
         return None
     if comes is not None and comes < enters:
         return _runs_into(context, (own, enters), (other, passed))
+    if _is_there_at_first(context, own, ego[1]) and _is_there_at_first(context, other, foe[1]):
+        # Who of them got there first was not recorded
+        return enters, False
     speed = context.surroundings.passages.tracks.speed[own.row, enters:passed]
     waits = speed.min(initial=np.inf) < SLOWEST_MPS
     held_up = _held_up(context, (own, enters, ego[2]), other, foe[1])
@@ -86,6 +89,12 @@ def _let_pass(
     first = max(int(present[0]), own.first)
     brakes = not waits and _slows_down(context, other, first, there.stop)
     return (held_up[0], False) if brakes else None
+
+
+def _is_there_at_first(context: DriveContext, passage: Passage, when: float | None) -> bool:
+    """True if one is where ways meet in the first state in which it is recorded."""
+    present = context.surroundings.passages.tracks.present[passage.row]
+    return when is not None and when <= int(present.argmax())
 
 
 def _collide(
