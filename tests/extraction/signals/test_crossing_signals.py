@@ -243,3 +243,8 @@ def test_one_that_waits_until_ego_is_gone():
     assert side_road([-3.5] * 40)[9] == "F"
     # Its track ends before it goes
     assert side_road([-3.5] * 25)[9] == "?"
+
+
+def test_one_who_stands_in_the_side_road_all_the_time_may_not_want_to_cross():
+    assert side_road([1.0] * 40)[9] == "?"
+    assert side_road([*[1.0] * 25, *(1.0 + 0.6 * k for k in range(15))])[9] == "T"

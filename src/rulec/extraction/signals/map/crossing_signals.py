@@ -12,6 +12,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.signals import relations
 from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.map_signals import crossings_told, next_crossing
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
@@ -81,7 +82,8 @@ def _nearest_to_crossing(context: DriveContext) -> SignalColumns:
 def _crosses_side_road(context: DriveContext) -> SignalColumns:
     """Who uses the road into which ego turns, and is not let go by ego.
 
-    Who waits in the junction until somebody is across has entered it lawfully.
+    Who waits in the junction until somebody is across has entered it lawfully. Nobody knows whether
+    one who stands in the road all the time that it is recorded wants to cross.
     """
     rows, (crosses, unsure) = _pedestrians(context), np.zeros((2, *context.relevant.shape), bool)
     start, end = _side_road(context)
@@ -90,7 +92,8 @@ def _crosses_side_road(context: DriveContext) -> SignalColumns:
         if (some := uses.any(axis=1)).any():
             rows, uses = rows[some], uses[some]
             taken, open_end = _takes_way(context, rows)
-            crosses[rows], unsure[rows] = uses & taken, uses & open_end
+            stays = relations.stays(context, rows)[:, None]
+            crosses[rows], unsure[rows] = uses & taken, uses & (open_end | (taken & stays))
     return SignalColumns(
         about={"crosses_side_road": crosses},
         only={"crosses_side_road": context.tracks.of_type("pedestrian")},
