@@ -2,7 +2,9 @@
 
 import pytest
 
-from rulec.recordings.commonroad.countries import LEFT_HAND, RIGHT_HAND, side_in
+from rulec import read_recording
+from rulec.recordings.commonroad.countries import LEFT_HAND, RIGHT_HAND, country_in, side_in
+from support.builders.recordings import ROAD_XML
 
 
 @pytest.mark.parametrize(
@@ -19,7 +21,29 @@ from rulec.recordings.commonroad.countries import LEFT_HAND, RIGHT_HAND, side_in
     ],
 )
 def test_the_side(name, side):
-    assert side_in(name) == side
+    assert side_in(country_in(name)) == side
+
+
+@pytest.mark.parametrize("name", ["following", "my_drive", "2026_01_01", ""])
+def test_names_without_a_country_have_none(name):
+    assert country_in(name) == ""
+
+
+@pytest.mark.parametrize(
+    ("named", "benchmark", "told"),
+    [
+        ("run", "GBR_Road-1_1_T-1", ("GBR", "left")),  # a copy
+        ("DEU_Road-1_1_T-1", "GBR_Road-1_1_T-1", ("GBR", "left")),
+        ("GBR_Road-1_1_T-1", "ZAM_Road-1_1_T-1", ("GBR", "left")),  # in no country of its own
+        ("run", "ZAM_Road-1_1_T-1", ("ZAM", None)),
+        ("run", "road", ("", None)),
+    ],
+)
+def test_the_benchmark_says_where_it_is_and_else_the_name(tmp_path, named, benchmark, told):
+    file = tmp_path / f"{named}.xml"
+    file.write_text(ROAD_XML.replace("ZAM_Road-1_1_T-1", benchmark))
+    found = read_recording(file)
+    assert (found.country, found.side) == told
 
 
 def test_no_country_drives_on_both_sides():

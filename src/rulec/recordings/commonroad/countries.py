@@ -18,16 +18,19 @@ NOR PER PHL POL PRT ROU RUS SAU SRB SVK SVN SWE TUN TUR TWN UKR URY USA VNM
 
 
 def country_in(name: str) -> str:
-    """The code of ``DEU_Ulm-1_1_T-1``, and of ``C-DEU_Ulm-1_1_S-1``, which is cooperative."""
-    return name.removeprefix("C-").partition("_")[0].upper()
+    """The code of ``DEU_Ulm-1_1_T-1``, and of ``C-DEU_Ulm-1_1_S-1``, which is cooperative.
+
+    It is empty for names that begin with none, such as ``following``.
+    """
+    code, parted, _ = name.removeprefix("C-").partition("_")
+    return code.upper() if parted and len(code) == 3 and code.isalpha() else ""
 
 
-def side_in(name: str) -> Side | None:
-    """The side of a scenario's country; None for other names, and for made-up countries.
+def side_in(country: str) -> Side | None:
+    """The side of traffic in a country; None for unknown and for made-up ones.
 
     CommonRoad's own ``ZAM`` is the made-up country Zamunda, not Zambia.
     """
-    country = country_in(name)
     if country in LEFT_HAND.split():
         return "left"
     return "right" if country in RIGHT_HAND.split() else None

@@ -64,6 +64,8 @@ def to_recording(content: Content, path: Path, form: FileFormat) -> recording.Re
     participants, remarks = without_constant_indicators(bodies)
     lanelets = _lanelets(content)
     name = Path(path.name.removesuffix(".gz")).stem
+    # A copy may have any name; what the file says of itself goes before.
+    country = content.sign_country if side_in(content.sign_country) else country_in(name)
     problems = sorted(content.problems.values(), key=lambda problem: int(problem.id))
     return with_neighbours(
         recording.Recording(
@@ -72,8 +74,8 @@ def to_recording(content: Content, path: Path, form: FileFormat) -> recording.Re
             lanelets,
             participants,
             tuple(planning_problem(problem, lanelets) for problem in problems),
-            side=side_in(name),
-            country=country_in(name),
+            side=side_in(country),
+            country=country or content.sign_country,
             weather=content.weather,
             remarks=remarks,
         )

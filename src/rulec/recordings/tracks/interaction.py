@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy import int64
 
-from rulec.recordings.commonroad.countries import side_in
+from rulec.recordings.commonroad.countries import country_in, side_in
 from rulec.recordings.encodings.table_columns import ColumnKind, NamedColumns, Texts, named_columns
 from rulec.recordings.encodings.table_files import open_table
 from rulec.recordings.encodings.xml_element import XmlFormat
@@ -127,7 +127,7 @@ def _recording(name: str, tables: Sequence[NamedColumns], roads: RoadMap, path: 
                 width=numbers.get("width"),
             )
         )
-    side = side_in(name.removeprefix("DR_"))
+    side = side_in(country_in(name.removeprefix("DR_")))
     told = roads if roads.side or side is None else replace(roads, side=side)
     return track_recording(name, rows, told, form="INTERACTION tracks", remarks=remarks, path=path)
 
