@@ -64,6 +64,9 @@ def read_recordings(source: RecordingSource) -> Iterator[Recording]:
     scenario that is not in it, R0613 for a map where none is needed, R0614 and R0615 for a missing
     or wrong one, R0701 if a file cannot be opened.
     """
+    # NumPy, only for those who have recordings.
+    from rulec.recordings.tracks.doubts import with_doubts
+
     form = _format_of(source)
     if source.map_path is not None and not form.takes_map:
         raise OTHER_CHOICE.error(
@@ -72,13 +75,13 @@ def read_recordings(source: RecordingSource) -> Iterator[Recording]:
             help="leave out --map, which is for recordings without roads of their own",
         )
     if source.scenario_id is None:
-        yield from form.read(source)
+        yield from (with_doubts(recording, source.path) for recording in form.read(source))
         return
     names = list(form.names(source.path)) if form.names is not None else []
     if form.names is None or source.scenario_id in names:
         for recording in form.read(source):
             if recording.name == source.scenario_id:
-                yield recording
+                yield with_doubts(recording, source.path)
                 return
             names.append(recording.name)
     raise NOT_IN_RECORDING.error(

@@ -1,0 +1,96 @@
+"""What is said of tracks that their own places contradict: wrong units, steps and axes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.recordings.recording import Recording
+from rulec.recordings.recording_format import RECORDING
+from rulec.recordings.track import Track, TrackStates
+
+_MOST_BODIES = 60
+_FEWEST_BODIES = 3
+_LEAST_M = 5.0
+"""Who moves less far says nothing of these."""
+
+_ALIKE = 1.5
+"""Speeds and places that differ by a smaller factor are measured badly at most."""
+
+_ASKEW_DEG, _ACROSS_DEG = 20.0, 45.0
+"""Cars in bends, and those that are measured badly, move less askew all the time."""
+
+_SPEEDS = "speeds are"
+
+
+def with_doubts(recording: Recording, path: Path) -> Recording:
+    """The recording, with a remark on each thing that is said otherwise than bodies move.
+
+    Raises RulecError R0610 if most vehicles move across or against their headings.
+    """
+    tracks = _tracks(recording)
+    if len(tracks) < _FEWEST_BODIES:
+        return recording
+    angle = float(np.median([_askew_deg(track) for track in tracks]))
+    if angle > _ACROSS_DEG:
+        why = (
+            f"headings do not fit the motion: vehicles move {angle:.0f}° away from them in the "
+            "median; axes may be exchanged, or headings be in degrees, or be counted from north"
+        )
+        raise RECORDING.refused(path, why)
+    remarks = (*recording.remarks, *_doubts(tracks, recording, angle))
+    return replace(recording, remarks=remarks) if remarks != recording.remarks else recording
+
+
+def _tracks(recording: Recording) -> list[Track]:
+    """The first tracks of vehicles that move some way."""
+    found: list[Track] = []
+    for body in recording.participants:
+        if "vehicle" in body.object_types and isinstance(body.states, TrackStates):
+            rows = body.states.track.rows
+            if len(rows) > 1 and np.hypot(*np.ptp(rows[:, :2], axis=0)) > _LEAST_M:
+                found.append(body.states.track)
+                if len(found) == _MOST_BODIES:
+                    break
+    return found
+
+
+def _doubts(tracks: list[Track], recording: Recording, angle: float) -> Iterator[str]:
+    if angle > _ASKEW_DEG:
+        yield f"vehicles move {angle:.0f}° off their headings, which may be in degrees"
+    ratio = float(np.median([_speed_ratio(track, recording.step_s) for track in tracks]))
+    # Tables have said so themselves, of all their rows
+    told = any(remark.startswith(_SPEEDS) for remark in recording.remarks)
+    if ratio > 0 and not 1 / _ALIKE <= ratio <= _ALIKE and not told:
+        yield (
+            f"{_SPEEDS} {ratio:.3g} times what places and times say, by which it is judged: "
+            "time steps, or units of speeds or places, may be wrong"
+        )
+    if np.mean([track.length < track.width for track in tracks]) > 0.5:
+        yield "most vehicles are wider than long: lengths and widths may be exchanged"
+
+
+def _ways(track: Track) -> NDArray[float64]:
+    """From each place of a track to the next (m)."""
+    ways: NDArray[float64] = np.diff(track.rows[:, :2], axis=0)
+    return ways
+
+
+def _askew_deg(track: Track) -> float:
+    """How far somebody goes away from its headings, in the mean of its way."""
+    dx, dy = _ways(track).T
+    away = np.arctan2(dy, dx) - track.rows[1:, 2]
+    turned = np.abs((away + np.pi) % (2 * np.pi) - np.pi)
+    return float(np.degrees(np.average(turned, weights=np.hypot(dx, dy))))
+
+
+def _speed_ratio(track: Track, step_s: float) -> float:
+    """How many times the way between its places its speeds make."""
+    speed = np.abs(track.rows[:, 3])
+    said = (speed[1:] + speed[:-1]) / 2 * np.diff(track.steps) * step_s
+    return float(said.sum() / np.hypot(*_ways(track).T).sum())

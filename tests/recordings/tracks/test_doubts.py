@@ -1,0 +1,84 @@
+"""What a file says of how bodies move, against how their places move."""
+
+import numpy as np
+import pytest
+
+from rulec import RulecError, read_recording
+
+LANE = """
+<lanelet id="1">
+  <leftBound><point><x>-9</x><y>2</y></point><point><x>99</x><y>2</y></point></leftBound>
+  <rightBound><point><x>-9</x><y>-2</y></point><point><x>99</x><y>-2</y></point></rightBound>
+</lanelet>"""
+
+
+def told(tmp_path, cars=4, size=(4.5, 1.8), step=0.1, **changed):
+    """The remarks on cars that go east and north in turns, at 10 m/s."""
+    bodies = "".join(_car(number, size, changed) for number in range(cars))
+    file = tmp_path / "DEU_Some-1_1_T-1.xml"
+    head = f'commonRoadVersion="2020a" benchmarkID="DEU_Some-1_1_T-1" timeStepSize="{step}"'
+    file.write_text(f"<commonRoad {head}>{LANE}{bodies}</commonRoad>")
+    return read_recording(file).remarks
+
+
+def _car(number, size, changed):
+    states = [_state(number, k, changed) for k in range(20)]
+    first = f"<initialState>{states[0]}</initialState>"
+    rest = "".join(f"<state>{state}</state>" for state in states[1:])
+    shape = f"<rectangle><length>{size[0]}</length><width>{size[1]}</width></rectangle>"
+    return (
+        f'<dynamicObstacle id="{number + 10}"><type>car</type><shape>{shape}</shape>'
+        f"{first}<trajectory>{rest}</trajectory></dynamicObstacle>"
+    )
+
+
+def _state(number, k, changed):
+    way = {"x": k + 10.0 * number, "y": 0.0, "heading": 0.0}
+    if number % 2:
+        way = {"x": 30.0, "y": k + 10.0 * number, "heading": np.pi / 2}
+    row = way | {"speed": 10.0}
+    row |= {name: change(row) for name, change in changed.items()}
+    return (
+        f"<position><point><x>{row['x']}</x><y>{row['y']}</y></point></position>"
+        f"<orientation><exact>{row['heading']}</exact></orientation>"
+        f"<time><exact>{k}</exact></time><velocity><exact>{row['speed']}</exact></velocity>"
+    )
+
+
+def test_what_is_said_as_it_moves(tmp_path):
+    assert told(tmp_path) == ()
+    # A bit off, as estimated speeds and headings are, is no doubt
+    assert told(tmp_path, speed=lambda row: 12.0, heading=lambda row: row["heading"] + 0.2) == ()
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"speed": lambda row: 36.0}, "speeds are 3.6 times what places and times say"),
+        ({"step": 100}, "speeds are 1e+03 times what places and times say"),
+        ({"heading": lambda row: row["heading"] + 0.5}, "29° off their headings"),
+        ({"size": (1.8, 4.5)}, "wider than long"),
+    ],
+)
+def test_units_and_sizes_that_contradict_the_places(tmp_path, changed, said):
+    (remark,) = told(tmp_path, **changed)
+    assert said in remark
+
+
+@pytest.mark.parametrize(
+    ("changed", "angle"),
+    [
+        ({"x": lambda row: row["y"], "y": lambda row: row["x"]}, 90),
+        ({"heading": lambda row: np.pi / 2 - row["heading"]}, 90),
+        ({"heading": lambda row: row["heading"] + np.pi}, 180),
+    ],
+)
+def test_axes_that_contradict_the_headings(tmp_path, changed, angle):
+    with pytest.raises(RulecError, match=f"vehicles move {angle}° away") as refused:
+        told(tmp_path, **changed)
+    assert refused.value.diagnostics[0].code == "R0610"
+
+
+def test_of_one_or_two_nothing_is_concluded(tmp_path):
+    """Who alone slides, or is measured badly, may do so."""
+    assert told(tmp_path, cars=2, speed=lambda row: 36.0, heading=lambda row: 3.0) == ()
