@@ -30,22 +30,33 @@ def situations(folder: str) -> list[tuple[str, dict[str, Any]]]:
 SITUATIONS = [
     pytest.param(book, one, id=f"{book}-{one['title']}") for book, one in situations("statutes")
 ]
-ASKED = [
-    pytest.param(book, one, id=f"{book}-{one['title']}")
-    for _, one in situations("asked")
-    for book in one["law"]
-]
+ASKED = [pytest.param(one, id=f"{region}-{one['title']}") for region, one in situations("asked")]
 
 
-@pytest.mark.parametrize(("book", "situation"), SITUATIONS + ASKED)
-def test_a_drive_violates_what_the_law_says_and_no_more(
-    book: str, situation: dict[str, Any]
-) -> None:
+def violated(book: str, situation: dict[str, Any]) -> set[str]:
     states = tuple(
         {**situation["throughout"], **state}
         for state in situation["states"] * situation.get("repeated", 1)
     )
     trace = Trace("t", 1.0, situation.get("objects", {}), states)
-    found = verify(trace, compiled(book)).violations
-    assert {one.rule for one in found} == set(situation["violated"])
-    assert set(situation["violated"]) <= {rule.name for rule in read(book).rulebook.rules}
+    return {one.rule for one in verify(trace, compiled(book)).violations}
+
+
+def has_rules(book: str, names: list[str]) -> bool:
+    return set(names) <= {rule.name for rule in read(book).rulebook.rules}
+
+
+@pytest.mark.parametrize(("book", "situation"), SITUATIONS)
+def test_a_drive_violates_what_the_law_says_and_no_more(
+    book: str, situation: dict[str, Any]
+) -> None:
+    assert violated(book, situation) == set(situation["violated"])
+    assert has_rules(book, situation["violated"])
+
+
+@pytest.mark.parametrize("situation", ASKED)
+def test_what_is_asked_of_several_books(situation: dict[str, Any]) -> None:
+    books = situation.get("books") or list(situation["law"])
+    found = {book: violated(book, situation) for book in books}
+    assert found == {book: set(situation["violated"]) for book in books}
+    assert all(has_rules(book, situation["violated"]) for book in books)

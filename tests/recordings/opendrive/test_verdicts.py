@@ -1,12 +1,14 @@
 """Drives on OpenDRIVE maps before German law, and the scene of a simulator's two outputs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
 
 from rulec import compile_rulebook, judge_recording
 from rulec.recordings.map_files import read_map
-from rulec.recordings.recording import NO_LANES, Participant, Recording
+from rulec.recordings.recording import NO_LANES, Light, Participant, Recording
 from rulec.recordings.recording_files import read_recording
 from rulec.recordings.recording_format import RecordingSource
 from rulec.recordings.track import Track, TrackOutlines, TrackStates
@@ -22,15 +24,24 @@ def law():
     return compile_rulebook("de")
 
 
-def verdict(folder, law, speed_mps, *, end_m=180.0, **parts):
-    """Of a car that goes straight towards a junction and through it, from x = 20, at one speed."""
+def verdict(folder, law, speed_mps, *, end_m=180.0, colour=None, **parts):
+    """Of a car that goes straight towards a junction and through it, from x = 20, at one speed.
+
+    With a colour the lights of the map show it all the time.
+    """
     found = read_map(written(folder, t_junction(**parts)), STEP_S)
+    lanelets = found.lanelets
+    if colour is not None:
+        shown = (Light(0, ((colour, 1),)),)
+        lanelets = {
+            key: replace(one, lights=shown) if one.lights else one for key, one in lanelets.items()
+        }
     x = np.arange(20.0, end_m, speed_mps * STEP_S)
     still = np.zeros(len(x))
     rows = np.column_stack((x, still - 1.75, still, still + speed_mps, still))
     track = Track(np.arange(len(x)), rows, 4.5, 1.8)
     car = Participant("car", "car", False, TrackStates(track), TrackOutlines(track))
-    recording = Recording("drive", STEP_S, found.lanelets, (car,), (), side=found.side)
+    recording = Recording("drive", STEP_S, lanelets, (car,), (), side=found.side)
     (one,) = judge_recording(recording, law).answers()
     return one.answer
 
@@ -56,6 +67,18 @@ def test_72_kmh_are_too_fast_in_town(tmp_path, law, kind, too_fast):
 def test_a_stop_sign(tmp_path, law, posted):
     found = verdict(tmp_path, law, 10.0, west=signals(*([STOP] if posted else [])))
     assert ("stop_sign" in rules(found.violations)) == posted
+
+
+def test_a_light_leaves_open_whether_a_stop_sign_beside_it_counts(tmp_path, law):
+    found = verdict(tmp_path, law, 10.0, west=signals(STOP, LIGHT))
+    assert "stop_sign" in rules(found.open)
+
+
+@pytest.mark.parametrize(("colour", "stops"), [("green", False), ("inactive", True)])
+def test_a_light_at_work_comes_before_a_stop_sign(tmp_path, law, colour, stops):
+    found = verdict(tmp_path, law, 10.0, colour=colour, west=signals(STOP, LIGHT))
+    assert ("stop_sign" in rules(found.violations)) == stops
+    assert "stop_sign" not in rules(found.open)
 
 
 def test_a_light_leaves_open_whether_it_was_red(tmp_path, law):

@@ -7,7 +7,7 @@ from math import ceil, floor
 
 import numpy as np
 
-from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
 from rulec.extraction.signals.map.priority_signals import (
     approach,
@@ -112,7 +112,7 @@ def _traffic_lights(context: DriveContext) -> SignalColumns:
     if not (nowhere or complete or map_contents(context).lights):
         return SignalColumns()
     front = own_front(context)
-    light, crosses = _lights(context, front)
+    light, crosses = own_light(context)
     unseen = front + context.thresholds.light_reach_m > context.road.borders[-1]
     return SignalColumns(
         {"light": light, "crosses_light_line": crosses},
@@ -235,11 +235,13 @@ def turn_at(context: DriveContext, start: float, end: float) -> str:
     return "turn_near" if (turned < 0) == (context.side == "right") else "turn_far"
 
 
-def _lights(context: DriveContext, front: Floats) -> tuple[SignalColumn, Flags]:
+@once
+def own_light(context: DriveContext) -> tuple[SignalColumn, Flags]:
     """The light for ego, empty where it is not known which, and flags of ego crossing its line.
 
     In the state in which ego crosses the line the light is still the one that it crosses.
     """
+    front = own_front(context)
     colours = np.full(context.states, "no_light", dtype="<U11")
     crosses = np.zeros(context.states, dtype=bool)
     lanes = distinct(context.ego_lane).tolist()

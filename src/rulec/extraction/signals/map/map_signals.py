@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.ego_lanelets import lanelets_at, map_contents, own_lanelets
-from rulec.extraction.signals.map.junction_signals import stop_line
+from rulec.extraction.signals.map.junction_signals import own_light, stop_line
 from rulec.extraction.signals.measured_numbers import corner_ahead, own_front
 from rulec.extraction.signals.settling import only_when
 from rulec.extraction.signals.signal_columns import (
@@ -37,6 +37,10 @@ _SIGNS: Mapping[str, tuple[Set[str], bool]] = {
     "no_turn_on_red_sign": ({"NO_TURN_ON_RED"}, True),
 }
 """Signal -> its signs, and whether they are for the line at the lanelet's end."""
+
+_OVERRULED = ("give_way_sign", "stop_sign")
+_AT_WORK = ("green_light", "amber_light", "red_light")
+"""What signs say who goes first, and lights that come before them."""
 
 _SURFACES = {
     "busLane": "bus_lane",
@@ -83,15 +87,20 @@ def _limit(context: DriveContext) -> SignalColumns:
 
 def _signs(context: DriveContext) -> SignalColumns:
     known = map_contents(context).signs | context.recording.complete
-    return SignalColumns(
-        {
-            name: _holds_to_line(context, signs)
-            if at_line
-            else own_lanelets(context).flags(_has_sign(signs))
-            for name, (signs, at_line) in _SIGNS.items()
-            if signs & known
-        }
-    )
+    values = {
+        name: _holds_to_line(context, signs)
+        if at_line
+        else own_lanelets(context).flags(_has_sign(signs))
+        for name, (signs, at_line) in _SIGNS.items()
+        if signs & known
+    }
+    unknown = {}
+    if map_contents(context).lights:
+        light, _ = own_light(context)
+        for name in set(_OVERRULED) & values.keys():
+            unknown[name] = values[name] & (light == "")
+            values[name] = values[name] & ~np.isin(light, _AT_WORK)
+    return SignalColumns(values, unknown=unknown)
 
 
 def _has_sign(signs: Set[str]) -> Callable[[Lanelet], bool]:
