@@ -264,7 +264,11 @@ def test_files_that_hold_no_drives_are_named_and_the_others_are_judged(folder_of
     with pytest.raises(RulecError, match="no such file"):
         run([tmp_path / "nothing.parquet"], tmp_path / "none")
     assert not (tmp_path / "none").exists()
-    assert f"not judged  1:\n  1: {why}" in as_text(done)
+    assert f"not judged  1:\n  1: {why} ({recording})\n" in as_text(done)
+    # Of several the first by name stands for all
+    (tmp_path / "a.csv").write_bytes(recording.read_bytes())
+    done = run([recording, tmp_path / "a.csv"], tmp_path / "both")
+    assert f"  2: {why} (as in {tmp_path / 'a.csv'})\n" in as_text(done)
 
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs/fleet.md").read_text(encoding="utf-8")

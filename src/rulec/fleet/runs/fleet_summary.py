@@ -62,7 +62,9 @@ def _drives(run: FleetRun) -> Iterator[str]:
         return
     reasons = tally.reasons.most_common(_MOST_REASONS)
     yield f"not judged  {tally.drives['not_judged']:,}:"
-    yield from (f"  {count:,}: {why}" for why, count in reasons)
+    for why, count in reasons:
+        file = tally.examples[why]
+        yield f"  {count:,}: {why} ({file})" if count == 1 else f"  {count:,}: {why} (as in {file})"
     others = len(tally.reasons) - len(reasons)
     if others:
         yield f"  and for {others:,} more reasons"

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rulec.trace.formats.arrow.parquet import arrow
 
-_COLUMNS = ("kind", "outcome", "rule", "ego", "because", "duration_s", "distance_m")
+_COLUMNS = ("kind", "outcome", "rule", "ego", "because", "file", "duration_s", "distance_m")
 
 _ROWS_AT_ONCE = 1 << 12
 
@@ -18,13 +18,15 @@ class FleetTally:
     """Sums over drives.
 
     ``drives``: outcome -> number. ``rules``: rule and outcome -> number of drives. ``reasons``: why
-    drives were not judged -> number. ``unread`` are files, recordings and traces, not vehicles,
-    that could not be judged. ``lost`` are units whose process was killed twice.
+    drives were not judged -> number. ``examples``: such a reason -> the first file, by its name,
+    that has such a drive. ``unread`` are files, recordings and traces, not vehicles, that could
+    not be judged. ``lost`` are units whose process was killed twice.
     """
 
     drives: Counter[str] = field(default_factory=Counter)
     rules: Counter[tuple[str, str]] = field(default_factory=Counter)
     reasons: Counter[str] = field(default_factory=Counter)
+    examples: dict[str, str] = field(default_factory=dict)
     unread: int = 0
     hours: float = 0.0
     km: float = 0.0
@@ -35,6 +37,8 @@ class FleetTally:
         self.drives.update(other.drives)
         self.rules.update(other.rules)
         self.reasons.update(other.reasons)
+        for why, file in other.examples.items():
+            self.examples[why] = min(file, self.examples.get(why, file))
         self.unread += other.unread
         self.hours += other.hours
         self.km += other.km
@@ -53,7 +57,7 @@ def tally_of(path: Path) -> FleetTally:
     with parquet.ParquetFile(path) as source:
         for batch in source.iter_batches(_ROWS_AT_ONCE, columns=list(_COLUMNS), use_threads=False):
             for row in zip(*(batch.column(name).to_pylist() for name in _COLUMNS), strict=True):
-                kind, outcome, rule, ego, because, duration_s, distance_m = row
+                kind, outcome, rule, ego, because, file, duration_s, distance_m = row
                 if kind == "rule":
                     tally.rules[rule, outcome] += 1
                 elif kind == "drive":
@@ -62,5 +66,6 @@ def tally_of(path: Path) -> FleetTally:
                     tally.km += (distance_m or 0.0) / 1000
                     if outcome == "not_judged":
                         tally.reasons[because] += 1
+                        tally.examples[because] = min(file, tally.examples.get(because, file))
                         tally.unread += not ego
     return tally
