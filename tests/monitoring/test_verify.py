@@ -209,7 +209,12 @@ RULES = compile_rulebook(book(rule("A", always(implies(near("x"), Q)), "x: car")
         (trace("ggg", place="near"), "R0503", "gives `place` one value", '{"place"'),
         (trace("ggg", place={"car3": "near"}), "R0505", "`car3`", "did you mean"),
         (trace("ggg", place={"car1": "nera"}), "R0503", "`near`, `far`, `gone`", "`near`"),
-        (trace("g.g"), "R0504", "the `place` of `car2`, which rule `A` needs", "default"),
+        (
+            trace("g.g"),
+            "R0504",
+            "the `place` of `car2`, which rule `A` needs",
+            "`null` where it is not known",
+        ),
         (trace("ggg", q=True, place={}), "R0504", "`place`", "default"),
     ],
 )

@@ -60,7 +60,7 @@ def test_blank_lines_a_bom_and_a_missing_last_line_end():
     [
         (b'{"step": 1, "states": [{}]}', "did you mean `step_s`?"),
         (b'{"state": [{}]}', "did you mean `states`?"),
-        (b'{"states": [{"v": NaN}]}', "JSON has no `NaN` and no infinity"),
+        (b'{"states": [{"v": NaN}]}', "JSON has no `NaN` and no infinity: of what is not"),
         (b'{"states": [{"v": -Infinity}]}', "JSON has no `NaN` and no infinity"),
         (b"{'states': [{}]}", "in JSON texts stand in double quotes"),
         (b'{"states": [{"p": True}]}', "in JSON texts stand in double quotes"),

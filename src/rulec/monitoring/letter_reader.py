@@ -169,7 +169,7 @@ def missing_value(
     return MISSING_VALUE.error(
         place,
         f"{where} does not say the `{name}`{of}, which rule `{rule}` needs",
-        help="supply it in every state, or declare a default in the vocabulary",
+        help="say it in every state, `null` where it is not known, or declare a default for it",
     )
 
 

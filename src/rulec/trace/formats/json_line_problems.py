@@ -107,7 +107,7 @@ def _answer_of_rulec(line: bytes) -> str:
 
 def _spelling(text: bytes) -> str:
     if text.lstrip(b"-+").startswith((b"NaN", b"nan", b"Infinity", b"inf")):
-        return "JSON has no `NaN` and no infinity: a value has to be a number"
+        return "JSON has no `NaN` and no infinity: of what is not known write `null`"
     if text.startswith((b"'", b"True", b"False", b"None")):
         return "in JSON texts stand in double quotes, and it is `true`, `false`, `null`"
     return ""
