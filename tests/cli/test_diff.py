@@ -339,3 +339,12 @@ def test_what_a_rulebook_leaves_unsaid_as_its_parent_does_is_said_so(tmp_path, c
         '  soft rule no_horn; newer is silent on it, as new is: "in the act on noise"\n'
         in capsys.readouterr().out
     )
+
+
+def test_no_limit_is_said_in_words(tmp_path, capsys):
+    rule = "hard rule slow {{ require always speed <= {} }}\n"
+    for name, bound in (("strict", "30 km/h"), ("signed", "limit")):
+        text = f"rulebook {name}\nuse road\n" + rule.format(bound)
+        (tmp_path / f"{name}.rules").write_text(text, encoding="utf-8")
+    assert main(["diff", "./strict.rules", "./signed.rules"]) == 1
+    assert "limit in km/h   no sign" in capsys.readouterr().out

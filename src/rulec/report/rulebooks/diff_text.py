@@ -8,17 +8,21 @@ from textwrap import fill, wrap
 
 from rulec.analysis.diff.rule_comparison import RuleRelation
 from rulec.analysis.diff.rulebook_comparison import OneSided, RulebookDiff, RulePair
-from rulec.analysis.trace_display import TraceTable
+from rulec.analysis.trace_display import SignalRow, TraceTable
 from rulec.logic.sentences.fact_clauses import facts_in_words
 from rulec.report.text.terminal_text import styled, table_lines, visible
 from rulec.report.verdicts.violation_table import shown
 from rulec.rulebook.vocabulary_phrases import phrases_of
+from rulec.trace import Value
 
 WIDTH = 100
 TABLE_WIDTH = 96
 
 MOST_ROWS = 8
 """A table with more has no rows for what is by default in all its states."""
+
+NO_SIGN = {("limit", "km/h", 1000), ("minimum_limit", "km/h", 0)}
+"""Values of the vocabulary `road` that stand for no sign: word, unit and number."""
 
 COLOURS: dict[RuleRelation, str] = {
     "equal": "green",
@@ -208,11 +212,17 @@ def table_rows(table: TraceTable) -> list[tuple[str, list[str]]]:
     return [
         (
             visible(f"{row.title} in {row.unit}" if row.unit else row.title),
-            ["" if value is None else shown(value) for value in row.values],
+            [_cell(row, value) for value in row.values],
         )
         for row in table.rows
         if not (row.is_default and len(table.rows) > MOST_ROWS)
     ]
+
+
+def _cell(row: SignalRow, value: Value | None) -> str:
+    if (row.title, row.unit, value) in NO_SIGN:
+        return "no sign"
+    return "" if value is None else shown(value)
 
 
 def left_out(table: TraceTable) -> list[str]:
