@@ -269,6 +269,18 @@ def test_who_comes_to_a_lane_that_joins_others_may_brake_for_a_gap():
     assert found[30:40] == "F" * 10
 
 
+def test_who_has_waited_needs_a_moment_to_get_going():
+    """One stands ahead of ego for 5 s, and drives off; ego stays, its hazard lights off."""
+    shows = frozenset({"hazard_lights"})
+    ego = steady(7, 50, 0, 0, 80)
+    ego = replace(ego, lamps=dict.fromkeys(range(80), frozenset()), shows=shows)
+    ahead = vehicle(8, {k: (60 + 10 * max(k - 10, 0), 0) for k in range(80)})
+    found = told(reason_signals, "cause_to_brake", LONG, ego, ahead, complete=SIMULATED)
+    gone = found.index("?")
+    assert found[:gone] == "T" * gone
+    assert found[gone:60] == "?" * 10 + "F" * (50 - gone)
+
+
 def test_who_holds_up_others():
     road = [straight(1, 0, 2500, limit_mps=30.0)]
     slow, follower = steady(7, 100, 0, 10, 100), steady(8, 85, 0, 10, 100)

@@ -245,6 +245,11 @@ def test_one_that_waits_until_ego_is_gone():
     assert side_road([-3.5] * 25)[9] == "?"
 
 
-def test_one_who_stands_in_the_side_road_all_the_time_may_not_want_to_cross():
-    assert side_road([1.0] * 40)[9] == "?"
-    assert side_road([*[1.0] * 25, *(1.0 + 0.6 * k for k in range(15))])[9] == "T"
+@pytest.mark.parametrize(("comes", "goes", "told"), [(0, 30, "?"), (8, 40, "T"), (0, 22, "T")])
+def test_who_stood_in_the_side_road_long_before_ego_and_after_may_not_want_to_cross(
+    comes, goes, told
+):
+    """Ego is at the walker from state 15 to state 17; 5 s are 10 states."""
+    before = [1.0 - 0.6 * (comes - k) for k in range(comes)]
+    after = [1.0 + 0.6 * k for k in range(40 - goes)]
+    assert side_road([*before, *[1.0] * (goes - comes), *after])[9] == told

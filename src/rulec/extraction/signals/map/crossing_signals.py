@@ -12,13 +12,15 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
-from rulec.extraction.signals import relations
 from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.map_signals import crossings_told, next_crossing
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.cells import Cells
+
+_STOOD_S = 5.0
+"""Who has stood for longer as ego comes, and does for as long after it, has not stopped for it."""
 
 _USES = ("not_crossing", "waiting_to_cross", "about_to_cross", "entering_crossing", "on_crossing")
 
@@ -82,8 +84,7 @@ def _nearest_to_crossing(context: DriveContext) -> SignalColumns:
 def _crosses_side_road(context: DriveContext) -> SignalColumns:
     """Who uses the road into which ego turns, and is not let go by ego.
 
-    Who waits in the junction until somebody is across has entered it lawfully. Nobody knows whether
-    one who stands in the road all the time that it is recorded wants to cross.
+    Who waits in the junction until somebody is across has entered it lawfully.
     """
     rows, (crosses, unsure) = _pedestrians(context), np.zeros((2, *context.relevant.shape), bool)
     start, end = _side_road(context)
@@ -92,8 +93,7 @@ def _crosses_side_road(context: DriveContext) -> SignalColumns:
         if (some := uses.any(axis=1)).any():
             rows, uses = rows[some], uses[some]
             taken, open_end = _takes_way(context, rows)
-            stays = relations.stays(context, rows)[:, None]
-            crosses[rows], unsure[rows] = uses & taken, uses & (open_end | (taken & stays))
+            crosses[rows], unsure[rows] = uses & taken, uses & open_end
     return SignalColumns(
         about={"crosses_side_road": crosses},
         only={"crosses_side_road": context.tracks.of_type("pedestrian")},
@@ -106,7 +106,8 @@ def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
 
     They are on the lanes of its direction, and not past its own, while ego goes by or up to
     ``entering_s`` later; or have stood until it was gone, and gone then. Of whom ego does not reach
-    while both are seen nobody knows.
+    while both are seen nobody knows, nor whether one wants to cross who stands there since
+    ``_STOOD_S`` before ego comes, and stays for as long once it is gone.
     """
     own, others = context.ego_extents, context.extents.part(rows, slice(None))
     spans, seen = context.spans, context.relevant[rows]
@@ -124,10 +125,15 @@ def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
     in_way = np.take_along_axis(spans.next_state(~off), at, axis=1) <= by_then
     waited = spans.next_state(stands & seen & ~on_lanes) <= np.minimum(steps_on, goes)
     soon = spans.columns + round(limits.preparing_s / step_s)
-    taken = reached & ~let_go & (in_way | (waited & (steps_on <= soon)))
+    waited &= steps_on <= soon
+    taken = reached & ~let_go & (in_way | waited)
+    stood = round(_STOOD_S / step_s)
+    moves = spans.next_state(~stands & seen)
+    moves = np.take_along_axis(moves, np.maximum(at - stood, spans.first), axis=1)
+    stays = ~waited & (moves > np.minimum(goes + stood, last))
     lost = spans.next_state(~seen) <= np.minimum(soon, last)
     unseen = (steps_on >= spans.end) & (lost | (soon >= spans.end))
-    return taken, ~reached | (~let_go & ~taken & unseen)
+    return taken, ~reached | (taken & stays) | (~let_go & ~taken & unseen)
 
 
 @once
