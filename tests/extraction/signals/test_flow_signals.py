@@ -191,6 +191,18 @@ def test_who_gets_up_speed_from_a_crawl_sets_off(speeds, at, known):
     assert found.unknown["being_overtaken"][at] == (not known)
 
 
+@pytest.mark.parametrize(("before", "known"), [(24.0, False), (20.0, True), (16.0, True)])
+def test_who_had_to_brake_regains_its_speed(before, known):
+    """Ego is at 20 m/s or a little more, and was at another speed up to 4 s before."""
+    speeds = [before] * 10 + [20.0 + 0.02 * k for k in range(16)]
+    places, at = runs(speeds), 18
+    passes = {k: (places[at][0] + (k - at) * 13.0, 4.0) for k in range(at - 4, at + 6)}
+    ego = vehicle(7, places)
+    found = flow_signals(context_of(recording(lanes(2), [ego, vehicle(8, passes)])))
+    assert found.world["being_overtaken"][at]
+    assert found.unknown["being_overtaken"][at] == (not known)
+
+
 @pytest.mark.parametrize(("ago_s", "known"), [(4, False), (12, True)])
 def test_who_has_turned_into_a_road_gets_up_speed_yet(ago_s, known):
     """Ego turns right at 8 m/s, and drives on beside one at 15 m/s."""

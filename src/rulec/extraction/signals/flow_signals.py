@@ -223,7 +223,7 @@ def _being_overtaken(context: DriveContext) -> SignalColumns:
     dense, surely, not_told = _dense_lines(context)
     # Lanes that move off beside each other do not overtake, and who has joined gets up speed yet
     joined = _was(context, on_ramp) | _was(context, _comes_round(context))
-    moot = _sets_off(context) | joined | not_told
+    moot = _sets_off(context) | _recovers(context) | joined | not_told
     # Where all lanes queue, one that is faster does not overtake (Vienna, Art. 11(6)(a))
     return SignalColumns(
         {"being_overtaken": ~dense & overtaken},
@@ -277,6 +277,20 @@ def _was(context: DriveContext, there: Flags) -> Flags:
     ago = (spans.columns - last) * context.recording.step_s
     was_there: Flags = (last >= spans.first) & (ago < context.thresholds.setting_off_s)
     return was_there
+
+
+def _recovers(context: DriveContext) -> Flags:
+    """Flags of states in which ego was faster up to ``setting_off_s`` ago: it had to brake."""
+    speed = context.ego.speed[0]
+    steps = round(context.thresholds.setting_off_s / context.recording.step_s)
+
+    def fastest(columns: slice) -> Floats:
+        before = np.concatenate((np.full(steps, -np.inf), speed[columns]))
+        longest: Floats = np.lib.stride_tricks.sliding_window_view(before, steps + 1).max(axis=1)
+        return longest
+
+    recovers: Flags = speed + context.tolerances.speed_mps < context.spans.each(fastest)
+    return recovers
 
 
 def _comes_round(context: DriveContext) -> Flags:
