@@ -12,6 +12,7 @@ from rulec.extraction.signals.map.junction_signals import junction_signals, stop
 from rulec.extraction.signals.map.line_signals import line_signals
 from rulec.extraction.signals.map.map_signals import map_signals
 from rulec.extraction.signals.map.priority_signals import priority_signals
+from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
@@ -56,6 +57,29 @@ def test_where_a_line_is(drawn, first):
 def test_a_line_before_the_lanelet_s_end(xs, crosses):
     found = junction_signals(context(road(95.0, ["STOP"]), *xs))
     assert found.world["crosses_stop_line"].tolist() == crosses
+
+
+@pytest.mark.parametrize(
+    ("drawn", "xs", "unknown"),
+    [
+        # From 20 m/s at the lanelet's end down to 1 m/s where another way crosses
+        (None, (40, 60, 80, 99, 104, 105, 106, 107, 108, 109), True),
+        (100.0, (40, 60, 80, 99, 104, 105, 106, 107, 108, 109), False),
+        (None, (20, 40, 60, 80, 100, 120, 140, 160, 180, 200), False),
+    ],
+    ids=["slow at some of the places", "a line that is drawn", "fast at all of them"],
+)
+def test_amber_lights_whose_line_may_be_where_ego_could_not_stop(drawn, xs, unknown):
+    """Nobody knows whether ego was at the line before or after it had slowed down."""
+    before, *further = road(drawn)
+    yellow = replace(before, lights=(Light(0, (("yellow", 99),)),))
+    across = lanelet(5, [(108, -30), (108, 30)], types=INSIDE, junction="x")
+    found = junction_signals(context([yellow, *further, across], *xs))
+    (state,) = np.flatnonzero(found.world["crosses_light_line"])
+    assert found.world["light"][state] == "amber_light"
+    assert found.unknown["crosses_light_line"].tolist() == [
+        unknown and k == state for k in range(len(xs))
+    ]
 
 
 def test_who_stands_before_a_line_behind_which_its_way_turns_round():

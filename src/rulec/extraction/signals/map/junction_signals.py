@@ -31,10 +31,12 @@ _SLOWEST_MPS = 5.0
 _AT_ONCE_S = 0.05
 """Within so short a time of a state ego crosses a line in that state: lights change less often."""
 
+_AMBER = "amber_light"
+
 COLOURS = {
     "red": "red_light",
     "redYellow": "red_light",
-    "yellow": "amber_light",
+    "yellow": _AMBER,
     "green": "green_light",
     "inactive": "no_light",
 }
@@ -112,11 +114,14 @@ def _traffic_lights(context: DriveContext) -> SignalColumns:
     if not (nowhere or complete or map_contents(context).lights):
         return SignalColumns()
     front = own_front(context)
-    light, crosses = own_light(context)
+    light, crosses, may_cross = own_light(context)
     unseen = front + context.thresholds.light_reach_m > context.road.borders[-1]
     return SignalColumns(
         {"light": light, "crosses_light_line": crosses},
-        unknown={"light": (light == "") | (unseen & nowhere & (not complete))},
+        unknown={
+            "light": (light == "") | (unseen & nowhere & (not complete)),
+            "crosses_light_line": may_cross,
+        },
     )
 
 
@@ -236,14 +241,17 @@ def turn_at(context: DriveContext, start: float, end: float) -> str:
 
 
 @once
-def own_light(context: DriveContext) -> tuple[SignalColumn, Flags]:
+def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
     """The light for ego, empty where it is not known which, and flags of ego crossing its line.
 
-    In the state in which ego crosses the line the light is still the one that it crosses.
+    In the state in which ego crosses the line the light is still the one that it crosses. The last
+    flags are of amber ones crossed at a place of which nobody knows whether ego came to it slowly
+    enough to stop at once.
     """
     front = own_front(context)
     colours = np.full(context.states, "no_light", dtype="<U11")
-    crosses = np.zeros(context.states, dtype=bool)
+    crosses, may_cross = np.zeros((2, context.states), dtype=bool)
+    slow = context.ego.speed[0] * KMH <= context.thresholds.stops_at_once_kmh
     lanes = distinct(context.ego_lane).tolist()
     for piece in range(len(context.road.rows) - 1, -1, -1):
         if not any(row is not None and row.lights for row in context.road.rows[piece]):
@@ -264,7 +272,12 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags]:
                 shown = {_colour(context, own, moment) for moment in moments}
                 crosses[state] |= passes[state]
                 colours[state] = shown.pop() if len(shown) == 1 else ""
-    return colours, crosses
+                at_place = slow[[*moments]]
+                amber = colours[state] == _AMBER and last - first > context.thresholds.touching_m
+                may_cross[state] |= (
+                    passes[state] and amber and at_place.any() and not at_place.all()
+                )
+    return colours, crosses, may_cross
 
 
 def _own_lights(context: DriveContext, piece: int, lane: int) -> tuple[Light | ObservedLight, ...]:

@@ -96,7 +96,7 @@ def _signs(context: DriveContext) -> SignalColumns:
     }
     unknown = {}
     if map_contents(context).lights:
-        light, _ = own_light(context)
+        light, _, _ = own_light(context)
         for name in set(_OVERRULED) & values.keys():
             unknown[name] = values[name] & (light == "")
             values[name] = values[name] & ~np.isin(light, _AT_WORK)
