@@ -67,7 +67,7 @@ class _DrivesOfOne(Drives):
         )
         self._among, self._batch, self._row = among, batch, row
 
-    def _is_shared(self, road: DrivenRoad, _: int) -> bool:
+    def _is_shared(self, road: DrivenRoad, _row: int, _columns: slice) -> bool:
         return not road.meets_itself
 
     def _places_on(self, road: DrivenRoad) -> RoadPlaces:

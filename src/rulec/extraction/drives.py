@@ -49,8 +49,8 @@ PART = 4
 That is in a part that lasts so many times as long as the drive that it begins with.
 """
 
-SHARED_BY = 8
-"""They are computed for all drives on a road if one takes more than this part of them."""
+CELLS_OF_A_CALL = 1 << 13
+"""What is computed of so many states of participants takes as long as the calls for a drive."""
 
 MOST_KEPT = 1 << 21
 """So many participants times steps are kept, of all roads; each takes some 150 bytes."""
@@ -186,13 +186,10 @@ class Drives:
             return NoDrive(ego, laid_out)
         road, first_piece = laid_out
         columns = slice(stretch.first, stretch.last + 1)
-        rows = self._present(columns)
-        if self._is_shared(road, len(rows) * (columns.stop - columns.start)):
+        if self._is_shared(road, row, columns):
             places = self._places_on(road)
         elif road.meets_itself:
             places = self._places_of_one(road, first_piece, row, stretch)
-        elif self._tracks.present.size <= MOST_PLACES:
-            places = self._places_during(road, [(row, columns)])
         else:
             places = self._places_in_part(road, row, columns)
         if (row, stretch.first) not in self._ready and places is self._places.get(road):
@@ -253,12 +250,20 @@ class Drives:
         for own, columns, drive in zip(rows, columns_of, drives, strict=True):
             self._ready[own, columns.start] = drive
 
-    def _is_shared(self, road: DrivenRoad, size: int) -> bool:
-        """Whether the places of everybody are worth it for a drive, which takes so many of them."""
+    def _is_shared(self, road: DrivenRoad, row: int, columns: slice) -> bool:
+        """Whether the places of everybody are worth it for a drive, and others along its road.
+
+        They are if computing them for each drive, with those alone who may count for it, takes
+        longer.
+        """
         if road.meets_itself:
             return False
         all_places = self._tracks.present.size
-        return road in self._places or all_places <= min(MOST_PLACES, SHARED_BY * size)
+        if road in self._places or all_places > MOST_PLACES:
+            return road in self._places
+        near = np.count_nonzero(rows_in_reach(self._tracks, road, row, columns, self._thresholds))
+        each = near * (columns.stop - columns.start) + CELLS_OF_A_CALL
+        return bool(all_places <= max(len(self._plans.get(road, ())), 1) * each)
 
     def _places_on(self, road: DrivenRoad) -> RoadPlaces:
         """The places of everybody on a road."""
@@ -332,15 +337,21 @@ class Drives:
         ``first_piece`` is the road's that the drive begins in.
         """
         columns = slice(stretch.first, stretch.last + 1)
-        rows = self._present(columns)
-        tracks, lanelets = self._tracks.part(rows, columns), self._matching.lanelets[rows, columns]
-        own = [column - stretch.first for column in stretch.columns]
-        pieces = [first_piece + piece for piece in stretch.pieces]
-        ego = EgoPieces(int(np.searchsorted(rows, row)), own, pieces, self._map.numbers)
-        reach_m = self._thresholds.near_m + _LONGEST_M
-        extents = road_extents(tracks, road, expected_places(tracks, road, ego, lanelets, reach_m))
+        near = rows_in_reach(self._tracks, road, row, columns, self._thresholds)
+        for rows in (np.flatnonzero(near), self._present(columns)):
+            tracks = self._tracks.part(rows, columns)
+            lanelets = self._matching.lanelets[rows, columns]
+            own = [column - stretch.first for column in stretch.columns]
+            pieces = [first_piece + piece for piece in stretch.pieces]
+            own_row = np.searchsorted(rows, [row])
+            ego = EgoPieces(int(own_row[0]), own, pieces, self._map.numbers)
+            reach_m = self._thresholds.near_m + _LONGEST_M
+            expected = expected_places(tracks, road, ego, lanelets, reach_m)
+            extents = road_extents(tracks, road, expected)
+            if are_on_road(extents, road, own_row, self._thresholds):
+                break
         elsewhere = self._elsewhere(road, rows, columns)
-        return self._road_places(road, tracks, extents, elsewhere)
+        return self._road_places(road, self._tracks.part(rows, columns), extents, elsewhere)
 
     def _road_places(
         self, road: DrivenRoad, tracks: Tracks, extents: RoadExtents, elsewhere: Flags
