@@ -22,15 +22,15 @@ def told(found, thresholds=USUAL):
 
 @given(scenes())
 def test_a_part_at_a_time(found):
-    most, each = drives.MOST_PLACES, drives.CELLS_OF_A_CALL
-    # Everybody's places, or for each drive
-    drives.CELLS_OF_A_CALL = most
+    usual, most = told(found), drives.MOST_PLACES
+    # One by one, as who is not expected
+    alone = Drives(found, "right")
+    assert [one for ego in alone.egos() for one in alone.of(ego)] == usual
+    drives.MOST_PLACES = 0
     try:
-        shared = told(found)
-        drives.MOST_PLACES = 0
-        assert told(found) == shared
+        assert told(found) == usual
     finally:
-        drives.MOST_PLACES, drives.CELLS_OF_A_CALL = most, each
+        drives.MOST_PLACES = most
 
 
 @pytest.mark.parametrize("world", ["priority", "motorway", "roundabout"])
@@ -59,6 +59,7 @@ def test_places_are_dropped_after_the_last_drive_that_awaits_them(monkeypatch):
     stored = StoredWorld("priority")
     found = read_recording(stored.data, stored.net)
     monkeypatch.setattr(drives, "MOST_PLACES", 0)
+    monkeypatch.setattr(drives, "MOST_CELLS", 1)
     egos = Drives(found, "right").egos()
     looked = Drives(found, "right", expected=egos)
     kept = [len(looked._parts) for ego in egos for _ in looked.of(ego)]

@@ -67,10 +67,7 @@ class _DrivesOfOne(Drives):
         )
         self._among, self._batch, self._row = among, batch, row
 
-    def _is_shared(self, road: DrivenRoad, _row: int, _columns: slice) -> bool:
-        return not road.meets_itself
-
-    def _places_on(self, road: DrivenRoad) -> RoadPlaces:
+    def _places_along(self, road: DrivenRoad, _row: int, _columns: slice) -> RoadPlaces:
         own, row = self._batch.places(road, self._row)
         return self._among.places(road).and_one(own, row, self._tracks)
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 import numpy as np
 from numpy import intp
@@ -41,19 +41,16 @@ FEWEST_TOGETHER = 2
 """Fewer drives are looked at one by one."""
 
 MOST_PLACES = 1 << 17
-"""Extents of recordings with more participants times steps are not computed for all of these."""
+"""Of a recording with more participants times steps a part is looked at at a time."""
 
 PART = 4
-"""They are computed for a drive, with those that are expected along its road and end so soon.
-
-That is in a part that lasts so many times as long as the drive that it begins with.
-"""
-
-CELLS_OF_A_CALL = 1 << 13
-"""What is computed of so many states of participants takes as long as the calls for a drive."""
+"""A part lasts so many times as long as the drive that it begins with, for those that end in it."""
 
 MOST_KEPT = 1 << 21
 """So many participants times steps are kept, of all roads; each takes some 150 bytes."""
+
+_Key: TypeAlias = tuple[int, int]
+"""A drive: whose row, and from which column on."""
 
 _LONGEST_M = 50.0
 """Bodies whose ends count are shorter."""
@@ -69,10 +66,10 @@ class NoDrive:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _PlacesInPart:
-    """Places on a road, kept for drives that are ``awaited``: who drives from which column on."""
+    """Places on a road, kept for drives that are ``awaited``."""
 
     places: RoadPlaces
-    awaited: set[tuple[int, int]]
+    awaited: set[_Key]
 
 
 class LaidOutMap:
@@ -134,10 +131,9 @@ class Drives:
         self._map, self._matching, self._surroundings = prepared
         self._tracks = self._surroundings.tracks
         self._first = self._tracks.present.argmax(axis=1)
-        self._places: dict[DrivenRoad, RoadPlaces] = {}
         self._parts: dict[DrivenRoad, _PlacesInPart] = {}
         self._expected = expected
-        self._ready: dict[tuple[int, int], Drive] = {}
+        self._ready: dict[_Key, Drive] = {}
 
     def egos(self) -> tuple[str, ...]:
         """The participants that move and steer, in the order of the file."""
@@ -186,22 +182,17 @@ class Drives:
             return NoDrive(ego, laid_out)
         road, first_piece = laid_out
         columns = slice(stretch.first, stretch.last + 1)
-        if self._is_shared(road, row, columns):
-            places = self._places_on(road)
-        elif road.meets_itself:
+        if road.meets_itself:
             places = self._places_of_one(road, first_piece, row, stretch)
-        else:
-            places = self._places_in_part(road, row, columns)
-        if (row, stretch.first) not in self._ready and places is self._places.get(road):
-            self._look_ahead(road, places, row)
+        elif (row, stretch.first) not in self._ready:
+            places = self._places_along(road, row, columns)
+            self._look_ahead(road, places, (row, stretch.first))
         if (row, stretch.first) in self._ready:
             return self._ready.pop((row, stretch.first))
-        row = int(np.searchsorted(places.tracks.rows, row))
-        before = places.tracks.first - self._tracks.first
-        columns = slice(columns.start - before, columns.stop - before)
-        if np.isnan(places.extents.s[row, columns]).any():
+        found = self._there(places, row, columns)
+        if found is None:
             return NoDrive(ego, "it is far from its road for a while")
-        context = drive_context(self._surroundings, places, self._side, row, columns)
+        context = drive_context(self._surroundings, places, self._side, *found)
         (drive,) = to_traces(context, [ego], [name], self._writer)
         return drive
 
@@ -225,53 +216,47 @@ class Drives:
                     plans[road[0]].append((row, name, columns))
         return plans
 
-    def _look_ahead(self, road: DrivenRoad, places: RoadPlaces, row: int) -> None:
-        """Make drives of who is expected from a row on, along a road, about ``MOST_CELLS``."""
-        waiting = self._plans.get(road, [])
-        at = next((k for k, (own, _, _) in enumerate(waiting) if own == row), len(waiting))
-        members, cells = [], 0
-        while at < len(waiting) and cells < MOST_CELLS:
-            own, name, columns = waiting[at]
-            at += 1
-            if not np.isnan(places.extents.s[own, columns]).any():
-                members.append((own, name, columns))
-                n_there = np.count_nonzero(places.tracks.present[:, columns].any(axis=1))
+    def _look_ahead(self, road: DrivenRoad, places: RoadPlaces, asked: _Key) -> None:
+        """Make a drive, and of those along its road that await its places about ``MOST_CELLS``."""
+        part = self._parts.get(road)
+        awaited = {asked} if part is None else part.awaited | {asked}
+        members: dict[_Key, tuple[str, int, slice]] = {}
+        cells = 0
+        for row, name, columns in self._plans.get(road, []):
+            found = (row, columns.start) in awaited and self._there(places, row, columns)
+            if found and cells < MOST_CELLS:
+                members[row, columns.start] = (name, *found)
+                n_there = np.count_nonzero(places.tracks.present[:, found[1]].any(axis=1))
                 cells += int(n_there) * (columns.stop - columns.start)
-        if len(members) < FEWEST_TOGETHER:
-            return
-        rows, names, columns_of = zip(*members, strict=True)
-        egos = EgosOnRoad(places, rows, columns_of, own=self._surroundings)
+        if asked in members and len(members) >= FEWEST_TOGETHER:
+            self._ready |= self._made_together(places, members)
+        if part is not None:
+            part.awaited.difference_update(self._ready, [asked])
+            if not part.awaited:
+                del self._parts[road]
+
+    def _made_together(
+        self, places: RoadPlaces, members: Mapping[_Key, tuple[str, int, slice]]
+    ) -> dict[_Key, Drive]:
+        """Drives along one road, of names, rows and columns; none if not all say the same names."""
+        names, rows, columns = zip(*members.values(), strict=True)
+        egos = EgosOnRoad(places, rows, columns, own=self._surroundings)
         context = drives_context(self._surroundings, places, self._side, egos)
-        ids = [self._tracks.participants[own].id for own in rows]
+        ids = [self._tracks.participants[row].id for row, _ in members]
         try:
-            drives = to_traces(context, ids, names, self._writer)
+            return dict(zip(members, to_traces(context, ids, names, self._writer), strict=True))
         except UnlikeDrivesError:
-            return
-        for own, columns, drive in zip(rows, columns_of, drives, strict=True):
-            self._ready[own, columns.start] = drive
+            return {}
 
-    def _is_shared(self, road: DrivenRoad, row: int, columns: slice) -> bool:
-        """Whether the places of everybody are worth it for a drive, and others along its road.
-
-        They are if computing them for each drive, with those alone who may count for it, takes
-        longer.
-        """
-        if road.meets_itself:
-            return False
-        all_places = self._tracks.present.size
-        if road in self._places or all_places > MOST_PLACES:
-            return road in self._places
-        near = np.count_nonzero(rows_in_reach(self._tracks, road, row, columns, self._thresholds))
-        each = near * (columns.stop - columns.start) + CELLS_OF_A_CALL
-        return bool(all_places <= max(len(self._plans.get(road, ())), 1) * each)
-
-    def _places_on(self, road: DrivenRoad) -> RoadPlaces:
-        """The places of everybody on a road."""
-        if road not in self._places:
-            self._places[road] = self.places_of(road, np.arange(len(self._tracks.participants)))
-            if len(self._places) * self._tracks.present.size > MOST_KEPT:
-                del self._places[next(iter(self._places))]
-        return self._places[road]
+    def _there(self, places: RoadPlaces, row: int, columns: slice) -> tuple[int, slice] | None:
+        """A drive's row and columns among places; None if they lack it, or it leaves the road."""
+        rows, before = places.tracks.rows, places.tracks.first - self._tracks.first
+        own = slice(columns.start - before, columns.stop - before)
+        at = int(np.searchsorted(rows, row))
+        is_there = own.start >= 0 and own.stop <= places.tracks.present.shape[1]
+        if not is_there or at == len(rows) or rows[at] != row:
+            return None
+        return None if np.isnan(places.extents.s[at, own]).any() else (at, own)
 
     def places_of(self, road: DrivenRoad, rows: NDArray[intp]) -> RoadPlaces:
         """The places of some participants on a road, at all times."""
@@ -285,22 +270,18 @@ class Drives:
         """The rows of who is there in some columns."""
         return np.flatnonzero(self._tracks.present[:, columns].any(axis=1))
 
-    def _places_in_part(self, road: DrivenRoad, row: int, columns: slice) -> RoadPlaces:
-        """The places on a road during a drive and those on it that come soon."""
+    def _places_along(self, road: DrivenRoad, row: int, columns: slice) -> RoadPlaces:
+        """The places on a road during a drive and those on it that are expected, or come soon."""
         known = self._parts.get(road)
-        if known is not None:
-            begins = known.places.tracks.first - self._tracks.first
-            ends = begins + known.places.tracks.present.shape[1]
-            if begins <= columns.start and columns.stop <= ends:
-                known.awaited.discard((row, columns.start))
-                if not known.awaited:
-                    del self._parts[road]
-                return known.places
-        end = columns.start + PART * (columns.stop - columns.start)
+        if known is not None and (row, columns.start) in known.awaited:
+            return known.places
+        begin, end = columns.start, columns.start + PART * (columns.stop - columns.start)
+        if self._tracks.present.size <= MOST_PLACES:
+            begin, end = 0, self._tracks.present.shape[1]
         soon = [
             (ego, own)
             for ego, _, own in self._plans.get(road, [])
-            if columns.start <= own.start and own.stop <= end and (ego, own) != (row, columns)
+            if begin <= own.start and own.stop <= end and (ego, own) != (row, columns)
         ]
         found = self._places_during(road, [(row, columns), *soon])
         self._parts.pop(road, None)
