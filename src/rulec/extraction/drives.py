@@ -43,6 +43,9 @@ FEWEST_TOGETHER = 2
 MOST_PLACES = 1 << 17
 """Of a recording with more participants times steps a part is looked at at a time."""
 
+MOST_OF_ALL = 0.75
+"""Instead of so much of all places all are computed, since what bodies look like is known then."""
+
 PART = 4
 """A part lasts so many times as long as the drive that it begins with, for those that end in it."""
 
@@ -301,6 +304,8 @@ class Drives:
         columns = slice(begin, end)
         near = [rows_in_reach(self._tracks, road, *ego, self._thresholds) for ego in egos]
         rows = np.flatnonzero(np.logical_or.reduce(near))
+        if len(rows) * (end - begin) >= MOST_OF_ALL * self._tracks.present.size:
+            return self.places_of(road, np.arange(len(self._tracks.participants)))
         extents = road_extents(self._tracks.part(rows, columns), road)
         own_rows = np.searchsorted(rows, [row for row, _ in egos])
         if not are_on_road(extents, road, own_rows, self._thresholds):

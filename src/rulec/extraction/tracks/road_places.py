@@ -143,18 +143,21 @@ def rows_in_reach(
 ) -> Flags:
     """Flags of those of all tracks that may count for, or be in sight of, ego on a road.
 
-    They are so near some time in a range of columns, as the crow flies: somebody's feet on the road
-    are no farther apart than its outline is large, and ego's no farther off than `are_on_road`.
+    They are so near some time in a range of columns, as the crow flies, were they as fast as they
+    ever are: somebody's feet on the road are no farther apart than its outline is large, and ego's
+    no farther off than `are_on_road`.
     """
-    own = slice(ego, ego + 1)
-    x, y, vx, vy = (getattr(tracks, name)[:, columns] for name in ("x", "y", "vx", "vy"))
-    away = np.hypot(x - x[own], y - y[own])
     # As the gap between them that counts, measured along the road, where nobody is known to turn
-    speed = np.nan_to_num(np.hypot(vx, vy))
-    along = np.maximum(limits.near_m, (speed + speed[own] + 1.0) * limits.catching_up_s)
-    reaches = tracks.reaches
-    off = 2 * _farthest_off(road, limits) + _PIECES_M + reaches + reaches[ego]
-    flags: Flags = (away <= along + off[:, None]).any(axis=1)
+    along = np.maximum(
+        limits.near_m, (tracks.fastest + tracks.fastest[ego] + 1.0) * limits.catching_up_s
+    )
+    off = 2 * _farthest_off(road, limits) + _PIECES_M + tracks.reaches + tracks.reaches[ego]
+    x, y = tracks.x[:, columns], tracks.y[:, columns]
+    away, aside = x - x[ego], y - y[ego]
+    away *= away
+    aside *= aside
+    away += aside
+    flags: Flags = (away <= ((along + off) ** 2)[:, None]).any(axis=1)
     flags[ego] = True
     return flags
 
