@@ -272,10 +272,10 @@ class Recording:
     ``form`` is what such a file is called, ``side`` the one on which traffic keeps, None if the
     file does not say, ``country`` its code (ISO 3166) or empty. ``complete`` names kinds of things,
     signs for one, that the file would have if they were there, ``lacks`` those that no such file
-    has, crosswalks for one. ``remarks``: what the file leaves
-    open, and is taken to be. ``rounding`` is that of a file that is exact otherwise. ``ego`` is the
-    participant that the file says to be it, empty if it does not say. ``whole`` is what a part of a
-    recording knows of all of it.
+    has, crosswalks for one. ``remarks``: what the file leaves open, and is taken to be.
+    ``rounding`` is that of a file that is exact otherwise. ``ego`` is the participant that the file
+    says to be it, empty if it does not say. ``whole`` is what a part of a recording knows of all of
+    it.
     """
 
     __repr__ = short_repr

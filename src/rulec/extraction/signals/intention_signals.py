@@ -305,10 +305,12 @@ def _about_to_overtake(context: DriveContext) -> SignalColumns:
         soon &= ~joins
     lit, told = _far_indicator(context)
     ends = _ends_within(context, steps)
-    apart = soon & ~_caught_up(context)
+    not_caught_up = soon & ~_caught_up(context)
     return SignalColumns(
         about={"about_to_overtake": soon & lit},
-        unknown={"about_to_overtake": np.where(told, lit & ends & ~soon & ~joins, soon) | apart},
+        unknown={
+            "about_to_overtake": np.where(told, lit & ends & ~soon & ~joins, soon) | not_caught_up
+        },
     )
 
 

@@ -35,12 +35,12 @@ _IN_WAY_M, _COMES_M, _ROAD_M, _CROSSES_M = 2.5, 6.0, 15.0, 30.0
 """Sideways: who is in ego's way, may come into it, is on its road, comes on a road across."""
 
 _SIDEWAYS_MPS, _ACROSS_RAD, _BEND_RAD, _EVERY_M = 0.3, np.radians(30.0), np.radians(20.0), 10.0
-_MOVES_OFF_S = 5.0
-"""Who has waited gets going in so long."""
-
 _SLOWER_KMH, _ALIKE_MPS = 1.0, 3.0
 _FAR_SLOWER, _SLOWER = 0.5, 0.75
 """Parts of the limit: who is slower than the first holds others up, than the second perhaps."""
+
+_MOVES_OFF_S = 5.0
+"""Who has waited gets going in so long."""
 
 
 def reason_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
@@ -61,8 +61,7 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     stands soon, whose drive ends, or that is beside somebody had perhaps something to do; so has
     one before or on a lane that joins others, where it looks for a gap, one that has stood for a
     reason up to ``_MOVES_OFF_S`` ago, and one that brakes hard with nobody near behind, whom it
-    would surprise. Where not all traffic is recorded it is as far
-    as somebody is recorded ahead.
+    would surprise. Where not all traffic is recorded it is as far as somebody is recorded ahead.
     """
     caused = _by_map(context)
     others = _others(context, np.flatnonzero(~caused))
