@@ -122,6 +122,18 @@ def test_of_an_interval_there_are_bounds_and_no_middle():
     assert (narrow.by, narrow.at_least) == (3.2, 3.0)
 
 
+@pytest.mark.parametrize(
+    ("value", "error", "sure"),
+    [(4.0, 0.0, True), (4.0, 0.9, True), (4.0, 1.0, True), (4.0, 1.1, False), (2.0, 1.1, False)],
+)
+def test_a_relation_is_sure_if_it_holds_for_all_within_the_errors(value, error, sure):
+    relation = ">=" if value >= 3.0 else "<"
+    margin = Margin("x", value, relation, 3.0, "s", value_error=error, error=error)
+    assert margin.is_sure == sure
+    (cell,) = violation_table._with_margins(["T"], [margin])
+    assert cell == f"{'T' if sure else '?'} {margin.sides}"
+
+
 def test_numbers_are_rounded_to_what_their_errors_leave():
     found = Margin(
         *("x", 15.877499999999998, "<", 31.754, "m"),

@@ -57,6 +57,11 @@ class Margin:
         return _without_noise(max(abs(self.value - self.limit) - self.error, 0.0))
 
     @property
+    def is_sure(self) -> bool:
+        """Whether the relation holds wherever both values are within their errors."""
+        return _without_noise(self.error - abs(self.value - self.limit)) <= 0.0
+
+    @property
     def value_bounds(self) -> tuple[float, float] | None:
         """What the value lies between, if that is all that is known of it, such as 3.9 to 1000."""
         return _bounds(self.value, self.value_error)

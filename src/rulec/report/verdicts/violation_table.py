@@ -212,9 +212,15 @@ def _cells(fact: Observation, decisive: int) -> list[str]:
 
 
 def _with_margins(cells: Iterable[str], margins: Sequence[Margin | None]) -> list[str]:
-    """Truth values, beside them how narrowly, such as ``F 12.3 < 15.5``."""
+    """Truth values, beside them how narrowly, such as ``F 12.3 < 15.5``.
+
+    Where bounds leave it open what holds is that, such as ``? 1.3 to 1000 >= 3.0``.
+    """
     beside = margins or itertools.repeat(None)
-    return [f"{cell} {margin.sides}" if margin else cell for cell, margin in zip(cells, beside)]  # noqa: B905
+    return [
+        f"{cell if margin.is_sure else shown(None)} {margin.sides}" if margin else cell
+        for cell, margin in zip(cells, beside)  # noqa: B905
+    ]
 
 
 def shown(value: Value | Interval | None) -> str:
