@@ -58,6 +58,7 @@ def rules():
 def found_in(long, rules, most, monkeypatch):
     """What is found in parts of so many cells, and the number of these."""
     monkeypatch.setattr(parting, "MOST_CELLS", most)
+    monkeypatch.setattr(parting, "MOST_TIMES_ALONE", 0)
     verdicts = RecordingVerdicts(long, rules, RequestedDrives(), "some.xml")
     findings = DriveFindings(verdicts, "some.xml")
     told = [
@@ -79,6 +80,7 @@ def test_findings_are_those_of_the_whole(long_recording, rules, monkeypatch):
 
 def test_a_part_has_all_who_are_there_meanwhile(monkeypatch):
     monkeypatch.setattr(parting, "MOST_CELLS", 1)
+    monkeypatch.setattr(parting, "MOST_TIMES_ALONE", 0)
     spans = {"a": (0, 10), "b": (5, 90), "c": (300, 310), "d": (300, 301)}
     bodies = [
         vehicle(name, {step: (step, 0.0) for step in range(first, last + 1)})
@@ -112,6 +114,22 @@ def test_vehicles_share_a_part_as_long_as_it_is_small(monkeypatch):
     parts = parting.recording_parts(whole, parting.egos_of(whole), USUAL)
     # Three take 3 * 211 cells with those between, two 2 * 111
     assert [part.egos for part in parts] == [("0", "1"), ("2", "3"), ("4", "5")]
+
+
+def test_a_crowd_is_not_looked_at_anew_for_each_of_its_drives(monkeypatch):
+    monkeypatch.setattr(parting, "MOST_CELLS", 1)
+    # Ten are there together for 100 s, ten more an hour later; each needs the nine beside it
+    firsts = {f"{letter}{n}": 3600 * (letter == "b") + n for letter in "ab" for n in range(10)}
+    bodies = [
+        vehicle(name, {step: (step - first, 0.0) for step in range(first, first + 101)})
+        for name, first in firsts.items()
+    ]
+    whole = recording([straight(1, -10, 400)], bodies, step_s=1.0)
+    parts = parting.recording_parts(whole, parting.egos_of(whole), USUAL)
+    assert [part.egos for part in parts] == [tuple(firsts)[:10], tuple(firsts)[10:]]
+    assert [[body.id for body in part.recording.participants] for part in parts] == [
+        list(part.egos) for part in parts
+    ]
 
 
 def test_evidence_needs_only_what_the_rule_reads(rules):

@@ -57,6 +57,12 @@ def pieces(rules, jobs, to_explain, **more):
     return found, counted
 
 
+def each_alone(monkeypatch):
+    """Let each ego be a part, as in recordings of hours."""
+    monkeypatch.setattr(recording_parts, "MOST_CELLS", 1)
+    monkeypatch.setattr(recording_parts, "MOST_TIMES_ALONE", 0)
+
+
 @pytest.mark.parametrize("to_explain", [0, 3])
 def test_parts_are_put_together(rules, to_explain, monkeypatch):
     usual, _ = pieces(rules, Jobs(1), to_explain)
@@ -64,7 +70,7 @@ def test_parts_are_put_together(rules, to_explain, monkeypatch):
     assert isinstance(whole, JudgedRecording)
     assert whole.tally.violated
     assert bool(whole.explained) == (to_explain > 0)
-    monkeypatch.setattr(recording_parts, "MOST_CELLS", 1)
+    each_alone(monkeypatch)
     asked = []
 
     def here(work, tasks, jobs, tell, lost):
@@ -84,14 +90,14 @@ def test_parts_are_put_together(rules, to_explain, monkeypatch):
 
 def test_parts_in_processes(rules, monkeypatch):
     usual, _ = pieces(rules, Jobs(1), 1)
-    monkeypatch.setattr(recording_parts, "MOST_CELLS", 1)
+    each_alone(monkeypatch)
     found, counted = pieces(rules, Jobs(2), 1)
     assert len(counted) >= 2
     assert found == usual
 
 
 def test_a_part_whose_process_is_killed_twice(rules, monkeypatch):
-    monkeypatch.setattr(recording_parts, "MOST_CELLS", 1)
+    each_alone(monkeypatch)
 
     def killed(work, tasks, jobs, tell, lost):
         lost(tasks[0], 9)

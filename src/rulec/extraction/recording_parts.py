@@ -22,6 +22,10 @@ from rulec.value_display import short_repr
 MOST_CELLS = 3 << 17
 """A part has about so many participants times steps, unless a single drive takes more."""
 
+MOST_TIMES_ALONE = 2
+"""A part takes at most so many times what one of its drives takes alone: in a crowd nearly all are
+there for each other's drives, and parts for few egos would look at the same ones again."""
+
 _DRIVERS = frozenset({"vehicle", "light_rider"})
 
 
@@ -60,6 +64,7 @@ def recording_parts(
     parts: list[RecordingPart] = []
     waiting: list[str] = []
     low, high = always[::-1]
+    limit = MOST_CELLS
 
     def close() -> None:
         there = attendance.rows_during(low, high).tolist()
@@ -69,11 +74,13 @@ def recording_parts(
     for ego in egos:
         begins, ends = spans[rows[ego]].tolist()
         wider = min(low, begins), max(high, ends)
-        if waiting and attendance.cells_during(*wider) > MOST_CELLS:
+        alone = MOST_TIMES_ALONE * attendance.cells_during(begins, ends)
+        if waiting and attendance.cells_during(*wider) > max(limit, alone):
             close()
             waiting.clear()
-            wider = begins, ends
+            wider, limit = (begins, ends), MOST_CELLS
         low, high = wider
+        limit = max(limit, alone)
         waiting.append(ego)
     if waiting:
         close()
