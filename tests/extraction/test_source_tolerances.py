@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rulec.extraction.signals.conduct.overtaking_signals import overtaking_signals
 from rulec.extraction.signals.ego_signals import ego_signals
-from rulec.extraction.signals.flow_signals import flow_signals
 from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.source_tolerances import (
     DRONES,
@@ -150,6 +150,6 @@ def test_overtaking_that_hangs_on_a_tolerance_is_unknown():
     for mps, known in ((10.45, False), (11.0, True), (10.0, True)):
         ego, other = steady(7, 0, 4, 20), steady(8, 100, 0, mps)
         context = context_of(of_source("ZAM", ego, other), ("2",))
-        found = flow_signals(context)
+        found = overtaking_signals(context)
         assert found.unknown["overtaking"][0] == (not known)
         assert found.world["overtaking"][0] == (mps == 10.0)

@@ -23,16 +23,18 @@ from rulec.extraction.signal_arrays import (
 )
 from rulec.extraction.signals.clearance_signals import clearance_signals
 from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
+from rulec.extraction.signals.conduct.lane_change_signals import lane_change_signals
 from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
 from rulec.extraction.signals.conduct.next_lane_signals import next_lane_signals
+from rulec.extraction.signals.conduct.overtaking_signals import overtaking_signals
 from rulec.extraction.signals.conduct.reason_signals import reason_signals
 from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
 from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.flow_signals import flow_signals
-from rulec.extraction.signals.following_signals import following_signals
+from rulec.extraction.signals.following_signals import following_signals, safe_gaps
 from rulec.extraction.signals.intention_signals import intention_signals
-from rulec.extraction.signals.lane_signals import lane_change_signals, lane_mark_signals
+from rulec.extraction.signals.lane_mark_signals import lane_mark_signals
 from rulec.extraction.signals.map.crossing_signals import crossing_signals
 from rulec.extraction.signals.map.junction_signals import junction_signals
 from rulec.extraction.signals.map.line_signals import line_signals
@@ -42,10 +44,7 @@ from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.signals.map.road_signals import road_signals
 from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
 from rulec.extraction.signals.map.zone_signals import zone_signals
-from rulec.extraction.signals.participant_signals import (
-    participant_signals,
-    safe_gaps,
-)
+from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.signals.settling import agreeing, settled
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, together
 from rulec.extraction.tracks.tracks import Floats
@@ -75,6 +74,7 @@ _SIGNALS: tuple[Callable[[DriveContext, SignalNames], SignalColumns], ...] = (
     clearance_signals,
     next_lane_signals,
     flow_signals,
+    overtaking_signals,
     lane_change_signals,
     lane_mark_signals,
     manoeuvre_signals,

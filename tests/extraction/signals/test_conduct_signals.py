@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
+from rulec.extraction.signals.conduct.lane_change_signals import lane_change_signals
 from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
 from rulec.extraction.signals.conduct.reason_signals import reason_signals
 from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
-from rulec.extraction.signals.lane_signals import lane_change_signals
 from rulec.extraction.signals.map.crossing_signals import crossing_signals
 from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.tracks.mirror import mirrored_recording

@@ -7,15 +7,17 @@ import pytest
 
 from rulec.extraction.signals.clearance_signals import clearance_signals
 from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
+from rulec.extraction.signals.conduct.lane_change_signals import lane_change_signals
 from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
 from rulec.extraction.signals.conduct.next_lane_signals import next_lane_signals
+from rulec.extraction.signals.conduct.overtaking_signals import overtaking_signals
 from rulec.extraction.signals.conduct.reason_signals import reason_signals
 from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
 from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.flow_signals import flow_signals
 from rulec.extraction.signals.following_signals import following_signals
 from rulec.extraction.signals.intention_signals import intention_signals
-from rulec.extraction.signals.lane_signals import lane_change_signals, lane_mark_signals
+from rulec.extraction.signals.lane_mark_signals import lane_mark_signals
 from rulec.extraction.signals.map.crossing_signals import crossing_signals
 from rulec.extraction.signals.map.junction_signals import junction_signals
 from rulec.extraction.signals.map.line_signals import line_signals
@@ -38,7 +40,8 @@ GROUPS = (
     *(ego_signals, participant_signals, following_signals, map_signals, road_signals),
     *(junction_signals, line_signals, priority_signals, crossing_signals, roundabout_signals),
     zone_signals,
-    *(intention_signals, merge_signals, clearance_signals, flow_signals),
+    *(intention_signals, merge_signals, clearance_signals),
+    *(flow_signals, overtaking_signals),
     *(lane_change_signals, lane_mark_signals),
     *(manoeuvre_signals, lamp_signals, reason_signals, turning_conflicts, next_lane_signals),
 )

@@ -60,11 +60,16 @@ def steady(number, x, y, speed=10.0, steps=4, first=0, step_s=0.5, **more):
     return vehicle(number, places, speed=abs(speed), heading=heading, **more)
 
 
-def along(number, line, way, kind="car", **more):
+def line(speed, count, y=0.0, start=10.0, apart=10.0, number=20):
+    """Vehicles one behind the other, at the same speed."""
+    return [steady(number + k, start + apart * k, y, speed=speed) for k in range(count)]
+
+
+def along(number, path, way, kind="car", **more):
     """A vehicle whose middle is so far along a line of places at each step; heads where it goes."""
-    steps = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))))
+    steps = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))))
     place, ahead = (
-        [np.interp(way + further, steps, line[:, axis]) for axis in (0, 1)]
+        [np.interp(way + further, steps, path[:, axis]) for axis in (0, 1)]
         for further in (0.0, 0.1)
     )
     heading = np.arctan2(ahead[1] - place[1], ahead[0] - place[0])

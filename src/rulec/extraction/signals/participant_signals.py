@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
@@ -11,7 +9,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.following_signals import parts_soon
+from rulec.extraction.signals.following_signals import keeps_safe_gap
 from rulec.extraction.signals.intention_signals import may_have_broken_down
 from rulec.extraction.signals.map.lanes_ahead import leads_elsewhere
 from rulec.extraction.signals.measured_numbers import (
@@ -22,8 +20,6 @@ from rulec.extraction.signals.measured_numbers import (
     lateral_gap_bounds,
     moves,
     own_speed,
-    safe_distance,
-    safe_distance_error,
     speed_differences,
 )
 from rulec.extraction.signals.settling import only_when
@@ -38,7 +34,6 @@ from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.paper_words import LATERALS, STATIONS
-from rulec.trace.plain_arrays import distinct
 
 _ALONG = 0.5
 """The sine of the angle to the road up to which one heads along it."""
@@ -47,12 +42,6 @@ _TWO_WHEELED = ("motorcycle", "bicycle")
 
 _EDGE_M, _ROOM_M = 0.5, 3.05
 """Who parks does so at the edge; the widest vehicle (2.55 m) gets by with half a metre more."""
-
-_BRIEF_S = 1.0
-_OUTLIERS = 3.0
-"""So many tolerances off are places now and then, but not for ``_BRIEF_S``."""
-
-_HAIR_S = 1e-6
 
 
 def participant_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
@@ -138,96 +127,6 @@ def _time_to_collision(context: DriveContext) -> SignalColumns:
 
 def _measured(name: str, values: Floats, bounds: Bounds) -> SignalColumns:
     return SignalColumns(about={name: rounded(values)}, bounds={name: bounds})
-
-
-def _safe_gap(context: DriveContext) -> SignalColumns:
-    """Whether ego keeps its distance from who is, or may be, ahead in its lane.
-
-    Unknown of one that stood ``reaction_s`` ago already, if ego can stop behind it: it has seen it
-    stand, and need not react first. And where it is too short for less than ``_BRIEF_S``, and by no
-    more than ``_OUTLIERS`` tolerances: that may be what boxes err.
-    """
-    _, _, may_follow = relations.ahead_in_lane(context)
-    place, limits, followed = context.tolerances.place_m, context.thresholds, safe_gaps(context)
-    cells, short = followed.cells, followed.safe - followed.gap
-    wrong = np.hypot(followed.safe_error, place)
-    stands = context.tracks.speed[cells] * KMH < limits.standing_kmh
-    # One that stands, and that ego drives by, does not drive ahead
-    aside = relations.way_across(context)[cells] - limits.touching_m
-    room = np.where(stands, aside, -np.inf)
-    may_pass_by, follows = np.abs(room) < place, room <= 0
-    # Elsewhere the distance is long enough, whoever that is
-    perhaps_short = short > -wrong
-    moot = may_pass_by & perhaps_short
-    asked = np.flatnonzero(follows & perhaps_short)
-    moot[asked] |= _need_not_follow(context, (cells[0][asked], cells[1][asked]), short[asked])
-    safe, unknown = np.ones(may_follow.shape, dtype=bool), np.zeros(may_follow.shape, dtype=bool)
-    safe[cells] = ~follows | (short <= 0)
-    unknown[cells] = (follows & (np.abs(short) < wrong)) | moot
-    late, far_too_late = np.zeros((2, *may_follow.shape), dtype=bool)
-    late[cells] = follows & (short >= wrong)
-    far_too_late[cells] = follows & (short > _OUTLIERS * wrong)
-    unknown |= _brief_and_slight(context, late, far_too_late)
-    return SignalColumns(about={"safe_gap": safe}, unknown={"safe_gap": unknown})
-
-
-def _need_not_follow(
-    context: DriveContext, cells: tuple[NDArray[intp], ...], short: Floats
-) -> Flags:
-    """Flags of cells in which who is ahead parts soon, or has stood for long enough to be seen.
-
-    ``short`` is by how much (m) the distance is too short if ego reacts first.
-    """
-    speed = np.maximum(context.ego_extents.along[0], 0.0)
-    react_m = speed[cells[1]] * context.thresholds.reaction_s
-    stood = _stood_before(context, distinct(cells[0]))[cells]
-    moot: Flags = parts_soon(context, cells) | (stood & (short - react_m <= 0))
-    return moot
-
-
-def _brief_and_slight(context: DriveContext, late: Flags, far_too_late: Flags) -> Flags:
-    """Flags of runs of late states that last for less than ``_BRIEF_S`` and are nowhere far too."""
-    if not late.any():
-        return late
-    spans, rows, found = context.spans, np.flatnonzero(late.any(axis=1)), np.zeros_like(late)
-    late, far_too_late = late[rows], far_too_late[rows]
-    since, until = spans.latest(~late) + 1, spans.next_state(~late)
-    brief = (until - since) * context.recording.step_s < _BRIEF_S - _HAIR_S
-    slight = (spans.latest(far_too_late) < since) & (spans.next_state(far_too_late) >= until)
-    found[rows] = late & brief & slight
-    return found
-
-
-def _stood_before(context: DriveContext, rows: NDArray[intp]) -> Flags:
-    """Flags of those who stand, and have for ``reaction_s`` or since they were seen first.
-
-    Of these rows, False in all others.
-    """
-    stands = context.tracks.speed[rows] * KMH < context.thresholds.standing_kmh
-    steps = round(context.thresholds.reaction_s / context.recording.step_s)
-    spans, stood = context.spans, np.zeros(context.relevant.shape, dtype=bool)
-    moved = spans.latest(~stands & ~np.isnan(context.extents.s_min[rows]))
-    stood[rows] = stands & ((moved < spans.first) | (spans.columns - moved > steps))
-    return stood
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class SafeGaps:
-    """The distances (m) that ``safe_gap`` compares: where ego may follow, rows and states."""
-
-    cells: tuple[NDArray[intp], ...]
-    gap: Floats
-    safe: Floats
-    safe_error: Floats
-
-
-@once
-def safe_gaps(context: DriveContext) -> SafeGaps:
-    """The distances that ``safe_gap`` compares."""
-    _, _, follows = relations.ahead_in_lane(context)
-    cells = follows.nonzero()
-    safe, error = safe_distance(context, cells), safe_distance_error(context, cells)
-    return SafeGaps(cells, relations.gap(context)[cells], safe, error)
 
 
 def _precedes(context: DriveContext) -> SignalColumns:
@@ -423,7 +322,7 @@ _PASSES: Passes = {
     ("lateral_gap",): _lateral_gap,
     ("speed_difference",): _speed_difference,
     ("time_to_collision",): _time_to_collision,
-    ("safe_gap",): _safe_gap,
+    ("safe_gap",): keeps_safe_gap,
     ("precedes",): _precedes,
     ("one_between",): _one_between,
     ("oncoming",): _oncoming,

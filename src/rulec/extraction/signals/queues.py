@@ -1,4 +1,4 @@
-"""Queues of vehicles that go ego's way, lane by lane, and which lanes tell of them.
+"""Queues of vehicles that go ego's way: lane by lane, on all lanes, and which lanes tell of them.
 
 Those count that are not farther away than ``flow_reach_m``, or than where ``fewest`` vehicles of a
 queue at ego's speed have room. A lane's vehicles are those whose middle is in it.
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.ego_lanelets import travel_lanes
 from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.plain_arrays import medians_hold, sorted_in
@@ -196,3 +197,42 @@ def queues_by_lane(context: DriveContext) -> tuple[Flags, Flags]:
         n_short = np.add.reduceat(short, begins, axis=1, dtype=np.intp)
         queues[:, place[begins]] = n_short > _MOST * np.diff(begins, append=len(place))
     return queues.reshape(len(READINGS), *shape).swapaxes(1, 2), slow.reshape(shape).T
+
+
+@once
+def dense_lines(context: DriveContext) -> tuple[Flags, Flags, Flags]:
+    """Flags of states with queues on all lanes, surely so, and of those where nobody knows."""
+    queues, _ = queues_by_lane(context)
+    lanes = travel_lanes(context)
+    decides = lanes & (lanes_that_decide(context) | queues)
+    all_queue = np.logical_and((queues | ~decides).all(axis=-1), decides.any(axis=-1))
+    # What a few lanes are is not told of the others, but where the world of all of them ends
+    few = 2 * decides.sum(axis=-1) < lanes.sum(axis=-1)
+    whole = "light" in context.recording.complete
+    all_queue &= ~(few & whole)
+    # Whom nobody is ahead of goes as fast as it likes, unless that one is not recorded any more
+    gap, gap_behind = (
+        gap_in_lane(context, side) for side in (relations.BEHIND, relations.IN_FRONT_OF)
+    )
+    cut_off = all_queue[LOOSE] & np.isinf(gap) & (not whole)
+    speed = context.ego_extents.along[0]
+    longest = longest_gaps(context, speed, context.ego.speed_error[0])
+    dense, surely, perhaps = (
+        all_queue[reading] & (gap <= longest[reading]) for reading in READINGS
+    )
+    # Nor is there a queue where the world ends, whose traffic is all recorded
+    nobody_knows = ~decides[MEASURED].any(axis=-1) & (not whole)
+    # And who is last behind a queue may be in it or not
+    surely &= ~few[MEASURED] & (gap_behind <= longest[LOOSE])
+    return dense, surely, (perhaps | dense) & ~surely | cut_off | nobody_knows
+
+
+def gap_in_lane(context: DriveContext, station: int) -> Floats:
+    """The gap (m) to the next one in ego's lane to whom ego has this station, by state.
+
+    As far as traffic reaches, infinity without any.
+    """
+    own_lane = context.extents.lane == context.ego_lane
+    there = close_by(context) & (relations.station(context) == station) & own_lane
+    gap: Floats = np.where(there, relations.gap(context), np.inf).min(axis=0, initial=np.inf)
+    return gap

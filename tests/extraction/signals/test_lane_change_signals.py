@@ -1,11 +1,11 @@
-"""Signals of lane changes and of the marks between lanes."""
+"""Signals of lane changes, and of the indicator."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.lane_signals import lane_change_signals, lane_mark_signals
+from rulec.extraction.signals.conduct.lane_change_signals import lane_change_signals
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording, straight, vehicle
 from support.generators.random_recordings import lanes
@@ -219,97 +219,3 @@ def test_hazard_lights_of_a_drive_whose_file_contradicts_itself_are_not_known():
     body = vehicle(7, CHANGE)
     body = replace(body, lamps=dict(enumerate(map(frozenset, lit))), shows=frozenset(both | shows))
     assert changes(body=body).unknown["indicator"].tolist() == [False, True, True, False]
-
-
-def marks(y, right=None, left=None, count=2, route=("1",)):
-    """The signals of marks in the first state; marks are those on both lanelets beside a line."""
-    road = lanes(count)
-    road[0] = replace(road[0], left_mark=right)
-    if count > 1:
-        road[1] = replace(road[1], right_mark=left)
-    signals = lane_mark_signals(context_of(recording(road, [steady(7, 0, y)]), route))
-    known = {name: column[0].item() for name, column in signals.world.items()}
-    return known, {name: column[0].item() for name, column in signals.unknown.items()}
-
-
-def test_a_map_without_marks_says_nothing_of_them():
-    assert marks(0) == ({}, {})
-
-
-@pytest.mark.parametrize(
-    ("right", "left", "marked", "unknown"),
-    [
-        ("solid", "solid", True, False),
-        ("none", "broken", True, False),
-        ("none", "none", False, False),
-        ("none", None, True, False),
-    ],
-)
-def test_lanes_are_marked_by_any_line_between_them(right, left, marked, unknown):
-    known, where = marks(0, right, left)
-    assert known["marked_lanes"] is marked
-    assert where["marked_lanes"] is unknown
-
-
-def test_an_only_lane_has_no_marks_between_lanes():
-    assert marks(0, "solid", count=1)[0]["marked_lanes"] is False
-
-
-def test_a_line_between_lanes_without_any_mark_leaves_it_unknown():
-    road = lanes(3)
-    road[0] = replace(road[0], left_mark="broken")
-    signals = lane_mark_signals(context_of(recording(road, [steady(7, 0, 0)])))
-    assert signals.unknown["marked_lanes"].all()
-
-
-@pytest.mark.parametrize(("y", "solid"), [(0, False), (1.2, False), (1.4, True), (2.8, False)])
-def test_a_solid_line_lies_under_ego_from_thirty_centimetres_on(y, solid):
-    assert marks(y, "solid", "solid")[0]["on_solid_line"] is solid
-
-
-def test_who_is_parked_on_a_line_does_not_cross_it():
-    road = lanes(2)
-    road[0] = replace(road[0], left_mark="solid")
-    parked, drives = (steady(7, 0, 1.4, speed=mps) for mps in (0, 10))
-    found = [lane_mark_signals(context_of(recording(road, [ego]))) for ego in (parked, drives)]
-    assert [bool(x.world["on_solid_line"][0]) for x in found] == [False, True]
-
-
-def test_who_stands_on_a_line_from_the_beginning_on_has_not_been_seen_to_cross_it():
-    road = lanes(2)
-    road[0] = replace(road[0], left_mark="solid")
-    # Its box wanders by 0.4 m before it moves off; who drives slowly is 1.5 m on after a state
-    parked = vehicle(7, {0: (50, 1.4), 1: (50.4, 1.4), 2: (50, 1.4), 3: (56, 1.4)}, speed=0.1)
-    creeps = vehicle(7, {k: (50 + 1.5 * k, 1.4) for k in range(4)}, speed=3.0)
-    found = [lane_mark_signals(context_of(recording(road, [ego]))) for ego in (parked, creeps)]
-    assert [x.unknown["on_solid_line"].tolist() for x in found] == [
-        [True, True, True, False],
-        [False] * 4,
-    ]
-    assert all(x.world["on_solid_line"].all() for x in found)
-
-
-def test_of_two_lines_the_one_on_ego_s_side_counts():
-    # Ego's middle is in the right lane, at whose side the line is broken
-    known, _ = marks(1.5, "broken", "solid")
-    assert (known["on_solid_line"], known["broken_on_own_side"]) == (True, True)
-    known, _ = marks(1.5, "solid", "broken")
-    assert (known["on_solid_line"], known["broken_on_own_side"]) == (True, False)
-    # And in the left lane it is the other one
-    known, _ = marks(2.5, "solid", "broken", route=("2",))
-    assert (known["on_solid_line"], known["broken_on_own_side"]) == (True, True)
-
-
-def test_ego_is_in_a_lane_that_there_is():
-    # The third lane begins at 200 m: before it ego, on whose place it would be, is on the second
-    row = [straight(k, 0, 200, y=4 * (k - 1), successors=(k + 10,), **beside(k, 2)) for k in (1, 2)]
-    later = [straight(k + 10, 200, 400, y=4 * (k - 1), **beside(k, 3, 10)) for k in (1, 2, 3)]
-    found = recording([*row, *later], [vehicle(7, {0: (100, 8), 1: (300, 8)})])
-    assert context_of(found, ("1", "11")).ego_lane.tolist() == [1, 2]
-
-
-def beside(k, count, more=0):
-    return {
-        "left_of": k + 1 + more if k < count else None,
-        "right_of": k - 1 + more if k > 1 else None,
-    }

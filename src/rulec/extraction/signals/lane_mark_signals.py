@@ -1,4 +1,4 @@
-"""Signals of lane changes, ego's indicator, and road marks where the map has marks."""
+"""Signals of road marks, where the map has marks."""
 
 from __future__ import annotations
 
@@ -11,21 +11,17 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
-from rulec.extraction.signals import relations
-from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
-from rulec.extraction.signals.conduct.manoeuvre_signals import swings_round
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.measured_numbers import own_widths
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, ids_by_state
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Lanelet, LaneMark, is_lane
 from rulec.scenario.recorded.route import lanelet_area
 from rulec.trace.plain_arrays import distinct
 
-_INDICATORS = frozenset({"left_indicator", "right_indicator"})
-_INDICATIONS = ("no_indicator", "near_indicator", "far_indicator")
 _SOLID = frozenset({"solid", "double_solid"})
+
 _SINGLE = (
     ("solid", "solid"),
     ("solid", None),
@@ -40,191 +36,15 @@ _STEADY_MPS = 1.0
 
 _EXACT_M = 0.1
 
-_JUMP_MPS = 5.0
-"""Nobody steers across so fast: simulators change lanes in a step, with or without a signal."""
-
 _MOVED_OFF_M, _STOOD_S = 1.0, 1.0
 """A box of who is parked wanders by less; who stays there for so long stands."""
-
-_FORK_M = 15.0
-"""So far behind where a lane has forked its ways lie over each other."""
 
 _Marks = tuple[LaneMark | None, LaneMark | None]
 
 
-def lane_change_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of ego's lane changes, those of the names."""
-    return signals_by(_CHANGE_PASSES, context, names)
-
-
-def _lane_change(context: DriveContext) -> SignalColumns:
-    """Whether ego has changed lanes; unknown within tolerances, and of who turns round.
-
-    Its body swings over the lanes of the road that it comes to. Nor does anybody know where a lane
-    has just forked: ego may follow one of its ways.
-    """
-    changes = _changes(context)
-    unknown = _within_tolerance(context, changes)
-    if changes.any():
-        unknown |= changes & swings_round(context)
-        for change in np.flatnonzero(changes & ~unknown).tolist():
-            unknown[change] = _at_fork(context, change)
-    return SignalColumns({"lane_change": changes}, unknown={"lane_change": unknown})
-
-
-def _at_fork(context: DriveContext, change: int) -> bool:
-    """True if the lanes that ego changes between have come of one, less than ``_FORK_M`` ago."""
-    road, s = context.road, context.ego_extents.s[0, change - 1 : change + 1]
-    pieces = {int(piece) for piece in road.piece(s)}
-    lanes = context.steady_lane[change - 1 : change + 1].tolist()
-    for piece in pieces:
-        one, other = (road.rows[piece][lane] for lane in lanes)
-        near = s[1] - float(road.borders[piece]) < _FORK_M
-        if one and other and near and set(one.predecessors) & set(other.predecessors):
-            return True
-    return False
-
-
-def _lane_is_clear(context: DriveContext) -> SignalColumns:
-    """Whether nobody has to brake for ego, in states of its lane changes.
-
-    Unknown where the only ones are about to be past: ego comes in behind them. And if ego stands by
-    its speed, whose places drift across the mark: nothing stands and changes lanes.
-    """
-    disturbed = np.zeros(context.relevant.shape, dtype=bool)
-    pulls_away = np.zeros(context.states, dtype=bool)
-    changes = np.flatnonzero(_changes(context))
-    disturbed[:, changes] = found = _disturbed(context, changes)
-    pulls_away[changes] = ~np.any(found & ~_pulls_away(context, changes), axis=0)
-    clear: Flags = ~np.any(disturbed, axis=0)
-    stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
-    return SignalColumns(
-        {"lane_is_clear": clear},
-        unknown={"lane_is_clear": ~clear & (pulls_away | stands)},
-        whom={"lane_is_clear": ids_by_state(disturbed, context.ids)},
-    )
-
-
-def _changes(context: DriveContext) -> Flags:
-    """Flags of states in which ego has changed lanes since the one before."""
-    return context.spans.changes(context.steady_lane)
-
-
-def _within_tolerance(context: DriveContext, changes: Flags) -> Flags:
-    """Flags of those changes of which the marks may be so far off that there is none.
-
-    Before or after it, until the next one, ego's middle is never farther from the mark.
-    """
-    lane, left_of = context.steady_lane, context.ego_extents.left_of[0]
-    error = context.tolerances.place_m + np.abs(context.map_offset_m)
-    least = np.maximum(context.thresholds.changed_m, error)
-    unsure, spans = np.zeros_like(changes), context.spans
-    for _, columns in spans.those(spans.any(changes)):
-        own = (np.flatnonzero(changes[columns]) + columns.start).tolist()
-        borders = [columns.start, *own, columns.stop]
-        for begin, at, end in zip(borders[:-2], borders[1:-1], borders[2:], strict=True):
-            mark = left_of[begin:end, max(lane[at - 1], lane[at])]
-            if lane[at] < lane[at - 1]:
-                mark = -mark
-            unsure[at] = min(-mark[: at - begin].min(), mark[at - begin :].max()) < least[at]
-    return unsure
-
-
-def _indicator(context: DriveContext) -> SignalColumns:
-    """Ego's indicator, if the recording has its lamps.
-
-    Both at once are no indication, as hazard lights are none; a file that says that these are off
-    contradicts itself, and nobody knows what both mean in that drive at other times. Who changes
-    lanes has indicated it if it did up to the state before, or while it lay across the mark; of who
-    jumps there, or off the edge of the road, nobody knows.
-    """
-    egos = context.ego.participants
-    if not context.spans.agreed([ego.lamps and ego.shows >= _INDICATORS for ego in egos]):
-        return SignalColumns()
-    far = "left_indicator" if context.side == "right" else "right_indicator"
-    steps = ego_lamps(context)
-    lit = [(lamps or frozenset()) & _INDICATORS for lamps in steps]
-    codes = np.array([0 if len(lamps) != 1 else 2 if far in lamps else 1 for lamps in lit])
-    tells_hazards = context.spans.spread(["hazard_lights" in ego.shows for ego in egos]).tolist()
-    both = np.array([lamps is not None and lamps >= _INDICATORS for lamps in steps])
-    no_hazards = [
-        tells and "hazard_lights" not in (lamps or ())
-        for lamps, tells in zip(steps, tells_hazards, strict=True)
-    ]
-    unknown = both & context.spans.any(both & np.array(no_hazards))
-    unknown |= np.array([lamps is None for lamps in steps])
-    is_dark = np.array([lamps is not None and not lamps & _INDICATORS for lamps in steps])
-    changes = np.flatnonzero(_changes(context) & is_dark)
-    codes[changes] = [_shown_across(context, codes, change) for change in changes.tolist()]
-    jumps = _jumps_across(context)
-    unknown[changes] |= (codes[changes] == 0) & jumps[changes]
-    off_the_edge = jumps & ~_changes(context)
-    unknown |= is_dark & (off_the_edge | context.spans.after(off_the_edge))
-    return SignalColumns(
-        {"indicator": codes},
-        unknown={"indicator": unknown},
-        texts={"indicator": _INDICATIONS},
-    )
-
-
-def _shown_across(context: DriveContext, codes: NDArray[intp], change: int) -> int:
-    """What ego indicated last before a change of lanes, since its body reached the mark."""
-    lane, own = context.steady_lane, context.ego_extents
-    mark = max(lane[change - 1], lane[change])
-    longest = round(context.thresholds.signalling_s / context.recording.step_s)
-    first = max(int(context.spans.first[change]), change - longest)
-    low, high = (
-        left_of[first:change, mark] for left_of in (own.left_of_min[0], own.left_of_max[0])
-    )
-    clear = np.flatnonzero((low > 0.0) | (high < 0.0))
-    since = min(first + int(clear[-1]) + 1 if len(clear) else first, change - 1)
-    lit = np.flatnonzero(codes[since:change])
-    return int(codes[since + lit[-1]]) if len(lit) else 0
-
-
-def _jumps_across(context: DriveContext) -> Flags:
-    """Flags of states into which ego has moved across in no time, from the one before."""
-    left_of = context.ego_extents.left_of[0]
-    moved = np.abs(left_of - context.spans.before(left_of.T).T).min(axis=1)
-    jumps: Flags = moved > _JUMP_MPS * context.recording.step_s
-    return jumps
-
-
-def _disturbed(context: DriveContext, states: NDArray[intp]) -> Flags:
-    """Flags of the vehicles in ego's lane that must brake for ego, in these states.
-
-    One beside ego has to, and one behind it that would have to brake harder than
-    ``disturbing_mps2`` after its reaction time not to run into it.
-    """
-    limits = context.thresholds
-    station, gap = relations.station(context)[:, states], relations.gap(context)[:, states]
-    same = context.in_ego_lane[:, states] & context.going_along[:, states]
-    along, own = context.extents.along[:, states], context.ego_extents.along[:, states]
-    faster = np.maximum(along - own, 0.0)
-    braking_distance = gap - faster * limits.reaction_s
-    brakes = faster**2 > 2 * limits.disturbing_mps2 * np.maximum(braking_distance, 0.0)
-    behind = (station == relations.IN_FRONT_OF) & brakes
-    disturbed: Flags = same & (behind | (station == relations.BESIDE))
-    return disturbed
-
-
-def _pulls_away(context: DriveContext, states: NDArray[intp]) -> Flags:
-    """Flags of the vehicles that reach farther ahead than ego, and are past within ``reaction_s``.
-
-    Past is who is clear of ego, did both go on as fast as they are in these states.
-    """
-    others, own = context.extents, context.ego_extents
-    front, faster = own.s_max[:, states], others.along[:, states] - own.along[:, states]
-    left = front - others.s_min[:, states]
-    away: Flags = (others.s_max[:, states] > front) & (
-        left < faster * context.thresholds.reaction_s
-    )
-    return away
-
-
 def lane_mark_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
     """The signals of marks, those of the names; none at all if the map has none."""
-    return signals_by(_MARK_PASSES, context, names) if map_contents(context).marks else _NONE
+    return signals_by(_PASSES, context, names) if map_contents(context).marks else _NONE
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -443,12 +263,7 @@ def _near_a_line(context: DriveContext, margin_m: Floats) -> Flags:
 
 _NONE = SignalColumns()
 
-_CHANGE_PASSES: Passes = {
-    ("lane_change",): _lane_change,
-    ("lane_is_clear",): _lane_is_clear,
-    ("indicator",): _indicator,
-}
-_MARK_PASSES: Passes = {
+_PASSES: Passes = {
     ("marked_lanes",): _marked_lanes,
     ("on_solid_line", "broken_on_own_side", "single_line"): _lines_under_ego,
 }
