@@ -5,11 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.participant_signals import (
-    LONGEST_S,
-    participant_signals,
-    safe_distance,
-)
+from rulec.extraction.signals.measured_numbers import LONGEST_S, safe_distance
+from rulec.extraction.signals.participant_signals import participant_signals
 from support.builders.drive_contexts import along, context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes

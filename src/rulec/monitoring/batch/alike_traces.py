@@ -48,10 +48,10 @@ def alike_traces(
     makers: list[Callable[[], AlikeTraces]] = []
     if isinstance(items, Block) and items.outline is not None:
         groups = groups_of(items, items.outline)
-        makers += [partial(_of_group, group, vocabulary) for group in groups]
+        makers += [partial(traces_of_group, group, vocabulary) for group in groups]
         wanted = [place for place in wanted if place in items.partial]
     elif isinstance(items, LineBlock):
-        makers += [partial(_of_lines, lines, vocabulary) for lines in items.alike]
+        makers += [partial(traces_of_lines, lines, vocabulary) for lines in items.alike]
         wanted = [place for place in wanted if items.items[place] is not None]
     shapes: dict[Shape, list[tuple[int, Trace]]] = {}
     for place in wanted:
@@ -66,16 +66,18 @@ def alike_traces(
             yield made()
 
 
-def _of_group(group: BlockGroup, vocabulary: Vocabulary) -> AlikeTraces:
+def traces_of_group(group: BlockGroup, vocabulary: Vocabulary) -> AlikeTraces:
+    """The traces of one shape of a block. Raises UnencodableError."""
     columns = columnize_block(group, vocabulary)
-    check_all_said(columns, vocabulary)
+    _check_all_said(columns, vocabulary)
     traces = group.traces.tolist()
     return AlikeTraces(traces, columns, lambda number: group.presence.objects_of(traces[number]))
 
 
-def _of_lines(lines: AlikeLines, vocabulary: Vocabulary) -> AlikeTraces:
+def traces_of_lines(lines: AlikeLines, vocabulary: Vocabulary) -> AlikeTraces:
+    """The traces of lines, ``places`` being those of the lines. Raises UnencodableError."""
     order, columns = columnize_lines(lines, vocabulary)
-    check_all_said(columns, vocabulary)
+    _check_all_said(columns, vocabulary)
     headings = [lines.headings[place] for place in order.tolist()]
     return AlikeTraces(
         lines.lines[order].tolist(), columns, lambda number: tuple(headings[number].objects)
@@ -99,7 +101,7 @@ def _of_traces(placed: Sequence[tuple[int, Trace]], vocabulary: Vocabulary) -> A
     )
 
 
-def check_all_said(columns: TraceColumns, vocabulary: Vocabulary) -> None:
+def _check_all_said(columns: TraceColumns, vocabulary: Vocabulary) -> None:
     """Raises UnencodableError if facts tell more than columns that were read from a file."""
     for (name, _), values in columns.values.items():
         if name in vocabulary.constants and _changes(values, columns.layout):

@@ -5,7 +5,7 @@ Whatever is odd about a trace, from an unknown name to a missing value, is left 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
@@ -16,11 +16,10 @@ from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.batch import trace_groups
-from rulec.monitoring.batch.alike_traces import check_all_said
-from rulec.monitoring.batch.columns.block_columns import BlockGroup, columnize_block, groups_of
+from rulec.monitoring.batch.alike_traces import AlikeTraces, traces_of_group, traces_of_lines
+from rulec.monitoring.batch.columns.block_columns import groups_of
 from rulec.monitoring.batch.columns.column_reader import NotGivenError
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
-from rulec.monitoring.batch.columns.line_columns import columnize_lines
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.batch.verdict_columns import VerdictColumns
 from rulec.monitoring.bindings import Cast, types_of
@@ -38,9 +37,8 @@ from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.monitoring.verify import rulebook_for_step, rulebook_for_trace, verify_or_reason
 from rulec.trace import Trace
-from rulec.trace.formats.alike_lines import AlikeLines, LineBlock
+from rulec.trace.formats.alike_lines import LineBlock
 from rulec.trace.formats.table_blocks import Block, OddTableError, outlined
-from rulec.trace.trace_columns import TraceColumns
 from rulec.trace.trace_model import check_frame, check_presence
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
@@ -299,27 +297,40 @@ def _with_others(
 
 def _verify_lines(block: LineBlock, rulebook: CompiledRulebook) -> Sequence[Answer]:
     answers: list[Answer | None] = [None] * len(block)
-    for alike in block.alike:
+    for lines in block.alike:
         # What is odd about it is said of each line by itself.
         with suppress(UnencodableError, NotGivenError, RulecError):
-            _verify_alike(alike, rulebook, answers)
+            example = lines.headings[0]
+            rules = rules_for(Trace("", example.step_s, example.objects, ()), rulebook)
+            ids = {
+                place: heading.id
+                for place, heading in zip(lines.lines.tolist(), lines.headings, strict=True)
+            }
+            alike = traces_of_lines(lines, rules.vocabulary)
+            _verify_alike(alike, rules, ids.__getitem__, answers)
     left = [place for place, answer in enumerate(answers) if answer is None]
     others = iter(verify_chunk([block[place] for place in left], rulebook))
     return [next(others) if answer is None else answer for answer in answers]
 
 
 def _verify_alike(
-    lines: AlikeLines, rulebook: CompiledRulebook, answers: list[Answer | None]
+    alike: AlikeTraces,
+    rules: CompiledRulebook,
+    ids: Callable[[int], str],
+    answers: list[Answer | None],
 ) -> None:
-    """Answer for those traces of lines whose values are all readable."""
-    example = lines.headings[0]
-    rules = rules_for(Trace("", example.step_s, example.objects, ()), rulebook)
-    order, columns = columnize_lines(lines, rules.vocabulary)
-    objects = tuple(columns.objects)
-    for number, violations in violations_in(_verdicts(columns, rules), len(order)):
-        heading = lines.headings[order[number]]
-        own = trace_groups.under_own_names(violations, objects, tuple(heading.objects))
-        answers[lines.lines[order[number]]] = Verdict(heading.id, own)
+    """Answer for those traces that were read from a file and whose values are all readable.
+
+    ``ids`` gives the id of the trace at a place. Raises UnencodableError, NotGivenError.
+    """
+    if any(counts(axiom.formula) for axiom in rules.axioms):
+        raise UnencodableError
+    verdicts, objects = verify_columns(alike.columns, rules), tuple(alike.columns.objects)
+    for number, violations in violations_in(verdicts, len(alike.places)):
+        place = alike.places[number]
+        own = alike.names(number) if violations else ()
+        renamed = trace_groups.under_own_names(violations, objects, own)
+        answers[place] = Verdict(ids(place), renamed)
 
 
 def rulebook_for(items: Items, place: int, rulebook: CompiledRulebook) -> CompiledRulebook:
@@ -347,34 +358,12 @@ def _verify_block(
         if len(groups) > 1 and len(groups) * _FEWEST_ROWS > len(presence.trace) + _FEWEST_ROWS:
             return None
         for group in groups:
-            _verify_block_group(group, rulebook, answers)
+            objects = dict(zip(group.objects, group.types, strict=True))
+            step_s = float(presence.step_s[group.traces[0]])
+            rules = rules_for(Trace("", step_s, objects, ()), rulebook)
+            alike = traces_of_group(group, rules.vocabulary)
+            _verify_alike(alike, rules, presence.names.__getitem__, answers)
     except (OddTableError, UnencodableError, NotGivenError, RulecError):
         return None
     block = replace(block, outline=presence)
     return block, _with_others(answers, block, rulebook)
-
-
-def _verdicts(columns: TraceColumns, rules: CompiledRulebook) -> Sequence[VerdictColumns]:
-    """Verdicts on columns that were read from a file. Raises UnencodableError, NotGivenError."""
-    if any(counts(axiom.formula) for axiom in rules.axioms):
-        raise UnencodableError
-    check_all_said(columns, rules.vocabulary)
-    return verify_columns(columns, rules)
-
-
-def _verify_block_group(
-    group: BlockGroup, rulebook: CompiledRulebook, answers: list[Answer | None]
-) -> None:
-    """Answer for those traces of a group whose values are all readable."""
-    presence = group.presence
-    objects = dict(zip(group.objects, group.types, strict=True))
-    step_s = float(presence.step_s[group.traces[0]])
-    rules = rules_for(Trace("", step_s, objects, ()), rulebook)
-    columns = columnize_block(group, rules.vocabulary)
-    verdicts = _verdicts(columns, rules)
-    traces = group.traces.tolist()
-    for number, violations in violations_in(verdicts, len(traces)):
-        trace = traces[number]
-        own = presence.objects_of(trace) if violations else ()
-        violations = trace_groups.under_own_names(violations, group.objects, own)
-        answers[trace] = Verdict(presence.names[trace], violations)

@@ -70,7 +70,6 @@ TimedPositions = Annotated[
     Meta(min_length=1, description="a list of `[t, s, d]` in seconds and metres"),
 ]
 TableField = Annotated[dict[str, Any], Meta(description="a table")]
-TablesField = Annotated[list[Any], Meta(description="tables, each under its own `[[heading]]`")]
 StretchesField = Annotated[
     list[Any],
     Meta(max_length=MOST_STRETCHES, description=f"at most {MOST_STRETCHES} tables of a kind"),

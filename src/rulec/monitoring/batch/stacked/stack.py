@@ -72,7 +72,6 @@ class Stack:
         self.n_states = int(self.begins[-1])
         n_objects = [len(trace.objects) for trace in traces]
         self.trace_of = np.repeat(np.arange(len(traces)), n_objects)
-        self.first_object = np.concatenate([[0], np.cumsum(n_objects, dtype=np.intp)])
         spans = np.concatenate([trace.spans for trace in traces])
         self.firsts = spans[:, 0] + self.begins[self.trace_of]
         self.lasts = spans[:, 1] + self.begins[self.trace_of]
