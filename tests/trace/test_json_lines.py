@@ -3,6 +3,7 @@
 import gzip
 import io
 import json
+from unittest.mock import patch
 
 import pytest
 from hypothesis import given
@@ -10,7 +11,7 @@ from hypothesis import strategies as st
 
 from rulec.diagnostics import RulecError
 from rulec.trace import Trace
-from rulec.trace.formats import json_line_problems, json_lines
+from rulec.trace.formats import json_line_problems, json_lines, stream_lines
 from rulec.trace.formats.json_lines import read_chunks, write_traces
 from rulec.trace.formats.stream_lines import lines_as_they_come
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
@@ -268,8 +269,17 @@ def test_states_that_never_come_again_are_not_remembered(monkeypatch):
     ]
 
 
-@given(st.lists(st.binary(max_size=30), max_size=8), st.randoms(use_true_random=False))
-def test_lines_are_the_same_however_they_arrive(parts, chance):
+@given(
+    st.lists(st.binary(max_size=30), max_size=8),
+    st.sampled_from([0, 10, 1_000]),
+    st.randoms(use_true_random=False),
+)
+def test_lines_are_the_same_however_they_arrive(parts, long_line, chance):
+    with patch.object(stream_lines, "_LONG_LINE", long_line):
+        lines_come_in_order(parts, chance)
+
+
+def lines_come_in_order(parts, chance):
     data = b"\n".join(parts)
     writes = []
     while data:

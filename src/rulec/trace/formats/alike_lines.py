@@ -253,7 +253,8 @@ def _together(outlines: Sequence[_Outline]) -> AlikeLines | None:
     text, colons, ends = _joined(outlines, form.comma)
     counts = np.diff(np.searchsorted(colons, ends), prepend=0)
     are_whole = (counts % n_colons == 0) & (counts > 0)
-    are_whole[np.searchsorted(ends, np.flatnonzero(text < _FIRST_IN_JSON), "right")] = False
+    if text.min() < _FIRST_IN_JSON:
+        are_whole[np.searchsorted(ends, np.flatnonzero(text < _FIRST_IN_JSON), "right")] = False
     if not are_whole.all():
         outlines = [outlines[place] for place in np.flatnonzero(are_whole).tolist()]
         counts = counts[are_whole]
