@@ -163,6 +163,40 @@ quantity speed in km/h
             "hard rule r { require eventually wet } soft rule s { require never wet }",
             [],
         ),
+        *[
+            (f"{first} {second}", ["R0808 `r` and `s` cannot both be kept where `wet`"])
+            for first, second in (
+                (
+                    "hard rule r { require always (wet implies speed < 3 km/h) }",
+                    "hard rule s { require always (wet implies speed > 5 km/h) }",
+                ),
+                (
+                    "hard rule r { require always slow when wet }",
+                    "hard rule s { require never slow when wet }",
+                ),
+                # The condition of the second rule alone is one that the two never come to.
+                (
+                    "hard rule r { require never (wet and slow) }",
+                    "hard rule s { require always (wet implies slow) }",
+                ),
+            )
+        ],
+        *[
+            (f"hard rule r {{ require always (wet implies slow) }} {second}", found)
+            for second, found in (
+                ("soft rule s { require never (wet and slow) }", []),
+                # Who is in fog, too, may be slow; what nobody need do is no contradiction.
+                ("hard rule s { require never (wet and slow) unless fog }", []),
+                ("hard rule s { require always (fog implies not slow) }", []),
+                ("hard rule s { require never (wet and fog) }", []),
+                # One alone forbids what the other is about.
+                ("hard rule s { require never wet }", ["R0803 `r`"]),
+            )
+        ],
+        (
+            "hard rule r { require never wet unless fog } hard rule s { require never fog }",
+            [],
+        ),
         (
             "hard rule r { require always (speed < 3 km/h and speed > 5 km/h implies wet) }",
             ["R0805 `implies`"],

@@ -4,8 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
 
+from rulec.analysis.lint.antecedents import Antecedent
 from rulec.analysis.lint.conflict_search import Conflict
-from rulec.analysis.lint.finding_messages import CONFLICTING_RULES, undecided_diagnostic
+from rulec.analysis.lint.finding_messages import (
+    CONFLICTING_RULES,
+    CONTRADICTING_RULES,
+    undecided_diagnostic,
+)
 from rulec.analysis.lint.questions import Question, RuleAnswers
 from rulec.analysis.lint.redundancy import small_premises
 from rulec.analysis.lint.related_rules import RelatedRules
@@ -13,8 +18,12 @@ from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.analysis.trace_display import trace_note
 from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.diagnostic import at
+from rulec.logic.printing import formula_text
 from rulec.rulebook.rulebook_model import Rule
 from rulec.witnesses.undecided import UndecidedError
+
+Occurring = Mapping[str, Sequence[tuple[Antecedent, str]]]
+"""The antecedents of each rule, with the names of the rules that they occur."""
 
 
 def conflict_questions(
@@ -115,3 +124,79 @@ def _cannot_be_kept(
         ),
         notes=notes,
     )
+
+
+def contradiction_questions(
+    names: Sequence[str],
+    sides: Mapping[str, AnalyzedRule],
+    occurring: Occurring,
+    related: RelatedRules,
+) -> Iterator[Question]:
+    """What ``contradictions`` asks where there is none."""
+    for name, other, _, occurs in _triggered(names, sides, occurring, related):
+        yield Question("conflict", (name, other, occurs))
+
+
+def contradictions(
+    names: Sequence[str],
+    sides: Mapping[str, AnalyzedRule],
+    rules: Mapping[str, Rule],
+    occurring: Occurring,
+    answers: RuleAnswers,
+    related: RelatedRules,
+) -> Iterator[Diagnostic]:
+    """Pairs of hard rules that can both be kept only where an antecedent of one never holds.
+
+    Of a pair the first antecedent counts.
+    """
+    told: set[frozenset[str]] = set()
+    for name, other, antecedent, occurs in _triggered(names, sides, occurring, related):
+        pair = frozenset((name, other))
+        first, second = sorted(pair, key=names.index)
+        if pair in told or not _never_kept((name, other, occurs), answers):
+            continue
+        if any(_never_kept((one, occurs), answers) for one in (name, other)):
+            continue
+        if answers.conflict((first, second)) is not None:
+            continue  # of which the finding above says more
+        told.add(pair)
+        label = at(rules[first].span)
+        yield CONTRADICTING_RULES.at(
+            rules[second].span,
+            f"rules `{first}` and `{second}` cannot both be kept where "
+            f"`{formula_text(antecedent.formula)}`",
+            help="say in one of them, by `when` or `unless`, where the other one comes first; "
+            "or forbid that outright",
+            labels=() if label is None else (Label(label, f"`{first}` is here"),),
+            severity="warning",
+        )
+
+
+def _triggered(
+    names: Sequence[str],
+    sides: Mapping[str, AnalyzedRule],
+    occurring: Occurring,
+    related: RelatedRules,
+) -> Iterator[tuple[str, str, Antecedent, str]]:
+    """Related rules about the same objects, with an antecedent of the first and its occurrence.
+
+    With more objects an antecedent would have to hold of all of them.
+    """
+    chosen = frozenset(names)
+    for name in names:
+        types = sorted(variable.type for variable in sides[name].rule.variables)
+        for other in related.of(name):
+            own = sorted(variable.type for variable in sides[other].rule.variables)
+            if other in chosen and own in (types, []):
+                for antecedent, occurs in occurring[name]:
+                    if antecedent.kind != "unless":
+                        yield name, other, antecedent, occurs
+
+
+def _never_kept(group: Sequence[str], answers: RuleAnswers) -> bool:
+    """True if rules, each of which can be kept, never can be together; False if undecided."""
+    try:
+        clash = answers.conflict(group)
+    except UndecidedError:
+        return False
+    return clash is not None and clash.trace is None

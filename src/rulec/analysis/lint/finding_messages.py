@@ -81,6 +81,22 @@ WEAKER_THAN_BASE = Code(
     kind="analyzed",
 )
 
+CONTRADICTING_RULES = Code(
+    "R0808",
+    title="two hard rules cannot both be kept where one of them asks for anything",
+    why="Whatever keeps both rules never comes to what one of them is about: the left side of its "
+    "`implies`, the first phase of the sequence that it forbids, or its condition (`when`). With "
+    "either rule alone that can be. Who gets there all the same violates one of them. It is as if "
+    "both together forbade it, which may be meant, but is mostly a slip, such as `<=` for `>=`.",
+    bad="rulebook example\nsignal wet\nquantity speed in km/h\n"
+    "hard rule slow { require always (wet implies speed <= 50 km/h) }\n"
+    "hard rule fast { require always (wet implies speed >= 60 km/h) }\n",
+    good="rulebook example\nsignal wet\nquantity speed in km/h\n"
+    "hard rule slow { require always (wet implies speed <= 50 km/h) }\n"
+    "hard rule fast { require always (not wet implies speed >= 60 km/h) }\n",
+    kind="analyzed",
+)
+
 _NESTED = (
     "rulebook example\ntype car\nsignal near(c: car, d: car) default false\n"
     "hard rule r {{ require never (some c: car ({inner})) }}\n"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 
 from rulec.analysis.diff.rule_comparison import RuleComparison
@@ -14,7 +14,13 @@ from rulec.analysis.lint.antecedents import (
     has_constant,
     occurrence,
 )
-from rulec.analysis.lint.conflict_findings import conflict_questions, conflicts
+from rulec.analysis.lint.conflict_findings import (
+    Occurring,
+    conflict_questions,
+    conflicts,
+    contradiction_questions,
+    contradictions,
+)
 from rulec.analysis.lint.questions import ComparedRules, Question, RuleAnswers, Spread
 from rulec.analysis.lint.related_rules import RelatedRules
 from rulec.analysis.shared_compilation import AnalyzedRule, compile_shared
@@ -55,13 +61,13 @@ def rulebook_findings(
     own, *of_bases = compile_shared([book, *bases], [{**by_name, **asked}, *inherited])
     related = RelatedRules(list(by_name), own, book.name)
     answers = RuleAnswers(ComparedRules(own, of_bases), tell)
-    if spread is not None:
-        answers.ask_ahead(_likely(by_name, asked, own, of_bases, related), spread)
-    diagnostics: list[Diagnostic] = []
-    good: list[str] = []
     occurring: dict[str, list[tuple[Antecedent, str]]] = {name: [] for name in by_name}
     for asked_name, (conditioned, antecedent) in conditions.items():
         occurring[conditioned.name].append((antecedent, asked_name))
+    if spread is not None:
+        answers.ask_ahead(_likely(by_name, occurring, own, of_bases, related), spread)
+    diagnostics: list[Diagnostic] = []
+    good: list[str] = []
     for name, rule in by_name.items():
         idle = [*_idle(rule, occurring[name], answers)]
         diagnostics += [diagnostic for _, diagnostic in idle]
@@ -74,6 +80,7 @@ def rulebook_findings(
     diagnostics += _needless(good, by_name, answers, related)
     hard = [name for name in good if by_name[name].strength == "hard"]
     diagnostics += conflicts(hard, own, by_name, answers, related)
+    diagnostics += contradictions(hard, own, by_name, occurring, answers=answers, related=related)
     for number, (base, sides) in enumerate(zip(bases, of_bases, strict=True)):
         for name, side in sides.items():
             comparison = answers.compared(name, number)
@@ -86,12 +93,13 @@ def rulebook_findings(
 
 def _likely(
     rules: Mapping[str, Rule],
-    asked: Iterable[str],
+    occurring: Occurring,
     own: Mapping[str, AnalyzedRule],
     of_bases: Sequence[Mapping[str, AnalyzedRule]],
     related: RelatedRules,
 ) -> Iterator[Question]:
     """What will be asked if nothing is found, which is as good as all that is."""
+    asked = [name for own_ones in occurring.values() for _, name in own_ones]
     for name in (*asked, *rules):
         yield Question("kept", (name,))
     for name in rules:
@@ -100,6 +108,7 @@ def _likely(
         yield Question("implied", (name, *_others(name, rules.keys(), rules, related)))
     hard = [name for name, rule in rules.items() if rule.strength == "hard"]
     yield from conflict_questions(hard, own, related)
+    yield from contradiction_questions(hard, own, occurring, related)
     for number, sides in enumerate(of_bases):
         for name in sides:
             yield Question("compared", (name,), number)
