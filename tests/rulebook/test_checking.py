@@ -69,6 +69,19 @@ def test_one_file_under_two_names_is_checked_once(tmp_path):
     assert [one.code for one in done.findings] == ["R0104"]
 
 
+def test_a_circle_is_said_once_whichever_of_its_rulebooks_finds_it(tmp_path):
+    for name, base in (("a", "b"), ("b", "c"), ("c", "a"), ("outside", "b"), ("self", "self")):
+        (tmp_path / f"{name}.rules").write_text(f"rulebook {name}\nextends {base}\n")
+    done = check([str(tmp_path)], lambda: b"")
+    assert [(one.code, one.message.partition(": ")[2]) for one in done.findings] == [
+        ("R0213", "`a` extends `b` extends `c` extends `a`"),
+        ("R0213", "`self` extends `self`"),
+    ]
+    # What leads to the circle is no part of it.
+    (found,) = check([str(tmp_path / "outside.rules")], lambda: b"").findings
+    assert found.message.endswith(": `b` extends `c` extends `a` extends `b`")
+
+
 def test_a_folder_that_cannot_be_read_is_said(tmp_path, monkeypatch):
     (tmp_path / "a.rules").write_text("vocabulary a { signal p }")
     (tmp_path / "locked").mkdir()

@@ -4,9 +4,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rulec.diagnostics import RulecError
 from rulec.rulebook.loader import load_rulebook, parse_rulebook
 
 DAYS = ["2000-01-01", "2010-01-01", "2020-01-01"]
@@ -251,3 +253,26 @@ def test_also_unless_adds_to_what_is_inherited_and_unless_replaces_it(tmp_path):
         made[word] = rule.formula
         assert made[word] == parse_rulebook(by_hand).rules[0].formula
     assert made["also unless"] != made["unless"]
+
+
+@pytest.mark.parametrize(
+    ("change", "inherited"),
+    [
+        ('drop rule unknown because "so"', "`base_rule`"),
+        ("set unknown = 3 m", "`base_room`"),
+        ("redefine unknown = wet", "`base_word`"),
+    ],
+)
+def test_what_there_is_to_change_is_what_is_inherited(change, inherited, tmp_path):
+    """A rulebook's own rules, parameters and definitions are not named."""
+    for name, extends in (("base", "signal wet"), ("own", "extends base")):
+        (tmp_path / f"{name}.rules").write_text(
+            f"rulebook {name} {extends} hard rule {name}_rule {{ require never wet }}\n"
+            f"param {name}_room = 1 m\ndefine {name}_word = wet\n"
+        )
+    path = tmp_path / "own.rules"
+    path.write_text(path.read_text() + change)
+    with pytest.raises(RulecError) as problem:
+        load_rulebook(path)
+    (found,) = [one for one in problem.value.diagnostics if one.code == "R0212"]
+    assert found.help == f"`base` has {inherited}"

@@ -17,7 +17,7 @@ from rulec.file_messages import NOTHING_LEFT
 from rulec.rulebook.batch.bare_rules import bare_rules
 from rulec.rulebook.batch.check_cache import CheckQuestion, recall, remember
 from rulec.rulebook.files import search_path as search
-from rulec.rulebook.files.reference_messages import NAME_NOT_FOUND
+from rulec.rulebook.files.reference_messages import EXTENDS_CIRCLE, NAME_NOT_FOUND
 from rulec.rulebook.files.source_walk import SUFFIX, FoundSources, LeftAlone, sources_below
 from rulec.settings import Exclusion
 from rulec.source_detection import beginning_of, first_word_at
@@ -184,6 +184,11 @@ def is_vocabulary(path: Path) -> bool:
 def _identity(diagnostic: Diagnostic) -> tuple[object, ...]:
     # Every rulebook that uses a vocabulary finds its mistakes again, perhaps by another path.
     place = diagnostic.place
+    if diagnostic.code == EXTENDS_CIRCLE.code:
+        # Each rulebook of a circle finds it, and another line that closes it.
+        places = [place, *[label.place for label in diagnostic.labels]]
+        lines = {(os.path.realpath(one.file), one.line) for one in places if one is not None}
+        return diagnostic.code, frozenset(lines)
     where = () if place is None else (os.path.realpath(place.file), place.start, place.end_column)
     return diagnostic.code, diagnostic.message, where
 

@@ -69,8 +69,9 @@ class ReferencedFiles:
     def _base(self, line: tree.ExtendsLine, chain: Sequence[Book]) -> Book:
         name, user = line.name, chain[-1].path
         path = search.find_base(name.text, name.span, user, self.search_path)
-        if any(book.path is not None and search.is_same_file(book.path, path) for book in chain):
-            raise RulecError(say.extends_circle(line, [book.file for book in chain]))
+        for place, book in enumerate(chain):
+            if book.path is not None and search.is_same_file(book.path, path):
+                raise RulecError(say.extends_circle(line, [one.file for one in chain[place:]]))
         if len(chain) > MOST_BASES:
             raise FORMULA_TOO_LARGE.error(
                 line.span,

@@ -112,7 +112,8 @@ class Overlay:
                     self.definitions[name.text] = item
             case tree.DefineItem(name):
                 if name.text not in self.definitions:
-                    self._nothing(name, "definition", "redefine", self.definitions, file)
+                    inherited = self._inherited(self.definitions, name)
+                    self._nothing(name, "definition", "redefine", inherited, file)
                 elif self._changes(name, "definition", "redefine"):
                     before = self.definitions[name.text]
                     if len(item.parameters) != len(before.parameters):
@@ -161,6 +162,11 @@ class Overlay:
         """Tell whether the file that names something has also declared it."""
         return self.declared_at[name.text].span.source is name.span.source
 
+    def _inherited(self, names: Iterable[str], user: tree.Name) -> list[str]:
+        """The options, parameters or definitions that are not of the user's own file."""
+        source = user.span.source
+        return [name for name in names if self.declared_at[name].span.source is not source]
+
     def _add_topic(self, entry: tree.TopicEntry) -> None:
         known = self.topics.setdefault(entry.name.text, entry)
         if known is not entry:
@@ -206,7 +212,8 @@ class Overlay:
     def _set(self, item: tree.SetItem, file: tree.File, level: int) -> None:
         name, known = item.name, [*self.options, *self.parameters]
         if name.text not in known:
-            self._nothing(name, "option or parameter", "set", known, file)
+            inherited = self._inherited(known, name)
+            self._nothing(name, "option or parameter", "set", inherited, file)
         elif isinstance(item.value, bool) != (name.text in self.options):
             self.mistakes.append(say.value_of_another_kind(item))
         elif not isinstance(item.value, bool):
@@ -272,7 +279,9 @@ class Overlay:
         if before is not None and before.span.source is name.span.source:
             self.mistakes.append(say.changed_twice(name, "rule", before))
         elif known is None:
-            self._nothing(name, "rule", verb, self.rules, file)
+            entries = self.rules.items()
+            inherited = [one for one, by in entries if by.changed or by.book is not file]
+            self._nothing(name, "rule", verb, inherited, file)
         elif known.book is file:
             self.mistakes.append(say.own(name, "rule", verb, known.item.name))
         else:
