@@ -22,6 +22,7 @@ from rulec.extraction.signal_arrays import (
     written,
 )
 from rulec.extraction.signals.clearance_signals import clearance_signals
+from rulec.extraction.signals.conduct.called_signals import called_signals
 from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
 from rulec.extraction.signals.conduct.lane_change_signals import lane_change_signals
 from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
@@ -70,6 +71,7 @@ _SIGNALS: tuple[Callable[[DriveContext, SignalNames], SignalColumns], ...] = (
     roundabout_signals,
     zone_signals,
     intention_signals,
+    called_signals,
     merge_signals,
     clearance_signals,
     next_lane_signals,

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from rulec.extraction.signals.clearance_signals import clearance_signals
+from rulec.extraction.signals.conduct.called_signals import called_signals
 from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
 from rulec.extraction.signals.conduct.lane_change_signals import lane_change_signals
 from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
@@ -40,7 +41,7 @@ GROUPS = (
     *(ego_signals, participant_signals, following_signals, map_signals, road_signals),
     *(junction_signals, line_signals, priority_signals, crossing_signals, roundabout_signals),
     zone_signals,
-    *(intention_signals, merge_signals, clearance_signals),
+    *(intention_signals, called_signals, merge_signals, clearance_signals),
     *(flow_signals, overtaking_signals),
     *(lane_change_signals, lane_mark_signals),
     *(manoeuvre_signals, lamp_signals, reason_signals, turning_conflicts, next_lane_signals),

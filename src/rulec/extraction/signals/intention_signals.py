@@ -1,4 +1,4 @@
-"""Signals of what others show and do next: turning off, leaving a stop, being on call.
+"""Signals of what others show and do next: turning off, leaving a stop, overtaking.
 
 What somebody was about to do is known from what it did. Whether it has signalled is known where the
 recording has its lamps; elsewhere who does what it should have signalled first is unknown.
@@ -6,16 +6,19 @@ recording has its lamps; elsewhere who does what it should have signalled first 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.conduct.lamp_signals import FLASH_S
-from rulec.extraction.signals.ego_lanelets import own_lanelets
+from rulec.extraction.signals.conduct.others_lamps import (
+    flashing,
+    lit_lamps,
+    moves,
+    own_part,
+    stands,
+)
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import (
     Passes,
@@ -23,12 +26,9 @@ from rulec.extraction.signals.signal_passes import (
     signals_by,
 )
 from rulec.extraction.tracks.tracks import Flags
-from rulec.recordings.recording import JOINING, Lamp
+from rulec.recordings.recording import JOINING
 
 _PUBLIC = ("bus", "rail_vehicle")
-
-_FACES = -0.5
-"""The cosine between the directions of ego's road and of one who has come the other way on it."""
 
 
 def intention_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
@@ -36,49 +36,19 @@ def intention_signals(context: DriveContext, names: SignalNames = None) -> Signa
     return signals_by(_PASSES, context, names)
 
 
-def _emergency_vehicle_near(context: DriveContext) -> SignalColumns:
-    """Whether one on call is near; unknown of one that stands, or does not sound a told horn."""
-    on_call, not_told = _on_call(context)
-    rows = np.flatnonzero((on_call | not_told).any(axis=1))
-    comes, perhaps = np.zeros((2, context.states), dtype=bool)
-    if len(rows):
-        near = context.relevant[rows] & _comes_near(context)[rows]
-        needs_way = _drives(context, rows) & ~_is_silent(context, rows)
-        comes = np.any(near & on_call[rows] & needs_way, axis=0)
-        perhaps = np.any(near & (not_told[rows] | (on_call[rows] & ~needs_way)), axis=0)
-    return SignalColumns(
-        {"emergency_vehicle_near": comes}, unknown={"emergency_vehicle_near": perhaps & ~comes}
-    )
-
-
-def _called(context: DriveContext) -> SignalColumns:
-    on_call, not_told = _on_call(context)
-    return SignalColumns(about={"on_call": on_call}, unknown={"on_call": not_told})
-
-
-@once
-def _on_call(context: DriveContext) -> tuple[Flags, Flags]:
-    """Flags of emergency vehicles with their blue lights on, and of those that perhaps are that."""
-    called = context.tracks.of_type("emergency_vehicle")[:, None]
-    kinds = np.array([body.type == "unknown" for body in context.tracks.participants], dtype=bool)
-    blue, told = _lit(context, "blue_light")
-    blue = _flashing(blue, context)
-    return called & blue, (called & ~told & ~blue) | kinds[:, None]
-
-
 def _boarding(context: DriveContext) -> SignalColumns:
     public = np.any([context.tracks.of_type(kind) for kind in _PUBLIC], axis=0)[:, None]
-    stops = public & _stands(context)
-    doors, told = _lit(context, "doors")
+    stops = public & stands(context)
+    doors, told = lit_lamps(context, "doors")
     return SignalColumns(about={"boarding": stops & doors}, unknown={"boarding": stops & ~told})
 
 
 def _warning_lights(context: DriveContext) -> SignalColumns:
     if "hazard_lights" not in context.surroundings.whole.shows:
         return SignalColumns()
-    hazard, told = _lit(context, "hazard_lights")
-    blue, _ = _lit(context, "blue_light")
-    warns = hazard | _flashing(blue, context)
+    hazard, told = lit_lamps(context, "hazard_lights")
+    blue, _ = lit_lamps(context, "blue_light")
+    warns = hazard | flashing(blue, context)
     return SignalColumns(
         about={"warning_lights": warns}, unknown={"warning_lights": ~told & ~warns}
     )
@@ -90,106 +60,30 @@ def may_have_broken_down(context: DriveContext) -> Flags:
     Nobody knows whether they do not stand for the traffic, or warn of the end of a jam.
     """
     left, right, hazard = (
-        _lit(context, lamp)[0] for lamp in ("left_indicator", "right_indicator", "hazard_lights")
+        lit_lamps(context, lamp)[0]
+        for lamp in ("left_indicator", "right_indicator", "hazard_lights")
     )
-    both = _flashing(left, context) & _flashing(right, context)
-    warns: Flags = _stands(context) & (both | _flashing(hazard, context))
+    both = flashing(left, context) & flashing(right, context)
+    warns: Flags = stands(context) & (both | flashing(hazard, context))
     return warns
 
 
 def _hazard_lights(context: DriveContext) -> SignalColumns:
     if "hazard_lights" not in context.surroundings.whole.shows:
         return SignalColumns()
-    hazard, told = _lit(context, "hazard_lights")
+    hazard, told = lit_lamps(context, "hazard_lights")
     return SignalColumns(
         about={"hazard_lights": hazard}, unknown={"hazard_lights": ~told & ~hazard}
     )
 
 
-def _stands(context: DriveContext) -> Flags:
-    stands: Flags = context.tracks.speed * KMH < context.thresholds.standing_kmh
-    return stands
-
-
-@once_a_recording
-def _lamps(context: DriveContext) -> Mapping[Lamp, tuple[Flags, Flags]]:
-    """Flags of participants of the whole recording whose lamp is lit, and of which it tells."""
-    tracks = context.surroundings.tracks
-    flags: dict[Lamp, tuple[Flags, Flags]] = {}
-    for row, body in enumerate(tracks.participants):
-        steps = np.fromiter(body.lamps, dtype=int, count=len(body.lamps)) - tracks.first
-        inside = (steps >= 0) & (steps < tracks.present.shape[1])
-        for lamp in body.shows if inside.any() else ():
-            if lamp not in flags:
-                flags[lamp] = np.zeros_like(tracks.present), np.zeros_like(tracks.present)
-            lit, told = flags[lamp]
-            told[row, steps[inside]] = True
-            shown = np.array([lamp in lamps for lamps in body.lamps.values()], dtype=bool)
-            lit[row, steps[inside]] = shown[inside]
-    return flags
-
-
-def _own_part(context: DriveContext, flags: Flags) -> Flags:
-    """The drive's rows and columns of flags of the whole recording."""
-    return flags.take(context.tracks.rows, axis=0).take(context.columns, axis=1)
-
-
-def _lit(context: DriveContext, lamp: Lamp) -> tuple[Flags, Flags]:
-    """Flags of participants whose lamp is lit, and of those of which the recording tells."""
-    if lamp not in _lamps(context):
-        return np.zeros_like(context.relevant), np.zeros_like(context.relevant)
-    lit, told = _lamps(context)[lamp]
-    return _own_part(context, lit), _own_part(context, told)
-
-
-def _flashing(lit: Flags, context: DriveContext) -> Flags:
-    return context.spans.within(lit, round(FLASH_S / context.recording.step_s), around=True)
-
-
-def _comes_near(context: DriveContext) -> Flags:
-    """Flags of those who are behind or beside ego, or come towards it on its carriageway.
-
-    One that has come towards ego and is past it drives away, also while it waits at lights there.
-    """
-    station = relations.station(context)
-    along, faces = context.extents.along, np.cos(context.extents.turned) < _FACES
-    against = np.where(_stands(context), faces, along * KMH < -context.thresholds.standing_kmh)
-    directions = context.surroundings.directions
-    divided = own_lanelets(context).flags(lambda lanelet: directions(lanelet)[1] is True)
-    towards = against & (station != relations.IN_FRONT_OF) & ~divided
-    comes: Flags = towards | (~against & (station != relations.BEHIND))
-    return comes
-
-
-def _drives(context: DriveContext, rows: NDArray[intp]) -> Flags:
-    """Flags of those who drive now, or have or will within ``preparing_s``: no more than held up.
-
-    Of these rows. One that stands for longer, lights on, may be where it was called to.
-    """
-    steps = round(context.thresholds.preparing_s / context.recording.step_s)
-    return context.spans.within(_moves(context)[rows], steps, around=True)
-
-
-def _is_silent(context: DriveContext, rows: NDArray[intp]) -> Flags:
-    """Flags of those of these rows whose horn the recording tells, and which do not sound it."""
-    horn, told = (flags[rows] for flags in _lit(context, "horn"))
-    steps = round(context.thresholds.preparing_s / context.recording.step_s)
-    silent: Flags = told & ~context.spans.within(horn, steps, around=True)
-    return silent
-
-
-def _moves(context: DriveContext) -> Flags:
-    moves: Flags = context.tracks.speed * KMH >= context.thresholds.standing_kmh
-    return moves
-
-
 def _far_indicator(context: DriveContext) -> tuple[Flags, Flags]:
-    return _lit(context, "left_indicator" if context.side == "right" else "right_indicator")
+    return lit_lamps(context, "left_indicator" if context.side == "right" else "right_indicator")
 
 
 def _turning_far(context: DriveContext) -> SignalColumns:
     """The signal of those who have signalled to turn to the far side, and do."""
-    turns, open_end = (_own_part(context, flags) for flags in _turns(context))
+    turns, open_end = (own_part(context, flags) for flags in _turns(context))
     lit, told = _far_indicator(context)
     if "arrivals" not in context.recording.complete:
         # Who signals and leaves the map may turn beyond it
@@ -253,14 +147,14 @@ def _leaving_stop(context: DriveContext) -> SignalColumns:
 def _buses_leave(context: DriveContext, buses: NDArray[intp]) -> tuple[Flags, Flags]:
     """Flags of buses, a row each, that leave a stop, and of those of which nobody knows it."""
     steps = round(context.thresholds.preparing_s / context.recording.step_s)
-    stands = _stands(context)[buses]
-    leaves = stands & context.spans.within(_moves(context)[buses], steps)
+    still = stands(context)[buses]
+    leaves = still & context.spans.within(moves(context)[buses], steps)
     lit, told = (flags[buses] for flags in _far_indicator(context))
-    doors, doors_told = (flags[buses] for flags in _lit(context, "doors"))
+    doors, doors_told = (flags[buses] for flags in lit_lamps(context, "doors"))
     at_stop = context.spans.within_last(doors, steps)
     known = told & doors_told
     # What it does after it is lost from sight nobody knows
-    lost = stands & lit & at_stop & _ends_within(context, steps)[buses]
+    lost = still & lit & at_stop & _ends_within(context, steps)[buses]
     return leaves & lit & at_stop, (leaves & ~known) | (lost & ~leaves)
 
 
@@ -356,9 +250,7 @@ def _came_beside(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Fla
 
 
 _PASSES: Passes = {
-    ("emergency_vehicle_near",): _emergency_vehicle_near,
     ("boarding",): _boarding,
-    ("on_call",): _called,
     ("leaving_stop",): _leaving_stop,
     ("warning_lights",): _warning_lights,
     ("hazard_lights",): _hazard_lights,

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import map_contents
-from rulec.extraction.signals.ego_signals import room_beside
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.measured_numbers import corner_ahead
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, ids_by_state
@@ -67,11 +66,6 @@ def _tracks_at_kerb(context: DriveContext) -> SignalColumns:
 
 def _tells_rails(context: DriveContext) -> bool:
     return "rail" in context.recording.complete or bool(_rail_stretches(context))
-
-
-def _way_cleared(context: DriveContext) -> SignalColumns:
-    stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
-    return SignalColumns({"way_cleared": stands | _at_edge(context)})
 
 
 @once_a_road
@@ -222,11 +216,6 @@ def _directed_stretches(context: DriveContext, there: bool) -> Stretches:
     return stretches
 
 
-def _at_edge(context: DriveContext) -> Flags:
-    (right, left), edge = room_beside(context), context.thresholds.at_edge_m
-    return (np.minimum(right, left) < edge) & (np.abs(right - left) > edge)
-
-
 def _exit_clear(context: DriveContext) -> SignalColumns:
     """Is there room for ego behind what it enters, and where is that unknown?
 
@@ -358,5 +347,4 @@ _PASSES: Passes = {
     ("tracks_at_kerb",): _tracks_at_kerb,
     ("crossing_kind",): _crossing_kind,
     ("exit_clear",): _exit_clear,
-    ("way_cleared",): _way_cleared,
 }

@@ -1,0 +1,61 @@
+"""Which lamps of participants are lit, and of which of them the recording tells; who stands."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.signals.conduct.lamp_signals import FLASH_S
+from rulec.extraction.signals.signal_passes import once_a_recording
+from rulec.extraction.tracks.tracks import Flags
+from rulec.recordings.recording import Lamp
+
+
+@once_a_recording
+def lamps_of_all(context: DriveContext) -> Mapping[Lamp, tuple[Flags, Flags]]:
+    """Flags of participants of the whole recording whose lamp is lit, and of which it tells."""
+    tracks = context.surroundings.tracks
+    flags: dict[Lamp, tuple[Flags, Flags]] = {}
+    for row, body in enumerate(tracks.participants):
+        steps = np.fromiter(body.lamps, dtype=int, count=len(body.lamps)) - tracks.first
+        inside = (steps >= 0) & (steps < tracks.present.shape[1])
+        for lamp in body.shows if inside.any() else ():
+            if lamp not in flags:
+                flags[lamp] = np.zeros_like(tracks.present), np.zeros_like(tracks.present)
+            lit, told = flags[lamp]
+            told[row, steps[inside]] = True
+            shown = np.array([lamp in lamps for lamps in body.lamps.values()], dtype=bool)
+            lit[row, steps[inside]] = shown[inside]
+    return flags
+
+
+def own_part(context: DriveContext, flags: Flags) -> Flags:
+    """The drive's rows and columns of flags of the whole recording."""
+    return flags.take(context.tracks.rows, axis=0).take(context.columns, axis=1)
+
+
+def lit_lamps(context: DriveContext, lamp: Lamp) -> tuple[Flags, Flags]:
+    """Flags of participants whose lamp is lit, and of those of which the recording tells."""
+    if lamp not in lamps_of_all(context):
+        return np.zeros_like(context.relevant), np.zeros_like(context.relevant)
+    lit, told = lamps_of_all(context)[lamp]
+    return own_part(context, lit), own_part(context, told)
+
+
+def flashing(lit: Flags, context: DriveContext) -> Flags:
+    """The same with the time between two flashes."""
+    return context.spans.within(lit, round(FLASH_S / context.recording.step_s), around=True)
+
+
+def stands(context: DriveContext) -> Flags:
+    """Flags of who stands."""
+    still: Flags = context.tracks.speed * KMH < context.thresholds.standing_kmh
+    return still
+
+
+def moves(context: DriveContext) -> Flags:
+    """Flags of who moves."""
+    moving: Flags = context.tracks.speed * KMH >= context.thresholds.standing_kmh
+    return moving
