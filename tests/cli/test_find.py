@@ -151,6 +151,21 @@ def test_only_what_somebody_has_written_is_shown(files, case, capsys):
     assert "what_is_asked" not in told
 
 
+@pytest.mark.parametrize(
+    ("formula", "way_out"),
+    [
+        ("R_cw", "it is a word of the vocabulary `paper`: `--use paper`"),
+        (
+            "(v: vehicle) is_passed_by(v)",
+            "it is defined in the rulebook `schemas`: `--rulebook schemas`",
+        ),
+    ],
+)
+def test_a_word_from_elsewhere_is_had_by_an_option(files, formula, way_out, capsys):
+    assert main(["find", formula, files[1]]) == 2
+    assert f"= help: {way_out}\n" in capsys.readouterr().err
+
+
 def test_a_name_that_the_words_lack(files, capsys):
     assert main(["find", "(v: lorry) built_up", files[1]]) == 2
     assert "the formula says nothing about `v`" in capsys.readouterr().err

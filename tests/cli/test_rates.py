@@ -95,8 +95,9 @@ def test_confidence_is_a_probability(found, confidence, capsys):
     assert "--confidence" in capsys.readouterr().err
 
 
-def test_a_file_that_is_not_there(capsys):
-    assert main(["rates", "nowhere.jsonl"]) == 2
+@pytest.mark.parametrize("name", ["nowhere.jsonl", "nowhere"])
+def test_a_file_that_is_not_there(name, capsys):
+    assert main(["rates", name]) == 2
     assert "R0701" in capsys.readouterr().err
 
 

@@ -178,8 +178,12 @@ def test_what_was_killed_goes_on_where_it_was(moment, folder_of, expected, tmp_p
 
 def test_what_is_done_is_not_done_again_and_what_has_changed_is(folder_of, traces, tmp_path):
     out = tmp_path / "out"
-    assert run([folder_of], out).before == 0
-    assert run([folder_of], out).before == 5
+    first, again = run([folder_of], out), run([folder_of], out)
+    assert (first.before, again.before) == (0, 5)
+    assert as_text(first).splitlines()[-1] == f"wrote 5 files of findings to {first.findings}"
+    assert as_text(again).splitlines()[-1] == (
+        f"wrote 0 files of findings to {first.findings}; 5 more were there before"
+    )
     last = sorted(folder_of.iterdir())[-1]
     os.utime(last, ns=(1, 1))
     assert run([folder_of], out).before == 3  # that one, and the one whose drive goes over to it

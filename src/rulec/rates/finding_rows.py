@@ -99,7 +99,8 @@ def finding_rows(path: Path) -> Iterator[FindingRow]:
     elif name.endswith(".csv"):
         rows = _csv_rows(path)
     else:
-        raise no_findings(str(path), "it ends in none of .jsonl, .csv and .parquet")
+        with opened(path):  # What is not there is said to be so, whatever it is called.
+            raise no_findings(str(path), "it ends in none of .jsonl, .csv and .parquet")
     for number, row in enumerate(rows, 1):
         if row.get("kind") in ("drive", "rule"):
             yield _row(row, path, number)

@@ -88,12 +88,11 @@ def read_query(
 
 
 def _in_words(problem: Diagnostic) -> Diagnostic:
-    """The diagnostic without the rule's name, and with the way out where variables stand."""
-    return replace(
-        problem,
-        message=problem.message.replace(f" of `{_NAME}`", ""),
-        help=problem.help.replace("behind the rule's name", "before the formula"),
-    )
+    """The diagnostic without the rule's name, and with ways out for a formula that is no rule."""
+    way_out = problem.help.replace("behind the rule's name", "before the formula")
+    way_out = re.sub(r": `use (\w+)`$", r": `--use \1`", way_out)
+    way_out = re.sub(r": `extends ([\w-]+)`, or copy it$", r": `--rulebook \1`", way_out)
+    return replace(problem, message=problem.message.replace(f" of `{_NAME}`", ""), help=way_out)
 
 
 def _word(vocabulary: str, folders: Sequence[Path]) -> str:

@@ -84,6 +84,7 @@ def _files(run: FleetRun) -> Iterator[str]:
         yield f"lost        {lost}: its process was stopped twice, perhaps for lack of memory"
     for path in run.leftovers:
         yield f"left over   {path}: it is of no input of this run"
-    before = f", {run.before:,} of them before" if run.before else ""
-    files = "file" if run.units == 1 else "files"
-    yield f"wrote {run.units - len(run.tally.lost):,} {files} of findings{before} to {run.findings}"
+    written = run.units - run.before - len(run.tally.lost)
+    before = f"; {run.before:,} more were there before" if run.before else ""
+    files = "file" if written == 1 else "files"
+    yield f"wrote {written:,} {files} of findings to {run.findings}{before}"
