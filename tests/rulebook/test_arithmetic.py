@@ -257,3 +257,31 @@ def test_what_depends_on_the_same_condition_twice_has_no_impossible_cases():
     assert formula_of(
         "gap < ((1 m if wet else 2 m) if wet else (1 m if wet else 2 m))"
     ) == formula_of("gap < (1 m if wet else 2 m)")
+
+
+TRAFFIC = """rulebook r type car signal wet param headway = 2 s
+quantity gap(c: car) in m
+quantity speed_of(c: car) in km/h
+quantity pace in km/h
+hard rule h (c: car) { require always (%s) }"""
+
+
+@pytest.mark.parametrize(
+    ("formula", "mended"),
+    [
+        ("gap(c) >= headway", "`headway * pace`"),
+        ("2 s < gap(c)", "`2 s * pace`"),
+        ("gap(c) / pace >= headway", "`gap(c) >= n * pace`"),
+        ("pace <= 50 km/h if wet else 90 km/h", "`(50 km/h if wet else 90 km/h)`"),
+    ],
+)
+def test_who_mixes_kinds_is_shown_how_it_is_written(formula, mended):
+    with pytest.raises(RulecError) as problem:
+        parse_rulebook(TRAFFIC % formula)
+    assert mended in problem.value.diagnostics[0].help
+
+
+def test_without_a_word_for_a_speed_none_is_proposed():
+    with pytest.raises(RulecError) as problem:
+        parse_rulebook(TRAFFIC.replace("pace in km/h", "pace in m") % "gap(c) >= headway")
+    assert problem.value.diagnostics[0].help == "check the names and the units"

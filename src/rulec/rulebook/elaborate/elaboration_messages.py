@@ -14,7 +14,7 @@ from rulec.rulebook.names.atom_messages import MIXED_DIMENSIONS, NOT_BOOLEAN, NU
 from rulec.syntax import tree
 from rulec.syntax.messages.literal_values import NUMBER_TOO_LARGE
 from rulec.syntax.tree_printer import print_formula
-from rulec.vocabulary import Enumeration
+from rulec.vocabulary import Enumeration, Quantity
 from rulec.vocabulary.dimensions import DIMENSIONS, Dimension
 
 OPERATOR_BEFORE_THEN = Code(
@@ -185,9 +185,11 @@ def two_dimensions(
         expected=f"this is {second_kind}",
         help=_unit_help(second, first, scope)
         or _unit_help(first, second, scope)
+        or _speed_help((first, left), (second, right), scope)
         or _other_unit(second, first, scope)
         or _other_unit(first, second, scope)
-        or _kind_help(first, left, second, right),
+        or _kind_help(first, left, second, right)
+        or "check the names and the units",
         labels=(Label(first.span.place, f"this is {first_kind}"), *origins(scope, first, second)),
     )
 
@@ -216,17 +218,47 @@ def _kind_help(
             text = short(node)
             factor = f"({text})" if isinstance(node, tree.Arithmetic | tree.Minus) else text
             return f"a time makes them alike, such as `2 s * {factor}`"
-    return "check the names and the units"
+    return ""
+
+
+_LENGTH_AND_TIME = (DIMENSIONS["length"], DIMENSIONS["time"])
+
+
+def _speed_help(
+    left: tuple[tree.Formula, NumberByCases],
+    right: tuple[tree.Formula, NumberByCases],
+    scope: Scope,
+) -> str:
+    """The way out for a length beside a time, where there is a word for ego's speed."""
+    symbols = scope.symbols
+    speeds = [
+        name
+        for name, item in symbols.items.items()
+        if isinstance(item, Quantity)
+        and not item.parameters
+        and (unit := symbols.unit(item.unit)) is not None
+        and unit.dimension == DIMENSIONS["speed"]
+    ]
+    for (_, one), (node, other) in ((left, right), (right, left)):
+        if speeds and (one.dimension, other.dimension) == _LENGTH_AND_TIME:
+            return f"a speed makes a length of a time: `{short(node)} * {speeds[0]}`"
+    return ""
 
 
 def two_kinds(node: tree.Conditional, value: object, otherwise: object, scope: Scope) -> Diagnostic:
     """``number if condition else truth``."""
+    way_out = "both sides of `if … else` are numbers, or both are true or false"
+    if isinstance(node.value, tree.Compare) and isinstance(otherwise, NumberByCases):
+        number = (
+            f"{short(node.value.right)} if {short(node.condition)} else {short(node.otherwise)}"
+        )
+        way_out = f"put parentheses around what is one number: `({number})`"
     return NUMBER_OR_FORMULA.at(
         node.otherwise.span,
         f"`{short(node.value)}` is {what_of(value)} and `{short(node.otherwise)}` "
         f"{what_of(otherwise)}: they cannot stand for each other",
         expected=f"this is {what_of(otherwise)}",
-        help="both sides of `if … else` are numbers, or both are true or false",
+        help=way_out,
         labels=origins(scope, node.value),
     )
 
@@ -243,14 +275,17 @@ def not_linear(node: tree.Arithmetic) -> Diagnostic:
     if node.operator == "*":
         why = "two numbers that change from state to state cannot be multiplied"
         where = "on one side"
+        way_out = "multiply and divide by fixed numbers and parameters only"
     else:
         why = "a number that changes from state to state cannot be divided by"
         where = "behind `/`"
+        left, right = short(node.left), short(node.right)
+        way_out = f"for `{left} / {right} >= n` write `{left} >= n * {right}`"
     return NOT_LINEAR.at(
         node.span,
         f"`{short(node)}`: {why}",
         expected=f"expected a fixed number {where}",
-        help="multiply and divide by fixed numbers and parameters only",
+        help=way_out,
     )
 
 
