@@ -46,7 +46,7 @@ def test_help_lists_the_verbs_and_the_exit_status(capsys):
     ("arguments", "words"),
     [
         (["verfy"], "did you mean `verify`?"),
-        (["maneuvers", "s2"], "Missing option '-r' / '--rulebook'"),
+        (["maneuvers", "s2"], "`-r` or `--rulebook` is missing"),
         (
             ["maneuvers", "s2", "-r", "esterle2019", "--adjacency", "near"],
             "it is one of touch, edge, forward",

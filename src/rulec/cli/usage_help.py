@@ -62,6 +62,7 @@ _OF_OTHER_VERBS = {
 
 _NO_CHOICE = re.compile(r"'(?P<given>.*)' is not one of ")
 _NO_NUMBER = re.compile(r"'(?P<given>.*)' is not a valid integer")
+_OUT_OF_RANGE = re.compile(r"(?P<given>\S+) is not in the range ")
 _TOO_MUCH = re.compile(r"Got unexpected extra arguments? \((?P<given>.*)\)")
 _NO_COMMAND = re.compile(r"No such command '(?P<given>.*?)'\.")
 
@@ -73,6 +74,13 @@ def reworded(problem: click.ClickException) -> str:
         known = [option for one in problem.ctx.command.params for option in one.opts]
         if others := _OF_OTHER_VERBS.get(problem.option_name):
             return f"there is no option `{problem.option_name}` here; {others}"
+        if problem.option_name in ("-r", "--rulebook") and "-r" not in known:
+            names = {
+                one.name for one in problem.ctx.command.params if isinstance(one, click.Argument)
+            }
+            if names & {"rulebook", "rulebooks", "sources"}:
+                path = problem.ctx.command_path
+                return f"the rulebook stands without `{problem.option_name}`, as in `{path} de`"
         fitting = [option for option in known if option.startswith(problem.option_name)]
         # Without their dashes, which all have and which say nothing of what is meant.
         by_name = {option.lstrip("-"): option for option in known}
@@ -90,6 +98,13 @@ def reworded(problem: click.ClickException) -> str:
         return f"{_as_typed(param, problem)}: `{found['given']}` is no whole number"
     if (
         param is not None
+        and isinstance(kind, click.IntRange | click.FloatRange)
+        and (found := _OUT_OF_RANGE.match(problem.message))
+    ):
+        limits = f"from {kind.min} to {kind.max}" if kind.max is not None else f"{kind.min} or more"
+        return f"{_as_typed(param, problem)}: `{found['given']}` is out of range: it is {limits}"
+    if (
+        param is not None
         and isinstance(kind, click.Choice)
         and (found := _NO_CHOICE.search(problem.message))
     ):
@@ -101,8 +116,13 @@ def reworded(problem: click.ClickException) -> str:
         return f"{whose}there is no `{given}`; {way_out}"
     if isinstance(problem, click.BadOptionUsage) and message.endswith("requires an argument."):
         return f"{problem.option_name} is given without a value"
-    is_missing = isinstance(problem, click.MissingParameter)
-    if isinstance(param, click.Option) and not is_missing:
+    if isinstance(problem, click.MissingParameter):
+        if isinstance(param, click.Option):
+            return f"{' or '.join(f'`{name}`' for name in param.opts)} is missing"
+        return (
+            f"`{param.make_metavar(problem.ctx)}` is missing" if param and problem.ctx else message
+        )
+    if isinstance(param, click.Option):
         return f"{_as_typed(param, problem)}: {problem.message}"
     if found := _TOO_MUCH.match(message):
         words = found["given"].split()
