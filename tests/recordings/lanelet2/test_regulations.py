@@ -113,6 +113,7 @@ def test_a_sign_at_the_line_behind_which_a_lanelet_begins(tmp_path):
         *[("usR1-1", "STOP", None), ("us_r1-2", "YIELD", None), ("usR2-1", "MAX_SPEED", None)],
         *[("stop_sign", "STOP", None), ("jp330", "STOP", None), ("plA-7", "YIELD", None)],
         *[("frAB3a", "YIELD", None), ("se_b4", "PRIORITY", None), ("jp206", "UNKNOWN", None)],
+        *[("jp330-A", "STOP", None), ("jp330_2", "STOP", None), ("ch2.30.1", "MAX_SPEED", None)],
         # Numbers of countries whose signs are not known here are not Germany's
         *[("at206", "UNKNOWN", None), ("xx206", "UNKNOWN", None), ("", "UNKNOWN", None)],
         *[("50 km/h", "MAX_SPEED", 50), ("30mph", "MAX_SPEED", 30 * 1.609344)],

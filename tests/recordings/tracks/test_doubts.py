@@ -12,12 +12,14 @@ LANE = """
 </lanelet>"""
 
 
-def told(tmp_path, cars=4, size=(4.5, 1.8), step=0.1, **changed):
+def told(tmp_path, cars=4, size=(4.5, 1.8), step=0.1, limit="", **changed):
     """The remarks on cars that go east and north in turns, at 10 m/s."""
+    said = f"<speedLimit>{limit}</speedLimit>" if limit else ""
+    lane = LANE.replace("</lanelet>", f"{said}</lanelet>")
     bodies = "".join(_car(number, size, changed) for number in range(cars))
     file = tmp_path / "DEU_Some-1_1_T-1.xml"
     head = f'commonRoadVersion="2020a" benchmarkID="DEU_Some-1_1_T-1" timeStepSize="{step}"'
-    file.write_text(f"<commonRoad {head}>{LANE}{bodies}</commonRoad>")
+    file.write_text(f"<commonRoad {head}>{lane}{bodies}</commonRoad>")
     return read_recording(file).remarks
 
 
@@ -82,3 +84,47 @@ def test_axes_that_contradict_the_headings(tmp_path, changed, angle):
 def test_of_one_or_two_nothing_is_concluded(tmp_path):
     """Who alone slides, or is measured badly, may do so."""
     assert told(tmp_path, cars=2, speed=lambda row: 36.0, heading=lambda row: 3.0) == ()
+
+
+EASTWARD = {
+    "x": lambda row: row["x"] if row["heading"] == 0.0 else row["y"],
+    "y": lambda row: 0.0,
+    "heading": lambda row: 0.0,
+}
+
+
+@pytest.mark.parametrize(
+    ("limit", "cars", "said"),
+    [
+        # 130 km/h in a field of m/s, however fast the few cars are
+        (130, 1, "limits are up to 468 km/h"),
+        # At 10 m/s all drive 2.6 times 50 km/h that were divided by 3.6 twice
+        (3.86, 8, "half of the vehicles drive 2.6 times the limit or faster"),
+        # 25 mph without a unit, read as km/h, and traffic at 22 mph
+        (6.5, 5, "half of the vehicles drive 1.5 times the limit or faster"),
+        # 36 km/h would be the limit of a queue as well, but 30 m/s is no limit where 10 m/s is
+        (30, 12, "nine in ten vehicles drive 0.33 times the limit or slower"),
+    ],
+)
+def test_limits_that_no_traffic_goes_by(tmp_path, limit, cars, said):
+    (remark,) = told(tmp_path, cars=cars, limit=limit, **EASTWARD)
+    assert said in remark
+    assert "unit" in remark or "km/h or mph" in remark
+
+
+@pytest.mark.parametrize(
+    ("limit", "cars"),
+    [
+        # As they should be; the highest limit that there is; nobody on the road but a few
+        *[(13.89, 12), (8.33, 12), (44.44, 12), (3.86, 4)],
+        # A queue on a motorway is slow, too; and so are a few, whatever the limit
+        *[(33.33, 12), (30, 9)],
+    ],
+)
+def test_limits_that_traffic_may_go_by(tmp_path, limit, cars):
+    assert told(tmp_path, cars=cars, limit=limit, **EASTWARD) == ()
+
+
+def test_who_is_on_no_lane_with_a_limit_says_nothing_of_limits(tmp_path):
+    aside = EASTWARD | {"y": lambda row: 9.0}
+    assert told(tmp_path, cars=12, limit=3.86, **aside) == ()

@@ -95,13 +95,13 @@ _MORE: Mapping[str, Mapping[str, str]] = MappingProxyType(
 B1 YIELD, B5 STOP, B9 PRIORITY, B15 RIGHT_OF_WAY, D5 ROUNDABOUT, C35 NO_OVERTAKING_START
 """),
         "CHE": _signs("""
-2.30 MAX_SPEED, 2.41.1 ROUNDABOUT, 2.44 NO_OVERTAKING_START, 3.01 STOP, 3.02 YIELD,
-3.03 PRIORITY
+2.30 MAX_SPEED, 2.30.1 MAX_SPEED, 2.41.1 ROUNDABOUT, 2.44 NO_OVERTAKING_START, 3.01 STOP,
+3.02 YIELD, 3.03 PRIORITY
 """),
         "ESP": _signs("R3 PRIORITY, R402 ROUNDABOUT"),
         "FRA": _signs("AB3A YIELD, AB4 STOP, AB6 PRIORITY, B3 NO_OVERTAKING_START"),
         "GBR": _signs("601.1 STOP, 602 YIELD, 632 NO_OVERTAKING_START, 670 MAX_SPEED"),
-        "JPN": _signs("330 STOP"),
+        "JPN": _signs("330 STOP, 330-A STOP, 330-B STOP, 330-2 STOP"),
         "NLD": _signs("""
 A1 MAX_SPEED, B1 PRIORITY, B6 YIELD, B7 STOP, D1 ROUNDABOUT, F1 NO_OVERTAKING_START
 """),
@@ -114,7 +114,16 @@ B1 YIELD, B2 STOP, B4 PRIORITY, C27 NO_OVERTAKING_START, C31 MAX_SPEED, D3 ROUND
         "USA": _signs("R1-2 YIELD, R4-1 NO_OVERTAKING_START"),
     }
 )
-"""Signs that countries' own catalogues have, in capitals, and `commonroad-io` has not."""
+"""Signs that countries' own catalogues have, in capitals, and `commonroad-io` has not.
+
+Seen in Belgium's royal decree of 1 December 1975, articles 67 and 69 (B1, B5, B9, B15, D5), the
+Swiss Signalisationsverordnung, articles 22, 24, 26 and 36, France's instruction on signs, annex B
+(B3) and parts on priority (AB3a, AB4, AB6), the British regulations of 2002, schedule 1 (601.1,
+602) and Traffic Signs Manual, chapter 3, appendix B (670), Japan's order on signs (330, 330-2), the
+Dutch RVV 1990, annex 1 (B6, D1, F1), Poland's regulation of 31 July 2002 (A-7, B-20, B-25, B-33,
+D-1), lists of Swedish signs (B1, B2, B4, C31, D3), the MUTCD (R1-2, R4-1), and Australia's AS 1742
+(R1-3); the others are from memory.
+"""
 
 CATALOGUED = frozenset({*_COUNTRIES, *_MORE} - {"CHN", "ITA"})
 """The countries of whose catalogues something is known here, besides Germany."""

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from rulec.recordings.recording import Recording
 from rulec.recordings.recording_format import RECORDING
 from rulec.recordings.track import Track, TrackStates
+from rulec.recordings.tracks.limit_doubts import limit_doubts
 
 _MOST_BODIES = 60
 _FEWEST_BODIES = 3
@@ -34,6 +35,8 @@ def with_doubts(recording: Recording, path: Path) -> Recording:
     Raises RulecError R0610 if most vehicles move across or against their headings.
     """
     tracks = _tracks(recording)
+    doubts = tuple(limit_doubts(recording, tracks))
+    recording = replace(recording, remarks=(*recording.remarks, *doubts)) if doubts else recording
     if len(tracks) < _FEWEST_BODIES:
         return recording
     angle = float(np.median([_askew_deg(track) for track in tracks]))

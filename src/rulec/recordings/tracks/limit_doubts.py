@@ -1,0 +1,86 @@
+"""Speed limits that nobody has put up, or that no traffic goes by: they may be in a wrong unit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import isfinite
+
+import numpy as np
+import shapely
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.recordings.recording import Lanelet, Recording, is_lane
+from rulec.recordings.track import Track
+
+_HIGHEST_KMH = 162.0
+"""No sign says more: 160 km/h is the highest limit of a country's roads."""
+
+_FEWEST_FAST, _FEWEST_SLOW = 5, 10
+_TOO_FAST = 1.5
+"""Miles are 1.609 km. Of traffic that has no such doubt the median is 1.35 times the limit."""
+
+_TOO_SLOW = 0.55
+"""27 m/s are 60 mph, and 60 m/s are 2.2 times as much. Queues may be as slow, so that limits count
+only if they are multiples of 5 m/s, as those in km/h and mph are if they are taken for m/s."""
+
+_ROUND_MPS = 5.0
+_ALMOST_MPS = 0.005
+_RAILS = frozenset({"rail", "tram"})
+
+
+def limit_doubts(recording: Recording, tracks: Sequence[Track]) -> Iterator[str]:
+    """What is to be said of a recording's limits; ``tracks`` are those of vehicles that move."""
+    lanes = [one for one in recording.lanelets.values() if _has_limit(one)]
+    if not lanes:
+        return
+    limits = np.array([one.limit_mps for one in lanes], dtype=float)
+    highest = float(limits.max()) * 3.6
+    if highest > _HIGHEST_KMH:
+        yield f"limits are up to {highest:.0f} km/h: they may be in another unit than m/s"
+        return
+    if len(tracks) < _FEWEST_FAST:
+        return
+    most, least = _shares(tracks, recording.step_s, lanes, limits)
+    if len(most) >= _FEWEST_FAST and np.median(most) > _TOO_FAST:
+        yield (
+            f"half of the vehicles drive {np.median(most):.2g} times the limit or faster: limits "
+            "may be in another unit, such as mph or m/s in the place of km/h"
+        )
+    is_round = (np.abs(limits - np.round(limits / _ROUND_MPS) * _ROUND_MPS) < _ALMOST_MPS).all()
+    if is_round and len(least) >= _FEWEST_SLOW and np.percentile(least, 90) < _TOO_SLOW:
+        yield (
+            f"nine in ten vehicles drive {np.percentile(least, 90):.2g} times the limit or slower, "
+            "and limits are whole numbers of m/s: they may be in km/h or mph"
+        )
+
+
+def _has_limit(lanelet: Lanelet) -> bool:
+    limit = lanelet.limit_mps
+    is_road = is_lane(lanelet) and not lanelet.types & _RAILS
+    return is_road and limit is not None and isfinite(limit) and limit > 0
+
+
+def _shares(
+    tracks: Sequence[Track], step_s: float, lanes: Sequence[Lanelet], limits: NDArray[float64]
+) -> tuple[list[float], list[float]]:
+    """How many times the limit each vehicle drives where it is fast.
+
+    Where lanes lie above each other by the highest of their limits, and by the lowest.
+    """
+    outlines = [shapely.Polygon(np.vstack((one.left, one.right[::-1]))) for one in lanes]
+    tree = shapely.STRtree(outlines)
+    shares: tuple[list[float], list[float]] = ([], [])
+    for track in tracks:
+        ways = np.hypot(*np.diff(track.rows[:, :2], axis=0).T)
+        speeds = ways / (np.diff(track.steps) * step_s)
+        rows, lane = tree.query(shapely.points(track.rows[1:, :2]), predicate="intersects")
+        if not len(rows):
+            continue
+        highest, lowest = np.zeros(len(speeds)), np.full(len(speeds), np.inf)
+        np.maximum.at(highest, rows, limits[lane])
+        np.minimum.at(lowest, rows, limits[lane])
+        on = highest > 0
+        for found, limit in zip(shares, (highest, lowest), strict=True):
+            found.append(float(np.percentile(speeds[on] / limit[on], 90)))
+    return shares
