@@ -70,6 +70,7 @@ _SIGNED = frozenset(
 _LAMPS = frozenset(("hazard_lights", "indicator", "warning_lights"))
 _OWN_LAMPS = frozenset(("front_fog_lamps", "headlamps", "rear_fog_lamps"))
 _ROAD_KINDS = frozenset(("built_up", "lane_kind", "road_class"))
+_ROAD_KINDS_OF_123D = _ROAD_KINDS - {"lane_kind"}
 _ARGOVERSE = _EITHER - _SIGNED - _LAMPS - _ROAD_KINDS
 """Its maps have lanes, marks and crossings; of its objects there are places, kinds and sizes."""
 
@@ -113,8 +114,7 @@ TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
     | {"icy", "night", "no_overtaking_sign", "raining", "visibility", "wet"},
     "argoverse-motion": _ARGOVERSE,
     "argoverse-sensor": _ARGOVERSE,
-    "123d": _ARGOVERSE
-    | {"built_up", "limit", "road_class", "distance_to_stop_line", "time_to_stop_line"},
+    "123d": _ARGOVERSE | (_SIGNED - {"on_priority_road", "turn_on_red_sign"}) | _ROAD_KINDS_OF_123D,
 }
 """Format -> what some file of it can tell: a particular one may lack signs, lamps, or weather."""
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import rulec
 from rulec import RulecError, read_map, read_recording
 from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
@@ -87,6 +88,72 @@ def test_lights_are_for_the_way_to_their_lane(tmp_path):
     assert not any(lane.lights_to for lane in others)
 
 
+def zone_at(x, kind, lanes, name=6):
+    """Half a metre along the road, across lane 1."""
+    return d123.stop_zone(name, kind, lanes, (x, 0), (x + 0.5, 0), (x + 0.5, 3.5), (x, 3.5))
+
+
+@pytest.mark.parametrize(
+    ("zone", "signs"),
+    [
+        # For the lane behind the line, where it begins, and for the one before it, where it ends
+        *[(zone_at(60, 2, [3]), {"1": {"STOP"}}), (zone_at(59, 3, [1]), {"1": {"YIELD"}})],
+        # A light's zone is no sign; nor is one of a kind that there is none of
+        *[(zone_at(60, 1, [3]), {}), (zone_at(60, 0, [3]), {}), (zone_at(60, "2", [3]), {})],
+    ],
+)
+def test_stop_zones_are_signs_of_the_lanes_that_end_there(tmp_path, zone, signs):
+    file = d123.write_map(tmp_path, [*d123.town(), zone])
+    roads = read_map(file, 0.1)
+    assert {key: one.signs for key, one in roads.lanelets.items() if one.signs} == signs
+    assert (roads.remarks, roads.complete) == ((), frozenset())
+
+
+@pytest.mark.parametrize(
+    ("x", "lanes"),
+    [
+        # In the middle of its lane; for none, or none of the map; where one that is in no
+        # intersection begins, as zones are drawn whose signs stand at lanes' ends
+        *[(30, [1]), (60, []), (60, [77]), (0, [1])],
+        # In an intersection ways go on
+        (120, [3]),
+    ],
+)
+def test_stop_zones_elsewhere_are_left_out_with_a_remark(tmp_path, x, lanes):
+    file = d123.write_map(tmp_path, [*d123.town(), zone_at(x, 2, lanes)])
+    roads = read_map(file, 0.1)
+    assert not any(one.signs for one in roads.lanelets.values())
+    (remark,) = roads.remarks
+    assert remark == "stop zones whose lanes do not begin or end there are left out: 1"
+
+
+def test_stop_signs_of_waymo_are_for_the_lanes_behind_them_and_are_all(tmp_path):
+    """Its maps in this form have no intersections."""
+    town = d123.town()
+    town[2][2]["lane_group_id"] = None
+    file = d123.write_map(tmp_path, [*town, zone_at(60, 2, [3])], said={"dataset": "wod-motion"})
+    roads = read_map(file, 0.1)
+    assert (roads.lanelets["1"].signs, roads.complete) == ({"STOP"}, {"STOP"})
+
+
+@pytest.mark.parametrize("lanes", [5, ["3"], {"3": 3}])
+def test_stop_zones_with_odd_lanes_are_refused(tmp_path, lanes):
+    file = d123.write_map(tmp_path, [*d123.town(), zone_at(60, 2, lanes)])
+    with pytest.raises(RulecError, match="`lane_ids` is no list of ids"):
+        read_map(file, 0.1)
+
+
+def test_who_drives_past_a_stop_zone_has_not_stopped(tmp_path):
+    """Ego goes from x = 36 past the end of lane 1 at 10 m/s."""
+    moments = [d123.SECOND_US + 100_000 * k for k in range(50)]
+    boxes = [[d123.box("car", d123.CAR, 100.0 + k, 1.75)] for k in range(50)]
+    ego = {moment: d123.pose(35.0 + k, 1.75) for k, moment in enumerate(moments)}
+    d123.write_map(tmp_path, [*d123.town(), zone_at(60, 2, [3])])
+    file = d123.write_log(tmp_path, moments, boxes, ego)
+    (answer,) = rulec.verify_recording(file, "us-ca", RequestedDrives(egos=("ego",))).answers()
+    assert "stop_sign" in {one.rule for one in answer.answer.violations}
+
+
 def test_the_map_of_a_place_is_in_a_folder_of_its_own(tmp_path):
     folder = tmp_path / "logs" / "nuplan_val" / "some"
     folder.mkdir(parents=True)
@@ -112,7 +179,7 @@ def test_what_it_tells(tmp_path):
     file = d123.drive(tmp_path)
     town = d123.town()
     town[0][2]["lane_type"] = 1
-    d123.write_map(tmp_path, town)
+    d123.write_map(tmp_path, [*town, zone_at(60, 2, [3]), zone_at(60, 3, [3], name=7)])
     told = told_words(selected_drives(read_recording(file), RequestedDrives(), "some", "right"))
     # Where nobody has doors or rails these are told, too
     assert told - {"boarding", "conflict_with_rail", "leaving_stop"} == TELLABLE_WORDS["123d"]

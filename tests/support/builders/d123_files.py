@@ -125,6 +125,12 @@ def crosswalk(name, *corners):
     return 3, name, {"outline": line(*corners, corners[0])}, shapely.Polygon(corners)
 
 
+def stop_zone(name, kind, lanes, *corners):
+    """A zone to stop in: kind 1 is that of a light, 2 of a stop sign, 3 of one to give way."""
+    said = {"outline": line(*corners, corners[0]), "stop_zone_type": kind, "lane_ids": lanes}
+    return 7, name, said, shapely.Polygon(corners)
+
+
 def road_line(name, kind, *places):
     return 9, name, {"road_line_type": kind}, shapely.LineString(line(*places))
 

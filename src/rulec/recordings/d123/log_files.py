@@ -29,8 +29,11 @@ LOG = XmlFormat(
 SYNC, BOXES, EGO = "sync.arrow", "box_detections_se3.arrow", "ego_state_se3.arrow"
 LIGHTS, MAP = "traffic_light_detections.arrow", "map.arrow"
 
+WAYMO = "wod"
+"""How the names of Waymo's data sets begin. Their maps have all stop signs."""
+
 _PLACES: tuple[tuple[str, Side, str], ...] = (
-    *((name, "right", "USA") for name in ("av2", "wod", "pandaset", "boston", "us-")),
+    *((name, "right", "USA") for name in ("av2", WAYMO, "pandaset", "boston", "us-")),
     ("kitti360", "right", "DEU"),
     ("singapore", "left", "SGP"),
     ("sg-", "left", "SGP"),

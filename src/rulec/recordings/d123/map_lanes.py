@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from rulec.diagnostics import RulecError
 from rulec.recordings.d123 import log_files as files
 from rulec.recordings.d123.message_pack import OddPackError, unpacked
+from rulec.recordings.d123.stop_zones import SIGNS, StopZone, with_signs
 from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, read_table
 from rulec.recordings.encodings.arrow.nested_columns import Nested
 from rulec.recordings.encodings.xml_element import LARGEST, XmlFormat
@@ -31,7 +32,8 @@ from rulec.recordings.road_map import RoadMap, crosswalk_with_outline
 MAP = XmlFormat(
     "a map of 123D", "", "it is `map.arrow`, or `DATASET_PLACE.arrow`, as py123d writes them"
 )
-_LANE, _LANE_GROUP, _CROSSWALK, _ROAD_LINE = 0, 1, 3, 9
+_LANE, _LANE_GROUP, _CROSSWALK, _STOP_ZONE, _ROAD_LINE = 0, 1, 3, 7, 9
+_LAYERS = frozenset({_LANE, _LANE_GROUP, _CROSSWALK, _STOP_ZONE, _ROAD_LINE})
 _CLOSEST_M = 0.001
 _ALONG_M = 0.2
 """A line of the map is that of a bound if it lies no farther from all of it."""
@@ -80,14 +82,23 @@ def read_d123_map(path: Path) -> RoadMap:
     """Read a map. Raises RulecError R0610 if it is none, R0701 if it cannot be opened, R0706."""
     layers = _layers(path)
     about = files.said_in(layers.table)
-    side, country = files.side_and_country(
-        files.word(about, "dataset"), files.word(about, "location")
-    )
+    data_set = files.word(about, "dataset")
+    side, country = files.side_and_country(data_set, files.word(about, "location"))
     lanelets = {x.id: x for x in _lanes(layers)}
     if not lanelets:
         raise MAP.refused(path, "there is no lane in it")
-    lanelets |= {x.id: x for x in _crosswalks(layers)}
-    return RoadMap(form="123D map", lanelets=lanelets, side=side, country=country)
+    is_waymo = data_set.startswith(files.WAYMO)
+    signed, left_out = with_signs(lanelets, _stop_zones(layers), all_behind=is_waymo)
+    signed |= {x.id: x for x in _crosswalks(layers)}
+    why = f"stop zones whose lanes do not begin or end there are left out: {left_out:,}"
+    return RoadMap(
+        form="123D map",
+        lanelets=signed,
+        side=side,
+        country=country,
+        complete=frozenset({"STOP"} if is_waymo and not left_out else ()),
+        remarks=(why,) * bool(left_out),
+    )
 
 
 def with_lights(
@@ -112,7 +123,7 @@ def _layers(path: Path) -> _Layers:
     ids, layers = (table.whole[name].tolist() for name in ("object_id", "map_layer"))
     packed, shapes = (table.nested[name].values for name in ("features", "wkb"))
     for row, (key, layer) in enumerate(zip(ids, layers, strict=True)):
-        if layer not in (_LANE, _LANE_GROUP, _CROSSWALK, _ROAD_LINE):
+        if layer not in _LAYERS:
             continue
         try:
             said = unpacked(packed[row])
@@ -266,6 +277,15 @@ def _shape(layers: _Layers, line: _Thing) -> shapely.LineString:
     if not isinstance(shape, shapely.LineString) or not (np.abs(places) < LARGEST).all():
         raise layers.wrong(line, "its `wkb` is no line on earth")
     return shape
+
+
+def _stop_zones(layers: _Layers) -> Iterator[StopZone]:
+    """The zones of signs."""
+    for one in layers.of(_STOP_ZONE):
+        kind = one.said.get("stop_zone_type")
+        if isinstance(kind, int) and kind in SIGNS:
+            lanes = tuple(map(str, _ids(layers, one, "lane_ids")))
+            yield StopZone(SIGNS[kind], _line(layers, one, "outline"), lanes)
 
 
 def _crosswalks(layers: _Layers) -> Iterator[Lanelet]:

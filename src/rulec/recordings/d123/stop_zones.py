@@ -1,0 +1,73 @@
+"""Stop zones of 123D's maps, as signs of the lanes that lead to them.
+
+They say which lanes they are for, but not whether the zone is where these begin or where they end:
+Waymo's are the lanes behind the line, as in its own files, and the parser of OpenDRIVE draws zones
+where its lanes begin. So where a zone lies says it.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+import shapely
+
+from rulec.recordings.recording import Lanelet, Points
+
+SIGNS: Mapping[int, str] = {2: "STOP", 3: "YIELD"}
+"""Types of zones that are those of signs, by number."""
+
+_NEAR_M = 2.0
+_INTERSECTION = "intersection"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StopZone:
+    """A zone with a sign: its outline, and the lanes that it is for."""
+
+    sign: str
+    outline: Points
+    lanes: tuple[str, ...]
+
+
+def with_signs(
+    lanelets: Mapping[str, Lanelet], zones: Iterable[StopZone], *, all_behind: bool
+) -> tuple[dict[str, Lanelet], int]:
+    """The lanelets with the signs of zones, and how many zones are not placed.
+
+    ``all_behind``: zones are for lanes behind their lines, whether these are in an intersection or
+    not.
+    """
+    signs: dict[str, set[str]] = defaultdict(set)
+    left_out = 0
+    for zone in zones:
+        shape = shapely.convex_hull(shapely.MultiPoint(zone.outline))
+        before = [
+            name
+            for lane in zone.lanes
+            if lane in lanelets
+            for name in _lanes_before(lanelets, lanelets[lane], shape, all_behind=all_behind)
+        ]
+        left_out += not before
+        for name in before:
+            signs[name].add(zone.sign)
+    found = dict(lanelets)
+    for name, own in signs.items():
+        found[name] = replace(found[name], signs=found[name].signs | own)
+    return found, left_out
+
+
+def _lanes_before(
+    lanelets: Mapping[str, Lanelet], lane: Lanelet, zone: shapely.Geometry, *, all_behind: bool
+) -> list[str]:
+    """The lanes that end at a zone: those before a lane that begins there, or the lane itself."""
+    start, end = (shapely.distance(zone, shapely.Point(lane.centre[at])) for at in (0, -1))
+    if min(start, end) > _NEAR_M:
+        return []
+    if start < end:
+        if not all_behind and _INTERSECTION not in lane.types:
+            return []
+        names = [name for name in lane.predecessors if name in lanelets]
+        return [name for name in names if _INTERSECTION not in lanelets[name].types]
+    return [] if _INTERSECTION in lane.types else [lane.id]
