@@ -1,7 +1,8 @@
 """Short drives told whole, of which nothing is violated but what the law of the book says.
 
 `statutes/BOOK.toml` has those of a book: what holds throughout, and states a second apart. Sides
-are absolute. `asked` has what an examiner would ask, each drive with the books that it asks.
+are absolute. `asked` has what an examiner would ask, each drive with the books that it asks; so does
+`asked_by_book`, which goes through what each book has that nobody had asked yet.
 """
 
 from pathlib import Path
@@ -30,7 +31,11 @@ def situations(folder: str) -> list[tuple[str, dict[str, Any]]]:
 SITUATIONS = [
     pytest.param(book, one, id=f"{book}-{one['title']}") for book, one in situations("statutes")
 ]
-ASKED = [pytest.param(one, id=f"{region}-{one['title']}") for region, one in situations("asked")]
+ASKED = [
+    pytest.param(one, id=f"{file}-{one['title']}")
+    for folder in ("asked", "asked_by_book")
+    for file, one in situations(folder)
+]
 
 
 def violated(book: str, situation: dict[str, Any]) -> set[str]:
