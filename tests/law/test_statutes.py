@@ -1,8 +1,8 @@
 """Short drives told whole, of which nothing is violated but what the law of the book says.
 
 `statutes/BOOK.toml` has those of a book: what holds throughout, and states a second apart. Sides
-are absolute. `asked` has what an examiner would ask, each drive with the books that it asks; so does
-`asked_by_book`, which goes through what each book has that nobody had asked yet.
+are absolute. `asked` has what an examiner would ask, each drive with the books that it asks; so
+does `asked_by_book`, which goes through what each book has that nobody had asked yet.
 """
 
 from pathlib import Path
