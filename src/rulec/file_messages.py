@@ -248,6 +248,8 @@ def unwritable(path: Path, problem: OSError) -> Diagnostic:
         way_out = "change its permissions, or give a file in a folder that you may write to"
     if problem.errno == errno.ENOSPC:
         way_out = "make room there, or give a file on another disk"
+    if problem.errno == errno.EROFS:
+        way_out = "give a file in a folder that may be written to"
     return UNWRITABLE_FILE.at(
         SourceLocation(str(path)),
         f"the file cannot be written: {reason_in_words(problem)}",

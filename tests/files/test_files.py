@@ -1,5 +1,6 @@
 """Texts from any editor, and files that appear whole or not at all."""
 
+import errno
 import gzip
 import io
 import os
@@ -15,7 +16,7 @@ import pytest
 from rulec import files
 from rulec.diagnostics import RulecError
 from rulec.file_sets import MANIFEST, write_together
-from rulec.files import decoded, opened, written_whole
+from rulec.files import decoded, opened, refusals, written_whole
 
 
 @pytest.mark.parametrize("line_end", ["\n", "\r\n", "\r"])
@@ -70,6 +71,20 @@ def test_a_folder_in_the_way(tmp_path):
     with pytest.raises(RulecError) as caught, written_whole(tmp_path):
         pass
     assert caught.value.diagnostics[0].code == "R0702"
+
+
+@pytest.mark.parametrize(
+    ("number", "way_out"),
+    [
+        (errno.EROFS, "give a file in a folder that may be written to"),
+        (errno.ENOSPC, "make room there, or give a file on another disk"),
+        (errno.EACCES, "change its permissions, or give a file in a folder that you may write to"),
+    ],
+)
+def test_what_cannot_be_written_has_a_way_out(number, way_out, tmp_path):
+    with pytest.raises(RulecError) as problem, refusals(tmp_path / "out"):
+        raise OSError(number, os.strerror(number))
+    assert problem.value.diagnostics[0].help == way_out
 
 
 def test_what_is_packed_is_unpacked_on_the_way(tmp_path):
