@@ -20,8 +20,12 @@ from rulec.logic.kleene import Unknown, holds
 from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.number_regions import number_regions
 from rulec.monitoring.uncertainty.state_letters.completions import joint_digits
-from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in, counts, crowd_of
-from rulec.monitoring.uncertainty.state_letters.joint_values import CountsApart
+from rulec.monitoring.uncertainty.state_letters.counted_crowd import (
+    CountsApart,
+    count_in,
+    counts,
+    crowd_of,
+)
 from rulec.monitoring.uncertainty.state_letters.read_digits import (
     Letters,
     names_of_read,
