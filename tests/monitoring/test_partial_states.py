@@ -11,7 +11,7 @@ from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_in
 from rulec.monitoring.online.four_valued import WORST_FIRST, best_of, worst_of
 from rulec.monitoring.online.running_monitor import Monitor
-from rulec.monitoring.uncertainty import uncertain_machine
+from rulec.monitoring.uncertainty import untold_names
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
@@ -197,7 +197,7 @@ def test_rules_that_a_source_says_too_little_for_are_not_judged(told, judged):
 
 def test_whether_a_source_says_too_little_is_not_looked_for_without_end(monkeypatch):
     """A rule of many states whose every letter leads elsewhere is taken to be one to judge."""
-    monkeypatch.setattr(uncertain_machine, "MOST_LOOKED_AT", -1)
+    monkeypatch.setattr(untold_names, "MOST_LOOKED_AT", -1)
     judge = monitor(rule("no_p", always(no(P))), told=["q"])
     assert list(judge.so_far.rules) == ["no_p"]
 
@@ -212,8 +212,8 @@ def test_a_duty_of_many_steps_is_found_to_be_one_that_q_alone_violates(monkeypat
         steps.append(here)
         return after(self, here, symbols)
 
-    after = uncertain_machine.UncertainMachine._after
-    monkeypatch.setattr(uncertain_machine.UncertainMachine, "_after", counted)
+    after = untold_names.RequiredNames._after
+    monkeypatch.setattr(untold_names.RequiredNames, "_after", counted)
     assert judged_rules(compiled, frozenset({"q"}), cut=True).not_judged == ()
     # As many as the duty has steps, once or twice.
     assert 200 <= len(steps) <= 1000

@@ -1,12 +1,25 @@
-"""Names that a source of traces does not tell."""
+"""Names that a source of traces does not tell, and rules that cannot be judged for want of them."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence, Set
 from dataclasses import replace
+from itertools import chain
 from typing import Any
 
+from rulec.automata.outcome_machine import VIOLATED, OutcomeMachine, bits_of
+from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
+from rulec.monitoring.uncertainty.state_letters.read_digits import names_of_read
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
+
+MOST_LOOKED_AT = 1 << 21
+"""After so many states with a letter a rule is taken to be one that some word can violate."""
+
+MOST_REPETITIONS = 1 << 12
+"""A letter is repeated no more often than this."""
+
+_MOST_REMEMBERED = 1 << 14
 
 
 def untold_names(vocabulary: Vocabulary, told: frozenset[str] | None) -> frozenset[str]:
@@ -27,3 +40,129 @@ def with_untold(vocabulary: Vocabulary, untold: frozenset[str]) -> Vocabulary:
         for name, item in vocabulary.declarations.items()
     }
     return replace(vocabulary, declarations=declarations)
+
+
+class RequiredNames:
+    """The names that have to be told for a rule's machine to be judged, remembered.
+
+    ``classes`` are those of its possible letters.
+    """
+
+    def __init__(self, machine: OutcomeMachine, classes: LetterClasses) -> None:
+        self._machine = machine
+        self._classes = classes
+        self._reads = machine.reads
+        self._names = [names_of_read(read) for read in machine.reads]
+        self._untold: dict[frozenset[str], tuple[str, ...]] = {}
+        self._steps: dict[tuple[int, int], int | None] = {}
+
+    def missing_of(self, untold: frozenset[str]) -> tuple[str, ...]:
+        """Names of these for want of which no word can be known to violate the rule.
+
+        Empty if some word can, whatever the untold names may be.
+        """
+        names = untold.intersection(chain.from_iterable(self._names))
+        if not names:
+            return ()
+        if names not in self._untold:
+            lacking = () if self._can_fire(names) else self._smallest_lack(names)
+            self._untold[names] = lacking
+        return self._untold[names]
+
+    def _smallest_lack(self, names: frozenset[str]) -> tuple[str, ...]:
+        """Untold names that would all have to be told, in the order in which they are read."""
+        order = dict.fromkeys(name for own in self._names for name in own if name in names)
+        lacking = list(order)
+        for name in order:
+            without = [other for other in lacking if other != name]
+            if without and not self._can_fire(frozenset(without)):
+                lacking = without
+        return tuple(lacking)
+
+    def _can_fire(self, untold: frozenset[str]) -> bool:
+        """Whether all completions of some word violate the rule.
+
+        Beyond ``MOST_LOOKED_AT`` it is taken to be so: then the rule is judged, and open at worst.
+        """
+        machine = self._machine
+        letters = self._classes_in_the_dark(untold)
+        # If they do from the least states, they do from all.
+        start = machine.least(sum(1 << state for state in machine.starts))
+        if self._is_lost_by_runs(start, letters):
+            return True
+        reached = {start}
+        looked_at, n_classes = 0, sum(map(int.bit_count, letters))
+        for here in (waiting := [start]):
+            looked_at += here.bit_count() * n_classes
+            if looked_at > MOST_LOOKED_AT:
+                return True
+            for classes in letters:
+                after = self._after(here, classes)
+                if after is None:
+                    return True
+                if after not in reached:
+                    reached.add(after)
+                    waiting.append(after)
+        return False
+
+    def _is_lost_by_runs(self, start: int, letters: Set[int]) -> bool:
+        """Whether one letter for long, or after it another one for long, violates the rule.
+
+        Most duties come to that, and with a short step no search would get so far.
+        """
+        tried: set[int] = set()
+        for first in letters:
+            middle = self._at_last(start, first)
+            if middle is None:
+                return True
+            if middle not in tried and None in {self._at_last(middle, one) for one in letters}:
+                return True
+            tried.add(middle)
+        return False
+
+    def _at_last(self, here: int, classes: int) -> int | None:
+        """The least states in which a letter leaves for good; None if it violates the rule."""
+        met: set[int] = set()
+        while here not in met and len(met) < MOST_REPETITIONS:
+            met.add(here)
+            after = self._after(here, classes)
+            if after is None:
+                return None
+            here = after
+        return here
+
+    def _after(self, here: int, classes: int) -> int | None:
+        """The least states after a letter of any of these classes; None if all of it violates.
+
+        Remembered, since runs of letters, the search, and fewer untold names meet the same steps.
+        """
+        key = here, classes
+        if key not in self._steps:
+            if len(self._steps) > _MOST_REMEMBERED:
+                self._steps.clear()
+            self._steps[key] = self._step(bits_of(here), bits_of(classes))
+        return self._steps[key]
+
+    def _step(self, states: Sequence[int], symbols: Sequence[int]) -> int | None:
+        machine = self._machine
+        outputs = [machine.outputs[state] for state in states]
+        if all(row[symbol] == VIOLATED for row in outputs for symbol in symbols):
+            return None
+        rows = [machine.successors[state] for state in states]
+        targets = {row[symbol] for row in rows for symbol in symbols}
+        return machine.least(sum([1 << target for target in targets]))
+
+    def _classes_in_the_dark(self, untold: frozenset[str]) -> frozenset[int]:
+        """The least sets of classes, as bits, that letters may have, by the reads that are told.
+
+        What all words of larger ones come to, all words of a smaller one do, too.
+        """
+        diagram = self._classes.diagram
+        reached = frozenset({diagram.start})
+        for n in range(len(self._reads) - 1, -1, -1):
+            digits = [1 << digit for digit in range(self._reads[n].size)]
+            if not untold.isdisjoint(self._names[n]):
+                digits = [sum(digits)]
+            reached = frozenset(diagram.step(n, here, mask) for here in reached for mask in digits)
+        every = frozenset(nodes >> 1 for nodes in reached) - {0}
+        return frozenset(x for x in every if not any(y & x == y != x for y in every))
