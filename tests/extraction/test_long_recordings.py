@@ -1,6 +1,7 @@
 """Of a long recording only a part is looked at at a time, which changes nothing."""
 
 from dataclasses import replace
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -22,15 +23,16 @@ def told(found, thresholds=USUAL):
 
 @given(scenes())
 def test_a_part_at_a_time(found):
-    usual, most = told(found), drives.MOST_PLACES
+    usual = told(found)
     # One by one, as who is not expected
     alone = Drives(found, "right")
     assert [one for ego in alone.egos() for one in alone.of(ego)] == usual
-    drives.MOST_PLACES = 0
-    try:
-        assert told(found) == usual
-    finally:
-        drives.MOST_PLACES = most
+    for most_of_all in (drives.MOST_OF_ALL, 2.0):
+        with (
+            patch.object(drives, "MOST_PLACES", 0),
+            patch.object(drives, "MOST_OF_ALL", most_of_all),
+        ):
+            assert told(found) == usual
 
 
 @pytest.mark.parametrize("world", ["priority", "motorway", "roundabout"])
@@ -53,6 +55,29 @@ def test_who_is_out_of_reach_changes_nothing(world, monkeypatch):
     monkeypatch.setattr(drives, "rows_in_reach", lambda *_: everybody)
     assert told(found, near) == some
     assert 2 * sum(map(np.count_nonzero, left_out)) >= len(left_out) > 10
+
+
+@pytest.mark.parametrize("world", ["priority", "grid", "roundabout"])
+def test_who_is_far_from_the_road_changes_nothing(world, monkeypatch):
+    stored = StoredWorld(world)
+    found = read_recording(stored.data, stored.net)
+    monkeypatch.setattr(drives, "MOST_PLACES", 0)
+    monkeypatch.setattr(drives, "MOST_OF_ALL", 2.0)
+    near_road, left_out = drives.near_road, []
+
+    def noted(tracks, road, columns, thresholds, step_s):
+        flags = near_road(tracks, road, columns, thresholds, step_s)
+        left_out.append(np.count_nonzero(tracks.present[:, columns] & ~flags))
+        return flags
+
+    monkeypatch.setattr(drives, "near_road", noted)
+    some = told(found)
+    everywhere = np.ones((len(found.participants), 1), dtype=bool)
+    monkeypatch.setattr(
+        drives, "near_road", lambda tracks, _, columns, *__: tracks.present[:, columns] | everywhere
+    )
+    assert told(found) == some
+    assert sum(left_out) > 100
 
 
 def test_places_are_dropped_after_the_last_drive_that_awaits_them(monkeypatch):

@@ -25,7 +25,7 @@ from rulec.extraction.tracks.road_extents import (
     expected_places,
     road_extents,
 )
-from rulec.extraction.tracks.road_places import RoadPlaces, are_on_road, rows_in_reach
+from rulec.extraction.tracks.road_places import RoadPlaces, are_on_road, near_road, rows_in_reach
 from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import Flags, Tracks, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
@@ -302,18 +302,21 @@ class Drives:
         """The places on a road, during drives along it, of all who may count for one of them."""
         begin, end = min(own.start for _, own in egos), max(own.stop for _, own in egos)
         columns = slice(begin, end)
-        near = [rows_in_reach(self._tracks, road, *ego, self._thresholds) for ego in egos]
-        rows = np.flatnonzero(np.logical_or.reduce(near))
-        if len(rows) * (end - begin) >= MOST_OF_ALL * self._tracks.present.size:
-            return self.places_of(road, np.arange(len(self._tracks.participants)))
-        extents = road_extents(self._tracks.part(rows, columns), road)
+        tracks, limits, step_s = self._tracks, self._thresholds, self.recording.step_s
+        near = near_road(tracks, road, columns, limits, step_s)
+        near[[row for row, _ in egos]] = True
+        reached = [rows_in_reach(tracks, road, *ego, limits) for ego in egos]
+        rows = np.flatnonzero(np.logical_or.reduce(reached) & near.any(axis=1))
+        if np.count_nonzero(near[rows]) >= MOST_OF_ALL * tracks.present.size:
+            return self.places_of(road, np.arange(len(tracks.participants)))
+        extents = road_extents(tracks.part(rows, columns).where(near[rows]), road)
         own_rows = np.searchsorted(rows, [row for row, _ in egos])
-        if not are_on_road(extents, road, own_rows, self._thresholds):
+        if not are_on_road(extents, road, own_rows, limits):
             rows = self._present(columns)
-            extents = road_extents(self._tracks.part(rows, columns), road)
+            extents = road_extents(tracks.part(rows, columns), road)
         # Without the arrays that extents were computed from, which are many times as large
-        tracks = self._tracks.part(rows, columns)
-        return self._road_places(road, tracks, extents, self._elsewhere(road, rows, columns))
+        part = tracks.part(rows, columns)
+        return self._road_places(road, part, extents, self._elsewhere(road, rows, columns))
 
     def _places_of_one(
         self, road: DrivenRoad, first_piece: int, row: int, stretch: RouteStretch

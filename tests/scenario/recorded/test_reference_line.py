@@ -162,3 +162,29 @@ def test_most_feet_beside_a_gentle_road_are_sure_without_trying_all_pieces(angle
     places = line.start[pieces] + (s - line.arc[pieces])[:, None] * line.ahead[pieces] + 8.1 * left
     _, found = sure_feet_near(line.piece_fans, places[:, None], s, np.full(len(s), 10.0))
     assert found.mean() > 0.9 if sure else not found.any()
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from([3.0, 40.0]), st.sampled_from([0.0, 1e6]))
+def test_whatever_is_near_a_line_lies_in_its_surroundings(seed, step, offset):
+    random = np.random.default_rng(seed)
+    line = reference_line(np.cumsum(random.normal(size=(9, 2)) * step, axis=0) + offset)
+    near_m, beyond_m = random.uniform(1, 60), random.uniform(0, 500)
+    found = line.surroundings(near_m, beyond_m)
+    at = random.uniform(-beyond_m, line.length + beyond_m, 100)
+    pieces = np.clip(np.searchsorted(line.arc, at, "right") - 1, 0, len(line.arc) - 1)
+    on_line = line.start[pieces] + (at - line.arc[pieces])[:, None] * line.ahead[pieces]
+    turned, away = random.uniform(0, 2 * pi, 100), near_m * random.uniform(0, 1, 100)
+    way = np.stack((np.cos(turned), np.sin(turned)), axis=1)
+    assert found.holds(*(on_line + away[:, None] * way).T).all()
+    # Not much farther away than that nothing does, nor is a place that is unknown
+    far = on_line.max(axis=0) + 2 * near_m + beyond_m + 100
+    assert not found.holds(np.array([far[0], np.nan]), np.array([far[1], offset])).any()
+
+
+def test_the_surroundings_of_a_straight_line_are_a_strip():
+    line = reference_line(np.array([[0.0, 0.0], [1000.0, 0.0]]))
+    found = line.surroundings(20.0, 100.0)
+    off = np.array([0.0, 20.0, 55.0, 300.0])
+    assert found.holds(np.full(4, 500.0), off).tolist() == [True, True, False, False]
+    along = np.array([-100.0, -160.0, 1120.0, 1160.0])
+    assert found.holds(along, np.zeros(4)).tolist() == [True, False, True, False]

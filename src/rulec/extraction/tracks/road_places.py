@@ -29,6 +29,9 @@ _ACROSS = np.pi / 4
 _PIECES_M = 20.0
 """Feet are looked for on whole pieces of a line, of 5 m at most."""
 
+_SOON_S = 2.0
+"""So long before it comes near to a road one is looked at, longer than somebody may be away."""
+
 _ONCOMING_COSINE = -0.7
 """The cosine of the angle to the road from which on a vehicle counts as coming towards ego."""
 
@@ -159,6 +162,24 @@ def rows_in_reach(
     away += aside
     flags: Flags = (away <= ((along + off) ** 2)[:, None]).any(axis=1)
     flags[ego] = True
+    return flags
+
+
+def near_road(
+    tracks: Tracks, road: DrivenRoad, columns: slice, limits: Thresholds, step_s: float
+) -> Flags:
+    """Flags of where participants, in a range of columns, are so near a road that they may count.
+
+    Or will so soon, or did shortly before: nobody who counts is absent in between.
+    """
+    reach = float(tracks.reaches.max(initial=0.0)) + _PIECES_M
+    fastest = float(tracks.fastest.max(initial=0.0))
+    beyond = max(limits.near_m, (2 * fastest + 1.0) * limits.catching_up_s) + reach
+    around = road.line.surroundings(_farthest_off(road, limits) + reach, beyond)
+    near = around.holds(tracks.x[:, columns], tracks.y[:, columns])
+    soon = int((limits.away_s + _SOON_S) / step_s) + 1
+    counts = np.cumsum(np.pad(near, ((0, 0), (soon + 1, soon))), axis=1, dtype=np.int32)
+    flags: Flags = counts[:, 2 * soon + 1 :] > counts[:, : -2 * soon - 1]
     return flags
 
 

@@ -145,6 +145,17 @@ class Tracks:
         """The tracks of some participants in a range of steps."""
         return _PartOfTracks(self, rows, columns)
 
+    def where(self, flags: Flags) -> Tracks:
+        """The same, as if participants were there where it is flagged only.
+
+        Those that stand for good are there all the time.
+        """
+        same = copy(self)
+        for name in _OF_BODIES.intersection(same.__dict__):
+            del same.__dict__[name]
+        same.__dict__["present"] = self.present & flags
+        return same
+
     def seen_as(
         self, participants: tuple[Participant, ...], types: ObjectTypes, rows: NDArray[intp]
     ) -> Tracks:
@@ -193,6 +204,9 @@ class Tracks:
 
 
 _ARRAYS = tuple(x.name for x in fields(Tracks))[4:]
+
+_OF_BODIES = frozenset({"bodies", "repeated_bodies", "reaches", "widths"})
+"""What is known of outlines once it was asked for."""
 
 
 class _LaidTracks(Tracks):

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from rulec.recordings.polylines import densified, without_repeats
 from rulec.recordings.recording import Points
 from rulec.scenario.recorded.line_fans import LineFans, line_fans
+from rulec.scenario.recorded.line_surroundings import LineSurroundings, line_surroundings
 from rulec.scenario.recorded.sure_feet import PieceFans, sure_feet, sure_feet_near
 from rulec.trace.plain_arrays import distinct
 
@@ -103,6 +104,14 @@ class ReferenceLine:
         own = around[rows], reach[rows]
         found[rows, columns] = self.coordinates_near(places[rows, columns], *own)
         return found
+
+    def surroundings(self, near_m: float, beyond_m: float) -> LineSurroundings:
+        """Where places may be within ``near_m`` of the line, up to ``beyond_m`` beyond its ends."""
+        at = np.concatenate(([-beyond_m], self.arc[1:], [self.length + beyond_m]))
+        pieces = self._piece(at)
+        return line_surroundings(
+            self.start[pieces] + (at - self.arc[pieces])[:, None] * self.ahead[pieces], near_m
+        )
 
     def _piece(self, s: _Values) -> NDArray[intp]:
         return self.piece_fans.at(s)
