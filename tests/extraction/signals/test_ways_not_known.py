@@ -53,6 +53,26 @@ def told(word, xs, lanes=None, **thresholds):
     return values[0]
 
 
+def test_a_drive_that_ends_before_the_only_way_which_turns():
+    """It may have got where it was going; who has driven in a good way turns."""
+    bend = [
+        straight(1, -200, 100, successors=(3,)),
+        lanelet(3, arc(100, 14, 14, -90, 0), predecessors=(1,), successors=(6,), **INSIDE),
+        lanelet(6, [(114, 14), (114, 200)], predecessors=(3,)),
+    ]
+
+    def turns(*places):
+        found = recording(bend, [vehicle(7, dict(enumerate(places)))])
+        signals = junction_signals(context_of(found, ("1", "3", "6")))
+        column, unknown = signals.world["turn"], signals.unknown["turn"]
+        return np.where(unknown, "?", column).tolist()
+
+    assert turns((80, 0), (94, 0), (97, 0)) == ["straight_on", "?", "?"]
+    on = [(x, 0) for x in range(82, 100, 4)]
+    onto = [(float(x), float(y)) for x, y in arc(100, 14, 14, -90, 0)[::3]]
+    assert turns(*on, *onto, (114, 24), (114, 34))[-3] == "turn_far"
+
+
 def test_a_drive_that_ends_before_the_junction():
     # Fronts are 2 m ahead; the zone begins at 95
     assert told("turn", (80, 90, 94, 97)) == ["straight_on", "straight_on", "?", "?"]

@@ -145,7 +145,10 @@ def _way_not_known(context: DriveContext) -> Flags:
 
 
 def _ways_part(context: DriveContext, start: float, columns: slice) -> bool:
-    """True if ways lead to different sides from the lane on which ego gets to a junction."""
+    """True if ways lead to different sides from the lane on which ego gets to a junction.
+
+    Also if the only ones turn: who has not driven in may have got where it was going.
+    """
     piece = max(int(context.road.piece(np.array(start - 1e-6))), 0)
     near = int(np.abs(context.ego_extents.s_max[0, columns] - start).argmin())
     entry = context.road.lanelet(piece, int(context.ego_lane[columns][near]))
@@ -155,8 +158,8 @@ def _ways_part(context: DriveContext, start: float, columns: slice) -> bool:
         for way in junction.ways
         if entry.id in way.entries
     ]
-    turned = [way.turned for way in ways]
-    return bool(ways) and max(turned) - min(turned) > np.radians(context.thresholds.turned_deg)
+    turned = [0.0, *(way.turned for way in ways)]
+    return bool(max(turned) - min(turned) > np.radians(context.thresholds.turned_deg))
 
 
 def _on_known_way(context: DriveContext, stretch: tuple[float, float], number: int) -> bool:
