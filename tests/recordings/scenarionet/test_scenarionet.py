@@ -123,6 +123,22 @@ def test_lanes_without_successors_lead_to_those_that_begin_where_they_end(tmp_pa
     assert lanelets["5"].predecessors == ("4",)
 
 
+def test_lanes_lead_to_none_that_begins_beside_their_end(tmp_path):
+    """MetaDrive's lead to all lanes of the next road; to get to another one is a lane change."""
+    dictionary = changed(dataset="metadrive")
+    lanes = {}
+    for name, begin, y in (("1", -60.0, 0.0), ("2", -60.0, 3.5), ("3", 0.0, 0.0), ("4", 0.5, 3.5)):
+        line = [[begin + 6 * k, y] for k in range(11)]
+        after, before = (["3", "4"], []) if begin < -1 else ([], ["1", "2"])
+        lanes[name] = {"type": "LANE_SURFACE_STREET", "polyline": line, "width": 3.5}
+        lanes[name] |= {"exit_lanes": after, "entry_lanes": before}
+    dictionary["map_features"], dictionary["dynamic_map_states"] = lanes, {}
+    lanelets = read(tmp_path, dictionary).lanelets
+    assert [lanelets[name].successors for name in "1234"] == [("3",), ("4",), (), ()]
+    # A gap of half a metre along the lane is none between lanes
+    assert [lanelets[name].predecessors for name in "1234"] == [(), (), ("1",), ("2",)]
+
+
 def test_bounds_are_those_of_a_lane_s_own_outline(tmp_path):
     dictionary = changed(dataset="nuscenes", map="boston-seaport")
     outline = [(-61, 1.5), (-9, 1.5), (-9, -1.2), (-61, -1.2), (-61, 1.5)]

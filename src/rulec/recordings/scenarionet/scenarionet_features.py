@@ -24,6 +24,10 @@ MPS_OF_MPH = 0.44704
 JOINED_M = 0.1
 """Lanes without successors in the file lead to those that begin so near their end."""
 
+ASIDE_M = 1.5
+"""One that begins so far aside of a lane's end is another lane of the next road: whoever goes there
+changes lanes. MetaDrive's lanes lead to all lanes of the next road."""
+
 _TURNED_RAD = np.radians(60.0)
 _FEWEST_CORNERS = 3
 _MOST_INDEX = 1 << 31
@@ -67,8 +71,8 @@ def road_features(scenario: KeyedValue, known: DataSet, steps: Iterable[int]) ->
             if len(corners) < _FEWEST_CORNERS:
                 raise entry.wrong(f"has fewer than {_FEWEST_CORNERS} corners")
             features.crosswalks[name] = corners
-    if not told:
-        features = replace(features, lanes=joined(features.lanes))
+    lanes = _in_line(features.lanes) if told else joined(features.lanes)
+    features = replace(features, lanes=lanes)
     _add_lights(features, scenario, list(steps))
     return features
 
@@ -174,6 +178,27 @@ def joined(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:
     return {
         name: replace(
             lane, leads_to=tuple(after.get(name, ())), follows=tuple(before.get(name, ()))
+        )
+        for name, lane in lanes.items()
+    }
+
+
+def _in_line(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:
+    """The lanes, leading only to those that do not begin aside of their end."""
+
+    def aside(before: str, after: str) -> bool:
+        ends = [lanes[name] for name in (before, after) if name in lanes]
+        if len(ends) < 2 or len(ends[0].centre) < 2 or not len(ends[1].centre):
+            return False
+        x, y = ends[1].centre[0, :2] - ends[0].centre[-1, :2]
+        turned = _heading(ends[0], -2)
+        return bool(abs(y * np.cos(turned) - x * np.sin(turned)) > ASIDE_M)
+
+    return {
+        name: replace(
+            lane,
+            leads_to=tuple([one for one in lane.leads_to if not aside(name, one)]),
+            follows=tuple([one for one in lane.follows if not aside(one, name)]),
         )
         for name, lane in lanes.items()
     }
