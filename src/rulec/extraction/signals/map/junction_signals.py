@@ -18,7 +18,7 @@ from rulec.extraction.signals.map.priority_signals import (
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.measured_numbers import own_front
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, SignalNames
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_passes import Passes, once_a_road, signals_by
 from rulec.extraction.tracks.junctions import STOP_SIGNS, all_have_to_stop
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Light, ObservedLight
@@ -329,6 +329,19 @@ def _while_crossing(
     return around
 
 
+@once_a_road
+def drawn_lines(context: DriveContext) -> dict[str, float]:
+    """The places along the road of the stop lines that the map has, by their lanelets."""
+    drawn = {
+        lanelet.id: lanelet.stop_line.mean(axis=0)
+        for row in context.road.rows
+        for lanelet in row
+        if lanelet is not None and lanelet.stop_line is not None
+    }
+    places = context.road.line.coordinates(np.reshape([*drawn.values()], (-1, 2)))[:, 0]
+    return dict(zip(drawn, places.tolist(), strict=True))
+
+
 def stop_line(context: DriveContext, piece: int, lane: int) -> tuple[float, float]:
     """The places along the road between which the line of a lanelet is.
 
@@ -339,7 +352,7 @@ def stop_line(context: DriveContext, piece: int, lane: int) -> tuple[float, floa
     lanelet, road = context.road.lanelet(piece, lane), context.road
     end, touching = float(road.borders[piece + 1]), context.thresholds.touching_m
     if lanelet.stop_line is not None:
-        place = float(road.line.coordinates(lanelet.stop_line.mean(axis=0)[None])[0, 0])
+        place = drawn_lines(context)[lanelet.id]
         if abs(place - end) <= _LINE_REACH_M:
             return place, place + touching
     begins, passages = 0.0, context.surroundings.passages

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import map_contents
+from rulec.extraction.signals.map.junction_signals import drawn_lines
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.measured_numbers import corner_ahead
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, ids_by_state
@@ -201,10 +202,7 @@ def _directed_stretches(context: DriveContext, there: bool) -> Stretches:
     for row, end in zip(road.rows, road.borders[1:].tolist(), strict=True):
         lit = [lanelet for lanelet in row if lanelet is not None and lanelet.lights]
         if lit and any(is_there(light) for lanelet in lit for light in lanelet.lights) == there:
-            drawn = lit[0].stop_line
-            place = np.nan
-            if drawn is not None:
-                place = float(road.line.coordinates(drawn.mean(axis=0)[None])[0, 0])
+            place = drawn_lines(context).get(lit[0].id, np.nan)
             near = abs(place - end) <= _LIGHTS_AT_CROSSING_M
             last = [
                 high + context.thresholds.side_road_m
