@@ -65,17 +65,14 @@ def test_who_is_far_from_the_road_changes_nothing(world, monkeypatch):
     monkeypatch.setattr(drives, "MOST_OF_ALL", 2.0)
     near_road, left_out = drives.near_road, []
 
-    def noted(tracks, road, columns, thresholds, step_s):
-        flags = near_road(tracks, road, columns, thresholds, step_s)
-        left_out.append(np.count_nonzero(tracks.present[:, columns] & ~flags))
+    def noted(tracks, road, at, thresholds, step_s):
+        flags = near_road(tracks, road, at, thresholds, step_s)
+        left_out.append(np.count_nonzero(tracks.present[at] & ~flags))
         return flags
 
     monkeypatch.setattr(drives, "near_road", noted)
     some = told(found)
-    everywhere = np.ones((len(found.participants), 1), dtype=bool)
-    monkeypatch.setattr(
-        drives, "near_road", lambda tracks, _, columns, *__: tracks.present[:, columns] | everywhere
-    )
+    monkeypatch.setattr(drives, "near_road", lambda tracks, _, at, *__: tracks.present[at])
     assert told(found) == some
     assert sum(left_out) > 100
 

@@ -303,14 +303,16 @@ class Drives:
         begin, end = min(own.start for _, own in egos), max(own.stop for _, own in egos)
         columns = slice(begin, end)
         tracks, limits, step_s = self._tracks, self._thresholds, self.recording.step_s
-        near = near_road(tracks, road, columns, limits, step_s)
-        near[[row for row, _ in egos]] = True
         reached = [rows_in_reach(tracks, road, *ego, limits) for ego in egos]
-        rows = np.flatnonzero(np.logical_or.reduce(reached) & near.any(axis=1))
-        if np.count_nonzero(near[rows]) >= MOST_OF_ALL * tracks.present.size:
+        rows = np.flatnonzero(np.logical_or.reduce(reached))
+        near = near_road(tracks, road, (rows, columns), limits, step_s)
+        near[np.searchsorted(rows, [row for row, _ in egos])] = True
+        if np.count_nonzero(near) >= MOST_OF_ALL * tracks.present.size:
             return self.places_of(road, np.arange(len(tracks.participants)))
-        extents = road_extents(tracks.part(rows, columns).where(near[rows]), road)
+        is_near = near.any(axis=1)
+        rows, near = rows[is_near], near[is_near]
         own_rows = np.searchsorted(rows, [row for row, _ in egos])
+        extents = road_extents(tracks.part(rows, columns).where(near), road)
         if not are_on_road(extents, road, own_rows, limits):
             rows = self._present(columns)
             extents = road_extents(tracks.part(rows, columns), road)

@@ -166,9 +166,13 @@ def rows_in_reach(
 
 
 def near_road(
-    tracks: Tracks, road: DrivenRoad, columns: slice, limits: Thresholds, step_s: float
+    tracks: Tracks,
+    road: DrivenRoad,
+    at: tuple[NDArray[intp], slice],
+    limits: Thresholds,
+    step_s: float,
 ) -> Flags:
-    """Flags of where participants, in a range of columns, are so near a road that they may count.
+    """Flags of where participants, some rows and columns, are so near a road that they may count.
 
     Or will so soon, or did shortly before: nobody who counts is absent in between.
     """
@@ -176,7 +180,9 @@ def near_road(
     fastest = float(tracks.fastest.max(initial=0.0))
     beyond = max(limits.near_m, (2 * fastest + 1.0) * limits.catching_up_s) + reach
     around = road.line.surroundings(_farthest_off(road, limits) + reach, beyond)
-    near = around.holds(tracks.x[:, columns], tracks.y[:, columns])
+    near = around.holds(tracks.x[at], tracks.y[at])
+    if np.array_equal(near, tracks.present[at]):
+        return near
     soon = int((limits.away_s + _SOON_S) / step_s) + 1
     counts = np.cumsum(np.pad(near, ((0, 0), (soon + 1, soon))), axis=1, dtype=np.int32)
     flags: Flags = counts[:, 2 * soon + 1 :] > counts[:, : -2 * soon - 1]

@@ -24,6 +24,9 @@ _TOO_SLOW = 0.55
 """27 m/s are 60 mph, and 60 m/s are 2.2 times as much. Queues may be as slow, so that limits count
 only if they are multiples of 5 m/s, as those in km/h and mph are if they are taken for m/s."""
 
+_EVERY_S = 1.0
+"""So often a vehicle is looked at."""
+
 _ROUND_MPS = 5.0
 _ALMOST_MPS = 0.005
 _RAILS = frozenset({"rail", "tram"})
@@ -70,11 +73,12 @@ def _shares(
     """
     outlines = [shapely.Polygon(np.vstack((one.left, one.right[::-1]))) for one in lanes]
     tree = shapely.STRtree(outlines)
+    every = max(1, round(_EVERY_S / step_s))
     shares: tuple[list[float], list[float]] = ([], [])
     for track in tracks:
         ways = np.hypot(*np.diff(track.rows[:, :2], axis=0).T)
-        speeds = ways / (np.diff(track.steps) * step_s)
-        rows, lane = tree.query(shapely.points(track.rows[1:, :2]), predicate="intersects")
+        speeds = (ways / (np.diff(track.steps) * step_s))[::every]
+        rows, lane = tree.query(shapely.points(track.rows[1::every, :2]), predicate="intersects")
         if not len(rows):
             continue
         highest, lowest = np.zeros(len(speeds)), np.full(len(speeds), np.inf)
