@@ -56,9 +56,10 @@ def test_a_queue_on_the_other_side_of_the_road_is_not_overtaken(y, heading, pass
 
 
 def test_who_is_overtaken_and_speeds_up_is_told_by_whom():
-    """7 gains 2 m/s each second from 20 m/s on, 8 comes past it at 40 m/s; 9 is far ahead."""
-    places = {k: (200 + 20 * k * STEP_S + (k * STEP_S) ** 2, 0.0) for k in range(20)}
-    cars = [vehicle(7, places), going(8, 160, 4.0, 40.0), going(9, 500, 4.0, 40.0)]
+    """7 gains 2 m/s each second after 2 s at 20 m/s, 8 comes past it at 40; 9 is far ahead."""
+    times = [k * STEP_S for k in range(20)]
+    places = {k: (200 + 20 * t + max(t - 2, 0) ** 2, 0.0) for k, t in enumerate(times)}
+    cars = [vehicle(7, places), going(8, 120, 4.0, 40.0), going(9, 500, 4.0, 40.0)]
     found = recording(two_lanes(**MOTORWAY), cars)
     judged = RecordingVerdicts(found, GERMAN, RequestedDrives(egos=("7",)), "by hand")
     (one,) = judged.answers()

@@ -67,6 +67,19 @@ def test_who_gets_up_speed_from_a_crawl_sets_off(speeds, at, known):
     assert found.unknown["being_overtaken"][at] == (not known)
 
 
+@pytest.mark.parametrize(("steady_for", "known"), [(0, False), (6, True)])
+def test_who_has_gained_speed_since_its_drive_began_may_be_getting_it_up(steady_for, known):
+    """Whoever a simulator sets on the road at 10 m/s gains 1 m/s2, beside one at 18 m/s."""
+    speeds = [10.0] * steady_for + [10.0 + 0.5 * k for k in range(16)]
+    places, at = runs(speeds), steady_for + 8
+    passes = {k: (places[at][0] + (k - at) * 9.0, 4.0) for k in range(at - 4, at + 6)}
+    found = recording(lanes(2), [vehicle(7, places), vehicle(8, passes)])
+    # All traffic is in it, so that nobody who is as fast at first has stood just before
+    signals = overtaking_signals(context_of(replace(found, complete=frozenset({"light"}))))
+    assert signals.world["being_overtaken"][at]
+    assert signals.unknown["being_overtaken"][at] == (not known)
+
+
 @pytest.mark.parametrize(("before", "known"), [(24.0, False), (20.0, True), (16.0, True)])
 def test_who_had_to_brake_regains_its_speed(before, known):
     """Ego is at 20 m/s or a little more, and was at another speed up to 4 s before."""

@@ -150,8 +150,9 @@ def _sets_off(context: DriveContext) -> Flags:
     """Flags of states in which ego has, or may have, set off, and gets up speed yet.
 
     It stood up to ``setting_off_s`` ago, or was no faster than ``_CRAWLS_MPS`` then or since when
-    it has gained speed. Before its drive began it may have stood, if ``_SETS_OFF_MPS2`` has made it
-    as fast as it is then; where all traffic is recorded, if that is no faster than one that crawls.
+    it has gained speed, or it has gained it ever since its drive began. Before that it may have
+    stood, if ``_SETS_OFF_MPS2`` has made it as fast as it is then; where all traffic is recorded,
+    if that is no faster than one that crawls.
     """
     limits, speed, step_s = context.thresholds, context.ego.speed[0], context.recording.step_s
     spans, stood = context.spans, context.spans.latest(speed <= _CRAWLS_MPS).astype(float)
@@ -159,7 +160,9 @@ def _sets_off(context: DriveContext) -> Flags:
     before = spans.first - np.ceil(at_first / _SETS_OFF_MPS2 / step_s)
     if "light" in context.recording.complete:
         before = np.where(at_first <= _CRAWLS_MPS, before, -np.inf)
-    gaining = stood > spans.latest(~_gains_speed(context))
+    gained_since = spans.latest(~_gains_speed(context))
+    ever_since = (gained_since < spans.first) & (speed > at_first + context.tolerances.speed_mps)
+    gaining = (stood > gained_since) | ever_since
     stood = np.where(stood < spans.first, before, stood)
     sets_off: Flags = gaining | ((spans.columns - stood) * step_s < limits.setting_off_s)
     return sets_off
