@@ -98,6 +98,26 @@ def test_without_lamps_who_turns_may_have_signalled():
     assert set(told("turning_far", crossroads(), EGO, other("on"))[:20]) == {"False"}
 
 
+def waits_to_turn(lamps, until=60):
+    """It stands 3 m before the junction, and turns left from state 40 on, 20 s after it began."""
+    way = np.concatenate((np.full(40, 145.0), 145.0 + 2.5 * np.arange(30)))[:until]
+    return other("left", lamps, way=way)
+
+
+def test_who_waits_for_longer_with_its_indicator_on_is_still_about_to_turn():
+    ego = steady(7, -60, 0, 2.5, 60)
+    signals = lit("left_indicator", 10, 60)
+    found = told("turning_far", crossroads(), ego, waits_to_turn(signals))
+    assert found[:10] == ["False"] * 10
+    assert found[10:42] == ["True"] * 32
+    # It signals all the time, but nobody sees it turn
+    stays = told("turning_far", crossroads(), ego, waits_to_turn(signals, until=36))
+    assert stays[10:36] == ["?"] * 26
+    # Signals that went out meanwhile were for something else
+    earlier = waits_to_turn(lit("left_indicator", 2, 8) | signals)
+    assert told("turning_far", crossroads(), ego, earlier)[2:8] == ["False"] * 6
+
+
 def test_whose_track_ends_before_the_junction():
     # It ends in state 15, 12.5 m before the junction
     ends = other("left", lit("left_indicator"), way=WAY[:16])

@@ -82,17 +82,39 @@ def _far_indicator(context: DriveContext) -> tuple[Flags, Flags]:
 
 
 def _turning_far(context: DriveContext) -> SignalColumns:
-    """The signal of those who have signalled to turn to the far side, and do."""
+    """The signal of those who have signalled to turn to the far side, and do.
+
+    However long they wait for it, their indicator on.
+    """
     turns, open_end = (own_part(context, flags) for flags in _turns(context))
     lit, told = _far_indicator(context)
+    turns |= _lit_until(context, turns & lit, lit)
+    seen_last = _ends_within(context, 1)
     if "arrivals" not in context.recording.complete:
         # Who signals and leaves the map may turn beyond it
         ahead = round(context.thresholds.preparing_s / context.recording.step_s)
         open_end |= lit & _ends_within(context, ahead)
+    else:
+        seen_last &= context.spans.columns == context.spans.end - 1
+    drives = context.tracks.of_type("vehicle")[:, None]
+    open_end |= drives & _lit_until(context, seen_last, lit)
     return SignalColumns(
         about={"turning_far": turns & lit},
         unknown={"turning_far": np.where(told, lit & open_end & ~turns, turns | open_end)},
     )
+
+
+def _lit_until(context: DriveContext, flags: Flags, lit: Flags) -> Flags:
+    """Flags of states from which on an indicator is lit until one that is flagged."""
+    columns, never = np.arange(context.states), context.states
+
+    def next_one(found: Flags) -> NDArray[intp]:
+        soonest: NDArray[intp] = np.where(found, columns, never)[:, ::-1]
+        return np.minimum.accumulate(soonest, axis=1)[:, ::-1]
+
+    until = next_one(flags & lit)
+    lasts: Flags = lit & (until < next_one(~lit)) & (until < context.spans.end)
+    return lasts
 
 
 @once_a_recording
