@@ -3,7 +3,7 @@
 from itertools import islice
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from rulec import RulecError, compile_rulebook, find_maneuvers
@@ -36,12 +36,17 @@ def scenes(draw):
         )
         for k in range(draw(st.integers(0, 3)))
     ]
+    return scene(*others)
+
+
+def scene(*others):
     ego = Ego(0.0, 0.0, 4.0, 1.8, speed=10.0, bounds=MotionBounds())
     road = Road((-50.0, 500.0), (-2.0, 2.0, 6.0))
-    return Scenario("h", road, ego, tuple(others), step_s=1.0, horizon_s=3.0)
+    return Scenario("h", road, ego, others, step_s=1.0, horizon_s=3.0)
 
 
 @given(scenes())
+@example(scene(car("c0", 0.0, 7.0, d=4)))  # ego's middle is behind it, at the mark between lanes
 @settings(max_examples=20)
 def test_no_path_is_cheaper_than_it_promises(scene):
     try:

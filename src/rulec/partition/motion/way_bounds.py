@@ -18,6 +18,8 @@ from rulec.partition.motion.others_beside import Cut, OthersBeside
 _MOST_ROUNDS = 12
 """So often rows are added; fewer leave the bound lower than it might be."""
 
+_HAIR_S = 1e-6
+
 _Names = frozenset[tuple[object, ...]]
 
 
@@ -51,6 +53,9 @@ class WayBounds:
         cells = [layer.cells[i] for layer, i in zip(self._graph.layers, path, strict=False)]
         low, high = self._motion.cell_bounds(cells)
         until = float(self._motion.layers_s[len(path) - 1])
+        if len(path) < len(self._graph.layers):
+            # Just when ego gets to the last cell it may be on the side that the next one leaves
+            until -= _HAIR_S
         names, found = before, None
         for _ in range(_MOST_ROUNDS):
             self._switch(names, low, high)
