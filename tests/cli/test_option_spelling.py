@@ -130,7 +130,7 @@ def test_former_names_are_taken_and_nowhere_shown(verb, former, capsys):
 @pytest.mark.parametrize("name", ["--fail-under", "--threshold"])
 def test_what_is_wrong_is_said_of_the_name_that_was_typed(name, capsys):
     assert main(["test", "esterle2019", name, "101"]) == 2
-    assert f"error: {name}: 101" in capsys.readouterr().err
+    assert f"error: {name}: `101" in capsys.readouterr().err
 
 
 def test_every_former_name_is_looked_at():
