@@ -295,3 +295,18 @@ def test_what_is_extended_is_for_the_same_side_of_traffic(tmp_path):
     (only,) = analyze(path)
     assert only.message.startswith("rule `s` is laxer")
     assert only.notes == ("`base` forbids: { behind(v) and left_of(v) and congested }",)
+
+
+def test_an_inherited_rule_that_adds_nothing_is_told_where_it_is_inherited(tmp_path):
+    base, path = tmp_path / "base.rules", tmp_path / "own.rules"
+    base.write_text(HEAD.replace("example", "base") + "hard rule r { require never (wet and fog) }")
+    path.write_text("rulebook own\nextends base\nhard rule s { require never wet }\n")
+    (found,) = analyze(path)
+    assert (found.code, found.message.partition(":")[0]) == ("R0803", "rule `r` adds nothing")
+    assert (found.place.file, found.place.line) == (str(path), 2)
+    assert [label.place.file for label in found.labels] == [str(base), str(path)]
+    assert "`drop rule r because" in found.help
+    # A comment there allows it, which in the other file would allow it everywhere.
+    text = path.read_text().replace("base\n", "base  # rulec: allow R0803 because so it is\n")
+    path.write_text(text)
+    assert analyze(path) == ()

@@ -77,7 +77,9 @@ def rulebook_findings(
             diagnostics += alone
             if not alone:
                 good.append(name)
-    diagnostics += _needless(good, by_name, answers, related)
+    for name, finding in _needless(good, by_name, answers, related):
+        is_own = by_name[name].book == book.name
+        diagnostics.append(finding if is_own else _to_drop(name, finding, extends))
     hard = [name for name in good if by_name[name].strength == "hard"]
     diagnostics += conflicts(hard, own, by_name, answers, related)
     diagnostics += contradictions(hard, own, by_name, occurring, answers=answers, related=related)
@@ -185,20 +187,21 @@ def _needless(
     rules: Mapping[str, Rule],
     answers: RuleAnswers,
     related: RelatedRules,
-) -> Iterator[Diagnostic]:
-    """Rules that can all be left out together without loss."""
+) -> Iterator[tuple[str, Diagnostic]]:
+    """Rules that can all be left out together without loss, by name."""
     left = set(names)
-    diagnostics: list[Diagnostic] = []
+    diagnostics: list[tuple[str, Diagnostic]] = []
     for name in reversed(names):
         try:
             premises = answers.implied_by(name, _others(name, left, rules, related))
         except UndecidedError as problem:
-            diagnostics.append(
-                finding_messages.undecided_diagnostic(rules[name], "others imply it", problem)
+            undecided = finding_messages.undecided_diagnostic(
+                rules[name], "others imply it", problem
             )
+            diagnostics.append((name, undecided))
             continue
         if premises:
-            diagnostics.append(_implied(rules[name], [rules[one] for one in premises]))
+            diagnostics.append((name, _implied(rules[name], [rules[one] for one in premises])))
             left.remove(name)
     yield from reversed(diagnostics)
 
@@ -216,6 +219,17 @@ def _implied(rule: Rule, premises: Sequence[Rule]) -> Diagnostic:
         ),
         severity="warning",
     )
+
+
+def _to_drop(name: str, diagnostic: Diagnostic, extends: Span | None) -> Diagnostic:
+    """The finding about an inherited rule that adds nothing, which nobody can leave out there."""
+    if diagnostic.code != finding_messages.ADDS_NOTHING.code:
+        return _inherited(diagnostic, extends)
+    way_out = (
+        f'write `drop rule {name} because "…"`, or override it rather than write another one, '
+        "unless its own provision is worth a rule"
+    )
+    return replace(_inherited(diagnostic, extends), help=way_out)
 
 
 def _inherited(diagnostic: Diagnostic, extends: Span | None) -> Diagnostic:
