@@ -10,9 +10,11 @@ from hypothesis import strategies as st
 from rulec import analyze
 from rulec.analysis.diff.rule_comparison import compare
 from rulec.analysis.lint.conflict_search import conflict
+from rulec.analysis.lint.questions import RuleAnswers
 from rulec.analysis.lint.redundancy import can_be_kept, can_be_violated, implied_by
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.trace import Trace
+from rulec.witnesses.undecided import UndecidedError
 from support.generators.random_rule_pairs import ALONE, COUNTED, X, allows, formulas, sides, states
 
 OBJECTS = {"x": "thing"}
@@ -241,6 +243,26 @@ def test_findings(rules, expected, tmp_path):
     for one, words in zip(found, expected, strict=True):
         text = " ".join([one.code, one.message, *one.notes])
         assert all(word in text for word in words.split(" ")), text
+
+
+def test_rules_contradict_each_other_only_where_all_of_it_is_decided(tmp_path, monkeypatch):
+    path = tmp_path / "example.rules"
+    path.write_text(
+        f"{HEAD}hard rule r {{ require always (wet implies slow) }} "
+        "hard rule s { require never (wet and slow) }"
+    )
+    assert [one.code for one in analyze(path)] == ["R0808"]
+    decide, asked = RuleAnswers.conflict, []
+
+    def undecided(answers, names):
+        asked.append(tuple(names))
+        if len(names) == 2:
+            raise UndecidedError("it is too large")
+        return decide(answers, names)
+
+    monkeypatch.setattr(RuleAnswers, "conflict", undecided)
+    assert "R0808" not in [one.code for one in analyze(path)]
+    assert {len(names) for names in asked} == {2, 3}
 
 
 def test_no_trace_shows_what_only_a_change_of_what_cannot_change_would(tmp_path):

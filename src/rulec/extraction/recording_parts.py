@@ -20,10 +20,10 @@ from rulec.recordings.track import TrackOutlines
 from rulec.value_display import short_repr
 
 MOST_CELLS = 3 << 17
-"""A part has about so many participants times steps, unless a single drive takes more."""
+"""A part has about so many participants times steps, unless drives take nearly as many alone."""
 
 MOST_TIMES_ALONE = 2
-"""A part takes at most so many times what one of its drives takes alone: in a crowd nearly all are
+"""Then it has up to so many times what one of its drives takes alone: in a crowd nearly all are
 there for each other's drives, and parts for few egos would look at the same ones again."""
 
 _DRIVERS = frozenset({"vehicle", "light_rider"})
@@ -74,13 +74,13 @@ def recording_parts(
     for ego in egos:
         begins, ends = spans[rows[ego]].tolist()
         wider = min(low, begins), max(high, ends)
-        alone = MOST_TIMES_ALONE * attendance.cells_during(begins, ends)
-        if waiting and attendance.cells_during(*wider) > max(limit, alone):
+        own_limit = MOST_TIMES_ALONE * attendance.cells_during(begins, ends)
+        if waiting and attendance.cells_during(*wider) > max(limit, own_limit):
             close()
             waiting.clear()
             wider, limit = (begins, ends), MOST_CELLS
         low, high = wider
-        limit = max(limit, alone)
+        limit = max(limit, own_limit)
         waiting.append(ego)
     if waiting:
         close()

@@ -149,17 +149,13 @@ def contradictions(
 
     Of a pair the first antecedent counts.
     """
-    told: set[frozenset[str]] = set()
+    reported: set[frozenset[str]] = set()
     for name, other, antecedent, occurs in _triggered(names, sides, occurring, related):
         pair = frozenset((name, other))
+        if pair in reported or not _contradict(name, other, occurs, answers):
+            continue
+        reported.add(pair)
         first, second = sorted(pair, key=names.index)
-        if pair in told or not _never_kept((name, other, occurs), answers):
-            continue
-        if any(_never_kept((one, occurs), answers) for one in (name, other)):
-            continue
-        if answers.conflict((first, second)) is not None:
-            continue  # of which the finding above says more
-        told.add(pair)
         label = at(rules[first].span)
         yield CONTRADICTING_RULES.at(
             rules[second].span,
@@ -193,10 +189,21 @@ def _triggered(
                         yield name, other, antecedent, occurs
 
 
-def _never_kept(group: Sequence[str], answers: RuleAnswers) -> bool:
-    """True if rules, each of which can be kept, never can be together; False if undecided."""
+def _contradict(name: str, other: str, occurs: str, answers: RuleAnswers) -> bool:
+    """True if what occurs can be with either rule, but never with both; False if undecided."""
     try:
-        clash = answers.conflict(group)
+        return (
+            _never_kept((name, other, occurs), answers)
+            and not _never_kept((name, occurs), answers)
+            and not _never_kept((other, occurs), answers)
+            # Of rules in conflict anyway the finding above says more
+            and answers.conflict((name, other)) is None
+        )
     except UndecidedError:
         return False
+
+
+def _never_kept(group: Sequence[str], answers: RuleAnswers) -> bool:
+    """True if rules, each of which can be kept, never can be together."""
+    clash = answers.conflict(group)
     return clash is not None and clash.trace is None
