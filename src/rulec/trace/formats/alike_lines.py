@@ -127,7 +127,7 @@ class _Outline:
 
     line: int
     heading: LineHeading
-    states: bytes
+    states: memoryview
     form: _Form
     between: tuple[bytes, ...]
 
@@ -164,8 +164,7 @@ def _outlined(
         return None
     begin = line.index(b"[", begin) + 1
     end = line.rfind(b"}]") + 1
-    states = line[begin:end]
-    if not states or b"\\" in states:
+    if end <= begin or line.find(b"\\", begin, end) >= 0:
         return None
     read = heading_of(line[:begin] + line[end:])
     if read is None:
@@ -176,12 +175,14 @@ def _outlined(
     names = [name.encode(errors="surrogatepass") for name in heading.objects]
     if any(b":" in name or b'"' in name for name in names):
         return None
-    first = states[: states.find(b"}" + comma + b"{") + 1] or states
+    first = line[begin : line.find(b"}" + comma + b"{", begin, end) + 1 or end]
     form = usual
     if form is None or form.comma != comma or form.n_quotes != first.count(b'"'):
         form = _form_of(first, comma, colon, heading.objects)
     if form is None or any(one >= len(names) for one in form.named):
         return None
+    # A view, for states are most of a line, and copied once they are joined.
+    states = memoryview(line)[begin:end]
     return _Outline(number, heading, states, form, form.between(names))
 
 
@@ -313,8 +314,10 @@ _FIRST_IN_JSON = 32
 
 def _joined(outlines: Sequence[_Outline], comma: bytes) -> tuple[Bytes, Places, Places]:
     """All states, each with a comma behind it; where colons stand, and where lines end."""
-    parts = [part for one in outlines for part in (one.states, comma)]
-    whole = b"".join([b" " * PADDING, *parts, b" " * PADDING])
+    parts: list[bytes | memoryview] = [b" " * PADDING]
+    for one in outlines:
+        parts += one.states, comma
+    whole = b"".join([*parts, b" " * PADDING])
     text = np.frombuffer(whole, np.uint8)
     ends = PADDING + np.cumsum([len(one.states) + len(comma) for one in outlines])
     return text, np.flatnonzero(text == ord(":")), ends

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable, Iterator, Sequence
 from typing import IO
 
@@ -87,7 +86,7 @@ def _parsed(lines: bytes, columns: Sequence[str]) -> Piece | None:
     """The cells as texts; None if there is something wrong with them."""
     try:
         table = csv.read_csv(
-            io.BytesIO(lines),
+            pyarrow.BufferReader(lines),
             csv.ReadOptions(
                 use_threads=False, block_size=len(lines) + 1, column_names=list(columns)
             ),
@@ -97,6 +96,8 @@ def _parsed(lines: bytes, columns: Sequence[str]) -> Piece | None:
                 newlines_in_values=not lines.endswith(b"\n"),
             ),
             csv.ConvertOptions(
+                # All of ASCII is UTF-8, which is seen sooner of a block than of its cells.
+                check_utf8=not lines.isascii(),
                 column_types=dict.fromkeys(columns, pyarrow.string()),
                 null_values=[""],
                 strings_can_be_null=True,
