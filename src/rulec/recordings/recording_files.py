@@ -65,9 +65,16 @@ def read_recordings(source: RecordingSource) -> Iterator[Recording]:
     or wrong one, R0701 if a file cannot be opened.
     """
     # NumPy, only for those who have recordings.
-    from rulec.recordings.tracks.doubts import with_doubts
+    from rulec.recordings.doubts.motion_doubts import with_doubts
+    from rulec.recordings.doubts.road_doubts import check_near
 
     form = _format_of(source)
+
+    def looked_at(recording: Recording) -> Recording:
+        if form.takes_map:
+            check_near(recording, source.path)
+        return with_doubts(recording, source.path)
+
     if source.map_path is not None and not form.takes_map:
         raise OTHER_CHOICE.error(
             SourceLocation(str(source.path)),
@@ -75,13 +82,13 @@ def read_recordings(source: RecordingSource) -> Iterator[Recording]:
             help="leave out --map, which is for recordings without roads of their own",
         )
     if source.scenario_id is None:
-        yield from (with_doubts(recording, source.path) for recording in form.read(source))
+        yield from map(looked_at, form.read(source))
         return
     names = list(form.names(source.path)) if form.names is not None else []
     if form.names is None or source.scenario_id in names:
         for recording in form.read(source):
             if recording.name == source.scenario_id:
-                yield with_doubts(recording, source.path)
+                yield looked_at(recording)
                 return
             names.append(recording.name)
     raise NOT_IN_RECORDING.error(

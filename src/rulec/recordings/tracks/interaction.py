@@ -129,7 +129,7 @@ def _recording(name: str, tables: Sequence[NamedColumns], roads: RoadMap, path: 
         )
     side = side_in(country_in(name.removeprefix("DR_")))
     told = roads if roads.side or side is None else replace(roads, side=side)
-    return track_recording(name, rows, told, form="INTERACTION tracks", remarks=remarks, path=path)
+    return track_recording(name, rows, told, form="INTERACTION tracks", remarks=remarks)
 
 
 def _told_apart(table: NamedColumns) -> Texts:

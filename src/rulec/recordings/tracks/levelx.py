@@ -97,9 +97,7 @@ def read_highd(source: RecordingSource) -> Iterator[Recording]:
     )
     roads = highd_roads(about, (float(rows.x.min()), float(rows.x.max())))
     name = f"highD_{path.name.partition('_')[0]}"
-    yield replace(
-        track_recording(name, [rows], roads, form="highD tracks", path=path), country=_COUNTRY
-    )
+    yield replace(track_recording(name, [rows], roads, form="highD tracks"), country=_COUNTRY)
 
 
 def read_levelx(source: RecordingSource) -> Iterator[Recording]:
@@ -129,7 +127,7 @@ def read_levelx(source: RecordingSource) -> Iterator[Recording]:
     x, y = (about.numbers.get(name, np.zeros(1))[0] for name in ("xUtmOrigin", "yUtmOrigin"))
     rows = shifted_to_roads(rows, roads, (float(x), float(y)))
     name = f"levelX_{path.name.partition('_')[0]}"
-    recording = track_recording(name, [rows], roads, form="levelX tracks", path=path)
+    recording = track_recording(name, [rows], roads, form="levelX tracks")
     yield replace(recording, country=_COUNTRY, side=roads.side or "right")
 
 

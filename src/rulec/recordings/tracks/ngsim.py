@@ -81,7 +81,7 @@ def read_ngsim(source: RecordingSource) -> Iterator[Recording]:
     for own, part in parts:
         rows = _rows(part)
         roads = roads_of(path, source.map_path, rows.times.step_s, lanes_beside(path))
-        recording = track_recording(own, [rows], roads, form="NGSIM tracks", path=path)
+        recording = track_recording(own, [rows], roads, form="NGSIM tracks")
         yield replace(recording, country="USA", side=roads.side or "right")
 
 

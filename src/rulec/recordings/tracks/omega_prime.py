@@ -80,7 +80,7 @@ def read_omega_prime(source: RecordingSource) -> Iterator[Recording]:
     )
     roads = roads_of(path, source.map_path, rows.times.step_s, lanes_beside(path))
     name = path.name.split(".")[0] or path.name
-    yield track_recording(name, [rows], roads, form="OMEGA-PRIME tracks", path=path)
+    yield track_recording(name, [rows], roads, form="OMEGA-PRIME tracks")
 
 
 def _types(named: NamedColumns) -> Texts:

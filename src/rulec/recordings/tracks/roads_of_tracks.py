@@ -12,15 +12,13 @@ from numpy.typing import NDArray
 
 from rulec.diagnostics import SourceLocation
 from rulec.recordings.adjacency import with_untold_neighbours
+from rulec.recordings.doubts.road_doubts import NEAR_M
 from rulec.recordings.map_files import read_map
 from rulec.recordings.recording import Lanelet, Recording
-from rulec.recordings.recording_messages import NET_MISSING, OTHER_NET
+from rulec.recordings.recording_messages import NET_MISSING
 from rulec.recordings.road_map import RoadMap
 from rulec.recordings.tracks.headings_on_lanes import heading_on
 from rulec.recordings.tracks.track_rows import TrackRows, read_tracks
-
-NEAR_M = 50.0
-"""Somebody in the table is no farther from the box around the roads than this."""
 
 _LANES = (".csv", ".parquet")
 
@@ -61,13 +59,11 @@ def track_recording(
     *,
     form: str,
     remarks: Iterable[str] = (),
-    path: Path | None = None,
 ) -> Recording:
     """The recording of the rows of one or more tables, in the same time steps, on roads.
 
-    Raises RulecError R0610 for a row that makes no sense, R0615 if all are far from the roads.
+    Raises RulecError R0610 for a row that makes no sense.
     """
-    _check_near(path, tables, roads.lanelets.values())
     heading_at = heading_on(roads.lanelets.values())
     found = [read_tracks(rows, heading_at) for rows in tables]
     said = [remark for part in found for remark in part.remarks]
@@ -89,7 +85,11 @@ def track_recording(
 
 def shifted_to_roads(rows: TrackRows, roads: RoadMap, offset: tuple[float, float]) -> TrackRows:
     """The rows, moved by the offset of their frame if only that brings them to the roads."""
-    if _reach(rows, roads.lanelets.values()) <= NEAR_M or offset == (0.0, 0.0):
+    if (
+        not roads.lanelets
+        or offset == (0.0, 0.0)
+        or _reach(rows, roads.lanelets.values()) <= NEAR_M
+    ):
         return rows
     moved = replace(rows, x=rows.x + offset[0], y=rows.y + offset[1])
     return moved if _reach(moved, roads.lanelets.values()) <= NEAR_M else rows
@@ -107,23 +107,3 @@ def _reach(rows: TrackRows, lanelets: Iterable[Lanelet]) -> float:
     places = np.column_stack((rows.x, rows.y))
     beyond = np.maximum(np.maximum(low - places, places - high), 0.0)
     return float(np.hypot(*beyond.T).min())
-
-
-def _check_near(
-    path: Path | None, tables: Sequence[TrackRows], lanelets: Iterable[Lanelet]
-) -> None:
-    lanes = list(lanelets)
-    if not lanes:
-        where = None if path is None else SourceLocation(str(path))
-        raise OTHER_NET.error(where, "the map has no lanes", help="give another map with --map")
-    if min(_reach(rows, lanes) for rows in tables) <= NEAR_M:
-        return
-    low, high = _box(lanes)
-    rows = tables[0]
-    raise OTHER_NET.error(
-        None if path is None else SourceLocation(str(path)),
-        f"nobody is near the roads: tracks are at x {rows.x.min():.1f} to {rows.x.max():.1f}, "
-        f"y {rows.y.min():.1f} to {rows.y.max():.1f}, the map at x {low[0]:.1f} to {high[0]:.1f}, "
-        f"y {low[1]:.1f} to {high[1]:.1f}",
-        help="tracks and map are in one frame, in metres: move the tracks, or give their map",
-    )

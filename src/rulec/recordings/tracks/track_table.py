@@ -9,14 +9,17 @@ from typing import TYPE_CHECKING, Any, cast, get_args
 
 import numpy as np
 
+from rulec.recordings.doubts.road_doubts import check_near
 from rulec.recordings.encodings.table_columns import (
     ColumnKind,
     ColumnTable,
+    NamedColumns,
     named_columns,
     unread_remark,
 )
+from rulec.recordings.encodings.csv_head import is_number
 from rulec.recordings.encodings.table_files import open_table, table_of
-from rulec.recordings.encodings.xml_element import XmlFormat
+from rulec.recordings.encodings.xml_element import XmlFormat, short
 from rulec.recordings.lanes.lane_table import lane_map
 from rulec.recordings.map_files import read_map
 from rulec.recordings.recording import Lamp, Recording
@@ -37,6 +40,8 @@ TRACKS = XmlFormat(
 
 _SPARSE_S = 5.0
 _CREEPING_MPS = 0.5
+_MANY_NAMES = 5
+_ALMOST_EVEN = 2.5
 _KMH, _MPH, _DEG = 1 / 3.6, 0.44704, pi / 180
 _LAMPS = cast("tuple[Lamp, ...]", get_args(Lamp))
 
@@ -80,9 +85,7 @@ def read_track_table(source: RecordingSource) -> Iterator[Recording]:
     rows, remark = track_rows_of(open_table(path, TRACKS))
     roads = roads_of(path, source.map_path, rows.times.step_s, lanes_beside(path))
     name = path.name.split(".")[0] or path.name
-    yield track_recording(
-        name, [rows], roads, form="tracks as a table", remarks=[remark], path=path
-    )
+    yield track_recording(name, [rows], roads, form="tracks as a table", remarks=[remark])
 
 
 def recording_from_columns(
@@ -105,7 +108,9 @@ def recording_from_columns(
         roads = read_map(Path(lanes), rows.times.step_s)
     else:
         roads = lane_map(lanes)
-    return track_recording(name, [rows], roads, form="tracks as a table", remarks=[remark])
+    recording = track_recording(name, [rows], roads, form="tracks as a table", remarks=[remark])
+    check_near(recording, None)
+    return recording
 
 
 def track_rows_of(table: ColumnTable) -> tuple[TrackRows, str]:
@@ -123,6 +128,7 @@ def track_rows_of(table: ColumnTable) -> tuple[TrackRows, str]:
     if velocity is not None and any(np.isnan(part).any() for part in velocity):
         # Who has no velocity somewhere has none: places tell it as well
         velocity = None
+    _check_exchanged(named)
     times = even_times(numbers["t"], named.columns)
     rows = TrackRows(
         columns=named.columns,
@@ -171,3 +177,23 @@ def _check_seconds(rows: TrackRows, heads: set[str]) -> None:
     )
     way_out = f"call the column {names}; or `t_s`, if these are seconds"
     raise rows.columns.refused(why, help_text=way_out)
+
+
+def _check_exchanged(named: NamedColumns) -> None:
+    """Refuse names of tracks that are times, and times that are numbers of tracks.
+
+    Each moment would be a track of its own then, which is everywhere.
+    """
+    names, times = named.texts["track"].names, named.numbers["t"]
+    if len(names) < _MANY_NAMES or not all(map(is_number, names)):
+        return
+    moments = np.unique([float(name) for name in names])
+    between = np.diff(moments)
+    is_grid = len(moments) == len(names) and between.max() < _ALMOST_EVEN * between.min()
+    are_whole = (moments == np.round(moments)).all()
+    if is_grid and not are_whole and (times == np.round(times)).all():
+        why = (
+            f"its tracks are called `{short(names[0])}` to `{short(names[-1])}`, and its times are "
+            "whole numbers: `track` and `t` seem to be exchanged"
+        )
+        raise named.columns.refused(why, help_text="exchange the names of these two columns")

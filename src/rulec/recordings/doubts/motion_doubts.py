@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from rulec.recordings.recording import Recording
 from rulec.recordings.recording_format import RECORDING
 from rulec.recordings.track import Track, TrackStates
-from rulec.recordings.tracks.limit_doubts import limit_doubts
+from rulec.recordings.doubts.limit_doubts import limit_doubts
+from rulec.recordings.doubts.road_doubts import road_doubts
 
 _MOST_BODIES = 60
 _FEWEST_BODIES = 3
@@ -26,6 +27,9 @@ _ALIKE = 1.5
 _ASKEW_DEG, _ACROSS_DEG = 20.0, 45.0
 """Cars in bends, and those that are measured badly, move less askew all the time."""
 
+_FASTEST_MPS = 100.0
+"""No traffic is as fast as 360 km/h in the median."""
+
 _SPEEDS = "speeds are"
 
 
@@ -35,7 +39,7 @@ def with_doubts(recording: Recording, path: Path) -> Recording:
     Raises RulecError R0610 if most vehicles move across or against their headings.
     """
     tracks = _tracks(recording)
-    doubts = tuple(limit_doubts(recording, tracks))
+    doubts = (*limit_doubts(recording, tracks), *road_doubts(recording.lanelets, tracks))
     recording = replace(recording, remarks=(*recording.remarks, *doubts)) if doubts else recording
     if len(tracks) < _FEWEST_BODIES:
         return recording
@@ -66,6 +70,12 @@ def _tracks(recording: Recording) -> list[Track]:
 def _doubts(tracks: list[Track], recording: Recording, angle: float) -> Iterator[str]:
     if angle > _ASKEW_DEG:
         yield f"vehicles move {angle:.0f}° off their headings, which may be in degrees"
+    fastest = float(np.median([_mean_mps(track, recording.step_s) for track in tracks]))
+    if fastest > _FASTEST_MPS:
+        yield (
+            f"half of the vehicles move at {fastest * 3.6:,.0f} km/h or more: columns, or units of "
+            "times or places, may be wrong"
+        )
     ratio = float(np.median([_speed_ratio(track, recording.step_s) for track in tracks]))
     # Tables have said so themselves, of all their rows
     told = any(remark.startswith(_SPEEDS) for remark in recording.remarks)
@@ -82,6 +92,12 @@ def _ways(track: Track) -> NDArray[float64]:
     """From each place of a track to the next (m)."""
     ways: NDArray[float64] = np.diff(track.rows[:, :2], axis=0)
     return ways
+
+
+def _mean_mps(track: Track, step_s: float) -> float:
+    """How fast somebody moves by its places, in the mean."""
+    took = float(track.steps[-1] - track.steps[0]) * step_s
+    return float(np.hypot(*_ways(track).T).sum() / took)
 
 
 def _askew_deg(track: Track) -> float:

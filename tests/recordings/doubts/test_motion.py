@@ -127,4 +127,11 @@ def test_limits_that_traffic_may_go_by(tmp_path, limit, cars):
 
 def test_who_is_on_no_lane_with_a_limit_says_nothing_of_limits(tmp_path):
     aside = EASTWARD | {"y": lambda row: 9.0}
-    assert told(tmp_path, cars=12, limit=3.86, **aside) == ()
+    (remark,) = told(tmp_path, cars=12, limit=3.86, **aside)
+    assert remark.startswith("only 0% of the places of vehicles that move are on lanes")
+
+
+def test_who_is_as_fast_as_no_traffic(tmp_path):
+    """Hundredths of a second for tenths: 100 m/s along the lane are 1,000 m/s."""
+    (remark,) = told(tmp_path, step=0.001, speed=lambda row: 1000.0)
+    assert remark.startswith("half of the vehicles move at 3,600 km/h or more: columns, or units")

@@ -1,0 +1,1 @@
+"""What recordings of all formats say that cannot be so, or hardly."""

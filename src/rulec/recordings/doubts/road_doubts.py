@@ -1,0 +1,163 @@
+"""Tracks and roads that do not belong together: another place, another frame, other axes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import shapely
+from numpy import float64
+from numpy.typing import NDArray
+
+from rulec.diagnostics import SourceLocation
+from rulec.recordings.recording import Lanelet, Participant, Points, Recording, is_lane
+from rulec.recordings.recording_messages import OTHER_NET
+from rulec.recordings.track import Track, TrackStates
+
+NEAR_M = 50.0
+"""Somebody in a recording is no farther from its roads than this."""
+
+_MOST_PLACES = 40
+"""So many of each body's places are looked at; of who moves at even distances."""
+
+_FEW, _HALF, _MOST = 1 / 3, 0.5, 0.8
+"""On the maps of published recordings at least 0.61 of the places of those who move are on lanes,
+and as many along them; with other axes at most 0.43, on maps of other places a third or fewer."""
+
+_ASTRAY = np.pi / 3
+"""Who turns off or changes lanes is turned less far away from its lane."""
+
+_FEWEST_BODIES = 3
+
+
+def check_near(recording: Recording, path: Path | None) -> None:
+    """Refuse tracks that are all far from the roads of their map.
+
+    Raises RulecError R0615.
+    """
+    where = None if path is None else SourceLocation(str(path))
+    if not recording.lanelets:
+        raise OTHER_NET.error(where, "the map has no lanes", help="give another map with --map")
+    places = [found for one in recording.participants if len(found := _some_places(one))]
+    lines = [shapely.LineString(one.centre) for one in recording.lanelets.values()]
+    tree = shapely.STRtree(lines)
+    for own in places:
+        near = tree.query(shapely.points(own), predicate="dwithin", distance=NEAR_M)
+        if near.size:
+            return
+    if not places:
+        return
+    low, high = _box(places)
+    least, most = _box([one.centre for one in recording.lanelets.values()])
+    raise OTHER_NET.error(
+        where,
+        f"nobody is near the roads: tracks are at x {low[0]:.1f} to {high[0]:.1f}, "
+        f"y {low[1]:.1f} to {high[1]:.1f}, the map at x {least[0]:.1f} to {most[0]:.1f}, "
+        f"y {least[1]:.1f} to {most[1]:.1f}",
+        help="tracks and map are in one frame, in metres: move the tracks, or give their map",
+    )
+
+
+def road_doubts(lanelets: Mapping[str, Lanelet], tracks: Sequence[Track]) -> Iterator[str]:
+    """What is to be said of roads; ``tracks`` are those of vehicles that move."""
+    lanes = [one for one in lanelets.values() if is_lane(one)]
+    if not lanes or not tracks:
+        return
+    roads = _Roads(lanes)
+    moves = [_moves(track) for track in tracks]
+    on, along = roads.shares(moves)
+    if along < _HALF and len(tracks) >= _FEWEST_BODIES:
+        for what, change in _AXES.items():
+            better = roads.shares([change(one) for one in moves])[1]
+            if better > _MOST:
+                yield (
+                    f"{what}: then {better:.0%} of the places of vehicles that move would be on "
+                    f"lanes that lead their way, and {along:.0%} are as they are"
+                )
+                return
+    if on < _FEW:
+        yield (
+            f"only {on:.0%} of the places of vehicles that move are on lanes: the map may be that "
+            "of another place, or in another frame"
+        )
+    elif along < _FEW and len(tracks) >= _FEWEST_BODIES:
+        yield (
+            f"only {along:.0%} of the places of vehicles that move are on lanes that lead their "
+            "way: the map may be that of another place, or y point down"
+        )
+
+
+Moves = NDArray[float64]
+"""Places, and directions of motion there: x, y, and the way on from there as x, y."""
+
+
+def _exchanged(moves: Moves) -> Moves:
+    return moves[:, [1, 0, 3, 2]]
+
+
+def _downward(moves: Moves) -> Moves:
+    return moves * np.array([1.0, -1.0, 1.0, -1.0])
+
+
+_AXES = {
+    "x and y seem to be exchanged": _exchanged,
+    "y seems to point down, and wants another sign": _downward,
+}
+
+
+class _Roads:
+    """The lanes of a map, to be asked who is on them."""
+
+    def __init__(self, lanes: Sequence[Lanelet]) -> None:
+        outlines = [np.vstack((one.left, one.right[::-1])) for one in lanes]
+        self._tree = shapely.STRtree([shapely.Polygon(line).buffer(0) for line in outlines])
+        self._middles = [one.centre for one in lanes]
+
+    def shares(self, bodies: Iterable[Moves]) -> tuple[float, float]:
+        """Of the places of each body those on a lane, and on one along it, in the mean."""
+        found = np.array([self._of_one(moves) for moves in bodies])
+        on, along = found.mean(axis=0).tolist()
+        return on, along
+
+    def _of_one(self, moves: Moves) -> tuple[float, float]:
+        rows, lanes = self._tree.query(shapely.points(moves[:, :2]), predicate="intersects")
+        along = {
+            row
+            for row, lane in zip(rows.tolist(), lanes.tolist(), strict=True)
+            if _leads(self._middles[lane], moves[row])
+        }
+        return len(np.unique(rows)) / len(moves), len(along) / len(moves)
+
+
+def _leads(middle: Points, move: NDArray[float64]) -> bool:
+    """Does a lane lead where somebody goes, where it is nearest?"""
+    ways = np.diff(middle, axis=0)
+    at = int(np.argmin(np.hypot(*(middle[:-1] + ways / 2 - move[:2]).T)))
+    cross = ways[at, 0] * move[3] - ways[at, 1] * move[2]
+    return bool(abs(np.arctan2(cross, ways[at] @ move[2:])) < _ASTRAY)
+
+
+def _moves(track: Track) -> Moves:
+    """Some of the places of a track, with the ways on from there."""
+    places = track.rows[:, :2]
+    driven = np.append(0.0, np.hypot(*np.diff(places, axis=0).T).cumsum())
+    rows = np.searchsorted(driven, np.linspace(0.0, driven[-1], _MOST_PLACES))
+    some = places[np.unique(rows)]
+    return np.column_stack((some[:-1], np.diff(some, axis=0)))
+
+
+def _some_places(body: Participant) -> Points:
+    """Some of the places of a body."""
+    if isinstance(body.states, TrackStates):
+        rows = body.states.track.rows
+        places: Points = rows[:: max(1, len(rows) // _MOST_PLACES), :2]
+        return places
+    steps = list(body.states)
+    some = [body.states[step] for step in steps[:: max(1, len(steps) // _MOST_PLACES)]]
+    return np.array([(one.x, one.y) for one in some]).reshape(-1, 2)
+
+
+def _box(lines: Sequence[Points]) -> tuple[Points, Points]:
+    whole = np.concatenate(lines)
+    return whole.min(axis=0), whole.max(axis=0)
