@@ -123,7 +123,8 @@ class Lanelet:
     """A piece of a lane, with its bounds in the direction of travel.
 
     ``left_of`` and ``right_of`` are the lanelets beside it that lead the same way. ``signs`` are
-    the names of those that hold here; ``lights`` are those that have a programme or were seen,
+    the names of those that hold here, ``untold_signs`` of those of which the file does not tell
+    whether they do; ``lights`` are those that have a programme or were seen,
     ``lights_to`` that for each lanelet that follows, where it has its own. Marks are those
     of its bounds, ``stop_line`` (two ends) the one that the map has drawn, None where the file does
     not say. ``junction`` is the one that it lies in. Of the ways through that, ``foes`` are those
@@ -143,6 +144,7 @@ class Lanelet:
     types: frozenset[str]
     signs: frozenset[str]
     limit_mps: float | None
+    untold_signs: frozenset[str] = frozenset()
     lights: tuple[Light | ObservedLight, ...] = ()
     lights_to: Mapping[str, Light | ObservedLight] = field(default_factory=dict)
     left_mark: LaneMark | None = None

@@ -9,6 +9,7 @@ from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
 from rulec.recordings.d123.message_pack import OddPackError, unpacked
 from rulec.recordings.recording_inputs import input_files
+from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders import d123_files as d123
 
 
@@ -80,6 +81,16 @@ def test_lanes_side_by_side_are_neighbours_where_none_is_named(tmp_path):
     assert len(recording.remarks) == 1
 
 
+@pytest.mark.parametrize("kind", ["SOLID", [6], {"a": 6}, 6.0, None, 99])
+def test_lines_of_an_odd_kind_are_no_marks(tmp_path, kind):
+    town = d123.town()
+    line = next(place for place, (layer, name, *_) in enumerate(town) if (layer, name) == (9, 0))
+    town[line][2]["road_line_type"] = kind
+    roads = read_map(d123.write_map(tmp_path, town), 0.1)
+    assert roads.lanelets["1"].left_mark is None
+    assert roads.lanelets["1"].right_mark == "broken"
+
+
 def test_lights_are_for_the_way_to_their_lane(tmp_path):
     one, *others = read_recording(d123.drive(tmp_path)).lanelets.values()
     (light,) = one.lights_to.values()
@@ -125,6 +136,54 @@ def test_stop_zones_elsewhere_are_left_out_with_a_remark(tmp_path, x, lanes):
     assert not any(one.signs for one in roads.lanelets.values())
     (remark,) = roads.remarks
     assert remark == "stop zones whose lanes do not begin or end there are left out: 1"
+
+
+@pytest.mark.parametrize(
+    ("x", "lanes", "untold"),
+    [
+        # By where it lies, and by what it is said to be for
+        *[(30, [1], {"1"}), (60, [], {"1", "3"}), (30, [77], {"1"}), (0, [2], {"1", "2"})],
+        # Beyond the map's edge
+        (200, [77], set()),
+    ],
+)
+def test_signs_of_zones_that_are_not_placed_are_unknown_there(tmp_path, x, lanes, untold):
+    file = d123.write_map(tmp_path, [*d123.town(), zone_at(x, 2, lanes)])
+    found = read_map(file, 0.1).lanelets
+    assert {name: one.untold_signs for name, one in found.items() if one.untold_signs} == {
+        name: {"STOP"} for name in untold
+    }
+
+
+def drive_on_lane_two(tmp_path, *zones):
+    """Who drives on lane 2 at 10 m/s; lane 1 has a stop sign, and other zones are somewhere."""
+    moments = [d123.SECOND_US + 100_000 * k for k in range(30)]
+    boxes = [[d123.box("car", d123.CAR, 5.0 + k, -1.75)] for k in range(30)]
+    ego = {moment: d123.pose(1.0 + k, 1.75) for k, moment in enumerate(moments)}
+    d123.write_map(tmp_path, [*d123.town(), zone_at(60, 2, [3]), *zones])
+    file = d123.write_log(tmp_path, moments, boxes, ego)
+    drives = selected_drives(read_recording(file), RequestedDrives(egos=("car",)), "some", "right")
+    (drive,) = drives.of("car")
+    return drive.trace.states
+
+
+STOP_WORDS = ("stop_sign", "crosses_stop_line", "distance_to_stop_line")
+
+
+def test_of_a_stop_sign_that_is_not_placed_nothing_is_known(tmp_path):
+    """That other signs are placed does not say that there is none here."""
+    for state in drive_on_lane_two(tmp_path)[3:9]:
+        assert [state[word] for word in STOP_WORDS] == [False, False, 0]
+    states = drive_on_lane_two(tmp_path, zone_at(30, 2, [2], name=7))
+    for k, state in enumerate(states[3:9], 3):
+        signs, crosses, distance = (state[word] for word in STOP_WORDS)
+        assert signs is crosses is UNKNOWN
+        # At most at the lane's end, at x = 60; the front is 2.25 m ahead of the middle
+        assert (distance.low, distance.high) == pytest.approx((0, 60 - 2.25 - 5 - k))
+    # Of a sign to give way the same
+    zones = [zone_at(60, 3, [3], name=7), zone_at(30, 3, [2], name=8)]
+    for states, said in ((zones[:1], False), (zones, UNKNOWN)):
+        assert drive_on_lane_two(tmp_path, *states)[4]["give_way_sign"] is said
 
 
 def test_stop_signs_of_waymo_are_for_the_lanes_behind_them_and_are_all(tmp_path):

@@ -76,6 +76,7 @@ class MapContents:
 
     types: frozenset[str]
     signs: frozenset[str]
+    untold_signs: frozenset[str]
     limits: bool
     lights: bool
     marks: bool
@@ -88,6 +89,7 @@ def map_contents(context: DriveContext) -> MapContents:
     return MapContents(
         types=frozenset().union(*(lanelet.types for lanelet in lanelets)),
         signs=frozenset().union(*(lanelet.signs for lanelet in lanelets)),
+        untold_signs=frozenset().union(*(lanelet.untold_signs for lanelet in lanelets)),
         limits=any(lanelet.limit_mps is not None for lanelet in lanelets),
         lights=any(lanelet.lights for lanelet in lanelets),
         marks=any(lanelet.left_mark or lanelet.right_mark for lanelet in lanelets),

@@ -167,7 +167,7 @@ def junctions_of(recording: Recording) -> tuple[Junction, ...]:
     for name, lanelets in members.items():
         ways = tuple(_ways({lanelet.id: lanelet for lanelet in lanelets}))
         regulated = _regulated(recording, lanelets, ways)
-        if regulated is None and told and not _may_be_lit(recording, ways):
+        if regulated is None and told and not _may_be_regulated(recording, ways):
             regulated = False
         junctions.append(Junction(name, ways, regulated))
     return tuple(junctions)
@@ -240,18 +240,24 @@ def all_have_to_stop(recording: Recording, junction: Junction) -> bool | None:
     Of roads that begin at the map's edge nobody knows the signs.
     """
     ways = [way for way in junction.ways if not way.on_rails]
-    signs = [{sign for entry in approaches(recording, way) for sign in entry.signs} for way in ways]
+    before = [approaches(recording, way) for way in ways]
+    signs = [{sign for entry in one for sign in entry.signs} for one in before]
     if any(ALL_STOP in one for one in signs):
         return True
-    if not all("STOP" in one for one, way in zip(signs, ways, strict=True) if way.entries):
+    untold = [any("STOP" in entry.untold_signs for entry in one) for one in before]
+    lacks = [way.entries and "STOP" not in one for one, way in zip(signs, ways, strict=True)]
+    if any(missing and not may for missing, may in zip(lacks, untold, strict=True)):
         return False
-    return True if all(way.entries for way in ways) else None
+    return None if any(lacks) or not all(way.entries for way in ways) else True
 
 
-def _may_be_lit(recording: Recording, ways: tuple[JunctionWay, ...]) -> bool:
-    """True if there may be lights at a junction that nobody saw."""
+def _may_be_regulated(recording: Recording, ways: tuple[JunctionWay, ...]) -> bool:
+    """True if there may be lights at a junction that nobody saw, or signs that are not placed."""
     entries = [entry for way in ways for entry in approaches(recording, way)]
-    return any(not is_there(light) for entry in entries for light in entry.lights)
+    return any(
+        entry.untold_signs & _REGULATING or not all(map(is_there, entry.lights))
+        for entry in entries
+    )
 
 
 def approaches(recording: Recording, way: JunctionWay) -> list[Lanelet]:

@@ -247,7 +247,7 @@ class _Paint:
     def __init__(self, layers: _Layers) -> None:
         things = layers.of(_ROAD_LINE)
         self._lines = [_shape(layers, one) for one in things]
-        self._kinds = [one.said.get("road_line_type") for one in things]
+        self._marks = [_mark(one) for one in things]
         self._tree = shapely.STRtree(self._lines)
 
     def along(self, bound: Points) -> LaneMark | None:
@@ -260,9 +260,14 @@ class _Paint:
         with np.errstate(all="ignore"):
             near = self._tree.query(line, predicate="dwithin", distance=_ALONG_M).tolist()
             away = [shapely.distance(self._lines[k], places).max() for k in near]
-        kinds = {self._kinds[k] for k, most in zip(near, away, strict=True) if most <= _ALONG_M}
-        marks = {_MARKS.get(kind) if isinstance(kind, int) else None for kind in kinds}
+        marks = {self._marks[k] for k, most in zip(near, away, strict=True) if most <= _ALONG_M}
         return marks.pop() if len(marks) == 1 else None
+
+
+def _mark(line: _Thing) -> LaneMark | None:
+    """What kind of mark a line is; None for a kind that is not known."""
+    kind = line.said.get("road_line_type")
+    return _MARKS.get(kind) if isinstance(kind, int) else None
 
 
 def _shape(layers: _Layers, line: _Thing) -> shapely.LineString:

@@ -19,6 +19,9 @@ SIGNS: Mapping[int, str] = {2: "STOP", 3: "YIELD"}
 """Types of zones that are those of signs, by number."""
 
 _NEAR_M = 2.0
+_BESIDE_M = 1.5
+"""The middle of a lane beside that of a zone is farther from it."""
+
 _INTERSECTION = "intersection"
 
 
@@ -36,10 +39,14 @@ def with_signs(
 ) -> tuple[dict[str, Lanelet], int]:
     """The lanelets with the signs of zones, and how many zones are not placed.
 
+    Of lanelets at these, and of those that they are for, it is not told whether the sign holds.
     ``all_behind``: zones are for lanes behind their lines, whether these are in an intersection or
     not.
     """
     signs: dict[str, set[str]] = defaultdict(set)
+    untold: dict[str, set[str]] = defaultdict(set)
+    middles = shapely.STRtree([shapely.LineString(one.centre) for one in lanelets.values()])
+    names = list(lanelets)
     left_out = 0
     for zone in zones:
         shape = shapely.convex_hull(shapely.MultiPoint(zone.outline))
@@ -49,12 +56,18 @@ def with_signs(
             if lane in lanelets
             for name in _lanes_before(lanelets, lanelets[lane], shape, all_behind=all_behind)
         ]
-        left_out += not before
+        if not before:
+            left_out += 1
+            near = middles.query(shape, predicate="dwithin", distance=_BESIDE_M).tolist()
+            for name in {names[k] for k in near} | lanelets.keys() & zone.lanes:
+                untold[name].add(zone.sign)
         for name in before:
             signs[name].add(zone.sign)
     found = dict(lanelets)
     for name, own in signs.items():
         found[name] = replace(found[name], signs=found[name].signs | own)
+    for name, own in untold.items():
+        found[name] = replace(found[name], untold_signs=frozenset(own - found[name].signs))
     return found, left_out
 
 

@@ -10,11 +10,11 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.recordings.doubts.limit_doubts import limit_doubts
+from rulec.recordings.doubts.road_doubts import road_doubts
 from rulec.recordings.recording import Recording
 from rulec.recordings.recording_format import RECORDING
 from rulec.recordings.track import Track, TrackStates
-from rulec.recordings.doubts.limit_doubts import limit_doubts
-from rulec.recordings.doubts.road_doubts import road_doubts
 
 _MOST_BODIES = 60
 _FEWEST_BODIES = 3

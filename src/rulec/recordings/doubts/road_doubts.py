@@ -93,11 +93,13 @@ Moves = NDArray[float64]
 
 
 def _exchanged(moves: Moves) -> Moves:
-    return moves[:, [1, 0, 3, 2]]
+    there: Moves = moves[:, [1, 0, 3, 2]]
+    return there
 
 
 def _downward(moves: Moves) -> Moves:
-    return moves * np.array([1.0, -1.0, 1.0, -1.0])
+    there: Moves = moves * np.array([1.0, -1.0, 1.0, -1.0])
+    return there
 
 
 _AXES = {

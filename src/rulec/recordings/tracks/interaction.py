@@ -62,11 +62,11 @@ def read_interaction(source: RecordingSource) -> Iterator[Recording]:
     scene = _scene(path)
     roads = roads_of(path, source.map_path, _STEP_S, _maps(path, scene))
     if "case_id" not in tables[0].texts:
-        yield _recording(scene, tables, roads, path)
+        yield _recording(scene, tables, roads)
         return
     for case, chosen in tables[0].texts["case_id"].groups():
         name = f"{scene}_{case.removesuffix('.0')}"
-        yield _recording(name, [tables[0].part(chosen)], roads, path)
+        yield _recording(name, [tables[0].part(chosen)], roads)
 
 
 def _files(path: Path) -> list[Path]:
@@ -102,7 +102,7 @@ def _maps(path: Path, scene: str) -> list[Path]:
     return [*found, *(beside if len(beside) == 1 else [])]
 
 
-def _recording(name: str, tables: Sequence[NamedColumns], roads: RoadMap, path: Path) -> Recording:
+def _recording(name: str, tables: Sequence[NamedColumns], roads: RoadMap) -> Recording:
     rows, remarks = [], []
     for table in tables:
         numbers = table.numbers

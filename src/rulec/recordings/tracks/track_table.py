@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, cast, get_args
 import numpy as np
 
 from rulec.recordings.doubts.road_doubts import check_near
+from rulec.recordings.encodings.csv_head import is_number
 from rulec.recordings.encodings.table_columns import (
     ColumnKind,
     ColumnTable,
@@ -17,7 +18,6 @@ from rulec.recordings.encodings.table_columns import (
     named_columns,
     unread_remark,
 )
-from rulec.recordings.encodings.csv_head import is_number
 from rulec.recordings.encodings.table_files import open_table, table_of
 from rulec.recordings.encodings.xml_element import XmlFormat, short
 from rulec.recordings.lanes.lane_table import lane_map

@@ -223,7 +223,18 @@ def _crosses_stop_line(context: DriveContext) -> tuple[Flags, Flags]:
                     crosses |= _passes(context, last) & (context.ego_lane == lane)
                     on_it = (first < front) & (front <= last) & (context.ego_lane == lane)
                     may_cross |= ends & on_it & (moves >= least)
-    return crosses, may_cross
+    return crosses, (may_cross | _may_have_sign(context)) & ~crosses
+
+
+def _may_have_sign(context: DriveContext) -> Flags:
+    """Flags of states in which ego moves where the map does not tell of stop signs."""
+    if not STOP_SIGNS & map_contents(context).untold_signs:
+        return np.zeros(context.states, dtype=bool)
+    may = own_lanelets(context).flags(lambda lanelet: bool(STOP_SIGNS & lanelet.untold_signs))
+    moves = context.ego.speed[0] * KMH >= context.thresholds.standing_kmh
+    may |= context.spans.before(may)
+    may &= moves
+    return may
 
 
 def turn_at(context: DriveContext, start: float, end: float) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.extraction.drive_context import DriveContext, once
-from rulec.extraction.signals.ego_lanelets import map_contents
+from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
 from rulec.extraction.signals.map.junction_signals import stop_line
 from rulec.extraction.signals.measured_numbers import LONGEST_S, moves, own_front, own_speed
 from rulec.extraction.signals.signal_columns import (
@@ -78,6 +78,11 @@ def _way_to_line(context: DriveContext) -> tuple[Floats, tuple[Floats, Floats]]:
             way[ahead] = np.maximum(first - front, 0.0)[ahead]
             near[ahead] = np.maximum(first - front - place, 0.0)[ahead]
             far[ahead] = np.maximum(last - touching - front + place, 0.0)[ahead]
+    if STOP_SIGNS & map_contents(context).untold_signs:
+        own = own_lanelets(context)
+        may = own.flags(lambda lanelet: bool(STOP_SIGNS & lanelet.untold_signs))
+        near[may] = 0.0
+        far[may] = np.maximum(far, context.road.borders[-1] - front)[may]
     return way, (near, far)
 
 

@@ -94,17 +94,27 @@ def _signs(context: DriveContext) -> SignalColumns:
         for name, (signs, at_line) in _SIGNS.items()
         if signs & known
     }
-    unknown = {}
+    unknown = {name: _may_hold(context, _SIGNS[name][0]) & ~values[name] for name in values}
     if map_contents(context).lights:
         light, _, _ = own_light(context)
+        at_work = np.isin(light, _AT_WORK)
         for name in set(_OVERRULED) & values.keys():
-            unknown[name] = values[name] & (light == "")
-            values[name] = values[name] & ~np.isin(light, _AT_WORK)
+            unknown[name] = (values[name] & (light == "")) | (unknown[name] & ~at_work)
+            values[name] = values[name] & ~at_work
     return SignalColumns(values, unknown=unknown)
 
 
 def _has_sign(signs: Set[str]) -> Callable[[Lanelet], bool]:
     return lambda lanelet: bool(signs & lanelet.signs)
+
+
+def _may_hold(context: DriveContext, signs: Set[str]) -> Flags:
+    """Flags of states in which the map does not tell whether a sign of these holds."""
+    if not signs & map_contents(context).untold_signs:
+        return np.zeros(context.states, dtype=bool)
+    may = own_lanelets(context).flags(lambda lanelet: bool(signs & lanelet.untold_signs))
+    may |= context.spans.before(may)
+    return may
 
 
 def _is_of(kind: str) -> Callable[[Lanelet], bool]:

@@ -38,7 +38,8 @@ def _rings(context: DriveContext) -> SignalColumns:
         ]
         signs = any(x is not None and _SIGNS & x.signs for row in before for x in row)
         signed |= nears & signs
-        unknown |= nears & (not told)
+        may = any(x is not None and _SIGNS & x.untold_signs for row in before for x in row)
+        unknown |= nears & (may or not told)
     world: dict[str, SignalColumn] = {
         "roundabout": inside,
         "enters_roundabout": enters,
