@@ -78,6 +78,42 @@ def test_preparing_is_known_from_what_follows():
     assert found.tolist() == [False, True, True, True, True, True]
 
 
+# 10 m/s for six states, 5 s of standing, and on: the zone begins 11 m beyond where it stood
+WAIT = (*range(52, 82, 5), *(82,) * 10, 84, 87, 91, 95, 99)
+
+
+def test_the_time_in_which_it_waits_to_turn_does_not_count():
+    found = signals(along(*WAIT), bend(60), preparing_s=3.0)
+    prepares = found.world["preparing_to_leave"].tolist()
+    # Of the 3 s before the turn it has driven in all up to state 4, at the latest
+    assert prepares[:3] == [False] * 3
+    assert prepares[5:] == [True] * 16
+    assert not found.unknown["preparing_to_leave"][5:].any()
+    on = signals(along(*WAIT), bend(0), preparing_s=3.0)
+    assert not on.world["preparing_to_leave"].any()
+
+
+def test_nobody_knows_since_when_one_prepares_in_a_queue_that_creeps():
+    # 7.2 km/h are slower than one walks: 3 s at 36 km/h, and 10 s so
+    creeps = (*range(42, 72, 5), *(72 + k for k in range(21)), 97, 99)
+    found = signals(along(*creeps), bend(60), preparing_s=2.0)
+    prepares = found.world["preparing_to_leave"]
+    assert prepares[24:].all()
+    assert not prepares[:20].any()
+    assert not found.unknown["preparing_to_leave"][:2].any()
+    assert found.unknown["preparing_to_leave"][6:20].all()
+
+
+def test_who_waits_near_a_junction_at_the_drives_end_may_turn_there():
+    waits = along(*WAIT[:16])
+    found = signals(waits, bend(60), preparing_s=4.0).unknown["preparing_to_leave"]
+    # At 5 m/s it needs 2.2 s from where it stands, and came with 10 m/s
+    assert found[6:].all()
+    assert not found[:2].any()
+    far = along(*(x - 60 for x in WAIT[:16]))
+    assert not signals(far, bend(60), preparing_s=4.0).unknown["preparing_to_leave"].any()
+
+
 def test_stop_lines_lie_at_the_ends_of_their_lanelets():
     stop = {"signs": frozenset({"STOP"})}
     assert "crosses_stop_line" not in signals(along(90, 99)).world

@@ -73,9 +73,11 @@ def _turns(context: DriveContext) -> SignalColumns:
     for start, end in context.road.junctions:
         turn[_at_junction(context, start, end)] = turn_at(context, start, end)
     unknown = _way_not_known(context)
-    prepares = _within_preparation(turn != "straight_on", context)
-    prepares |= _within_preparation(_on_exit(context), context)
-    perhaps = _within_preparation(unknown, context) | _may_turn_later(context)
+    leaves, limits = (turn != "straight_on") | _on_exit(context), context.thresholds
+    prepares = _within_preparation(context, leaves, limits.standing_kmh)
+    # In a queue that creeps nobody knows since when
+    perhaps = _within_preparation(context, leaves | unknown, limits.walking_pace_kmh)
+    perhaps |= _may_turn_later(context)
     return SignalColumns(
         {"turn": turn, "preparing_to_leave": prepares},
         unknown={"turn": unknown, "preparing_to_leave": perhaps & ~prepares},
@@ -184,23 +186,34 @@ def _may_turn_later(context: DriveContext) -> Flags:
 
     It does not if no junction is so near that it would get there, as fast as it is at the end.
     """
-    thresholds, step_s = context.thresholds, context.recording.step_s
-    last = context.spans.end - 1
+    thresholds, last = context.thresholds, context.spans.end - 1
     front, speed = context.ego_extents.s_max[0, last], context.ego.speed[0, last]
     nearest = np.full(context.states, np.inf)
     for start, _ in context.road.junctions:
         way = start - thresholds.zone_m - front
         nearest = np.where(way > 0, np.minimum(nearest, way), nearest)
     soonest = nearest / np.maximum(speed, _SLOWEST_MPS)
-    left = (last - context.spans.columns) * step_s
-    flags: Flags = left + soonest <= thresholds.preparing_s
+    driven = _time_driven(context, thresholds.walking_pace_kmh)
+    flags: Flags = driven[last] - driven + soonest <= thresholds.preparing_s
     return flags
 
 
-def _within_preparation(flags: Flags, context: DriveContext) -> Flags:
-    """Flags that hold now or within ``preparing_s``: intentions are read off what ego did."""
-    states = round(context.thresholds.preparing_s / context.recording.step_s)
-    return context.spans.within(flags, states)
+def _within_preparation(context: DriveContext, flags: Flags, pace_kmh: float) -> Flags:
+    """Flags that hold now or within ``preparing_s``: intentions are read off what ego did.
+
+    While ego is slower than so it waits for its turn, and that time does not count.
+    """
+    due, driven = context.spans.next_state(flags), _time_driven(context, pace_kmh)
+    left = driven[np.minimum(due, context.states - 1)] - driven
+    most = context.thresholds.preparing_s + context.recording.step_s / 2
+    within: Flags = (due < context.spans.end) & (left <= most)
+    return within
+
+
+def _time_driven(context: DriveContext, pace_kmh: float) -> Floats:
+    """How long (s) ego has been at least so fast up to each state."""
+    drives = context.ego.speed[0] * KMH >= pace_kmh
+    return (np.cumsum(drives) - drives) * context.recording.step_s
 
 
 def _passes(context: DriveContext, line: float) -> Flags:
