@@ -251,6 +251,13 @@ def test_the_map_makes_ego_brake(road):
     assert found[:6] == "TTTTTT"
 
 
+@pytest.mark.parametrize(("mps", "expected"), [(0, "?"), (7, "?"), (15, "F"), (40, "F")])
+def test_who_is_much_slower_beside_ego_s_lane_may_come_into_it(mps, expected):
+    """Ego comes at 20 m/s, and 50 m ahead one is in the lane at its near side."""
+    found = cause(steady(8, 100, -4, mps, 70))
+    assert found[:4] == expected * 4
+
+
 def test_who_comes_to_a_lane_that_joins_others_may_brake_for_a_gap():
     ramp = [
         straight(1, 0, 110, successors=(2,)),

@@ -245,6 +245,13 @@ def test_one_that_waits_until_ego_is_gone():
     assert side_road([-3.5] * 25)[9] == "?"
 
 
+def test_who_stands_at_a_lanes_bound_does_not_step_over_it():
+    """Its place drifts by 0.5 m at 0.2 m/s, so that it reaches into the lane once ego is gone."""
+    drifts = [-2.4 + 0.1 * k for k in range(6)]
+    assert side_road([-2.4] * 20 + drifts + [-1.9] * 14)[9] == "?"
+    assert side_road([-2.4] * 20 + [-2.4 + 0.6 * k for k in range(20)])[9] == "T"
+
+
 @pytest.mark.parametrize(("comes", "goes", "told"), [(0, 30, "?"), (8, 40, "T"), (0, 22, "T")])
 def test_who_stood_in_the_side_road_long_before_ego_and_after_may_not_want_to_cross(
     comes, goes, told

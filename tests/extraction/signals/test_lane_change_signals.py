@@ -160,6 +160,18 @@ def test_nobody_knows_whether_one_that_is_about_to_be_past_is_disturbed(x, speed
     assert found.unknown["lane_is_clear"].tolist() == [False, False, unknown, False]
 
 
+@pytest.mark.parametrize(("y", "unknown"), [(4.0, False), (5.9, False), (6.6, True)])
+def test_who_only_reaches_over_from_the_lane_beyond_may_not_have_to_brake(y, unknown):
+    """Of three lanes ego goes to the middle one, which reaches from y = 2 to 6; cars are 2 m wide.
+
+    Beyond 6 m its middle is in the third.
+    """
+    found = recording(lanes(3), [vehicle(7, CHANGE), steady(8, 0, y, 10)])
+    signals = lane_change_signals(context_of(found))
+    assert not signals.world["lane_is_clear"][2]
+    assert signals.unknown["lane_is_clear"].tolist() == [False, False, unknown, False]
+
+
 @pytest.mark.parametrize(("mps", "unknown"), [(0.0, True), (2.0, False)])
 def test_who_stands_and_drifts_across_a_mark_does_not_surely_disturb_others(mps, unknown):
     """It drifts by 0.1 m/s, and is 0.3 m beyond the mark from state 23 on."""

@@ -79,6 +79,18 @@ def test_a_place_in_the_near_lane(ahead, behind, free):
     assert signals(lanes, ego(100), *others)["near_lane_is_free"][0] == "True"
 
 
+@pytest.mark.parametrize(
+    ("gap_m", "mps", "free"),
+    # Ego gains 5 m/s, which is 100 m in 20 s
+    [(60, 5.0, "?"), (95, 5.0, "?"), (110, 5.0, "True"), (95, 9.0, "True"), (95, 12.0, "True")],
+)
+def test_nobody_has_to_go_where_it_would_soon_have_to_come_out_again(gap_m, mps, free):
+    lanes = [straight(1, 0, 600, left_of=2), straight(2, 0, 600, 4, right_of=1)]
+    # From middle to middle it is 4 m more
+    others = [steady(8, 100 + gap_m + 4, 0, mps), steady(9, 0, 4, 10.0)]
+    assert signals(lanes, ego(100, y=4), *others)["near_lane_is_free"][0] == free
+
+
 def test_nobody_sees_what_comes_behind_the_last_one():
     lanes = [straight(1, 0, 600, left_of=2), straight(2, 0, 600, 4, right_of=1)]
     assert signals(lanes, ego(100, y=4))["near_lane_is_free"][0] == "?"

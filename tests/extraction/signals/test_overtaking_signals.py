@@ -80,6 +80,17 @@ def test_who_has_gained_speed_since_its_drive_began_may_be_getting_it_up(steady_
     assert signals.unknown["being_overtaken"][at] == (not known)
 
 
+@pytest.mark.parametrize(("gained", "known"), [(0.5, False), (0.0, True)])
+def test_a_drive_that_begins_beside_one_that_overtakes_may_begin_in_gaining_speed(gained, known):
+    """In its first state nothing before it says whether it is getting up speed."""
+    ego = vehicle(7, runs([10.0 + gained * k for k in range(16)]))
+    other = vehicle(8, {k: (9.0 * k, 4.0) for k in range(16)})
+    found = replace(recording(lanes(2), [ego, other]), complete=frozenset({"light"}))
+    signals = overtaking_signals(context_of(found))
+    assert signals.world["being_overtaken"][0]
+    assert signals.unknown["being_overtaken"][0] == (not known)
+
+
 @pytest.mark.parametrize(("before", "known"), [(24.0, False), (20.0, True), (16.0, True)])
 def test_who_had_to_brake_regains_its_speed(before, known):
     """Ego is at 20 m/s or a little more, and was at another speed up to 4 s before."""

@@ -61,19 +61,21 @@ def _at_fork(context: DriveContext, change: int) -> bool:
 def _lane_is_clear(context: DriveContext) -> SignalColumns:
     """Whether nobody has to brake for ego, in states of its lane changes.
 
-    Unknown where the only ones are about to be past: ego comes in behind them. And if ego stands by
-    its speed, whose places drift across the mark: nothing stands and changes lanes.
+    Unknown where the only ones are about to be past, as ego comes in behind them, or only reach
+    into its lane from the one beyond. And if ego stands by its speed, whose places drift across the
+    mark: nothing stands and changes lanes.
     """
     disturbed = np.zeros(context.relevant.shape, dtype=bool)
-    pulls_away = np.zeros(context.states, dtype=bool)
+    moot = np.zeros(context.states, dtype=bool)
     changes = np.flatnonzero(_changes(context))
     disturbed[:, changes] = found = _disturbed(context, changes)
-    pulls_away[changes] = ~np.any(found & ~_pulls_away(context, changes), axis=0)
+    in_lane = context.extents.lane[:, changes] == context.ego_lane[changes]
+    moot[changes] = ~np.any(found & in_lane & ~_pulls_away(context, changes), axis=0)
     clear: Flags = ~np.any(disturbed, axis=0)
     stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
     return SignalColumns(
         {"lane_is_clear": clear},
-        unknown={"lane_is_clear": ~clear & (pulls_away | stands)},
+        unknown={"lane_is_clear": ~clear & (moot | stands)},
         whom={"lane_is_clear": ids_by_state(disturbed, context.ids)},
     )
 

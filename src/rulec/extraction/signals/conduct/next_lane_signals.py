@@ -44,6 +44,9 @@ _FASTER_MPS = 10.0
 _CHANGE_S = 4.0
 """So long before its middle crosses the mark who changes lanes has begun to, at the earliest."""
 
+_SOON_AGAIN = 2.0
+"""Within so many times ``catching_up_s`` of having gone back ego would have to come out again."""
+
 _STANDING_CAMERAS = frozenset(
     {
         "CommonRoad scenario",
@@ -137,7 +140,7 @@ def _goes_back(context: DriveContext) -> Flags:
 def _of_no_use(context: DriveContext) -> Flags:
     """Flags of states in which nobody can tell whether ego has to go to the next lane to the kerb.
 
-    It begins or ends near ego while others go on, as beside a ramp; it becomes a shoulder or a lane
+    Somebody slower is on it whom ego would come up to in twice ``catching_up_s``; it begins or ends near ego while others go on, as beside a ramp; it becomes a shoulder or a lane
     for buses within ``preparing_s``; it is full, but for a hole; ego is in a slow queue itself,
     with others on the next lane, too; or drivers sort themselves by lanes before a junction, of
     which nobody knows beyond the map's end.
@@ -153,11 +156,23 @@ def _of_no_use(context: DriveContext) -> Flags:
         context.road.borders[-1] - context.ego_extents.s_max[0] < context.thresholds.approach_m
     )
     no_use: Flags = there & (side_lane | full | sorting | map_ends | _reserved_ahead(context, lane))
+    no_use |= _slower_ahead(context, lane, np.flatnonzero(there & ~no_use))
     queues_beside = np.flatnonzero(there & ~no_use & own & slow)
     used = close_by(context)[:, queues_beside]
     used &= context.extents.lane[:, queues_beside] == lane[queues_beside]
     no_use[queues_beside] = used.any(axis=0)
     return no_use
+
+
+def _slower_ahead(context: DriveContext, lane: NDArray[intp], states: NDArray[intp]) -> Flags:
+    """Flags of those states in which ego would have to leave a lane again soon to overtake."""
+    cells = _on_lane(context, lane, states)
+    gap, station = relations.gap(context)[cells], relations.station(context)[cells]
+    faster = context.ego_extents.along[0, cells[1]] - context.extents.along[cells]
+    soon = gap <= faster * (_SOON_AGAIN * context.thresholds.catching_up_s)
+    found = np.zeros(context.states, dtype=bool)
+    found[cells[1][(station == relations.BEHIND) & soon]] = True
+    return found
 
 
 @once

@@ -141,9 +141,13 @@ def _comes_round(context: DriveContext) -> Flags:
 def _gains_speed(context: DriveContext) -> Flags:
     """Flags of states in which ego is faster than ``smoothing_s`` before, or than at first."""
     speed, spans = context.ego.speed[0], context.spans
-    steps = max(round(context.thresholds.smoothing_s / context.recording.step_s), 1)
+    steps = _smoothing_steps(context)
     gains: Flags = speed > speed[np.maximum(spans.columns - steps, spans.first)]
     return gains | (spans.columns - spans.first < steps)
+
+
+def _smoothing_steps(context: DriveContext) -> int:
+    return max(round(context.thresholds.smoothing_s / context.recording.step_s), 1)
 
 
 def _sets_off(context: DriveContext) -> Flags:
@@ -161,7 +165,10 @@ def _sets_off(context: DriveContext) -> Flags:
     if "light" in context.recording.complete:
         before = np.where(at_first <= _CRAWLS_MPS, before, -np.inf)
     gained_since = spans.latest(~_gains_speed(context))
-    ever_since = (gained_since < spans.first) & (speed > at_first + context.tolerances.speed_mps)
+    # Of what a drive begins with it is told by what follows
+    soon = np.minimum(spans.first + _smoothing_steps(context), spans.end - 1)
+    later = speed[np.maximum(soon, spans.columns)]
+    ever_since = (gained_since < spans.first) & (later > at_first + context.tolerances.speed_mps)
     gaining = (stood > gained_since) | ever_since
     stood = np.where(stood < spans.first, before, stood)
     sets_off: Flags = gaining | ((spans.columns - stood) * step_s < limits.setting_off_s)

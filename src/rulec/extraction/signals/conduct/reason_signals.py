@@ -35,7 +35,7 @@ _IN_WAY_M, _COMES_M, _ROAD_M, _CROSSES_M = 2.5, 6.0, 15.0, 30.0
 """Sideways: who is in ego's way, may come into it, is on its road, comes on a road across."""
 
 _SIDEWAYS_MPS, _ACROSS_RAD, _BEND_RAD, _EVERY_M = 0.3, np.radians(30.0), np.radians(20.0), 10.0
-_SLOWER_KMH, _ALIKE_MPS = 1.0, 3.0
+_SLOWER_KMH, _ALIKE_MPS, _HALF = 1.0, 3.0, 0.5
 _FAR_SLOWER, _SLOWER = 0.5, 0.75
 """Parts of the limit: who is slower than the first holds others up, than the second perhaps."""
 
@@ -58,8 +58,9 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     """Flags of states with a reason to brake, stand or be slow, and of those perhaps with one.
 
     Ego that stands has perhaps broken down, unless its hazard lights are known to be off; one that
-    stands soon, whose drive ends, or that is beside somebody had perhaps something to do; so has
-    one before or on a lane that joins others, where it looks for a gap, one that has stood for a
+    stands soon, whose drive ends, that is beside somebody, or comes up to one beside its lane who
+    is less than half as fast, and may come into it, had perhaps something to do; so has one before
+    or on a lane that joins others, where it looks for a gap, one that has stood for a
     reason up to ``_MOVES_OFF_S`` ago, and one that brakes hard with nobody near behind, whom it
     would surprise. Where not all traffic is recorded it is as far as somebody is recorded ahead.
     """
@@ -73,7 +74,7 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     # Ego may want to get in behind one beside it, or let it in
     beside = (others.away > _IN_WAY_M) & (others.away <= _COMES_M)
     beside &= np.abs(others.ahead) <= _REACH_M
-    perhaps[others.states] |= beside.any(axis=0)
+    perhaps[others.states] |= beside.any(axis=0) | _slow_beside(context, others)
     perhaps |= _seeks_a_gap(context)
     least = context.ego.acceleration[0] - context.ego.acceleration_error[0]
     perhaps |= (least <= -context.thresholds.braking_hard_mps2) & ~_followed(context)
@@ -84,6 +85,18 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
         farther = (others.ahead > _reach(context)[others.states]) & (others.away <= _ROAD_M)
         perhaps[others.states] |= ~farther.any(axis=0)
     return caused, perhaps & ~caused
+
+
+def _slow_beside(context: DriveContext, others: _Others) -> Flags:
+    """Flags of the others' states with one ahead beside ego's lane, less than half as fast."""
+    near = (others.ahead > 0) & (others.ahead <= _reach(context)[others.states])
+    rows, columns = (near & (others.away <= _COMES_M)).nonzero()
+    motion = _motion(context, others.rows[rows], others.states[columns])
+    ego_mps = context.ego.speed[0, others.states[columns]]
+    slow = (np.abs(motion.turned) < _ACROSS_RAD) & (motion.along < _HALF * ego_mps)
+    found = np.zeros(len(others.states), dtype=bool)
+    found[columns[slow]] = True
+    return found
 
 
 def _seeks_a_gap(context: DriveContext) -> Flags:

@@ -130,7 +130,8 @@ def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
     stood = round(_STOOD_S / step_s)
     moves = spans.next_state(~stands & seen)
     moves = np.take_along_axis(moves, np.maximum(at - stood, spans.first), axis=1)
-    stays = ~waited & (moves > np.minimum(goes + stood, last))
+    # Of who stands at a lane's bound places alone may say that it steps over that
+    stays = (~waited | (moves > steps_on)) & (moves > np.minimum(goes + stood, last))
     lost = spans.next_state(~seen) <= np.minimum(soon, last)
     unseen = (steps_on >= spans.end) & (lost | (soon >= spans.end))
     return taken, ~reached | (taken & stays) | (~let_go & ~taken & unseen)
