@@ -52,6 +52,37 @@ def test_what_a_file_says_of_its_errors_counts_if_it_is_more():
     assert tolerances_of(of_source("DEU_Test", good)) == OTHERS
 
 
+def noisy(sigma_m, form="SUMO data", step_s=0.1):
+    """The tolerances of a file with three cars, places of which have so much noise."""
+    pick = np.random.default_rng(5).normal
+    bodies = [
+        vehicle(8 + y, {k: (k + pick(scale=sigma_m), y + pick(scale=sigma_m)) for k in range(120)})
+        for y in range(3)
+    ]
+    return tolerances_of(replace(recording(lanes(2), bodies, step_s=step_s), form=form))
+
+
+def test_noise_that_tracks_show_counts_if_it_is_more():
+    # Twice the square root of two of it, that is 0.14 m
+    found = noisy(0.05)
+    assert found.place_m == pytest.approx(0.14, rel=0.15)
+    assert found.speed_mps == found.place_m
+    # How exact the speeds are that a file states is another matter
+    assert found.stated_mps == rounded_to(USUAL_ROUNDING).stated_mps
+    assert noisy(0.05, form="highD tracks").place_m == pytest.approx(0.14, rel=0.15)
+    assert noisy(0.05, form="NGSIM tracks") == NGSIM
+    assert noisy(0.001) == rounded_to(USUAL_ROUNDING)
+    # Half a second apart they may differ as the cars speed up
+    assert noisy(0.05, step_s=0.5) == rounded_to(USUAL_ROUNDING)
+
+
+def test_standing_cars_have_their_places_held_and_tell_no_noise():
+    rng = np.random.default_rng(5)
+    stands = vehicle(8, {k: tuple(rng.normal(scale=0.05, size=2)) for k in range(120)})
+    found = replace(recording(lanes(2), [stands], step_s=0.1), form="SUMO data")
+    assert tolerances_of(found) == rounded_to(USUAL_ROUNDING)
+
+
 @pytest.mark.parametrize(
     ("name", "gap_m", "known"),
     [

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, replace
+from itertools import islice
 
 import numpy as np
 from numpy import intp
@@ -25,6 +26,21 @@ MOST_CELLS = 3 << 17
 MOST_TIMES_ALONE = 2
 """Then it has up to so many times what one of its drives takes alone: in a crowd nearly all are
 there for each other's drives, and parts for few egos would look at the same ones again."""
+
+_SMOOTH_S = 0.2
+"""Between states no farther apart vehicles hardly change their acceleration."""
+
+_TRACKS, _STATES, _ENOUGH = 32, 128, 40
+"""So much is looked at of a recording's noise, and so many differences are needed for it."""
+
+_MOVES_M = 0.3
+"""Who has moved so far in three steps is not one whose place has been held."""
+
+_THIRD = 20**0.5
+"""Third differences of places with normal errors have so many times their standard deviation."""
+
+_OF_MEDIAN = 1.4826
+"""The standard deviation of normal errors is so many times the median of their sizes."""
 
 _DRIVERS = frozenset({"vehicle", "light_rider"})
 
@@ -128,6 +144,7 @@ def whole_recording(recording: Recording) -> WholeRecording:
         first=first,
         last=max((ends for _, ends in spans), default=0),
         stated_error=_in_the_middle(stated) if stated else None,
+        noise_m=_noise_m(recording),
         arrivals=any(
             begins > first
             for body, (begins, _) in zip(_moving(recording), spans, strict=True)
@@ -135,6 +152,31 @@ def whole_recording(recording: Recording) -> WholeRecording:
         ),
         shows=frozenset().union(*(body.shows for body in recording.participants)),
     )
+
+
+def _noise_m(recording: Recording) -> float:
+    """The standard deviation (m) of places along each axis, as the third differences tell it.
+
+    Of some vehicles while they move, by the median: what a few do in a hurry does not count. None
+    where states are so far apart that these tell of motion.
+    """
+    if recording.step_s > _SMOOTH_S + 1e-9:
+        return 0.0
+    bodies = [body for body in _moving(recording) if "vehicle" in body.object_types]
+    sizes = [_third_differences(body) for body in bodies[:: len(bodies) // _TRACKS + 1]]
+    every = np.concatenate([np.empty(0), *sizes])
+    return float(np.median(every)) * _OF_MEDIAN / _THIRD if len(every) >= _ENOUGH else 0.0
+
+
+def _third_differences(body: Participant) -> NDArray[np.float64]:
+    """The sizes of the third differences of a participant's first places, along both axes."""
+    steps = [*islice(body.states, _STATES)]
+    states = (body.states[step] for step in steps)
+    places = np.array([(state.x, state.y) for state in states]).reshape(-1, 2)
+    in_turn = np.array(steps[3:]) - np.array(steps[:-3]) == 3
+    moves = np.hypot(*(places[3:] - places[:-3]).T) > _MOVES_M
+    sizes: NDArray[np.float64] = np.abs(np.diff(places, 3, axis=0)[in_turn & moves]).ravel()
+    return sizes
 
 
 def _in_the_middle(stated: Iterable[StatedError]) -> StatedError:

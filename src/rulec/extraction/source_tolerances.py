@@ -96,15 +96,27 @@ _BY_FORM: Mapping[str, Tolerances] = MappingProxyType(
     }
 )
 _DIAGONAL = 2**0.5
+_MOST_SIGMAS = 2.0
+"""95 in 100 errors are smaller than so many standard deviations."""
 _NGSIM = re.compile(r"USA_(US101|I80|Lanker|Peach)")
 
 
 def tolerances_of(recording: Recording) -> Tolerances:
-    """The tolerances of a recording, by its form, by where it was made, and by what it says."""
+    """The tolerances of a recording, by its form, by where it was made, and by what it says.
+
+    And by the noise that its tracks have, if that is more.
+    """
+    whole = whole_recording(recording)
     if recording.form == "SUMO data":
-        return rounded_to(recording.rounding or USUAL_ROUNDING)
-    known = NGSIM if _NGSIM.match(recording.name) else _BY_FORM.get(recording.form, OTHERS)
-    stated = whole_recording(recording).stated_error
+        known = rounded_to(recording.rounding or USUAL_ROUNDING)
+    else:
+        known = NGSIM if _NGSIM.match(recording.name) else _BY_FORM.get(recording.form, OTHERS)
+    # Of two places, which distances have, and both ends of a mean over a second
+    noise = _MOST_SIGMAS * _DIAGONAL * whole.noise_m
+    known = replace(
+        known, place_m=max(known.place_m, noise), speed_mps=max(known.speed_mps, noise)
+    )
+    stated = whole.stated_error
     if stated is None:
         return known
     # Both of two places may be anywhere in their areas, all of which outlines cover

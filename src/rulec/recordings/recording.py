@@ -255,7 +255,8 @@ class Rounding(NamedTuple):
 class WholeRecording:
     """What is to be known of a recording as a whole where a part of it is looked at.
 
-    ``first`` and ``last`` are its time steps, ``stated_error`` the median of what it says itself.
+    ``first`` and ``last`` are its time steps, ``stated_error`` the median of what it says itself,
+    ``noise_m`` the standard deviation of its places from smooth motion, as they themselves show.
     ``arrivals``: is some vehicle there from later on than the first step? ``shows`` are the lamps
     that it speaks of for anybody.
     """
@@ -263,6 +264,7 @@ class WholeRecording:
     first: int
     last: int
     stated_error: StatedError | None
+    noise_m: float
     arrivals: bool
     shows: frozenset[Lamp]
 

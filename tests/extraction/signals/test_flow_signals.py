@@ -122,6 +122,15 @@ def test_whom_nobody_is_ahead_of_is_in_no_queue(complete):
     assert signals.unknown["dense_all_lanes"][0] == (not complete)
 
 
+@pytest.mark.parametrize(("count", "unknown"), [(2, True), (3, True), (5, False)])
+def test_the_first_one_recorded_of_some_lines_may_be_in_one_on_all_lanes(count, unknown):
+    """On ego's lane and the next one cars are behind each other, and on the others nobody is."""
+    behind = [*line(10, 2, start=-30), *line(10, 3, y=4.0, start=-30, number=30)]
+    signals = flow_signals(context_of(recording(lanes(count), [steady(7, 0, 0), *behind])))
+    assert not signals.world["dense_all_lanes"][0]
+    assert signals.unknown["dense_all_lanes"][0] == unknown
+
+
 @pytest.mark.parametrize(
     ("front", "queues", "unknown"), [(25, True, False), (30, False, True), (39, False, False)]
 )
