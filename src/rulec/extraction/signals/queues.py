@@ -211,13 +211,13 @@ def dense_lines(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     whole = "light" in context.recording.complete
     all_queue &= ~(few & whole)
     # Whom nobody is ahead of goes as fast as it likes, unless that one is not recorded any more:
-    # the first of some lines may have left the others behind
-    every = decides[LOOSE].sum(axis=-1)
-    lines = (every > 0) & (2 * (queues[LOOSE] & decides[LOOSE]).sum(axis=-1) >= every)
+    # it is first of a line, and half of the lanes have one
+    every, loose = decides[LOOSE].sum(axis=-1), queues[LOOSE] & decides[LOOSE]
+    lines = loose[np.arange(context.states), context.ego_lane] & (2 * loose.sum(axis=-1) >= every)
     gap, gap_behind = (
         gap_in_lane(context, side) for side in (relations.BEHIND, relations.IN_FRONT_OF)
     )
-    cut_off = lines & np.isinf(gap) & (not whole)
+    cut_off = (lines | all_queue[LOOSE]) & np.isinf(gap) & (not whole)
     speed = context.ego_extents.along[0]
     longest = longest_gaps(context, speed, context.ego.speed_error[0])
     dense, surely, perhaps = (
