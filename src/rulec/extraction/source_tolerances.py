@@ -113,9 +113,7 @@ def tolerances_of(recording: Recording) -> Tolerances:
         known = NGSIM if _NGSIM.match(recording.name) else _BY_FORM.get(recording.form, OTHERS)
     # Of two places, which distances have, and both ends of a mean over a second
     noise = _MOST_SIGMAS * _DIAGONAL * whole.noise_m
-    known = replace(
-        known, place_m=max(known.place_m, noise), speed_mps=max(known.speed_mps, noise)
-    )
+    known = replace(known, place_m=max(known.place_m, noise), speed_mps=max(known.speed_mps, noise))
     stated = whole.stated_error
     if stated is None:
         return known

@@ -121,6 +121,15 @@ def test_stop_lines_lie_at_the_ends_of_their_lanelets():
     assert found.tolist() == [False, False, True, False]
 
 
+@pytest.mark.parametrize(("back", "times"), [(98.27, 1), (97.5, 2)])
+def test_a_line_is_crossed_again_only_by_who_was_back_behind_it(back, times):
+    """The front is 2 m ahead, the line ends at 100.3 m, and places are good to 0.05 m."""
+    stop = {"signs": frozenset({"STOP"})}
+    body = along(90, 97, 98.5, back, 98.5, 99, 101)
+    found = signals(body, before=stop).world["crosses_stop_line"]
+    assert found.sum() == times
+
+
 def test_the_light_at_the_line_ahead():
     # Red for two steps, then green for ten
     before = {"lights": (Light(0, (("red", 2), ("green", 10))),)}

@@ -140,10 +140,11 @@ def _goes_back(context: DriveContext) -> Flags:
 def _of_no_use(context: DriveContext) -> Flags:
     """Flags of states in which nobody can tell whether ego has to go to the next lane to the kerb.
 
-    Somebody slower is on it whom ego would come up to in twice ``catching_up_s``; it begins or ends near ego while others go on, as beside a ramp; it becomes a shoulder or a lane
-    for buses within ``preparing_s``; it is full, but for a hole; ego is in a slow queue itself,
-    with others on the next lane, too; or drivers sort themselves by lanes before a junction, of
-    which nobody knows beyond the map's end.
+    Somebody slower is on it whom ego would come up to in twice ``catching_up_s``; it begins or ends
+    near ego while others go on, as beside a ramp; it becomes a shoulder or a lane for buses within
+    ``preparing_s``; it is full, but for a hole; ego is in a slow queue itself, with others on the
+    next lane, too; or drivers sort themselves by lanes before a junction, of which nobody knows
+    beyond the map's end.
     """
     lane, there = _next_lane(context, context.side)
     states = np.arange(context.states)

@@ -213,11 +213,18 @@ def _within_preparation(context: DriveContext, flags: Flags, pace_kmh: float) ->
 def _time_driven(context: DriveContext, pace_kmh: float) -> Floats:
     """How long (s) ego has been at least so fast up to each state."""
     drives = context.ego.speed[0] * KMH >= pace_kmh
-    return (np.cumsum(drives) - drives) * context.recording.step_s
+    driven: Floats = (np.cumsum(drives) - drives) * context.recording.step_s
+    return driven
 
 
 def _passes(context: DriveContext, line: float) -> Flags:
-    return context.spans.enters(own_front(context) > line)
+    """Flags of ego crossing a line; again only if it was back by more than places may be wrong."""
+    front, spans = own_front(context), context.spans
+    beyond = front > line
+    passes = spans.enters(beyond)
+    back = spans.latest(front <= line - context.tolerances.place_m)
+    again = spans.before(spans.latest(passes)) > np.maximum(back, spans.first - 1)
+    return passes & ~again
 
 
 def _crosses_stop_line(context: DriveContext) -> tuple[Flags, Flags]:
