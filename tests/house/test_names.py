@@ -38,8 +38,6 @@ REPEATED_MODULES = {
     "verify": "likewise",
 }
 
-SYLLABLES = re.compile(r"[A-Z][a-z]*|[a-z]+")
-
 
 def modules_and_folders():
     """The names in the package, as one reads them in the tree."""

@@ -32,10 +32,10 @@ class OthersNow:
 
     ``s`` and ``d`` (m) are the ends of their bodies in the scene's coordinates, ``lanes`` those
     that they reach into for sure, ``perhaps`` those that they may. ``along`` are speeds along the
-    road, wrong as they may be (m/s). ``counts``: is it one who counts for ego, if it is near,
-    ``may_count``: may it be? ``is_there``: is it, or was it and will it be, so soon that it was
-    there all the time? ``goes_along`` are vehicles that go ego's way for sure, ``may_go_along``
-    those that may. ``some_come``: does somebody move against ego's direction then, or later?
+    road, wrong as they may be (m/s). ``counts``: is it one who counts for ego, if it is near?
+    ``is_there``: is it, or was it and will it be, so soon that it was there all the time?
+    ``goes_along`` are vehicles that go ego's way for sure, ``may_go_along`` those that may.
+    ``some_come``: does somebody move against ego's direction then, or later?
     """
 
     s: tuple[Floats, Floats]
@@ -44,7 +44,6 @@ class OthersNow:
     perhaps: Flags
     along: tuple[Floats, Floats]
     counts: Flags
-    may_count: Flags
     is_there: Flags
     goes_along: Flags
     may_go_along: Flags
@@ -158,7 +157,6 @@ class RoadFrame:
             perhaps=np.any((inside > least - _HAIR_M) & there, axis=1),
             along=((along - error).min(axis=1), (along + error).max(axis=1)),
             counts=np.all(places.counts[:, columns], axis=1),
-            may_count=np.any(places.counts[:, columns], axis=1),
             is_there=(was & will)[:, 0],
             goes_along=vehicles & np.all(goes[:, columns], axis=1),
             may_go_along=vehicles & np.any(goes[:, columns], axis=1),

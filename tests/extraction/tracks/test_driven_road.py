@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rulec.extraction.tracks.driven_road import driven_road
+from support.builders.drive_contexts import driven_road
 from support.builders.recordings import lanelet, recording, straight
 
 TWO_LANES = [

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from rulec.extraction.tracks.driven_road import driven_road
 from rulec.extraction.tracks.driven_route import pieces_of, route_stretches
 from rulec.extraction.tracks.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.map_matching import MapMatching
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
+from support.builders.drive_contexts import driven_road
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
 
@@ -67,7 +67,7 @@ def test_where_no_lane_leads_through_the_road_changes_lanes():
 
 
 def test_a_road_that_changes_lanes_has_its_lanes_side_by_side():
-    road = driven_road(recording(TURNS), ("1", "2", "3", "4"), frozenset())
+    road = driven_road(recording(TURNS), ("1", "2", "3", "4"))
     assert [[own and own.id for own in row] for row in road.rows] == [
         [None, "1"],
         ["3", "2"],

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from rulec.extraction.tracks.driven_road import driven_road
 from rulec.extraction.tracks.road_extents import is_in, lane_sets, road_extents
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
+from support.builders.drive_contexts import driven_road
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
 BOUNDS = ("s_min", "s_max", "d_min", "d_max")
@@ -18,7 +18,7 @@ BOUNDS = ("s_min", "s_max", "d_min", "d_max")
 
 def extents(lanes, *participants, route=("1",)):
     found = recording(lanes, participants)
-    return road_extents(tracks_of(found, USUAL), driven_road(found, route, frozenset()))
+    return road_extents(tracks_of(found, USUAL), driven_road(found, route))
 
 
 def bounds(found, row=0, column=0):

@@ -13,7 +13,6 @@ from pyarrow import feather, parquet
 
 SCENARIO_ID = "00000000-1111-2222-3333-444444444444"
 LOG_ID = "55555555-6666-7777-8888-999999999999"
-MIDDLE_M = 1.34
 
 
 def line(*places):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from rulec.extraction.drive_context import drive_context
-from rulec.extraction.tracks.driven_road import driven_road, junction_lanelets
+from rulec.extraction.tracks.driven_road import DrivenRoads, junction_lanelets
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.tracks.road_extents import road_extents
 from rulec.extraction.tracks.road_places import RoadPlaces
@@ -15,6 +15,12 @@ from rulec.extraction.traffic_thresholds import USUAL
 from support.builders.recordings import vehicle
 
 EGO = "7"
+
+
+def driven_road(found, route, junctions=frozenset()):
+    """The road of a chain of lanelets."""
+    road, _ = DrivenRoads(found, junctions).along(route)
+    return road
 
 
 def context_of(found, route=("1",), side="right", ego=EGO, elsewhere=None, **thresholds):

@@ -158,12 +158,6 @@ class DrivenRoads:
         )
 
 
-def driven_road(recording: Recording, way: Sequence[str], junctions: Set[str]) -> DrivenRoad:
-    """The road of one chain of lanelets, as ``DrivenRoads`` has it."""
-    road, _ = DrivenRoads(recording, junctions).along(way)
-    return road
-
-
 def _layout(recording: Recording, pieces: tuple[tuple[str, ...], ...]) -> _Layout:
     entries = [piece[0] for piece in pieces]
     lanelets = [recording.lanelets[number] for number in entries]

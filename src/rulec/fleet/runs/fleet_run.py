@@ -29,7 +29,6 @@ from rulec.trace.trace_model import Ending
 from rulec.value_display import short_repr
 
 EngineName = Literal["local", "ray", "spark"]
-ENGINES: tuple[EngineName, ...] = ("local", "ray", "spark")
 
 _ENGINES: Mapping[EngineName, Callable[[], Engine]] = {
     "local": local_engine,

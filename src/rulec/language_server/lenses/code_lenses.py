@@ -20,7 +20,6 @@ RUN = "rulec.runExamples"
 ENGLISH = "rulec.inEnglish"
 COMPARE = "rulec.compareWithParent"
 INSERT = "rulec.insertExample"
-COMMANDS = (RUN, ENGLISH, COMPARE, INSERT)
 
 _MOST_KEPT = 2000
 
