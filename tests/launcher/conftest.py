@@ -1,6 +1,7 @@
 """A copy of the launcher in a folder of its own, with stand-ins for every tool that it calls."""
 
-import json
+import ast
+import marshal
 import shutil
 import signal
 import subprocess
@@ -52,13 +53,13 @@ class Checkout:
 
     def add_tool(self, name: str, **looks) -> Path:
         """Puts a stand-in on PATH: a Python with these looks, or uv."""
-        (self.tools / f"{name}.json").write_text(json.dumps(LOOKS | looks))
+        (self.tools / f"{name}.looks").write_bytes(marshal.dumps(LOOKS | looks))
         return self.add_script(name, f'exec "{sys.executable}" -S "{STAND_IN}" {name} "$@"')
 
     def tell(self, tool: str, **behaviour) -> None:
         """Lays down how a tool behaves from now on: says=…, status=…, waits=…."""
         self.plan[tool] = behaviour
-        (self.tools / "behaviour.json").write_text(json.dumps(self.plan))
+        (self.tools / "behaviour").write_bytes(marshal.dumps(self.plan))
 
     def start(self, *command, cwd=None, **variables) -> subprocess.Popen:
         environment = {"PATH": str(self.tools), "STAND_INS": str(self.tools), "LC_ALL": "C.UTF-8"}
@@ -85,7 +86,7 @@ class Checkout:
         """The journal's entries of these tools (of all, if none is named), in order."""
         journal = self.tools / "journal"
         lines = journal.read_text().splitlines() if journal.exists() else []
-        entries = [json.loads(line) for line in lines]
+        entries = [ast.literal_eval(line) for line in lines]
         return [entry for entry in entries if not tools or entry["tool"] in tools]
 
     @staticmethod

@@ -104,7 +104,7 @@ def test_two_first_calls_make_one_environment(checkout):
     for process, word in (first, "first"), (second, "second"):
         out, err = process.communicate(timeout=20)
         assert process.returncode == 0, err
-        assert f'"arguments": ["{word}"]' in out
+        assert f"'arguments': ['{word}']" in out
     assert [call["tool"] for call in checkout.calls()] == ["venv", "pip", "pip"]
 
 

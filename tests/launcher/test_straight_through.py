@@ -1,6 +1,6 @@
 """Once the environment is there, the launcher is invisible."""
 
-import json
+import ast
 import shutil
 
 import pytest
@@ -9,7 +9,7 @@ AWKWARD = ["", "two words", "*", "$HOME", "'\"", "-x", "--", "ä\nb"]
 
 
 def seen(result):
-    return json.loads(result.stdout.splitlines()[0])
+    return ast.literal_eval(result.stdout.splitlines()[0])
 
 
 def test_arguments_arrive_untouched(ready):

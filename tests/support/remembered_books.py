@@ -14,7 +14,7 @@ from rulec.automata import compiler
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.automata.compiled_cache import CompiledQuestion
 from rulec.automata.worker import compiler_choice
-from rulec.cache.keeping import is_keeping
+from rulec.cache.keeping import is_keeping, keeping
 from rulec.diagnostics import Diagnostic, Source
 from rulec.resources import rulebooks_folder
 from rulec.rulebook import loader
@@ -36,7 +36,9 @@ def remember_books() -> None:
             return _PARSED(source)
         key = source.name, source.text
         if key not in trees:
-            trees[key] = _PARSED(source)
+            # Those that ship are of these texts and this code, or are not taken.
+            with keeping():
+                trees[key] = _PARSED(source)
         return trees[key]
 
     def compile_source(

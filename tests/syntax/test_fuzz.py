@@ -164,4 +164,5 @@ def test_truncated_rulebooks(text, data):
 
 @pytest.mark.parametrize("text", TEXTS, ids=lambda text: text.split("\n")[1])
 def test_all_of_it_takes_steps_in_proportion(text):
-    assert grows_in_proportion(lambda size: judge(text * size), 6)
+    copies = 6 if len(text) < 1000 else 2  # as much text, about
+    assert grows_in_proportion(lambda size: judge(text * size), copies)

@@ -5,16 +5,16 @@ import sys
 
 
 def steps(run):
-    """How many lines of Python ``run()`` goes through."""
+    """How many lines of Python ``run()`` goes through, and returns from functions."""
     count = 0
 
-    def trace(frame, event, argument):
+    def in_function(frame, event, argument):
         nonlocal count
-        count += event == "line"
-        return trace
+        count += 1
+        return in_function
 
     before = sys.gettrace()
-    sys.settrace(trace)
+    sys.settrace(lambda frame, event, argument: in_function)
     try:
         run()
     finally:
