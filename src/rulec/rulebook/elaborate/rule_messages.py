@@ -94,7 +94,8 @@ NOT_A_MULTIPLE = Code(
     title="a bound is not a multiple of the step",
     why="A bound in seconds becomes a number of states, with the time from one state of a trace "
     "to the next, its step. If a bound falls between two states, nobody knows what held "
-    "there. Choose a bound that is a multiple of the step, or traces with a finer one.",
+    "there. Choose a bound that is a multiple of the step, or traces with a finer one. Of a rule "
+    "without examples it is a warning, since traces of a step that fits can be judged by it.",
     bad="rulebook example\nsignal wet default false\n"
     "hard rule r { require always (wet implies eventually[<= 1.5 s] not wet) }\n",
     good="rulebook example\nstep 0.5 s\nsignal wet default false\n"
@@ -253,6 +254,18 @@ def no_multiple(rule: Rule, error: NotAMultipleError) -> Diagnostic:
         help=f"the nearest {are} {' and '.join(nearest)}"
         + (f"; or write `step {fitting}` in the header" if error.step_s == rule.step_s else ""),
         notes=(f"rule `{rule.name}` would have to know what happens between two states",),
+    )
+
+
+def only_fitting_traces(rule: Rule, error: NotAMultipleError) -> Diagnostic:
+    """R0407 as a warning: no state of the rulebook's own step is where a bound of the rule ends."""
+    return replace(
+        no_multiple(rule, error),
+        severity="warning",
+        notes=(
+            f"rule `{rule.name}` can judge only traces of a step that fits; `rulec test`, `show`, "
+            "`compile` and `analyze` go by the rulebook's own, and refuse it",
+        ),
     )
 
 

@@ -100,11 +100,13 @@ def translate_rule(
         topics=constants.overlay.topics_of(item),
         inherited_from=law.name.text if law.name and not confirmed else "",
     )
-    if rule.examples:
-        try:
-            in_steps(formula, step)
-        except NotAMultipleError as error:
+    try:
+        in_steps(formula, step)
+    except NotAMultipleError as error:
+        if rule.examples:
             return None, [*mistakes, say.no_multiple(rule, error)]
+        # Traces with another step can be judged by it.
+        mistakes.append(say.only_fitting_traces(rule, error))
     return rule, mistakes
 
 
