@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 
 _MOST_NAMED = 8
+_SHORT_WORD = 3
 _MOST_SEARCHED = 500
 """Among more names the search takes too long; only those with the same letters are found then."""
 
@@ -22,7 +23,14 @@ def nearest_name(name: str, known: Iterable[str], alike: float = 0.6) -> str | N
     if same is not None or len(by_folded) > _MOST_SEARCHED:
         return same
     close = _closest(name.casefold(), tuple(by_folded), alike)
-    return by_folded[close[0]] if close else None
+    return by_folded[close[0]] if close else _longer_name(name, by_folded)
+
+
+def _longer_name(name: str, by_folded: Mapping[str, str]) -> str | None:
+    """The only known name that has all words of this one, and more: `boarding_passengers`."""
+    words = {*name.casefold().split("_")}
+    longer = [folded for folded in by_folded if words < {*folded.split("_")}]
+    return by_folded[longer[0]] if len(name) > _SHORT_WORD and len(longer) == 1 else None
 
 
 @lru_cache(maxsize=64)  # one mistake in each row of a file is one search

@@ -205,6 +205,8 @@ def _other_unit(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:
     unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
     if not (isinstance(node, tree.NumberLiteral) and unit):
         return ""
+    if node.unit == "%":
+        return f"a share is a factor: for 10 % more write `1.1 * {short(beside)}`"
     return f"`{short(beside)}` is in {unit}: check the unit of `{short(node)}`"
 
 

@@ -263,8 +263,8 @@ def only_fitting_traces(rule: Rule, error: NotAMultipleError) -> Diagnostic:
         no_multiple(rule, error),
         severity="warning",
         notes=(
-            f"rule `{rule.name}` can judge only traces of a step that fits; `rulec test`, `show`, "
-            "`compile` and `analyze` go by the rulebook's own, and refuse it",
+            f"rule `{rule.name}` can judge only traces of a step that fits",
+            "`rulec test`, `show`, `compile` and `analyze` go by the rulebook's own, and refuse it",
         ),
     )
 

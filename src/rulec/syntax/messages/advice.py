@@ -142,12 +142,17 @@ def _names(text: str) -> bool:
 
 
 def _comment(scene: ParseContext) -> str:
+    if scene.text == "§":
+        return 'an article stands in its rule, such as `cite "§ 3"`; a remark begins with `#`'
     return "a comment begins with `#`" if scene.text in ("//", "/*") else ""
 
 
 def _name_of_two_words(scene: ParseContext) -> str:
     is_name = scene.kind == "rule_head" and scene.text_at(scene.at - 2) == "rule"
     if is_name and scene.is_word() and scene.text_at(scene.at + 1) in ("(", "{", ""):
+        return f"a name is one word: `{scene.text_before}_{scene.text}`"
+    assigned = scene.at == 2 and scene.first in ("set", "param", "option", "define", "redefine")
+    if assigned and scene.is_word() and scene.text_at(scene.at + 1) in ("=", ":"):
         return f"a name is one word: `{scene.text_before}_{scene.text}`"
     return ""
 
@@ -215,9 +220,21 @@ def _ending(scene: ParseContext) -> str:
 
 
 def _parentheses(scene: ParseContext) -> str:
+    if scene.unexpected is None and scene.operator and scene.opened("(", ")") is not None:
+        return _closed_before_a_clause(scene)
     if scene.text != ")" or scene.operand or scene.quantity or scene.accepted == {"NAME"}:
         return ""
     return "delete the `)`, or open it before" if scene.opened("(", ")") is None else ""
+
+
+def _closed_before_a_clause(scene: ParseContext) -> str:
+    """Advice on what is open where a clause begins: that word may have been meant for a formula."""
+    behind = scene.source.text[scene.tokens[-1].end :].split(maxsplit=1)
+    word = behind[0] if behind else ""
+    if word in ("unless", "when"):
+        instead = "p or q` for `p unless q" if word == "unless" else "q implies p` for `p when q"
+        return f"`{word}` is a clause behind the whole formula; inside of one write `{instead}`"
+    return "close it with `)`"
 
 
 def _form(scene: ParseContext) -> str:

@@ -71,6 +71,11 @@ def advise_on_formula(scene: ParseContext) -> str:
 def advise_on_aggregate(scene: ParseContext) -> str:
     """At ``some``, ``every``, ``count``, and what others call them."""
     text, before = scene.text, scene.text_before
+    if scene.operator and before == "at" and scene.text_behind in ("time", "times"):
+        return f"for `at {text} {scene.text_behind}` write `always`"
+    if scene.operator and before == "no" and scene.is_word():
+        variable = scene.text_behind if scene.text_behind.isidentifier() else "x"
+        return f"for `no {text}` write `not some {variable}: {text} (…)`"
     word = _QUANTIFIERS.get(text) or (_QUANTIFIERS.get(before) if scene.operator else None)
     if word and (scene.operand or scene.operator) and scene.unexpected is not None:
         if any(scene.is_number(scene.at + number) for number in range(1, 4)) and text == "for":
@@ -203,6 +208,14 @@ def _comparisons(scene: ParseContext) -> str:
     return ""
 
 
+_OBLIGATIONS: Final = ("must", "shall", "should", "may", "can")
+_CONJUNCTIONS: Final = {
+    "before": "for `p before q` write `not q weak until p`",
+    "after": "for `q after p` write `not q weak until p`",
+    **dict.fromkeys(("while", "whenever"), "for `q while p` write `p implies q`"),
+}
+
+
 def _operators(scene: ParseContext) -> str:
     if scene.unexpected is None:
         return ""
@@ -211,8 +224,12 @@ def _operators(scene: ParseContext) -> str:
         return f"`{before}` is read as one name; write `{' '.join(before)}`"
     if text == "then" and before == "and":
         return "`then` stands alone between two phases: write `p then q`"
-    if scene.operator and before in ("must", "shall", "should"):
+    if scene.operator and before in _OBLIGATIONS:
         return f"leave out `{before}`; what a formula says must hold"
+    if scene.operator and text in _OBLIGATIONS:
+        return f"leave out `{text}`: what a formula says must hold, such as `speed <= 50 km/h`"
+    if scene.operator and (meant := _CONJUNCTIONS.get(text)):
+        return meant
     word = _MEANT.get(text) or (
         text.casefold() if text.casefold() in keywords.OPERATOR_WORDS else None
     )
@@ -261,6 +278,9 @@ def _joined(scene: ParseContext) -> str:
     if scene.operator and more and scene.text in (",", ";", "."):
         return "write `or` where one of them is enough, `and` where it takes all"
     words = (scene.before, scene.unexpected)
+    is_word = scene.is_word() and scene.text not in keywords.RESERVED
+    if scene.operator and scene.text_before == ")" and is_word:
+        return "between two formulas stands an operator, such as `and`, `or` or `implies`"
     if scene.operator and all(
         one is not None and one.kind == "word" and one.text not in keywords.RESERVED
         for one in words

@@ -131,6 +131,14 @@ _OTHER_CLAUSES: Final = {
         ("forbid", "forbids", "prohibit", "prohibits", "disallow"),
         "what is forbidden is written `require never (formula)`",
     ),
+    **dict.fromkeys(
+        ("allow", "allows", "allowed", "permit", "permits", "permitted"),
+        "an example of what is allowed is written `accept { … }`",
+    ),
+    **dict.fromkeys(
+        ("penalty", "fine", "points", "severity"),
+        "how much a rule counts stands in its head: `soft rule NAME weight 3`",
+    ),
     **dict.fromkeys(("example", "examples", "test", "tests", "trace", "case"), _EXAMPLE),
     **dict.fromkeys(("description", "text", "comment", "note"), 'write `says "…"`'),
     **dict.fromkeys(("article", "paragraph", "section", "reference"), 'write `cite "…"`'),
@@ -148,6 +156,8 @@ def other_clause(word: str, others: Container[str] = ()) -> str:
     """
     if word == "if" and "then" in others:
         return "write `require always (p implies q)` for `if p then q`"
+    if "{" in others and "forbidden" in _OTHER_CLAUSES.get(word, ""):
+        return "an example of what is forbidden is written `reject { … }`"
     return _OTHER_CLAUSES.get(word, "")
 
 
