@@ -111,7 +111,7 @@ def test_the_page_is_up_to_date(capsys):
     ("arguments", "words"),
     [
         (["R0602x"], "there is no code `R0602x`; did you mean `R0602`?"),
-        (["verify"], "`rulec list codes` shows them all"),
+        (["verify"], "`rulec list codes` shows them all; `rulec show RULEBOOK RULE` explains"),
         ([], "give a code, or --all"),
         (["R0101", "--all"], "give a code, or --all"),
     ],

@@ -52,6 +52,8 @@ def test_help_lists_the_verbs_and_the_exit_status(capsys):
             "it is one of touch, edge, forward",
         ),
         (["maneuvers", "s2", "-r", "esterle2019", "--list", "-1"], "--list"),
+        (["compile", "de", "--emit", "HOA"], "did you mean `automata`?"),
+        (["list", "words"], "did you mean `vocabularies`?"),
     ],
 )
 def test_wrong_usage_is_status_2(arguments, words, capsys):

@@ -123,6 +123,11 @@ def test_findings_of_traces_have_their_exposure(tmp_path, ending, capsys):
     command = ["verify", str(drives), "-r", str(tmp_path / "lights.rules"), "--exposure"]
     assert main([*command, "-o", str(path)]) == 2
     capsys.readouterr()
+    if ending == "jsonl":
+        rows = [json.loads(line) for line in path.read_text().splitlines()]
+        # Of a drive there is neither a rule nor what it is about, and no limit that it is off.
+        drive = next(row for row in rows if row["kind"] == "drive")
+        assert (drive["rule"], drive["other"], drive["by"]) == ("", [], None)
     assert main(["rates", str(path), "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
     assert (document["drives"], document["not_judged"]) == (2, 1)

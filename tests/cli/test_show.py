@@ -79,6 +79,16 @@ def test_the_only_rule_in_full(tmp_path, capsys):
     assert "no trace is rejected: nothing can violate this rule" in out
 
 
+def test_of_several_rules_of_that_word_each_is_named(tmp_path, capsys):
+    path = tmp_path / "limits.rules"
+    rules = ("speed_in_town", "speed_outside", "horn")
+    text = "".join(f"hard rule {name} {{ require always p }} " for name in rules)
+    path.write_text(f"rulebook limits signal p {text}")
+    assert main(["show", str(path), "speed"]) == 2
+    said = "limits has no rule `speed`; it has `speed_in_town`, `speed_outside`\n"
+    assert said in capsys.readouterr().err
+
+
 def test_nothing_can_satisfy_it(tmp_path, capsys):
     path = tmp_path / "one.rules"
     path.write_text("rulebook alone signal p hard rule r { require p and not p }")

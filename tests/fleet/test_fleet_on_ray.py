@@ -23,11 +23,15 @@ def ray():
     """A little of Ray, which takes seconds to start: an actor, and tasks that read and write."""
     ray = pytest.importorskip("ray", reason="no release for this Python")
     pytest.importorskip("ray.data")
+    # Workers are started when there is work for them, not as many as there may be before any.
+    monkeypatch = pytest.MonkeyPatch()
+    monkeypatch.setenv("RAY_prestart_worker_first_driver", "0")
     ray.init(num_cpus=3, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
     logging.getLogger("ray.data").setLevel(logging.ERROR)
     ray.data.DataContext.get_current().enable_progress_bars = False
     yield ray
     ray.shutdown()
+    monkeypatch.undo()
 
 
 @pytest.mark.filterwarnings("ignore")

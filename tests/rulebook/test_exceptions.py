@@ -3,11 +3,13 @@
 import os
 import random
 from itertools import combinations_with_replacement, product
+from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import rulec
 from rulec.diagnostics import RulecError
 from rulec.logic.formula import Atom
 from rulec.logic.semantics import holds
@@ -241,3 +243,25 @@ def test_what_cannot_be_said(require, unless, code):
     with pytest.raises(RulecError) as caught:
         parse_rulebook(f"rulebook r signal p, q, r, s hard rule r {{ require {require} {unless} }}")
     assert [one.code for one in caught.value.diagnostics] == [code]
+
+
+@pytest.mark.parametrize(
+    ("require", "way_out"),
+    [("p", "write `require always (…)`"), ("eventually p", "write `initially` at its end")],
+)
+def test_who_forgot_always_is_told_of_it(require, way_out, tmp_path):
+    """Wherever the formula is written: the exception may be another rulebook's."""
+    (tmp_path / "a.rules").write_text(
+        f"rulebook a signal p, q default false hard rule r {{ require {require} }}"
+    )
+    path = tmp_path / "b.rules"
+    path.write_text("rulebook b extends a override rule r { unless q }")
+    with pytest.raises(RulecError) as caught:
+        rulec.load_rulebook(path)
+    (problem,) = caught.value.diagnostics
+    assert problem.help.startswith(way_out)
+    (label,) = problem.labels
+    assert (Path(label.place.file).name, label.message) == (
+        "a.rules",
+        "this is what the rule requires",
+    )

@@ -110,7 +110,8 @@ def reworded(problem: click.ClickException) -> str:
     ):
         given, choices = found["given"], [str(choice) for choice in kind.choices]
         whose = "" if param.param_type_name == "argument" else f"{_as_typed(param, problem)}: "
-        near = nearest_name(given, choices)
+        meant = _OTHER_VALUES.get(given.casefold())
+        near = meant if meant in choices else nearest_name(given, choices)
         every = f"it is one of {', '.join(choices)}"
         way_out = f"did you mean `{near}`? ({every})" if near else every
         return f"{whose}there is no `{given}`; {way_out}"
@@ -192,6 +193,14 @@ def unknown_verb(name: str) -> str:
         way_out = f"for a rulebook it stands behind one, as in `rulec check {name}`"
     return f"there is no command `{name}`; {way_out}"
 
+
+_OTHER_VALUES = {
+    **dict.fromkeys(("books", "countries", "laws", "rules"), "rulebooks"),
+    **dict.fromkeys(("words", "signals", "types"), "vocabularies"),
+    **dict.fromkeys(("hoa", "json", "python", "spot"), "automata"),
+    **dict.fromkeys(("c++", "cpp", "cxx"), "c"),
+}
+"""What may be given for a value of an option or an argument, where it is one of its values."""
 
 _OTHER_WORDS = {
     "analyse": "analyze",

@@ -35,23 +35,28 @@ docs/fleet.md says column by column what they mean. A text that does not apply i
 has no items, a number is None.
 """
 
-_IN_JSON: Mapping[type, Any] = {list: list[str]}
+_IN_JSON: Mapping[type, Any] = {str: str, list: list[str]}
+"""The types of columns that are never null."""
 
 FindingRowLine = msgspec.defstruct(
     "FindingRowLine",
-    [(name, Optional[_IN_JSON.get(kind, kind)]) for name, kind in COLUMNS.items()],  # noqa: UP045
+    [
+        (name, _IN_JSON.get(kind) or Optional[kind])  # noqa: UP045
+        for name, kind in COLUMNS.items()
+    ],
     bases=(JsonDocument,),
     namespace={
         "__doc__": "A row of a drive, of a rule of it, or a finding.\n\n"
-        "See docs/rates.md; null is what does not apply."
+        "See docs/rates.md; where one does not apply, a text is empty and a number null."
     },
     frozen=True,
     kw_only=True,
 )
 """A row as a line of JSON."""
 
-_NOTHING: Mapping[type, Cell] = {str: "", list: ()}
-EMPTY: Mapping[str, Cell] = {name: _NOTHING.get(kind) for name, kind in COLUMNS.items()}
+EMPTY: Mapping[str, Cell] = {
+    name: verdict_finding.EMPTY_CELLS.get(kind) for name, kind in COLUMNS.items()
+}
 """The values of columns that do not apply."""
 
 _ROWS_AT_ONCE = 1 << 11

@@ -67,4 +67,7 @@ def _way_out(name: str) -> str:
         return f"it is a rule, which `rulec show {books[0]} {name}` explains{more}"
     if vocabularies := vocabularies_with(name):
         return f"it is a word of the vocabulary `{vocabularies[0]}`, whose file says what it means"
-    return "`rulec list codes` shows them all"
+    return (
+        "`rulec list codes` shows them all; `rulec show RULEBOOK RULE` explains a rule, `rulec "
+        "verify` a violation"
+    )

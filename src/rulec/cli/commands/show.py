@@ -200,6 +200,9 @@ def _way_out(book: Rulebook, name: str) -> str:
 
     if near := nearest_name(name, {rule.name for rule in book.rules}):
         return f"did you mean `{near}`?"
+    words = {*name.casefold().split("_")}
+    if longer := [f"`{rule.name}`" for rule in book.rules if words < {*rule.name.split("_")}]:
+        return f"it has {first_of(longer, _MOST_NAMED)}"
     if others := rulebooks_with_rule(name, search_path()):
         return f"there is one in {first_of(others, _MOST_NAMED)}"
     return f"it has {_names(book)}"

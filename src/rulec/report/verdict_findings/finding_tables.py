@@ -12,6 +12,7 @@ from rulec.report.text.outgoing import spreadsheet_text
 from rulec.report.text.terminal_text import visible
 from rulec.report.verdict_findings.verdict_finding import (
     COLUMNS,
+    EMPTY_CELLS,
     FoundInRecording,
     as_json,
 )
@@ -33,7 +34,9 @@ class JsonLinesWriter:
         if self._columns is None:
             lines = [as_json(finding) for finding in found.findings]
         else:
-            rows = [{name: row.get(name) for name in self._columns} for row in found.rows]
+            rows = [
+                dict(zip(self._columns, row, strict=True)) for row in _rows(found, self._columns)
+            ]
             lines = [json.dumps({"version": 1, **row}, ensure_ascii=False) for row in rows]
         for line in lines:
             # What no file may hold in UTF-8, half a surrogate pair, JSON writes in the same way.
@@ -86,7 +89,8 @@ def _rows(found: FoundInRecording, columns: Columns | None) -> Iterator[list[Any
     if columns is None:
         yield from ([getattr(one, name) for name in COLUMNS] for one in found.findings)
     else:
-        yield from ([row.get(name) for name in columns] for row in found.rows)
+        empty = [(name, EMPTY_CELLS.get(kind)) for name, kind in columns.items()]
+        yield from ([row.get(name, nothing) for name, nothing in empty] for row in found.rows)
 
 
 def _cell(value: str | float | tuple[str, ...] | None) -> str:

@@ -136,6 +136,9 @@ COLUMNS: Mapping[str, type] = {
 }
 """The columns of tables of findings, with the types of their values."""
 
+EMPTY_CELLS: Mapping[type, str | tuple[str, ...]] = {str: "", list: ()}
+"""What a column of this type holds where it does not apply; a column of numbers holds None."""
+
 
 def as_json(finding: VerdictFinding) -> str:
     """Write a finding on one line."""

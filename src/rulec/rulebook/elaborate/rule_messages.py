@@ -211,19 +211,25 @@ def unused_provision(kind: str, name: tree.Name) -> Diagnostic:
     )
 
 
-def unfitting_exception(problem: str, item: tree.RuleItem) -> Diagnostic:
+def unfitting_exception(problem: str, item: tree.RuleItem, *, first_state_only: bool) -> Diagnostic:
+    required = () if item.require is None else (item.require.span.place,)
+    labels = tuple(Label(place, "this is what the rule requires") for place in required)
     if problem == "no stretch":
         unless = next(unless for unless in item.unless if unless.scope != "initially")
         written = f"`{unless.scope}`" if unless.scope else "this exception"
-        require = () if item.require is None else (item.require.span.place,)
         return UNFITTING_SCOPE.at(
             unless.span,
             f"{written} says when the rule is not watching, and it watches no stretch of time: it "
             "does not begin with `never` or `always`",
-            expected="expected `initially` behind it",
-            help="write `initially` at its end, if the first state decides; or begin the rule with "
+            expected="expected a rule that begins with `never` or `always`"
+            if first_state_only
+            else "expected `initially` behind it",
+            help="write `require always (…)`, since this asks for something in the first state "
+            "only; or `initially` at the end of the exception, if that is meant"
+            if first_state_only
+            else "write `initially` at its end, if the first state decides; or begin the rule with "
             "`never` or `always`; or say it in the formula, by `or`",
-            labels=tuple(Label(place, "this is what the rule requires") for place in require),
+            labels=labels,
         )
     unless = [unless for unless in item.unless if unless.scope in (None, "throughout")][-1]
     if problem == "bounded phase":
@@ -232,12 +238,14 @@ def unfitting_exception(problem: str, item: tree.RuleItem) -> Diagnostic:
             "an exception cannot hold `throughout` phases whose length is bounded",
             expected="expected another scope",
             help="write `at start`, `at end` or `at some point`, or leave the bounds of `then` out",
+            labels=labels,
         )
     return FORMULA_TOO_LARGE.at(
         unless.span,
         "with this one, too many exceptions of the rule have to hold `throughout` its phases: "
         "each multiplies the formula",
         help="join some of them by `or` in one `unless`, if one of them may follow the other",
+        labels=labels,
     )
 
 

@@ -265,12 +265,25 @@ def wrong_number(
     has = {0: "none is", 1: "one is"}.get(given, f"{given} are")
     arguments = [*variables, *["…"] * needed][:needed]
     written = f"{name}({', '.join(arguments)})" if needed else name
+    is_value = isinstance(item, Enumeration) and item.name != name
+    subject = f"`{name}` is a value of `{item.name}`, which" if is_value else f"`{name}`"
     return WRONG_ARITY.at(
         use.span,
-        f"`{name}` is about {objects}, and {has} given",
+        f"{subject} is about {objects}, and {has} given",
         expected=f"expected {objects}",
-        help=f"write `{written}`",
+        help=f"write `{written}`" if variables or not needed else _declared(name, item),
         labels=(Label(symbols.spans[name].place, f"`{name}` is declared here"),),
+    )
+
+
+def _declared(name: str, item: Signal | Enumeration | Quantity) -> str:
+    """The way out where there is no variable yet."""
+    letters = "xyz"[: len(item.parameters)]
+    pairs = zip(letters, item.parameters, strict=False)
+    variables = ", ".join(f"{letter}: {parameter}" for letter, parameter in pairs)
+    return (
+        f"write `{name}({', '.join(letters)})`, and `({variables})` behind the rule's name or that "
+        "of the definition"
     )
 
 

@@ -182,7 +182,10 @@ def _formula(item: tree.RuleItem, parts: _Parts, scope: Scope) -> ltl.Formula | 
     try:
         formula = exempted(formula, exemptions)
     except ExemptionError as error:
-        scope.report(say.unfitting_exception(error.problem, item))
+        narrow = item.require is not None and any(
+            requirement_warnings(item.require, scope.symbols, scope.constants.overlay)
+        )
+        scope.report(say.unfitting_exception(error.problem, item, first_state_only=narrow))
         return None
     limit = exceeded_limit(formula)
     if limit is not None:
