@@ -1,5 +1,6 @@
 """Runs over a fleet: the same findings however it is cut, killed, resumed, or shared out."""
 
+import fcntl
 import json
 import os
 import random
@@ -217,6 +218,21 @@ def test_a_damaged_file_of_findings_is_written_again(folder_of, expected, tmp_pa
     part = sorted(out.glob("book=*/*.parquet"))[0]
     part.write_bytes(part.read_bytes()[:-10])
     assert run([folder_of], out).before == 4
+    assert found_in(out) == expected
+
+
+def test_a_folder_that_another_run_writes_into_is_refused(folder_of, expected, tmp_path):
+    """It would take away what the other one is about to write."""
+    out = tmp_path / "out"
+    run([folder_of], out)
+    handle = os.open(out, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX)
+        with pytest.raises(RulecError, match="another run of rulec is writing into the folder"):
+            run([folder_of], out)
+    finally:
+        os.close(handle)
+    assert run([folder_of], out).before == 5
     assert found_in(out) == expected
 
 

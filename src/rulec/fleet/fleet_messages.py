@@ -98,7 +98,8 @@ OTHER_FLEET = Code(
     title="a folder has findings of another fleet",
     why="Findings in one folder are added up, so they are of one rulebook, one version of rulec, "
     "the same thresholds, assumptions and map. A run in a folder that is there already goes on "
-    "with what was begun: its inputs may be more than before, not fewer.",
+    "with what was begun: its inputs may be more than before, not fewer. One run at a time writes "
+    "into a folder.",
     kind="circumstance",
 )
 
@@ -117,6 +118,15 @@ def other_fleet(folder: Path, why: str) -> RulecError:
         SourceLocation(str(folder)),
         f"the folder has findings of another fleet: {why}",
         help="give another folder with -o, or the inputs and options of before",
+    )
+
+
+def folder_in_use(folder: Path) -> RulecError:
+    return OTHER_FLEET.error(
+        SourceLocation(str(folder)),
+        "another run of rulec is writing into the folder",
+        help="wait until it has ended, and go on with what it has written, or give another folder "
+        "with -o",
     )
 
 

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
+import os
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
 from rulec.diagnostics import RulecError
-from rulec.files import file_state, make_folder, opened, written_whole
-from rulec.fleet.fleet_messages import other_fleet
+from rulec.files import file_state, make_folder, opened, refusals, written_whole
+from rulec.fleet.fleet_messages import folder_in_use, other_fleet
 from rulec.fleet.judged_by import JudgedBy
 from rulec.fleet.runs.work_units import WorkUnit
 from rulec.recordings.recording_format import RecordingSource
@@ -62,10 +64,31 @@ class FleetFolder:
         except (pyarrow.ArrowException, OSError, KeyError, ValueError):
             return False
 
+    @contextmanager
+    def alone(self) -> Iterator[None]:
+        """Make the folder, and keep other runs out of it.
+
+        Raises RulecError R0702, R0712 if there is one.
+        """
+        make_folder(self.path)
+        with refusals(self.path):
+            handle = os.open(self.path, os.O_RDONLY)
+        try:
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                raise folder_in_use(self.path) from None
+            except OSError:
+                # Some file systems have no locks
+                pass
+            yield
+        finally:
+            os.close(handle)
+
     def open(
         self, inputs: Sequence[str], source: RecordingSource, egos: Sequence[str] = ()
     ) -> None:
-        """Make the folder, or go on in it with the same settings and at least the same inputs.
+        """Begin in the folder, or go on with the same settings and at least the same inputs.
 
         Raises RulecError R0702, R0712 if it is another fleet's, R0701 for a map that is not there.
         """

@@ -88,8 +88,9 @@ def run_fleet(
     """Judge all drives of some files, and write findings and a manifest to a folder.
 
     A unit whose file is there is not judged again. ``tell`` is told how many units of how many are
-    done. Raises RulecError R0702, R0706 without pyarrow, R0712 for a folder of another fleet, R0713
-    without the engine, and why there is nothing to judge if no input is a recording or a table.
+    done. Raises RulecError R0702, R0706 without pyarrow, R0712 for a folder of another fleet or one
+    that another run writes into, R0713 without the engine, and why there is nothing to judge if no
+    input is a recording or a table.
     """
     # Whatever is missing is said before anything is written.
     arrow("the table of findings")
@@ -100,33 +101,34 @@ def run_fleet(
     carried_rules = carried(rules)
     by = judged_by(carried_rules.read(), settings.request, settings.ends or "")
     kept = FleetFolder(folder, by)
-    kept.open(inputs.paths, settings.source, settings.request.egos)
-    problems = list(inputs.problems)
-    units: list[WorkUnit] = []
-    with memory_given_back():
-        for unit in work_units(inputs.tables, inputs.recordings):
-            if isinstance(unit, RulecError):
-                problems.append(unit)
-            else:
-                units.append(unit)
-    worker = UnitWorker(carried_rules, settings.request, settings.source, settings.ends, kept)
-    before = {unit.digest for unit in units if kept.is_done(unit)}
-    there = [unit for unit in units if unit.digest in before]
-    rest = [unit for unit in units if unit.digest not in before]
-    results = judged_locally(worker, there, Jobs(1))
-    if rest:
-        results = chain(results, engine(worker, rest, settings.jobs))
-    tally = FleetTally()
-    for done, own in enumerate(results, 1):
-        tally.add(own)
-        if tell is not None:
-            tell(done, len(units))
-    return FleetRun(
-        by,
-        kept.findings,
-        units=len(units),
-        before=len(before),
-        tally=tally,
-        problems=tuple(problems),
-        leftovers=tuple(kept.leftovers(units)),
-    )
+    with kept.alone():
+        kept.open(inputs.paths, settings.source, settings.request.egos)
+        problems = list(inputs.problems)
+        units: list[WorkUnit] = []
+        with memory_given_back():
+            for unit in work_units(inputs.tables, inputs.recordings):
+                if isinstance(unit, RulecError):
+                    problems.append(unit)
+                else:
+                    units.append(unit)
+        worker = UnitWorker(carried_rules, settings.request, settings.source, settings.ends, kept)
+        before = {unit.digest for unit in units if kept.is_done(unit)}
+        there = [unit for unit in units if unit.digest in before]
+        rest = [unit for unit in units if unit.digest not in before]
+        results = judged_locally(worker, there, Jobs(1))
+        if rest:
+            results = chain(results, engine(worker, rest, settings.jobs))
+        tally = FleetTally()
+        for done, own in enumerate(results, 1):
+            tally.add(own)
+            if tell is not None:
+                tell(done, len(units))
+        return FleetRun(
+            by,
+            kept.findings,
+            units=len(units),
+            before=len(before),
+            tally=tally,
+            problems=tuple(problems),
+            leftovers=tuple(kept.leftovers(units)),
+        )
