@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from rulec.rulebook.files.source_walk import LeftAlone
 
 
-_REPORTS = ("html", "junit", "sarif", "svg")
+_REPORTS = ("html", "junit", "sarif", "svg", "xqar")
 """Formats that people and other programs show."""
 
 _DATA = ("csv", "jsonl")

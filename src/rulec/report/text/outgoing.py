@@ -22,7 +22,7 @@ _AT_START: Final = re.compile(r"^([^\S\n]*):(?=:(?!: ))", re.MULTILINE)
 A diagnostic's `::: FILE` is no command: none has a name that begins with a colon.
 """
 
-MARKUP: Final = frozenset({"html", "svg", "junit"})
+MARKUP: Final = frozenset({"html", "svg", "junit", "xqar"})
 JSON: Final = frozenset({"json", "jsonl", "sarif"})
 _FORMULA: Final = ("=", "+", "-", "@", "\t", "\r", "'")
 """How a cell begins that a spreadsheet computes (OWASP), or takes for a text by this sign."""
