@@ -13,6 +13,7 @@ import pytest
 from rulec.extraction.signals.map.junction_signals import junction_signals
 from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
+from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.tracks.rings import ring_lanelets
 from support.builders.drive_contexts import along, context_of
@@ -265,3 +266,27 @@ def test_a_straight_road_has_nothing_of_it():
     for name in ("roundabout", "enters_roundabout", "roundabout_signed"):
         assert not signals.world[name].any()
     assert not priority_signals(context_of(found)).unknown["conflict_on_roundabout"].any()
+
+
+@pytest.mark.parametrize(("own", "unknown"), [(False, True), (True, False)])
+def test_before_a_ring_drivers_choose_lanes_by_where_they_leave_it(own, unknown):
+    """Two lanes lead to it, and go on in it; one waits 30 m before it on the other, or on ego's."""
+    bend = joining((-30, 0), 0, around(200, 200, 1, radius=11)[0], 290)
+    inside = {"types": INSIDE, "junction": "arm 0"}
+    second = {
+        "a0": straight("x0", -90, -30, right_of="a0", successors=("y0",)),
+        "c0": lanelet(
+            "y0", bend, right_of="c0", predecessors=("x0",), successors=("z0",), **inside
+        ),
+        "e0": lanelet("z0", around(200, 250, radius=11), right_of="e0", predecessors=("y0",)),
+    }
+    road = [
+        replace(lane, left_of=second[lane.id].id) if lane.id in second else lane
+        for lane in roundabout("arms")
+    ]
+    other = vehicle(8, dict.fromkeys(range(len(TIMES)), (-60.0, -4.0 if own else 0.0)))
+    bodies = [along(7, ENTERING, EGO - 30), other]
+    found = recording([*road, *second.values()], bodies, step_s=STEP_S)
+    signals = participant_signals(context_of(found, ROUTE))
+    assert signals.unknown["leads_elsewhere"][0, 0] == unknown
+    assert not signals.about["leads_elsewhere"][0, 0]

@@ -12,6 +12,7 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
+from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import once_a_recording, once_a_road
 from rulec.extraction.tracks.junctions import JunctionWay
@@ -125,7 +126,8 @@ def leads_elsewhere(context: DriveContext) -> SignalColumns:
     """Whether the lane of those before a junction does not go on along ego's road beyond it.
 
     Of a lane from which ways lead there and elsewhere, that of the one who takes it decides. It is
-    unknown where the map ends, of lanes that a solid line parts from ego's there.
+    unknown where the map ends, of lanes that a solid line parts from ego's there, and before a
+    ring: by which way they leave it drivers choose among several lanes.
     """
     others, reach = context.extents, context.thresholds.approach_m
     elsewhere, unknown = np.zeros((2, *context.relevant.shape), dtype=bool)
@@ -134,12 +136,14 @@ def leads_elsewhere(context: DriveContext) -> SignalColumns:
         near = context.on_lanes & (context.road.line.length - others.s_max <= reach)
         near &= others.s >= end
         unknown |= near & parted[np.clip(others.lane, 0, len(parted) - 1)]
+    rings = {begins for begins, _, at_junction in roundabouts(context) if at_junction}
     for junction in junctions_ahead(context):
         # Who waits there may be past the place where the junction begins for ego
         near = context.on_lanes & (others.s <= junction.high)
         near &= junction.low - others.s_max <= reach
         if not near.any():
             continue
+        unknown |= near & (junction.low in rings) & (others.lane != context.ego_lane)
         lane = np.clip(others.lane, 0, len(junction.leads) - 1)
         away, both = (
             np.array([leads is kind for leads in junction.leads])[lane]
