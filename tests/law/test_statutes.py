@@ -2,7 +2,8 @@
 
 `statutes/BOOK.toml` has those of a book: what holds throughout, and states a second apart. Sides
 are absolute. `asked` has what an examiner would ask, each drive with the books that it asks; so
-does `asked_by_book`, which goes through what each book has that nobody had asked yet.
+does `asked_by_book`, which goes through what each book has that nobody had asked yet, and
+`asked_in_theory`, on limits, the order of events, exceptions and what comes before what.
 """
 
 from pathlib import Path
@@ -33,7 +34,7 @@ SITUATIONS = [
 ]
 ASKED = [
     pytest.param(one, id=f"{file}-{one['title']}")
-    for folder in ("asked", "asked_by_book")
+    for folder in ("asked", "asked_by_book", "asked_in_theory")
     for file, one in situations(folder)
 ]
 
