@@ -14,7 +14,8 @@ from rulec.analysis.lineage import rule_lineage
 from rulec.rulebook.loader import Loaded, read_rulebook
 from rulec.rulebook.names.doc_comments import description
 from rulec.rulebook.names.referenced_names import names_used
-from rulec.rulebook.overlay.rulebook_overlay import in_force, lost_exceptions, merged
+from rulec.rulebook.overlay.rule_override import lost_exceptions, merged
+from rulec.rulebook.overlay.rulebook_overlay import in_force
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_formula, print_parameters
 

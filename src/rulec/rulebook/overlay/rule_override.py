@@ -1,0 +1,78 @@
+"""What an override makes of an inherited rule, and what of it is lost."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from rulec.rulebook.names.referenced_names import names_in_examples, names_used
+from rulec.syntax import tree
+
+_CLAUSES = (
+    *("strength", "variables", "require", "cite", "says", "examples", "level", "weight"),
+    *("unless", "when", "source", "certainty", "in_force", "topics"),
+)
+
+
+def merged(base: tree.RuleItem, over: tree.RuleItem) -> tree.RuleItem:
+    """A rule with the clauses that an override gives it replaced.
+
+    Where a provision was read, and how sure that is, goes with the provision.
+    """
+    if over.cite:
+        base = replace(base, source=None, certainty="")
+    given = {clause: value for clause in _CLAUSES if (value := getattr(over, clause))}
+    if not _replaces_exceptions(over):
+        given["unless"] = (*base.unless, *over.unless)
+    complete = over.complete and base.complete
+    return replace(base, name=over.name, span=over.span, complete=complete, **given)
+
+
+def lost_variables(base: tree.RuleItem, over: tree.RuleItem) -> list[tree.Parameter]:
+    """Variables that an override omits although inherited clauses use them."""
+    if not over.variables:
+        return []
+    inherited = replace(
+        base,
+        require=None if over.require else base.require,
+        when=None if over.when else base.when,
+        unless=() if _replaces_exceptions(over) else base.unless,
+        examples=() if over.examples else base.examples,
+    )
+    names = {*names_used(inherited), *names_in_examples(inherited)}
+    kept = {variable.name.text for variable in over.variables}
+    lost = (variable for variable in base.variables if variable.name.text not in kept)
+    return [
+        variable
+        for variable in lost
+        if variable.name.text in names
+        or any(name.endswith(f"_{variable.name.text}") for name in names)
+    ]
+
+
+def _replaces_exceptions(over: tree.RuleItem) -> bool:
+    return not all(exception.also for exception in over.unless)
+
+
+def lost_exceptions(base: tree.RuleItem, over: tree.RuleItem) -> tuple[tree.Unless, ...]:
+    """Inherited exceptions that an override replaces without saying anew what they say.
+
+    One that says what must hold anew has its own exceptions, too.
+    """
+    if over.require is not None or not _replaces_exceptions(over):
+        return ()
+    kept = [
+        (formula, exception.scope)
+        for exception in over.unless
+        for formula in (exception.formula, *_alternatives(exception.formula))
+    ]
+    return tuple(
+        one
+        for one in base.unless
+        if not all((formula, one.scope) in kept for formula in _alternatives(one.formula))
+    )
+
+
+def _alternatives(formula: tree.Formula) -> tuple[tree.Formula, ...]:
+    if isinstance(formula, tree.Infix) and formula.operator == "or":
+        return (*_alternatives(formula.left), *_alternatives(formula.right))
+    return (formula,)
