@@ -245,6 +245,11 @@ def test_one_that_waits_until_ego_is_gone():
     assert side_road([-3.5] * 25)[9] == "?"
 
 
+def test_of_who_still_stands_there_as_the_drive_ends_nobody_knows():
+    """Ego waits in the junction until state 20; ten seconds later would be behind its end."""
+    assert side_road([-3.5] * 40, stops_at=64.0)[18:22] == "FF??"
+
+
 def test_who_stands_at_a_lanes_bound_does_not_step_over_it():
     """Its place drifts by 0.5 m at 0.2 m/s, so that it reaches into the lane once ego is gone."""
     drifts = [-2.4 + 0.1 * k for k in range(6)]

@@ -125,7 +125,7 @@ def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
     in_way = np.take_along_axis(spans.next_state(~off), at, axis=1) <= by_then
     waited = spans.next_state(stands & seen & ~on_lanes) <= np.minimum(steps_on, goes)
     soon = spans.columns + round(limits.preparing_s / step_s)
-    waited &= steps_on <= soon
+    waited &= (steps_on <= soon) & (steps_on < spans.end)
     taken = reached & ~let_go & (in_way | waited)
     stood = round(_STOOD_S / step_s)
     moves = spans.next_state(~stands & seen)
