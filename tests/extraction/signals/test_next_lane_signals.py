@@ -129,6 +129,25 @@ def test_nobody_goes_to_a_lane_for_buses(kind, free):
     assert signals(lanes, ego(100, y=4), behind)["near_lane_is_free"][0] == free
 
 
+@pytest.mark.parametrize(
+    ("kind", "own", "free"),
+    [
+        ("exitRamp", "mainCarriageWay", "False"),
+        ("accessRamp", "mainCarriageWay", "False"),
+        ("exitRamp", "exitRamp", "True"),
+        ("mainCarriageWay", "exitRamp", "True"),
+    ],
+)
+def test_a_lane_for_who_leaves_is_none_for_who_drives_on(kind, own, free):
+    """Of two lanes of a ramp each is as good as the other."""
+    lanes = [
+        straight(1, 0, 600, left_of=2, types=frozenset({kind})),
+        straight(2, 0, 600, 4, right_of=1, types=frozenset({own})),
+    ]
+    behind = steady(9, 0, 4, 10.0)
+    assert signals(lanes, ego(100, y=4), behind)["near_lane_is_free"][0] == free
+
+
 def test_a_hard_shoulder_is_no_lane_beside_ego():
     road = [
         replace(straight(1, 0, 600, left_of=2), types=frozenset({"shoulder"})),

@@ -209,6 +209,12 @@ def test_the_lowest_limit_holds_and_none_may_be_infinite(read):
 
     assert found("inf") == inf
     assert found("13.5", "inf", "8.25") == 8.25
+    assert found("80kmh") == pytest.approx(80 / 3.6)
+    assert found("36 km/h", "30mph") == pytest.approx(10)
+    assert found("50mph") == pytest.approx(22.352)
+    for odd in ("kmh", "80 kph", "-5kmh", "8 0kmh"):
+        with pytest.raises(RulecError, match="additionalValue"):
+            found(odd)
 
 
 @pytest.mark.parametrize(
@@ -304,6 +310,17 @@ def test_what_means_nothing(read, before, after, says):
     # The place is the line of the element in question, or one that it begins on
     line = ROAD_XML[: ROAD_XML.index(before)].count("\n") + 1
     assert found.place.line in range(line - 6, line + 3)
+
+
+def test_intersections_that_share_an_id_are_several(read):
+    """As in the map of inD's second place: the second one there names no ways."""
+    begin = '<intersection id="70"><incoming id="71"><incomingLanelet ref="2"/>'
+    way = '<successorsStraight ref="1"/>'
+    twice = "".join(f"{begin}{of_each}</incoming></intersection>" for of_each in (way, "", ""))
+    found = read(("  <obstacle", f"{twice}<obstacle"))
+    remarks = [remark for remark in found.remarks if "intersections" in remark]
+    assert remarks == ["there are several intersections `70`: each is taken for one of its own"]
+    assert found.lanelets["1"].junction == "70"
 
 
 @pytest.mark.parametrize(

@@ -40,7 +40,10 @@ _T = TypeVar("_T")
 
 @dataclass(slots=True)
 class Content:
-    """What has been read of a file so far, by id; participants first by kind."""
+    """What has been read of a file so far, by id; participants first by kind.
+
+    ``remarks`` are those on what has been read, as in a recording.
+    """
 
     step_s: float = 0.0
     sign_country: str = ""
@@ -52,6 +55,7 @@ class Content:
     problems: dict[str, ProblemEntry] = field(default_factory=dict)
     weather: recording.Weather = field(default_factory=recording.Weather)
     extent: TimeExtent = field(default_factory=TimeExtent)
+    remarks: list[str] = field(default_factory=list)
 
 
 def to_recording(content: Content, path: Path, form: FileFormat) -> recording.Recording:
@@ -77,7 +81,7 @@ def to_recording(content: Content, path: Path, form: FileFormat) -> recording.Re
             side=side_in(country),
             country=country or content.sign_country,
             weather=content.weather,
-            remarks=remarks,
+            remarks=(*content.remarks, *remarks),
         )
     )
 
@@ -102,7 +106,7 @@ def add(content: Content, tree: Tree) -> None:
         case "trafficLight":
             _enter(content.lights, tree, read_light)
         case "intersection":
-            _enter(content.intersections, tree, read_intersection)
+            _add_intersection(content, read_intersection(tree))
         case "planningProblem":
             _enter(content.problems, tree, read_problem)
         case "location":
@@ -128,6 +132,17 @@ def _add_participant(content: Content, tree: Tree, kind: str) -> None:
     if any(number in bodies for bodies in content.bodies.values()):
         raise tree.wrong(f"there are two obstacles `{number}`")
     content.bodies.setdefault(kind, {})[number] = _KINDS[kind](tree, content.extent)
+
+
+def _add_intersection(content: Content, found: Intersection) -> None:
+    """Add an intersection; of several with one id, as published maps have them, each for itself."""
+    number = found.id
+    if number in content.intersections:
+        remark = f"there are several intersections `{number}`: each is taken for one of its own"
+        if remark not in content.remarks:
+            content.remarks.append(remark)
+        number = f"{number}#{len(content.intersections) + 1}"
+    content.intersections[number] = found._replace(id=number)
 
 
 def _enter(known: dict[str, _T], tree: Tree, read: Callable[[Tree], _T]) -> None:

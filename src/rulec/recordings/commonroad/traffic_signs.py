@@ -6,6 +6,7 @@ about driving are in the tables; all others are called ``UNKNOWN``.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from math import inf
 from types import MappingProxyType
@@ -155,6 +156,11 @@ def signs_by_number(country: str) -> dict[int, str]:
     return {**dict(enumerate(first)), 92: crossing, 170: arrow, **plates}
 
 
+_UNITS_MPS = {"kmh": 1 / 3.6, "km/h": 1 / 3.6, "mph": 0.44704, "m/s": 1.0}
+_WITH_UNIT = re.compile(r"(\d{1,3}(?:\.\d{1,3})?) ?(kmh|km/h|mph|m/s)", re.ASCII)
+"""Limits as maps of the INTERACTION dataset have them, ``80kmh`` for one."""
+
+
 class SignElement(NamedTuple):
     """A sign, of perhaps several on a post; the speed limit (m/s) that it says, if any."""
 
@@ -200,9 +206,12 @@ def _more(number: str, country: str) -> str:
 
 
 def speed_limit(tree: Tree) -> float:
-    """A speed limit (m/s); infinity means that there is none."""
+    """A speed limit (m/s, or in the unit that it names); infinity means that there is none."""
     if tree.word.lower() in ("inf", "infinity"):
         return inf
+    with_unit = _WITH_UNIT.fullmatch(tree.word.lower())
+    if with_unit is not None:
+        return float(with_unit[1]) * _UNITS_MPS[with_unit[2]]
     limit = tree.number()
     if limit < 0:
         raise tree.wrong(f"a speed limit is {limit:g}", "a number not below 0")

@@ -27,14 +27,16 @@ from rulec.extraction.signals.signal_passes import (
 )
 from rulec.extraction.tracks.road_extents import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
-from rulec.recordings.recording import Lanelet, LaneMark, Side
+from rulec.recordings.recording import JOINING, Lanelet, LaneMark, Side
 
 _SOON_M = 10.0
 """Who is no farther behind ego than this, and what he gains in ``passed_s``, is soon beside it."""
 
 _SOLID = frozenset({"solid", "double_solid"})
 
-_RESERVED = frozenset({SHOULDER, "busLane"})
+_BUS_LANE = frozenset({"busLane"})
+_RESERVED = frozenset({SHOULDER, *_BUS_LANE})
+_RAMPS = frozenset({JOINING, "exitRamp"})
 
 _UNSEEN_S = 5.0
 """For so long one whose track has ended is thought to drive on as before."""
@@ -102,7 +104,8 @@ def _near_lane_is_free(context: DriveContext) -> Flags:
     """Flags of states in which ego, in the next lane to the kerb, would be at safe distances.
 
     It cannot go there across a solid line, as beside lanes for who turns off, nor to a bus lane,
-    nor to one that leads elsewhere at the junction that ego gets to within ``preparing_s``.
+    nor, from a lane that is none, to one for who comes or leaves, nor to one that leads elsewhere
+    at the junction that ego gets to within ``preparing_s``.
     """
     limits, others, taken = (
         context.thresholds,
@@ -112,7 +115,10 @@ def _near_lane_is_free(context: DriveContext) -> Flags:
     lane, there = _next_lane(context, context.side)
     parted = own_lanelets(context).flags(lambda lanelet: _near_mark(lanelet, context) in _SOLID)
     turned, _ = _sorted_ahead(context)
-    kept = parted | _bus_lane_beside(context) | turned
+    on_ramp = own_lanelets(context).flags(lambda lanelet: not _RAMPS.isdisjoint(lanelet.types))
+    ramp_beside = _is_beside(context, _RAMPS) & ~on_ramp
+    bus_lane_beside = _is_beside(context, _BUS_LANE) & ~context.ego_is("bus")
+    kept = parted | ramp_beside | bus_lane_beside | turned
     cells = _on_lane(context, lane, np.flatnonzero(there & ~kept))
     station, gap = relations.station(context)[cells], relations.gap(context)[cells]
     own = np.maximum(context.ego_extents.along[0, cells[1]], 0.0)
@@ -222,15 +228,15 @@ def _reserved_ahead(context: DriveContext, lane: NDArray[intp]) -> Flags:
     return found
 
 
-def _bus_lane_beside(context: DriveContext) -> Flags:
-    """Flags of states in which the next lane to the kerb is for buses, and ego is none."""
+def _is_beside(context: DriveContext, types: frozenset[str]) -> Flags:
+    """Flags of states in which the next lane to the kerb is of any of these types."""
     own, way = own_lanelets(context), -1 if context.side == "right" else 1
     of_each = np.zeros(len(own.places), dtype=bool)
     for number, (piece, lane) in enumerate(own.places):
         row = context.road.rows[piece]
         beside = row[lane + way] if 0 <= lane + way < len(row) else None
-        of_each[number] = beside is not None and "busLane" in beside.types
-    return of_each[own.number] & ~context.ego_is("bus")
+        of_each[number] = beside is not None and not types.isdisjoint(beside.types)
+    return of_each[own.number]
 
 
 def _near_mark(lanelet: Lanelet, context: DriveContext) -> LaneMark | None:
