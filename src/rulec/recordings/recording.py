@@ -159,6 +159,11 @@ CROSSWALK = "crosswalk"
 NO_LANES = frozenset({"sidewalk", CROSSWALK, "border", "parking", "restricted_area"})
 """Types of lanelets that are no part of the carriageway."""
 
+ALL_STOP = "STOP_4_WAY"
+STOP_SIGNS = frozenset({"STOP", ALL_STOP})
+REGULATING = STOP_SIGNS | {"YIELD", "PRIORITY", "RIGHT_OF_WAY"}
+"""Signs that say who goes first."""
+
 CYCLES_TOO = "cyclesAllowed"
 """The type of a lane that is reserved for others, and cycles may use as well."""
 

@@ -98,6 +98,26 @@ def test_a_hard_shoulder_is_no_lane_to_count(y, lane):
     assert (set(found("lane")), set(found("lanes"))) == ({lane}, {"two_lanes"})
 
 
+@pytest.mark.parametrize(
+    ("y", "kind", "lane", "count"),
+    [
+        (12, "shoulder", "far_lane", "two_lanes"),
+        (8, "shoulder", "kerb_lane", "two_lanes"),
+        (0, "shoulder", "kerb_lane", "one_lane"),
+        (12, "urban", "far_lane", "three_or_more_lanes"),
+        (0, "urban", "kerb_lane", "three_or_more_lanes"),
+    ],
+)
+def test_beyond_a_shoulder_there_is_another_road(y, kind, lane, count):
+    """Of four lanes, 4 m wide, the second is between a road and one beside it."""
+    road = lanes(4)
+    road[1] = replace(road[1], types=frozenset({kind}))
+    context = context_of(recording(road, [steady(7, 0, y)]), (str(1 + y // 4),))
+    signals = ego_signals(context)
+    assert set(signals.values("lane").tolist()) == {lane}
+    assert set(signals.values("lanes").tolist()) == {count}
+
+
 @pytest.mark.parametrize(("y", "expected"), [(1.2, False), (1.4, True), (2, True), (2.8, False)])
 def test_straddling_needs_thirty_centimetres_on_each_side(y, expected):
     # 2 m wide; the mark lies at 2 m, the road ends at -2 m

@@ -312,6 +312,27 @@ def test_what_means_nothing(read, before, after, says):
     assert found.place.line in range(line - 6, line + 3)
 
 
+def test_signs_beside_the_carriageway_hold_on_it_nobody_knows_where(read):
+    """As in a map of rounD's: signs to give way are nearer to a sidewalk than to the lane."""
+    sign = "<trafficSignElement><trafficSignID>{}</trafficSignID></trafficSignElement>"
+    bounds = ROAD_XML[ROAD_XML.index("<leftBound>") : ROAD_XML.index(RIGHT) + len(RIGHT)]
+    beside = f'<lanelet id="8">{bounds}<laneletType>sidewalk</laneletType>{{}}</lanelet>'
+
+    def found(number, kind="sidewalk"):
+        walk = beside.format('<trafficSignRef ref="7"/>').replace("sidewalk", kind)
+        post = f'<trafficSign id="7">{sign.format(number)}</trafficSign>'
+        return read(("  <obstacle", f"{walk}{post}<obstacle"), name="DEU_Ring-1_1_T-1")
+
+    recording = found(205)
+    assert recording.lanelets["1"].untold_signs == {"YIELD"}
+    assert recording.lanelets["8"].untold_signs == set()
+    assert any("beside the carriageway" in remark for remark in recording.remarks)
+    # What bans overtaking says nothing of who goes first, and on a lane a sign is where it holds
+    for other in (found(276), found(205, "urban")):
+        assert other.lanelets["1"].untold_signs == set()
+        assert not any("carriageway" in remark for remark in other.remarks)
+
+
 def test_intersections_that_share_an_id_are_several(read):
     """As in the map of inD's second place: the second one there names no ways."""
     begin = '<intersection id="70"><incoming id="71"><incomingLanelet ref="2"/>'

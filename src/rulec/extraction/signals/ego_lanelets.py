@@ -100,13 +100,22 @@ def map_contents(context: DriveContext) -> MapContents:
 def travel_lanes(context: DriveContext) -> Flags:
     """Flags of the lanes (second axis) beside ego that are there to be driven on, by state.
 
-    All that exist but hard shoulders, which are no part of the carriageway.
+    All that exist but hard shoulders, which are no part of the carriageway, and what is beyond
+    these, which is another one, as a road beside the main one.
     """
     if SHOULDER not in map_contents(context).types:
         return context.existing_lanes
     rows = context.road.rows
-    shoulders = np.array([[x is not None and SHOULDER in x.types for x in row] for row in rows])
-    travel: Flags = (
-        context.existing_lanes & ~shoulders[context.road.piece(context.ego_extents.s[0])]
+    of_pieces = np.array([[x is not None and SHOULDER in x.types for x in row] for row in rows])
+    shoulders = of_pieces[context.road.piece(context.ego_extents.s[0])]
+    # How many are nearer to the kerb than each lane
+    nearer = np.cumsum(shoulders, axis=1) - shoulders
+    lanes, own = np.arange(shoulders.shape[1]), context.ego_lane[:, None]
+    low, high = np.minimum(lanes, own), np.maximum(lanes, own)
+    between = (
+        np.take_along_axis(nearer, high, axis=1)
+        - np.take_along_axis(nearer, low, axis=1)
+        - np.take_along_axis(shoulders, low, axis=1)
     )
+    travel: Flags = context.existing_lanes & ~shoulders & (between <= 0)
     return travel

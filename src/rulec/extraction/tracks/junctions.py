@@ -12,7 +12,14 @@ import numpy as np
 import shapely
 
 from rulec.extraction.tracks.driven_road import junction_lanelets
-from rulec.recordings.recording import Lanelet, Points, Recording, is_there
+from rulec.recordings.recording import (
+    ALL_STOP,
+    REGULATING,
+    Lanelet,
+    Points,
+    Recording,
+    is_there,
+)
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import lanelet_area
 
@@ -24,9 +31,6 @@ _SIDE_M = 0.4
 
 _SHORT_M = 30.0
 _TURNED = np.radians(45.0)
-ALL_STOP = "STOP_4_WAY"
-STOP_SIGNS = frozenset({"STOP", ALL_STOP})
-_REGULATING = STOP_SIGNS | {"YIELD", "PRIORITY", "RIGHT_OF_WAY"}
 
 Interval = tuple[float, float]
 
@@ -160,8 +164,8 @@ def junctions_of(recording: Recording) -> tuple[Junction, ...]:
     for number, junction in _junction_ids(recording).items():
         members[junction].append(recording.lanelets[number])
     # A map with no such sign at all is rather one on which nobody has drawn any
-    told = bool(recording.complete & _REGULATING) or any(
-        lanelet.signs & _REGULATING for lanelet in recording.lanelets.values()
+    told = bool(recording.complete & REGULATING) or any(
+        lanelet.signs & REGULATING for lanelet in recording.lanelets.values()
     )
     junctions = []
     for name, lanelets in members.items():
@@ -228,7 +232,7 @@ def _regulated(
         return True
     entries = [entry for way in ways for entry in approaches(recording, way)]
     signed = any(
-        entry.signs & _REGULATING or any(map(is_there, entry.lights))
+        entry.signs & REGULATING or any(map(is_there, entry.lights))
         for entry in (*entries, *lanelets)
     )
     return True if signed else None
@@ -255,8 +259,7 @@ def _may_be_regulated(recording: Recording, ways: tuple[JunctionWay, ...]) -> bo
     """True if there may be lights at a junction that nobody saw, or signs that are not placed."""
     entries = [entry for way in ways for entry in approaches(recording, way)]
     return any(
-        entry.untold_signs & _REGULATING or not all(map(is_there, entry.lights))
-        for entry in entries
+        entry.untold_signs & REGULATING or not all(map(is_there, entry.lights)) for entry in entries
     )
 
 

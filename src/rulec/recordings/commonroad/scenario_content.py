@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -156,7 +156,29 @@ def _lanelets(content: Content) -> dict[str, recording.Lanelet]:
     plain = {number: entry.lanelet for number, entry in content.lanelets.items()}
     inside = junctions(content.intersections.values(), plain)
     lights = {number: light for number, light in content.lights.items() if light is not None}
-    return {
+    found = {
         number: complete(entry, content.signs, lights, inside.get(number, ""))
         for number, entry in content.lanelets.items()
+    }
+    return _with_untold_signs(content, found)
+
+
+def _with_untold_signs(
+    content: Content, lanelets: dict[str, recording.Lanelet]
+) -> dict[str, recording.Lanelet]:
+    """The lanelets; nobody knows for which signs hold that a map has beside the carriageway.
+
+    Published maps have signs to give way at sidewalks where these are nearer than the lane.
+    """
+    beside = {n: one for n, one in lanelets.items() if recording.NO_LANES & one.types}
+    signs = frozenset().union(*(one.signs for one in beside.values())) & recording.REGULATING
+    if not signs:
+        return lanelets
+    content.remarks.append(
+        "signs of who goes first are at lanelets beside the carriageway: "
+        "where on it they hold is not told"
+    )
+    return {
+        number: one if number in beside else replace(one, untold_signs=signs - one.signs)
+        for number, one in lanelets.items()
     }

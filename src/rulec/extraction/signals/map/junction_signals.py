@@ -19,9 +19,9 @@ from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.measured_numbers import own_front
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, once_a_road, signals_by
-from rulec.extraction.tracks.junctions import STOP_SIGNS, all_have_to_stop
+from rulec.extraction.tracks.junctions import all_have_to_stop
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.recordings.recording import Light, ObservedLight
+from rulec.recordings.recording import STOP_SIGNS, Light, ObservedLight
 from rulec.trace.plain_arrays import distinct
 
 _LINE_REACH_M = 40.0

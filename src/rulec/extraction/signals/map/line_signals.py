@@ -15,9 +15,8 @@ from rulec.extraction.signals.signal_columns import (
     rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import Passes, signals_by
-from rulec.extraction.tracks.junctions import STOP_SIGNS
 from rulec.extraction.tracks.tracks import Floats
-from rulec.recordings.recording import Lanelet
+from rulec.recordings.recording import STOP_SIGNS, Lanelet
 from rulec.trace.plain_arrays import distinct
 
 _NO_JUNCTION_M = 1000.0

@@ -21,9 +21,8 @@ from rulec.extraction.signals.signal_columns import (
     rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import Passes, signals_by
-from rulec.extraction.tracks.junctions import STOP_SIGNS
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.recordings.recording import CROSSWALK, CYCLES_TOO, Lanelet
+from rulec.recordings.recording import CROSSWALK, CYCLES_TOO, STOP_SIGNS, Lanelet
 from rulec.trace.plain_arrays import distinct
 
 NO_LIMIT_KMH = 1000.0

@@ -9,14 +9,8 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.tracks.junction_passages import Passage
-from rulec.extraction.tracks.junctions import (
-    ALL_STOP,
-    STOP_SIGNS,
-    JunctionWay,
-    all_have_to_stop,
-    approaches,
-)
-from rulec.recordings.recording import Points, Recording
+from rulec.extraction.tracks.junctions import JunctionWay, all_have_to_stop, approaches
+from rulec.recordings.recording import ALL_STOP, STOP_SIGNS, Points, Recording
 
 _GIVES_WAY = STOP_SIGNS | {"YIELD"}
 _ONE_GIVES_WAY = _GIVES_WAY - {ALL_STOP}

@@ -151,21 +151,22 @@ def approach(context: DriveContext, passage: Passage) -> slice:
 def _roads(context: DriveContext) -> SignalColumns:
     """What the map says of the junction that ego nears or is in."""
     columns = {name: np.zeros(context.states, dtype=bool) for name in _ROADS}
-    unknown = {"unregulated_junction": np.zeros(context.states, dtype=bool)}
+    unregulated, own, others, priority = _ROADS
+    unknown = {name: np.zeros(context.states, dtype=bool) for name in (unregulated, priority)}
     for passage in own_passages(context):
         junction, span = (
             context.surroundings.passages.junctions[passage.junction],
             approach(context, passage),
         )
-        unregulated, own, others, priority = _ROADS
         columns[unregulated][span] = junction.regulated is False
         unknown[unregulated][span] = junction.regulated is None
         columns[own][span], columns[others][span] = _ending_roads(junction, passage)
         entries = approaches(context.recording, context.surroundings.passages.way(passage))
-        signs = {sign for entry in entries for sign in entry.signs}
-        columns[priority][span] = bool(signs & _PRIORITY)
+        has_sign = any(entry.signs & _PRIORITY for entry in entries)
+        may_have = any(entry.untold_signs & _PRIORITY for entry in entries)
+        columns[priority][span], unknown[priority][span] = has_sign, may_have and not has_sign
     if not _tells_priority(context):
-        del columns["on_priority_road"]
+        del columns[priority], unknown[priority]
     return SignalColumns(columns, unknown=unknown)
 
 
