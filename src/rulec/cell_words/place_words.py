@@ -96,6 +96,7 @@ NEEDS_JUNCTION = frozenset(
         "turns_in_way_of",
         "enters_roundabout",
         "roundabout_signed",
+        "compulsory_roundabout",
         "conflict_on_roundabout",
         "crosses_side_road",
         "came_up_beside",

@@ -229,6 +229,23 @@ def test_signs_before_the_ring():
     assert not (net.world["roundabout_signed"] | net.unknown["roundabout_signed"]).any()
 
 
+@pytest.mark.parametrize(
+    ("signs", "complete", "told"),
+    [
+        (("YIELD", "ROUNDABOUT"), (), True),
+        (("YIELD",), (), None),
+        (("YIELD",), ("YIELD",), None),
+        ((), ("ROUNDABOUT",), False),
+    ],
+)
+def test_who_has_to_give_way_need_not_see_the_sign_of_the_ring(signs, complete, told):
+    """SUMO's nets say who gives way, and never by which signs."""
+    found = roundabout_signals(context_of(seen("arms", signs=signs, complete=complete), ROUTE))
+    holds, unknown = found.world["compulsory_roundabout"], found.unknown["compulsory_roundabout"]
+    assert (holds.any(), unknown.any()) == (told is True, told is None)
+    assert found.world["roundabout_signed"].any() == bool(signs)
+
+
 def circling(at_entry_s, mps=6.0):
     """One that has come from the north, and is at 200°, where ego joins the ring, at a time."""
     before = 60 + np.hypot(*np.diff(ENTRY, axis=0).T).sum() + np.radians(90) * RADIUS_M
@@ -263,7 +280,7 @@ def test_a_straight_road_has_nothing_of_it():
     road = [straight(1, 0, 200)]
     found = recording(road, [vehicle(7, {0: (10, 0), 1: (20, 0)})])
     signals = roundabout_signals(context_of(found))
-    for name in ("roundabout", "enters_roundabout", "roundabout_signed"):
+    for name in ("roundabout", "enters_roundabout", "roundabout_signed", "compulsory_roundabout"):
         assert not signals.world[name].any()
     assert not priority_signals(context_of(found)).unknown["conflict_on_roundabout"].any()
 

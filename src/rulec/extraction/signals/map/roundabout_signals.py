@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import pairwise
 
 import numpy as np
@@ -13,7 +14,12 @@ from rulec.extraction.signals.signal_passes import Passes, once_a_road, signals_
 from rulec.extraction.tracks.driven_road import runs_along
 from rulec.extraction.tracks.tracks import Flags
 
-_SIGNS = frozenset({"YIELD", "ROUNDABOUT"})
+_ROUNDABOUT = frozenset({"ROUNDABOUT"})
+_SIGNS: Mapping[str, frozenset[str]] = {
+    "roundabout_signed": _ROUNDABOUT | {"YIELD"},
+    "compulsory_roundabout": _ROUNDABOUT,
+}
+"""Word -> the signs before a ring that it is about."""
 
 
 def roundabout_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
@@ -25,8 +31,9 @@ def _rings(context: DriveContext) -> SignalColumns:
     road = context.road
     front, middle = context.ego_extents.s_max[0], context.ego_extents.s[0]
     inside, enters = np.zeros((2, context.states), dtype=bool)
-    signed, unknown = np.zeros((2, context.states), dtype=bool)
-    told = "YIELD" in context.recording.complete or bool(_SIGNS & map_contents(context).signs)
+    words = {name: np.zeros(context.states, dtype=bool) for name in _SIGNS}
+    unknown = {name: np.zeros(context.states, dtype=bool) for name in _SIGNS}
+    known = context.recording.complete | map_contents(context).signs
     for begins, end, _ in roundabouts(context):
         inside |= (middle > begins) & (middle < end)
         enters |= context.spans.enters(front > begins)
@@ -36,16 +43,13 @@ def _rings(context: DriveContext) -> SignalColumns:
             for row, (low, high) in zip(road.rows, pairwise(road.borders.tolist()), strict=True)
             if begins - context.thresholds.approach_m < high <= begins + 0.1 and low < begins
         ]
-        signs = any(x is not None and _SIGNS & x.signs for row in before for x in row)
-        signed |= nears & signs
-        may = any(x is not None and _SIGNS & x.untold_signs for row in before for x in row)
-        unknown |= nears & (may or not told)
-    world: dict[str, SignalColumn] = {
-        "roundabout": inside,
-        "enters_roundabout": enters,
-        "roundabout_signed": signed,
-    }
-    not_told: dict[str, Flags] = {"roundabout_signed": unknown & ~signed}
+        there = [x for row in before for x in row if x is not None]
+        for name, signs in _SIGNS.items():
+            may = any(signs & x.untold_signs for x in there) or signs.isdisjoint(known)
+            words[name] |= nears & any(signs & x.signs for x in there)
+            unknown[name] |= nears & may
+    world: dict[str, SignalColumn] = {"roundabout": inside, "enters_roundabout": enters, **words}
+    not_told = {name: unknown[name] & ~words[name] for name in _SIGNS}
     return SignalColumns(world, unknown=not_told)
 
 
@@ -74,4 +78,4 @@ def roundabouts(context: DriveContext) -> tuple[tuple[float, float, bool], ...]:
     return tuple(found)
 
 
-_PASSES: Passes = {("roundabout", "enters_roundabout", "roundabout_signed"): _rings}
+_PASSES: Passes = {("roundabout", "enters_roundabout", *_SIGNS): _rings}
