@@ -64,6 +64,23 @@ def test_who_is_in_conflict(road, side, sign, comes_s, conflict):
     assert not found.unknown[side].any()
 
 
+@pytest.mark.parametrize(("length", "sure"), [(4.5, True), (20.0, True), (60.0, False)])
+@pytest.mark.parametrize(("comes_s", "conflict"), [(3.0, True), (6.0, False)])
+def test_of_a_long_one_the_front_counts(length, sure, comes_s, conflict):
+    """Its middle is in the junction long after its front, which is 0.75 m before y = 0 then.
+
+    One state in it does not tell the way of a train.
+    """
+    ego = vehicle(7, {k: (-20 + 5 * k, 0) for k in STEPS}, speed=10)
+    places = {k: (0, -0.75 - length / 2 + 10 * (k / 2 - comes_s)) for k in STEPS}
+    other = vehicle(8, places, speed=10, heading=np.pi / 2, length=length)
+    north = [lanelet(4, [(0, -150), (0, -4)], successors=(5,)), *NORTH[1:]]
+    found = replace(recording([*EAST, *north], [ego, other]), complete=frozenset({"YIELD"}))
+    told = priority_signals(context_of(found, route=("1", "2", "3")))
+    assert told.world["conflict_from_right"].any() == (conflict and sure)
+    assert told.unknown["conflict_from_right"].any() == (conflict and not sure)
+
+
 @pytest.mark.parametrize(("first_y", "told"), [(4.5, "F"), (1, "?"), (-2, "?"), (-9, "T")])
 def test_who_is_in_a_junction_when_a_recording_begins(first_y, told):
     """Ego has its front in the other's way at first; that one is beyond, there too, or comes."""

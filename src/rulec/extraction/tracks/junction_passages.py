@@ -145,16 +145,27 @@ class JunctionPassages:
         Between two columns in proportion; None where the recording ends before.
         """
         low, high = interval
-        middle, first = self._places(passage), passage.first
-        if first > 0 and self.tracks.present[passage.row, first - 1]:
-            # It gets there on its way into the junction
-            came = self.travelled[passage.row, first] - self.travelled[passage.row, first - 1]
-            middle, first = np.append(middle[0] - came, middle), first - 1
         half = self.lengths[passage.row] / 2
+        middle, first = self._places(passage), self.front_enters(passage)
+        # Of a long body the front gets there long before its middle is in the junction
+        travelled = self.travelled[passage.row]
+        came = travelled[passage.first] - travelled[first : passage.first]
+        middle = np.concatenate((middle[0] - came, middle))
         return tuple(  # type: ignore[return-value]
             None if (at := _gets_to(ends, place)) is None else first + at
             for ends, place in ((middle + half, low), (middle - half, high))
         )
+
+    def front_enters(self, passage: Passage) -> int:
+        """The last column in which it was half its length from where it was in its first one.
+
+        That in which its track begins, if it was not.
+        """
+        row, first = passage.row, passage.first
+        absent = np.flatnonzero(~self.tracks.present[row, :first])
+        begin = int(absent[-1]) + 1 if len(absent) else 0
+        came = self.travelled[row, first] - self.travelled[row, begin:first]
+        return begin + max(int((came >= self.lengths[row] / 2).sum()) - 1, 0)
 
     def _places(self, passage: Passage) -> Floats:
         """Arc lengths (m) on the way from its first column to the end of its track."""

@@ -198,7 +198,9 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
     span = approach(context, own)
     latest = own.last + round(context.thresholds.held_up_s / context.recording.step_s)
     for other in passages.through[own.junction]:
-        if other.row == own.row or other.last < span.start + shift or other.first > latest:
+        if other.row == own.row or other.last < span.start + shift:
+            continue
+        if other.first > latest and passages.front_enters(other) > latest:
             continue
         met = passages.junctions[own.junction].meeting(own.way, other.way)
         if met is None:
