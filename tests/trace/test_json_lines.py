@@ -70,6 +70,8 @@ def test_blank_lines_a_bom_and_a_missing_last_line_end():
         (b'{"version": 1, "trace": "t", "satisfied": true}', "it is a verdict of `rulec verify`"),
         (b'{"version": 1, "states": [{}]}', "there are `states`, `id`"),
         (b'{"zebra": 1, "states": [{}]}', "there are `states`, `id`, `step_s`, `objects`"),
+        (b'{"states": [{}]} {"states": [{}]}', "write each trace on a line of its own"),
+        (b'{"step_s": "0.5", "states": [{}]}', "numbers stand without quotes"),
         (b"{", "write or copy the file again"),
         (b"[1]", "a trace is a line such as"),
     ],

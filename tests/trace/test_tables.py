@@ -370,3 +370,13 @@ def test_parquet_takes_a_package(monkeypatch):
     (found,) = caught.value.diagnostics
     assert found.code == "R0706"
     assert "[parquet]'`" in found.help
+
+
+def test_degrees_are_no_places(tmp_path):
+    """Tracks in degrees look like traces, for neither has the columns of the other."""
+    file = tmp_path / "gps.csv"
+    file.write_text("id,t,lat,lon\na,0,48.1,11.5\n")
+    with file.open("rb") as stream:
+        ((error,),) = csv_table.read_csv(stream, file.name)
+    (found,) = error.diagnostics
+    assert found.help.startswith("tracks are not read in degrees: project them to metres")

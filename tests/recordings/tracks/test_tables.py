@@ -9,6 +9,7 @@ import pytest
 from pyarrow import parquet
 
 from rulec import RulecError, read_recording
+from rulec.recordings.encodings.table_files import LARGEST_NUMBER
 from rulec.recordings.recording_files import is_recording
 from support.builders.track_tables import HEAD, LANES, driving, table, written
 
@@ -336,6 +337,24 @@ def test_headings_of_a_compass(tmp_path):
     found = message(tmp_path, f"{HEAD},heading_deg", *driving(steps=40, more=",90"))
     assert "headings do not fit the motion" in found.message
     assert "90° in the median" in found.message
+
+
+@pytest.mark.parametrize(
+    ("row", "way_out"),
+    [
+        ("a,0,1,0,true", "write 1 for true, 0 for false"),
+        ("a,2024-01-01T00:00:00,1,0,1", "write seconds, such as 0.1, from any moment on"),
+        ("a,12:30:01.5,1,0,1", "write seconds, such as 0.1, from any moment on"),
+        ("a,0,1e400,0,1", "leave the row out, or write the number that is meant"),
+        ("a,0,inf,0,1", "leave the row out, or write the number that is meant"),
+        ("a,0,one,0,1", "it has a row for each time of each track"),
+    ],
+)
+def test_what_stands_in_the_place_of_a_number(tmp_path, row, way_out):
+    found = message(tmp_path, f"{HEAD},ego", row)
+    assert found.help.startswith(way_out)
+    most = f" below {LARGEST_NUMBER:.0e}" if "e400" in row or "inf" in row else ""
+    assert found.expected == f"expected a number{most}"
 
 
 def test_a_slip_in_a_name_is_said(tmp_path):

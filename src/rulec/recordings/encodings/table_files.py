@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import gzip
 import io
+import re
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -18,7 +19,13 @@ from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
 from rulec.files import opened
-from rulec.recordings.encodings.csv_head import LONGEST_LINE, PACKED, PARQUET, separator_of
+from rulec.recordings.encodings.csv_head import (
+    LONGEST_LINE,
+    PACKED,
+    PARQUET,
+    is_number,
+    separator_of,
+)
 from rulec.recordings.encodings.table_columns import (
     MOST_COLUMNS,
     MOST_ROWS,
@@ -210,10 +217,24 @@ def _check_lengths(
 
 
 def _no_number(name: str, cell: str, line: int, refused: Any) -> RulecError:
-    comma = "write decimal points, not commas" if cell.replace(",", "").isdigit() else ""
     why = f"its column `{short(name)}` holds `{short(cell)}`"
-    error: RulecError = refused(why, line, expected="expected a number", help_text=comma)
+    is_large = is_number(cell)
+    expected = f"expected a number below {LARGEST_NUMBER:.0e}" if is_large else "expected a number"
+    way_out = "leave the row out, or write the number that is meant" if is_large else ""
+    way_out = next((text for kind, text in _WAYS_OUT if kind.fullmatch(cell)), way_out)
+    error: RulecError = refused(why, line, expected=expected, help_text=way_out)
     return error
+
+
+_WAYS_OUT = (
+    (re.compile(r"[0-9,]+"), "write decimal points, not commas"),
+    (re.compile(r"(?i)true|false|yes|no"), "write 1 for true, 0 for false"),
+    (
+        re.compile(r"\d{4}-\d\d-\d\d.*|\d+:\d\d.*"),
+        "write seconds, such as 0.1, from any moment on",
+    ),
+)
+"""What stands in the place of a number, and what to write."""
 
 
 def _stripped(codes: NDArray[int64], known: Mapping[str, int]) -> Texts:

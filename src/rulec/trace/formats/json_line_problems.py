@@ -89,6 +89,10 @@ class Kind(Generic[Record]):
                 help_text = _answer_of_rulec(line) or help_text
         if "at `$.objects" in str(problem):
             help_text = 'objects have types: write "objects": {"v1": "car"}'
+        if "trailing characters" in words:
+            help_text = f"write each {self.name} on a line of its own"
+        if "expected a number, got a string" in words:
+            help_text = "numbers stand without quotes"
         choice = _UNKNOWN_CHOICE.search(str(problem))
         if choice is not None:
             choices = get_args(get_type_hints(self.structure)[choice[1]])

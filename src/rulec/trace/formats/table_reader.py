@@ -84,6 +84,13 @@ class Table:
         return None if place is None else cells[place]
 
 
+_DEGREES = frozenset({"lat", "latitude", "lon", "lng", "longitude"})
+_IN_METRES = (
+    "tracks are not read in degrees: "
+    "project them to metres in the frame of their map, as `x` and `y`"
+)
+
+
 def check_columns(columns: Sequence[str], place: SourceLocation) -> None:
     """Check (R0509) that columns are named, distinct, with trace and step."""
     times = Counter(columns)
@@ -100,6 +107,8 @@ def check_columns(columns: Sequence[str], place: SourceLocation) -> None:
         if name not in times:
             near = nearest_name(name, columns)
             way_out = _FORM if near is None else f"if `{near}` is that, call it `{name}`"
+            if {column.casefold() for column in columns} & _DEGREES:
+                way_out = _IN_METRES
             if name == TRACE:
                 way_out = f"{way_out}; {_TRACKS}"
             raise problem(f"there is no column `{name}`", place, way_out)
