@@ -120,6 +120,27 @@ def test_signs_hold_up_to_the_drawn_line():
     assert near["turn_on_red_sign"].tolist() == [True, True, True, False]
 
 
+@pytest.mark.parametrize(
+    ("drawn", "signs", "name"),
+    [(95.0, "STOP", "stop_sign"), (88.0, "YIELD", "give_way_sign"), (110.0, "STOP", "stop_sign")],
+)
+def test_signs_of_who_goes_first_hold_until_ego_drives_in(drawn, signs, name):
+    """However far before the junction the line is: who is to give way does so as it drives in."""
+    ego = context(road(drawn, [signs]), 84, 88, 93, 97, 99, 109, 112)
+    enters = junction_signals(ego).world["enters_junction"]
+    (state,) = np.flatnonzero(enters)
+    assert ego.ego_extents.s_max[0, state] > 100
+    found = map_signals(ego).world[name]
+    assert found[: state + 1].all()
+    assert not found[-1]
+
+
+def test_signs_do_not_hold_up_to_a_junction_far_behind_their_line():
+    lanes = road(75.0, ["YIELD"])
+    found = map_signals(context(lanes, 60, 72, 76, 90, 102)).world["give_way_sign"]
+    assert found.tolist() == [True, True, True, False, False]
+
+
 def test_a_sign_of_the_lane_beside_is_not_ego_s():
     lanes = road(None, ["GREEN_ARROW"])
     lanes[0] = replace(lanes[0], left_of="4")

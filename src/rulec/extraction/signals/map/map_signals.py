@@ -37,6 +37,9 @@ _SIGNS: Mapping[str, tuple[Set[str], bool]] = {
 }
 """Signal -> its signs, and whether they are for the line at the lanelet's end."""
 
+_SIGN_REACH_M = 20.0
+"""The junction whose ways a sign is about begins so near behind its line."""
+
 _OVERRULED = ("give_way_sign", "stop_sign")
 _AT_WORK = ("green_light", "amber_light", "red_light")
 """What signs say who goes first, and lights that come before them."""
@@ -87,7 +90,7 @@ def _limit(context: DriveContext) -> SignalColumns:
 def _signs(context: DriveContext) -> SignalColumns:
     known = map_contents(context).signs | context.recording.complete
     values = {
-        name: _holds_to_line(context, signs)
+        name: _holds_to_line(context, signs, of_junction=name in _OVERRULED)
         if at_line
         else own_lanelets(context).flags(_has_sign(signs))
         for name, (signs, at_line) in _SIGNS.items()
@@ -120,10 +123,12 @@ def _is_of(kind: str) -> Callable[[Lanelet], bool]:
     return lambda lanelet: kind in lanelet.types
 
 
-def _holds_to_line(context: DriveContext, signs: Set[str]) -> Flags:
+def _holds_to_line(context: DriveContext, signs: Set[str], *, of_junction: bool) -> Flags:
     """Flags of states in which a sign of these holds up to its line.
 
     By where ego's front was one state before, so that it still holds when ego crosses the line.
+    One ``of_junction`` says who goes first there: it holds until ego drives in, as where lines are
+    some metres before that.
     """
     before, holds = context.spans.before(own_front(context)), np.zeros(context.states, dtype=bool)
     for piece, row in enumerate(context.road.rows):
@@ -132,9 +137,17 @@ def _holds_to_line(context: DriveContext, signs: Set[str]) -> Flags:
             for lane in distinct(context.ego_lane).tolist():
                 if signs & context.road.lanelet(piece, lane).signs:
                     _, line = stop_line(context, piece, lane)
+                    if of_junction:
+                        line = _next_junction(context, line)
                     there = (before >= begins) & (before <= line)
                     holds |= there & (context.ego_lane == lane)
     return holds
+
+
+def _next_junction(context: DriveContext, line: float) -> float:
+    """Where the junction behind a line begins on ego's road, or the line if none is near."""
+    begins = [low for low, _ in context.road.junctions if 0.0 <= low - line <= _SIGN_REACH_M]
+    return min(begins, default=line)
 
 
 def crossings_told(context: DriveContext) -> bool:
