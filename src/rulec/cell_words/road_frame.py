@@ -77,11 +77,8 @@ class RoadFrame:
         lanelets = [lanelet for row in road.rows for lanelet in row if lanelet is not None]
         self.has_rails = any("level_crossing" in lanelet.types for lanelet in lanelets)
         self.one_way = all(among.surroundings.directions(one)[0] for one in lanelets)
-        turns = (
-            road.line.heading_at(end + 1.0) - road.line.heading_at(start - 1.0)
-            for start, end in road.junctions
-        )
-        self.goes_straight = all(abs((one + np.pi) % (2 * np.pi) - np.pi) < _BENDS for one in turns)
+        turns = [road.turned(start, end, aside_m=1.0) for start, end in road.junctions]
+        self.goes_straight = all(abs(one) < _BENDS for one in turns)
         at = np.abs(origin.lanes.s - origin.ego_s) <= _FAR_M
         widths = np.diff(origin.lanes.bounds[at], axis=1)
         self.stretched = np.abs(widths - np.diff(self._straight)).sum(axis=1).max(initial=0.0)

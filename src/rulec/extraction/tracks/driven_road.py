@@ -38,6 +38,12 @@ _FEWEST_CORNERS = 20
 
 _HAIR_M = 0.01
 
+LED_M = 10.0
+"""Where no map marks junctions, by crossing lanelets, ways have begun to turn so far before them.
+
+What crosses others is often no more than the middle of a turn.
+"""
+
 _CROSSING_ANGLE = radians(30.0)
 """Ways that meet at a smaller angle run into each other, as where lanes join or part."""
 
@@ -49,8 +55,8 @@ class DrivenRoad:
     Piece ``i`` lies from ``borders[i]`` to ``borders[i + 1]``; ``rows[i]`` are the lanelets beside
     each other there, a lane each, from the right, None where the map has none; ``own_lanes[i]`` is
     the one along which the road leads. ``crossings`` are pedestrian crossings and ``junctions``
-    junctions, from where to where along the road. ``meets_itself``: is a place beside several
-    pieces, as on a ring?
+    junctions, from where to where along the road, which the map has ``marked`` or not.
+    ``meets_itself``: is a place beside several pieces, as on a ring?
     """
 
     rows: tuple[tuple[Lanelet | None, ...], ...]
@@ -60,6 +66,7 @@ class DrivenRoad:
     lanes: Lanes
     crossings: tuple[tuple[float, float], ...]
     junctions: tuple[tuple[float, float], ...]
+    marked: bool
     meets_itself: bool = False
 
     def lanelet(self, piece: int, lane: int) -> Lanelet:
@@ -84,6 +91,18 @@ class DrivenRoad:
                 turned = abs(turn(*self.line.headings_at(ends).tolist()))
                 return before if before == after and turned <= most_turned else None
         return own
+
+    def turned(self, start: float, end: float, aside_m: float = _HAIR_M) -> float:
+        """The angle (rad) by which it turns to the left from a place to another.
+
+        By its directions so far aside of them, or where it comes to a junction that nobody marked.
+        """
+        low, high = start - aside_m, end + aside_m
+        if not self.marked:
+            before, after = self.piece(np.array([low, high])).tolist()
+            low = min(low, max(start - LED_M, float(self.borders[before])))
+            high = max(high, min(end + LED_M, float(self.borders[after + 1])))
+        return float(turn(*self.line.headings_at(np.array([low, high])).tolist()))
 
     def piece(self, s: Floats) -> NDArray[intp]:
         """The numbers of the lanelets at places."""
@@ -113,6 +132,7 @@ class DrivenRoads:
     def __init__(self, recording: Recording, junctions: Set[str]) -> None:
         self._recording = recording
         self._junctions = junctions
+        self._marked = are_marked(recording)
         self._layouts: dict[tuple[tuple[str, ...], ...], _Layout] = {}
         self._roads: dict[tuple[_Layout, tuple[int, ...]], DrivenRoad] = {}
 
@@ -154,6 +174,7 @@ class DrivenRoads:
                 crossings_along(recording, layout.line, layout.lanes, 0.0, layout.line.length)
             ),
             junctions=tuple(runs_along(borders, [number in self._junctions for number in entries])),
+            marked=self._marked,
             meets_itself=_meets_itself([recording.lanelets[number] for number in entries], borders),
         )
 
@@ -239,6 +260,12 @@ def runs_along(borders: Floats, flags: Sequence[bool]) -> Iterator[tuple[float, 
             yield float(borders[run[0]]), float(borders[run[-1] + 1])
 
 
+def are_marked(recording: Recording) -> bool:
+    """True if a recording's map marks junctions, or says that all are marked."""
+    lanes = filter(is_lane, recording.lanelets.values())
+    return "junctions" in recording.complete or any("intersection" in x.types for x in lanes)
+
+
 def junction_lanelets(recording: Recording) -> frozenset[str]:
     """The ids of the lanelets in junctions, by the map or by crossing ways.
 
@@ -246,9 +273,8 @@ def junction_lanelets(recording: Recording) -> frozenset[str]:
     says that all are marked.
     """
     lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
-    marked = {lanelet.id for lanelet in lanes if "intersection" in lanelet.types}
-    if marked or not lanes or "junctions" in recording.complete:
-        return frozenset(marked)
+    if not lanes or are_marked(recording):
+        return frozenset(lanelet.id for lanelet in lanes if "intersection" in lanelet.types)
     lines = [shapely.LineString(lanelet.centre) for lanelet in lanes]
     firsts, seconds = shapely.STRtree(lines).query(lines, predicate="crosses")
     crossing: set[str] = set()

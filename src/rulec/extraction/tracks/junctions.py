@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise, takewhile
 
 import numpy as np
 import shapely
 
-from rulec.extraction.tracks.driven_road import junction_lanelets
+from rulec.extraction.tracks.driven_road import LED_M, are_marked, junction_lanelets
 from rulec.recordings.recording import (
     ALL_STOP,
     REGULATING,
@@ -39,12 +39,14 @@ Interval = tuple[float, float]
 class JunctionWay:
     """A way through a junction: lanelets end to end, from the one before it to the one after.
 
-    ``entries`` and ``exits`` are the lanelets before and after it.
+    ``entries`` and ``exits`` are the lanelets before and after it. ``led``: the directions (rad) in
+    which the road comes to it and goes on, where these are not those of its ends.
     """
 
     lanelets: tuple[Lanelet, ...]
     entries: frozenset[str]
     exits: frozenset[str]
+    led: tuple[float, float] | None = None
 
     @cached_property
     def line(self) -> shapely.LineString:
@@ -66,7 +68,7 @@ class JunctionWay:
     @property
     def turned(self) -> float:
         """The angle (rad) by which it turns to the left."""
-        return float(turn(*self.headings))
+        return float(turn(*(self.led or self.headings)))
 
     @property
     def names(self) -> frozenset[str]:
@@ -167,9 +169,11 @@ def junctions_of(recording: Recording) -> tuple[Junction, ...]:
     told = bool(recording.complete & REGULATING) or any(
         lanelet.signs & REGULATING for lanelet in recording.lanelets.values()
     )
-    junctions = []
+    junctions, marked = [], are_marked(recording)
     for name, lanelets in members.items():
         ways = tuple(_ways({lanelet.id: lanelet for lanelet in lanelets}))
+        if not marked:
+            ways = tuple([replace(way, led=_led(recording, way)) for way in ways])
         regulated = _regulated(recording, lanelets, ways)
         if regulated is None and told and not _may_be_regulated(recording, ways):
             regulated = False
@@ -215,6 +219,24 @@ def _ways(members: Mapping[str, Lanelet]) -> Iterator[JunctionWay]:
                 exits = [x for x in chain[-1].successors if x not in members]
                 if _is_no_corner(chain):
                     yield JunctionWay(chain, frozenset(entries), frozenset(exits))
+
+
+def _led(recording: Recording, way: JunctionWay) -> tuple[float, float]:
+    """The directions (rad) of the road ``LED_M`` before and behind a way, or at its ends."""
+    first, last, known = way.lanelets[0], way.lanelets[-1], recording.lanelets
+    begins, ends = way.headings
+    for entry in [known[x].centre for x in first.predecessors if x in known][:1]:
+        begins = _heading_from(entry[::-1], LED_M) + np.pi
+    for exit_ in [known[x].centre for x in last.successors if x in known][:1]:
+        ends = _heading_from(exit_, LED_M)
+    return begins, ends
+
+
+def _heading_from(line: Points, away_m: float) -> float:
+    """The direction (rad) of a line so far from its beginning, or at its end."""
+    far = np.cumsum(np.hypot(*np.diff(line, axis=0).T))
+    piece = min(int(np.searchsorted(far, away_m)), len(far) - 1)
+    return _heading(line[piece : piece + 2])
 
 
 def _is_no_corner(chain: tuple[Lanelet, ...]) -> bool:

@@ -264,9 +264,7 @@ def turn_at(context: DriveContext, start: float, end: float) -> str:
     """
     if any(low - 0.1 <= start and end <= high + 0.1 for low, high, _ in roundabouts(context)):
         return "straight_on"
-    line = context.road.line
-    turned = np.degrees(line.heading_at(end + 1.0) - line.heading_at(start - 1.0))
-    turned = (turned + 180.0) % 360.0 - 180.0
+    turned = np.degrees(context.road.turned(start, end, aside_m=1.0))
     if abs(turned) <= context.thresholds.turned_deg:
         return "straight_on"
     if abs(turned) >= 180.0 - context.thresholds.turned_deg:

@@ -64,9 +64,8 @@ def _junctions_ahead(context: DriveContext) -> Iterator[JunctionAhead]:
     for low, high in road.junctions:
         if low <= 0.0:
             continue
-        ends = np.array([low - _HAIR_M, high + _HAIR_M])
-        turned = float(turn(*road.line.headings_at(ends).tolist()))
-        row = road.rows[int(road.piece(ends[:1])[0])]
+        turned = road.turned(low, high)
+        row = road.rows[int(road.piece(np.array([low - _HAIR_M]))[0])]
         (beyond,) = road.lanes.existing_at(np.array([high + _BEYOND_M]))
         leads = []
         for number, lanelet in enumerate(row):
