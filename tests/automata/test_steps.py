@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import pytest
 
-from rulec import compile_rulebook, find_maneuvers
+from rulec import compile_rulebook, explain, find_maneuvers, verify_many
 from rulec.api.rulebook_compilation import machines
 from rulec.automata import compiler, step_compilation
 from rulec.automata.step_compilation import StepCompiler
@@ -90,13 +90,38 @@ def test_a_step_is_the_decimal_that_is_written():
     assert isinstance(verify(trace("p", 0.1), rules), Verdict)
 
 
-def test_a_step_that_does_not_fit_is_a_problem_of_that_trace_alone():
-    every = machines(BOOK)
-    answers = [verify_or_reason(trace("pq", step), every) for step in (1, 0.3, 0.5, 0.3)]
-    assert [type(one) for one in answers] == [Verdict, NotJudged, Verdict, NotJudged]
-    (problem,) = answers[1].error.diagnostics
-    assert problem.code == "R0407"
-    assert problem.place == SourceLocation("t.jsonl", 3)
+@pytest.mark.parametrize(
+    ("text", "lost", "doubtful"),
+    [
+        ("p..q", [], []),  # after 0.9 s
+        ("p...q", [], [("answered", ("step",))]),  # not after 0.9 s, but after 1.2 s
+        ("p....q", ["answered"], []),
+    ],
+)
+def test_where_a_step_does_not_fit_what_both_roundings_say_is_sure(text, lost, doubtful):
+    for rules in (machines(BOOK), machines(book(ANSWERED))):
+        for verdict in (
+            verify(trace(text, 0.3), rules),
+            *verify_many([trace(text, 0.3)] * 9, rules),
+        ):
+            assert [one for one in violated(verdict) if one != "plain"] == lost
+            assert [(one.rule, one.because) for one in verdict.open] == doubtful
+
+
+def test_other_rules_are_judged_where_a_step_does_not_fit():
+    assert violated(verify(trace("pq", 0.3), machines(BOOK))) == ["plain"]
+
+
+def test_a_violation_is_explained_where_a_step_does_not_fit():
+    rules, lost = machines(BOOK), trace("p....q", 0.3)
+    (violation, _) = verify(lost, rules).violations
+    assert explain(violation, lost, rules).violation == violation
+
+
+def test_a_state_of_a_step_that_does_not_fit_has_its_place():
+    answer = verify_or_reason(replace(trace("pq", 0.3), states=({"p": 1},)), machines(BOOK))
+    assert isinstance(answer, NotJudged)
+    assert answer.error.diagnostics[0].place == SourceLocation("t.jsonl", 3)
 
 
 def test_a_trace_without_a_step_is_no_question_to_the_compiler():

@@ -90,3 +90,12 @@ def test_too_many_objects_are_refused():
 def test_it_is_for_traces(tmp_path, capsys):
     assert main(["verify", "docs/samples", "-r", "esterle2019", "--engine", "c"]) == 2
     assert "--engine c is for traces" in capsys.readouterr().err
+
+
+@needs_a_compiler
+def test_a_step_that_fits_no_bound_is_left_to_python():
+    book = rulec.parse_rulebook(
+        "rulebook a signal p default false hard rule r { require always eventually[<= 1 s] p }"
+    )
+    traces = [rulec.Trace("t", step, {}, ({"p": True},)) for step in (0.5, 0.3)]
+    assert [one.engine for one in rulec.verify_many(traces, book, engine="c")] == ["c", "python"]

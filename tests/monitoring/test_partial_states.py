@@ -195,6 +195,20 @@ def test_rules_that_a_source_says_too_little_for_are_not_judged(told, judged):
         assert {*judged, *one.not_judged} == {"no_p", "answered"}
 
 
+@pytest.mark.parametrize(
+    ("strength", "best", "worst"),
+    [("hard", "satisfied", "violated"), ("soft", "satisfied", "satisfied")],
+)
+def test_nobody_keeps_hard_rules_that_are_not_judged(strength, best, worst):
+    judge = monitor(rule("no_p", always(no(P)), strength=strength), told=["q"])
+    judge.step({"q": True})
+    assert judge.not_judged == ("no_p",)
+    again = Monitor.restore(judge.rulebook, json.loads(json.dumps(judge.snapshot())))
+    for one in (judge, again):
+        assert (one.so_far.best, one.so_far.worst) == (best, worst)
+        assert (one.step({"q": False}).best, one.so_far.worst) == (best, worst)
+
+
 def test_whether_a_source_says_too_little_is_not_looked_for_without_end(monkeypatch):
     """A rule of many states whose every letter leads elsewhere is taken to be one to judge."""
     monkeypatch.setattr(untold_names, "MOST_LOOKED_AT", -1)

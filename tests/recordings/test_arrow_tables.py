@@ -188,3 +188,12 @@ def test_without_arrow_it_says_what_to_install(tmp_path, monkeypatch):
     found = refusal(tmp_path / "file")
     assert found.code == "R0706"
     assert "[parquet]'`" in found.help
+
+
+def test_a_stream_is_told_from_a_file(tmp_path):
+    path = tmp_path / "file.arrow"
+    with pyarrow.ipc.new_stream(path, TABLE.schema) as stream:
+        stream.write_table(TABLE)
+    found = refusal(path)
+    assert found.message.endswith("it is a stream of Arrow's, not a file of Arrow's")
+    assert "new_file" in found.help

@@ -169,3 +169,28 @@ def test_columns_that_make_no_sense(change, said):
     with pytest.raises(RulecError) as refused:
         rulec.recording_from_columns(columns, {"lane": ["s", "s"], "x": [0, 100], "y": [0, 0]})
     assert said in refused.value.diagnostics[0].message
+
+
+@pytest.mark.parametrize(
+    ("tracks", "said", "way_out"),
+    [
+        ("cars.csv", "they are of type `str`", "read_recording"),
+        ([{"track": 1}], "they are of type `list`", ""),
+        (
+            {"track": ["a"], "t": np.array([0], "datetime64[ns]"), "x": [0], "y": [0]},
+            "its column `t` holds dates or durations (datetime64[ns])",
+            "total_seconds",
+        ),
+    ],
+)
+def test_what_is_no_columns_of_numbers(tracks, said, way_out):
+    with pytest.raises(RulecError) as refused:
+        rulec.recording_from_columns(tracks, {"lane": ["s", "s"], "x": [0, 100], "y": [0, 0]})
+    (found,) = refused.value.diagnostics
+    assert said in found.message
+    assert way_out in found.help
+
+
+def test_a_data_frame_is_no_recording():
+    with pytest.raises(TypeError, match="recording_from_columns"):
+        rulec.verify_recording({"track": ["a"]}, "esterle2019")

@@ -68,7 +68,8 @@ class RulebookQuestions(RulebookVerbs):
         if trace is None or rules is None:
             raise TypeError("explaining a violation takes the trace and the rules")
         if isinstance(trace, Trace):
-            return explain(subject, trace, self._compiled(rules).fitted_to(trace.step_s))
+            rounded, *_ = self._compiled(rules).rounded_to(trace.step_s)
+            return explain(subject, trace, rounded)
         from rulec.extraction.recording_verdicts import explain_drive
 
         return explain_drive(subject, trace, self._compiled(rules))

@@ -152,15 +152,23 @@ class TraceVerbs(SessionSettings):
         """Judge the drives of recorded vehicles, each in turn as ego.
 
         ``recording`` is a file (``map_path`` has its roads if it has none), or what has been read
-        from it; ``wanted`` says whose drives, by which thresholds, on which assumptions.
+        from it, roads and all; ``wanted`` says whose drives, by which thresholds, on which
+        assumptions.
 
         Raises:
-            RulecError: R0407 or R0507 if the rules do not fit the step, R0612 for a vehicle that is
-                not there, R0610 for a file that is no recording.
+            RulecError: R0507 if the rules do not fit the step, R0612 for a vehicle that is not
+                there, R0610 for a file that is no recording.
+            TypeError: for anything else than a file or a recording, such as a data frame.
         """
         from rulec.extraction.recording_verdicts import RecordingVerdicts
         from rulec.extraction.selection import RequestedDrives
+        from rulec.recordings.recording import Recording
 
+        if not isinstance(recording, str | Path | Recording):
+            raise TypeError(
+                f"a recording or its file is judged, not {type(recording).__name__}: "
+                "rulec.recording_from_columns(tracks, lanes) makes one of a data frame"
+            )
         file = recording if isinstance(recording, str | Path) else recording.name
         if isinstance(recording, str | Path):
             recording = self.read_recording(recording, map_path)

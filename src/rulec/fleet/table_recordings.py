@@ -16,6 +16,7 @@ from rulec.fleet.drive_rows import DriveRows
 from rulec.fleet.finding_columns import Row
 from rulec.fleet.fleet_messages import cut_drive, no_map
 from rulec.fleet.table_kind import FILE, MAP, RECORDING, ROWS, SeenKeys, keys_of, lacking
+from rulec.recordings.doubts.motion_doubts import with_doubts
 from rulec.recordings.doubts.road_doubts import check_near
 from rulec.recordings.encodings.table_files import table_of
 from rulec.recordings.map_files import read_map
@@ -96,7 +97,7 @@ def recording_of(table: Any, name: str, roads: Roads) -> Recording:
         chosen = _map(chosen, rows.times.step_s, note_read(chosen))
     recording = track_recording(name, [rows], chosen, form="tracks as a table", remarks=[remark])
     check_near(recording, None)
-    return recording
+    return with_doubts(recording, rows.columns.refused)
 
 
 @lru_cache(maxsize=_MOST_MAPS)

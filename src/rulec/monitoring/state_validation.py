@@ -180,6 +180,13 @@ _TRUTHS_ELSEWHERE: Mapping[str | float, str] = {
 """How other programs, pandas among them, write what is true or false."""
 
 
+_SIDES = {
+    "near_side_of": "write `right_of` where traffic keeps right, and `left_of` where it keeps left",
+    "far_side_of": "write `left_of` where traffic keeps right, and `right_of` where it keeps left",
+}
+"""What formulas of a rulebook that says where traffic keeps call the sides, and traces do not."""
+
+
 class _About(NamedTuple):
     """What values are checked against, and what messages call their state."""
 
@@ -198,7 +205,7 @@ def _check_value(
         if expected := _misfit(value, declaration):
             way_out = _of_python(value)
             if isinstance(declaration, Enumeration) and isinstance(value, str):
-                way_out = did_you_mean(value, declaration.values)
+                way_out = _SIDES.get(value) or did_you_mean(value, declaration.values)
             if isinstance(declaration, Signal) and isinstance(value, str | int | float):
                 way_out = _TRUTHS_ELSEWHERE.get(value, "")
             message = f"{where} says `{name}` is {_shown(value)}; {expected}"
@@ -339,6 +346,8 @@ def _type_meant(kind: str, types: Iterable[str]) -> str:
 
 def _unknown_name(name: str, vocabulary: Vocabulary) -> str:
     enumeration = vocabulary.enumeration_of.get(name)
+    if name in _SIDES:
+        return f"it is a word of formulas; of `lateral` {_SIDES[name]}"
     if enumeration is not None:
         return f'`{name}` is a value: write {{"{enumeration.name}": … "{name}"}}'
     # Where files are looked for, 3 ms: only for this message.

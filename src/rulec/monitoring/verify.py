@@ -29,11 +29,10 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     that a rule depends on, with the trace's own place.
     """
     check_trace(trace)
-    if trace.ends == "cut":
-        with _told_at(trace.place):
-            roundings = rulebook.rounded_to(trace.step_s)
-        if len(roundings) > 1:
-            return agreed([verify(trace, rounded) for rounded in roundings])
+    with _told_at(trace.place):
+        roundings = rulebook.rounded_to(trace.step_s)
+    if len(roundings) > 1:
+        return agreed([verify(trace, rounded) for rounded in roundings])
     rulebook, is_partial = rulebook_for_checked(trace, rulebook)
     if is_partial or trace.ends == "cut" or trace.told is not None:
         # With NumPy, a tenth of a second: only where not all is known.

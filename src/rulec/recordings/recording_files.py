@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -73,7 +74,7 @@ def read_recordings(source: RecordingSource) -> Iterator[Recording]:
     def looked_at(recording: Recording) -> Recording:
         if form.takes_map:
             check_near(recording, source.path)
-        return with_doubts(recording, source.path)
+        return with_doubts(recording, partial(RECORDING.refused, source.path))
 
     if source.map_path is not None and not form.takes_map:
         raise OTHER_CHOICE.error(

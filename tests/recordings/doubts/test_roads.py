@@ -76,6 +76,26 @@ def test_columns_of_a_program_on_another_map():
         rulec.recording_from_columns(tracks, far)
 
 
+def cars_on_a_road(y):
+    """Three cars that drive 40 m, and the road along the x axis on which they are at y = 0."""
+    steps = [step for _ in "abc" for step in range(9)]
+    tracks = {
+        "track": [name for name in "abc" for _ in range(9)],
+        "t": steps,
+        "x": [5.0 * step for step in steps],
+        "y": [y] * 27,
+    }
+    return tracks, {"lane": ["r", "r"], "x": [-50, 200], "y": [0, 0]}
+
+
+def test_columns_of_a_program_have_their_doubts():
+    assert not any(
+        "on lanes" in one for one in rulec.recording_from_columns(*cars_on_a_road(0)).remarks
+    )
+    aside = rulec.recording_from_columns(*cars_on_a_road(20.0))
+    assert any("only 0% of the places" in one for one in aside.remarks)
+
+
 ROADS = "lane,x,y\n" + "".join(
     f"{name},{x},{y}\n"
     for name, ends in {

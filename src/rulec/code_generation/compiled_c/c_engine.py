@@ -72,8 +72,10 @@ class CEngine:
         R0752 if the compiler fails.
         """
         found = None
-        if trace.ends == "complete" and trace.told is None:
-            check_trace(trace)
+        check_trace(trace)
+        # A bound that is no multiple of the step C would have no state for.
+        fits = len(self.rulebook.rounded_to(trace.step_s)) == 1
+        if fits and trace.ends == "complete" and trace.told is None:
             rulebook, is_partial = rulebook_for_checked(trace, self.rulebook)
             if not is_partial:
                 found = self._violations(trace, rulebook)

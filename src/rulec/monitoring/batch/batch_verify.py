@@ -35,7 +35,7 @@ from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
-from rulec.monitoring.verify import rulebook_for_step, rulebook_for_trace, verify_or_reason
+from rulec.monitoring.verify import rulebook_for_trace, verify_or_reason
 from rulec.trace import Trace
 from rulec.trace.formats.alike_lines import LineBlock
 from rulec.trace.formats.table_blocks import Block, OddTableError, outlined
@@ -334,8 +334,8 @@ def _verify_alike(
 
 
 def rulebook_for(items: Items, place: int, rulebook: CompiledRulebook) -> CompiledRulebook:
-    """The rulebook that one of ``verify_items`` was judged by."""
-    return rulebook_for_step(step_of(items, place), rulebook)
+    """The rulebook that one of ``verify_items`` was judged by; of two roundings the lower."""
+    return rulebook.rounded_to(step_of(items, place))[0]
 
 
 def step_of(items: Items, place: int) -> float:

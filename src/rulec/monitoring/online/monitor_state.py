@@ -54,9 +54,10 @@ class SoFar(msgspec.Struct, frozen=True, gc=False):
     """The verdicts as of a state.
 
     ``state`` is its number, from 0. ``verdict`` is that of all hard rules together, ``rules`` has
-    each rule's, soft ones included, ``changes`` what is new, in the order of rules and objects.
-    Where not all is known a verdict may be a ``VerdictRange``; ``exact`` is false if of a rule with
-    such a verdict more was taken to be possible than is, so that it may be narrower after all.
+    that of each judged one, soft ones included, ``changes`` what is new, in the order of rules and
+    objects. Where not all is known a verdict may be a ``VerdictRange``; where a hard rule is not
+    judged ``verdict`` is violated at worst. ``exact`` is false if of a rule with such a verdict
+    more was taken to be possible than is, so that it may be narrower after all.
     """
 
     __repr__ = short_repr
@@ -265,6 +266,8 @@ def state_at(
         for bound_rule in bound_rules.rules
     }
     verdict = conjunction(rules[rule] for rule in bound_rules.hard)
+    if bound_rules.groups.lacks_hard:
+        verdict = within(best_of(verdict), "violated")
     read_only = MappingProxyType(rules)
     return MonitorState(bound_rules, nodes, verdict, read_only, n_violations, doubted=lost[1])
 

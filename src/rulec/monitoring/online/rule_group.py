@@ -224,13 +224,20 @@ class RuleGroups:
     """Rules of a rulebook, singly and grouped by their variables' types.
 
     The groups cache their nodes, letters and transitions. With ``is_partial`` names that no state
-    says may be unknown, or the past is.
+    says may be unknown, or the past is. With ``lacks_hard`` there are hard rules of which nothing
+    can be said.
     """
 
     def __init__(
-        self, rules: Sequence[PreparedRule], breakpoints: Breakpoints, *, is_partial: bool = False
+        self,
+        rules: Sequence[PreparedRule],
+        breakpoints: Breakpoints,
+        *,
+        is_partial: bool = False,
+        lacks_hard: bool = False,
     ) -> None:
-        self.rules, self.breakpoints, self.is_partial = tuple(rules), breakpoints, is_partial
+        self.rules, self.breakpoints = tuple(rules), breakpoints
+        self.is_partial, self.lacks_hard = is_partial, lacks_hard
         self.cache_size = CacheSize()
         by_types: dict[tuple[str, ...], list[PreparedRule]] = {}
         for prepared in rules:
@@ -242,11 +249,16 @@ class RuleGroups:
 
     def without_cache(self) -> RuleGroups:
         """These groups as they were at first."""
-        return RuleGroups(self.rules, self.breakpoints, is_partial=self.is_partial)
+        return RuleGroups(
+            self.rules, self.breakpoints, is_partial=self.is_partial, lacks_hard=self.lacks_hard
+        )
 
 
 def rule_groups(
-    rulebook: CompiledRulebook, cut: Mapping[str, OutcomeMachine] | None = None
+    rulebook: CompiledRulebook,
+    cut: Mapping[str, OutcomeMachine] | None = None,
+    *,
+    lacks_hard: bool = False,
 ) -> RuleGroups:
     """Prepare the rules of a rulebook; ``cut`` are their machines if the past is not known."""
     rules = [
@@ -255,4 +267,5 @@ def rule_groups(
     ]
     defaults = [declaration.default for declaration in rulebook.vocabulary.declarations.values()]
     is_partial = cut is not None or any(type(value) in UNKNOWN_TYPES for value in defaults)
-    return RuleGroups(rules, breakpoints_of(rulebook), is_partial=is_partial)
+    points = breakpoints_of(rulebook)
+    return RuleGroups(rules, points, is_partial=is_partial, lacks_hard=lacks_hard)

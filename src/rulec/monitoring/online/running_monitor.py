@@ -97,7 +97,9 @@ class Monitor:
             rules = tuple(rule for rule, _ in judged.machines)
             rulebook = replace(rulebook, vocabulary=judged.vocabulary, rules=rules)
         self._judged = rulebook
-        start = initial_state(BoundRules(rulebook, rule_groups(rulebook, machines), NO_OBJECTS))
+        lacks_hard = any(self._strengths[name] == "hard" for name in self.not_judged)
+        groups = rule_groups(rulebook, machines, lacks_hard=lacks_hard)
+        start = initial_state(BoundRules(rulebook, groups, NO_OBJECTS))
         self._now: _Now = start, -1, (), TransitionCache()
         self._violations: list[Violation] = []
 

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.diagnostics import RulecError
 from rulec.recordings.doubts.limit_doubts import limit_doubts
 from rulec.recordings.doubts.road_doubts import road_doubts
 from rulec.recordings.recording import Recording
-from rulec.recordings.recording_format import RECORDING
 from rulec.recordings.track import Track, TrackStates
 
 _MOST_BODIES = 60
@@ -33,10 +32,11 @@ _FASTEST_MPS = 100.0
 _SPEEDS = "speeds are"
 
 
-def with_doubts(recording: Recording, path: Path) -> Recording:
+def with_doubts(recording: Recording, refused: Callable[[str], RulecError]) -> Recording:
     """The recording, with a remark on each thing that is said otherwise than bodies move.
 
-    Raises RulecError R0610 if most vehicles move across or against their headings.
+    ``refused`` makes the error for who cannot be read. Raises it (R0610) if most vehicles move
+    across or against their headings.
     """
     tracks = _tracks(recording)
     doubts = (*limit_doubts(recording, tracks), *road_doubts(recording.lanelets, tracks))
@@ -49,7 +49,7 @@ def with_doubts(recording: Recording, path: Path) -> Recording:
             f"headings do not fit the motion: vehicles move {angle:.0f}° away from them in the "
             "median; axes may be exchanged, or headings be in degrees, or be counted from north"
         )
-        raise RECORDING.refused(path, why)
+        raise refused(why)
     remarks = (*recording.remarks, *_doubts(tracks, recording, angle))
     return replace(recording, remarks=remarks) if remarks != recording.remarks else recording
 

@@ -244,6 +244,9 @@ def _stripped(codes: NDArray[int64], known: Mapping[str, int]) -> Texts:
     return Texts(np.array(again, dtype=int64)[codes], tuple(names))
 
 
+_EXPECTED = 'expected a data frame, or a dict of columns, such as `{"track": [1, 1], …}`'
+
+
 def table_of(columns: Mapping[str, Any], words: str) -> ColumnTable:
     """The table of columns in memory: sequences of equal length, a data frame's for one.
 
@@ -257,6 +260,11 @@ def table_of(columns: Mapping[str, Any], words: str) -> ColumnTable:
         message = f"the columns cannot be read as {words}: {where}{why}"
         return NOT_A_RECORDING.error(None, message, expected=expected, help=help_text)
 
+    given: object = columns
+    if isinstance(given, str | bytes | Sequence):
+        kind = type(given).__name__
+        way_out = "`rulec.read_recording(path, map_path)` reads a file" if kind == "str" else ""
+        raise refused(f"they are of type `{kind}`", expected=_EXPECTED, help_text=way_out)
     # Frames of polars and tables of Arrow list their names so; a mapping does by itself
     listed = getattr(columns, "columns", columns)
     listed = getattr(columns, "column_names", listed)
@@ -291,6 +299,10 @@ def columns_of(
 
 
 def _floats(name: str, column: NDArray[Any], refused: Any) -> NDArray[np.float64]:
+    if column.dtype.kind in "mM":
+        why = f"its column `{short(name)}` holds dates or durations ({column.dtype}), not numbers"
+        way_out = "give seconds, as pandas' `(t - t.min()).dt.total_seconds()` does"
+        raise refused(why, help_text=way_out)
     if column.dtype.kind in "biuf":
         found = column.astype(float)
         bad = ~(np.abs(found) < LARGEST_NUMBER) & ~np.isnan(found)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, cast, get_args
 
 import numpy as np
 
+from rulec.recordings.doubts.motion_doubts import with_doubts
 from rulec.recordings.doubts.road_doubts import check_near
 from rulec.recordings.encodings.csv_head import is_number
 from rulec.recordings.encodings.table_columns import (
@@ -99,7 +100,8 @@ def recording_from_columns(
     ``tracks`` has the columns of [tracks as a table](formats.md#tracks-as-a-table), such as
     ``track``, ``t``, ``x`` and ``y``; ``lanes`` those of lanes as a table, or it is a ``RoadMap``
     or the path of a map. Raises RulecError R0610 for what makes no sense in them, with its row
-    (counted from 0) and column, R0615 if nobody is near the roads, else as reading that map.
+    (counted from 0) and column, R0615 if nobody is near the roads, else as reading that map. What
+    is odd but readable, such as speeds that places contradict, is said in ``remarks``.
     """
     rows, remark = track_rows_of(table_of(tracks, "tracks"))
     if isinstance(lanes, RoadMap):
@@ -110,7 +112,7 @@ def recording_from_columns(
         roads = lane_map(lanes)
     recording = track_recording(name, [rows], roads, form="tracks as a table", remarks=[remark])
     check_near(recording, None)
-    return recording
+    return with_doubts(recording, rows.columns.refused)
 
 
 def track_rows_of(table: ColumnTable) -> tuple[TrackRows, str]:

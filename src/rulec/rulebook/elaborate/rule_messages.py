@@ -95,7 +95,8 @@ NOT_A_MULTIPLE = Code(
     why="A bound in seconds becomes a number of states, with the time from one state of a trace "
     "to the next, its step. If a bound falls between two states, nobody knows what held "
     "there. Choose a bound that is a multiple of the step, or traces with a finer one. Of a rule "
-    "without examples it is a warning, since traces of a step that fits can be judged by it.",
+    "without examples it is a warning, since traces of a step that fits can be judged by it; those "
+    "of another step are, too, but where it hangs on that bound the verdict is open.",
     bad="rulebook example\nsignal wet default false\n"
     "hard rule r { require always (wet implies eventually[<= 1.5 s] not wet) }\n",
     good="rulebook example\nstep 0.5 s\nsignal wet default false\n"
@@ -271,7 +272,7 @@ def only_fitting_traces(rule: Rule, error: NotAMultipleError) -> Diagnostic:
         no_multiple(rule, error),
         severity="warning",
         notes=(
-            f"rule `{rule.name}` can judge only traces of a step that fits",
+            f"of traces of another step, rule `{rule.name}` is open where it hangs on this",
             "`rulec test`, `show`, `compile` and `analyze` go by the rulebook's own, and refuse it",
         ),
     )

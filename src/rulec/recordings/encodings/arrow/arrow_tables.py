@@ -37,6 +37,9 @@ LONGEST_TEXT = 200
 
 PARQUET_MARK, FEATHER_MARK = b"PAR1", b"ARROW1"
 _FIRST_FEATHER = b"FEA1"
+_STREAM_MARK = b"\xff\xff\xff\xff"
+"""With which every message begins; that of the schema is a stream's first one."""
+
 _HEADER_BYTES = 8
 
 
@@ -151,6 +154,10 @@ def _read(arrow: Any, data: bytes, path: Path, form: XmlFormat, wanted: Wanted) 
         return _parquet(arrow, data, path, form, wanted)
     if data.startswith(_FIRST_FEATHER):
         raise form.refused(path, "it is of Feather's first version", help_text="write it anew")
+    if data.startswith(_STREAM_MARK):
+        why = "it is a stream of Arrow's, not a file of Arrow's"
+        way_out = "write it with `pyarrow.ipc.new_file`, or as Feather, instead of `new_stream`"
+        raise form.refused(path, why, help_text=way_out)
     raise form.refused(path, "it is neither Parquet nor Feather" if data else "it is empty")
 
 
