@@ -65,12 +65,12 @@ def test_by_hand():
     assert list(spans.those(spans.any(row))) == [(0, slice(0, 2)), (1, slice(2, 5))]
 
 
-@given(st.lists(flags, min_size=1, max_size=4))
-def test_parts_are_views(several):
-    spans, row = laid(several)
-    for part in spans.parted(row):
-        part[...] = True
-    assert row.all()
+@given(st.lists(st.lists(st.integers(-5, 5), min_size=1, max_size=7), min_size=1), steps)
+def test_the_most_of_the_last_ones_is_that_of_each_drive(several, n):
+    spans, _ = laid(several)
+    row = np.concatenate(several)
+    expected = [max(own[max(k - n, 0) : k + 1]) for own in several for k in range(len(own))]
+    assert spans.most_of_last(row, n).tolist() == expected
 
 
 def test_drives_agree_or_are_unlike():

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -54,9 +53,9 @@ class EndToEnd:
         return tuple(map(slice, self.bounds[:-1], self.bounds[1:]))
 
     @cached_property
-    def _lengths(self) -> frozenset[int]:
-        """The numbers of states that drives have."""
-        return frozenset(end - begin for begin, end in pairwise(self.bounds))
+    def lengths(self) -> _Columns:
+        """The number of states of each drive."""
+        return np.diff(self.bounds)
 
     @cached_property
     def columns(self) -> _Columns:
@@ -71,7 +70,7 @@ class EndToEnd:
     @cached_property
     def number(self) -> _Columns:
         """The number of the drive, by column."""
-        return np.repeat(np.arange(self.n_drives), np.diff(self.bounds))
+        return np.repeat(np.arange(self.n_drives), self.lengths)
 
     @cached_property
     def first(self) -> _Columns:
@@ -115,13 +114,37 @@ class EndToEnd:
         """Flags that hold at a state or at most ``steps`` states later, or also earlier."""
         if not flags.any():
             return flags
-        soon: _Flags = self.next_state(flags, steps) <= self.columns + steps
+        soon: _Flags = flags.copy()
+        for shift, is_inside in self._shifts(steps):
+            soon[..., :-shift] |= soon[..., shift:] & is_inside
         return soon | self.within_last(flags, steps) if around else soon
 
     def within_last(self, flags: _Flags, steps: int) -> _Flags:
         """Flags that hold at a state or at most ``steps`` states before it."""
-        held: _Flags = self.latest(flags) >= np.maximum(self.columns - steps, self.first)
+        held: _Flags = flags.copy()
+        for shift, is_inside in self._shifts(steps):
+            held[..., shift:] |= held[..., :-shift] & is_inside
         return held
+
+    def most_of_last(self, values: NDArray[Any], steps: int) -> NDArray[Any]:
+        """The greatest value at a state and at most ``steps`` states before it."""
+        most: NDArray[Any] = values.copy()
+        for shift, is_inside in self._shifts(steps):
+            earlier, later = most[..., :-shift], most[..., shift:]
+            most[..., shift:] = np.where(is_inside, np.maximum(earlier, later), later)
+        return most
+
+    def _shifts(self, steps: int) -> Iterator[tuple[int, _Flags]]:
+        """Shifts that join each state with so many to one side of it, each twice as many as before.
+
+        With flags of pairs of columns so far apart that are of one drive.
+        """
+        # Who looks farther than the longest drive sees no more
+        count, wanted = 1, min(steps, int(self.lengths.max()) - 1) + 1
+        while count < wanted:
+            shift = min(count, wanted - count)
+            yield shift, self.number[shift:] == self.number[:-shift]
+            count += shift
 
     def before(self, values: NDArray[Any]) -> NDArray[Any]:
         """The values one state before, in a drive's first state its own."""
@@ -170,16 +193,6 @@ class EndToEnd:
         since = np.maximum(self.columns + 1 - steps, self.first)
         found: _Columns = sums[..., 1:] - sums[..., since]
         return found
-
-    def parted(self, values: NDArray[Any]) -> list[NDArray[Any]]:
-        """Views of an array in which the last axis is that of one drive's states.
-
-        If all drives have as many there is one, with an axis more, for drives.
-        """
-        if len(self._lengths) == 1:
-            (length,) = self._lengths
-            return [values.reshape(*values.shape[:-1], self.n_drives, length)]
-        return [values[..., columns] for columns in self.slices]
 
     def each(self, function: Callable[[slice], NDArray[Any]], axis: int = -1) -> NDArray[Any]:
         """What a function finds for the columns of each drive, laid end to end."""

@@ -115,8 +115,10 @@ def parts_soon(context: DriveContext, cells: tuple[NDArray[intp], ...]) -> Flags
     until = spans.columns + horizon
     inside = _in_junctions(context, pairs)
     parts = spans.within(apart & ~inside, horizon)
-    stopped = _would_stand(context, pairs) if inside.any() else until
-    parts |= spans.next_state(apart & inside, horizon) <= np.minimum(stopped, until)
+    stopped = until
+    if inside.any():
+        stopped = _would_stand(context, pairs)
+        parts |= spans.next_state(apart & inside, horizon) <= np.minimum(stopped, until)
     middles = others.d_min[at] + others.d_max[at], own.d_min[0, columns] + own.d_max[0, columns]
     side = np.sign(middles[0] - middles[1])
     gone = spans.next_state(~seen, horizon)
@@ -205,14 +207,17 @@ def _need_not_follow(
 
 def _brief_and_slight(context: DriveContext, late: Flags, far_too_late: Flags) -> Flags:
     """Flags of runs of late states that last for less than ``_BRIEF_S`` and are nowhere far too."""
-    if not late.any():
+    places = np.flatnonzero(late)
+    if not len(places):
         return late
-    spans, rows, found = context.spans, np.flatnonzero(late.any(axis=1)), np.zeros_like(late)
-    late, far_too_late = late[rows], far_too_late[rows]
-    since, until = spans.latest(~late) + 1, spans.next_state(~late)
-    brief = (until - since) * context.recording.step_s < _BRIEF_S - _HAIR_S
-    slight = (spans.latest(far_too_late) < since) & (spans.next_state(far_too_late) >= until)
-    found[rows] = late & brief & slight
+    is_first = np.diff(places, prepend=-1) > 1
+    is_first |= context.spans.begins_here.take(places % context.states)
+    begins = np.flatnonzero(is_first)
+    lengths = np.diff(begins, append=len(places))
+    brief = lengths * context.recording.step_s < _BRIEF_S - _HAIR_S
+    slight = ~np.logical_or.reduceat(far_too_late.ravel().take(places), begins)
+    found = np.zeros_like(late)
+    found.ravel()[places] = np.repeat(brief & slight, lengths)
     return found
 
 
@@ -224,8 +229,8 @@ def _stood_before(context: DriveContext, rows: NDArray[intp]) -> Flags:
     stands = context.tracks.speed[rows] * KMH < context.thresholds.standing_kmh
     steps = round(context.thresholds.reaction_s / context.recording.step_s)
     spans, stood = context.spans, np.zeros(context.relevant.shape, dtype=bool)
-    moved = spans.latest(~stands & ~np.isnan(context.extents.s_min[rows]))
-    stood[rows] = stands & ((moved < spans.first) | (spans.columns - moved > steps))
+    moves_there = ~stands & ~np.isnan(context.extents.s_min[rows])
+    stood[rows] = stands & ~spans.within_last(moves_there, steps)
     return stood
 
 

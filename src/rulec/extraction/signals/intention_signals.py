@@ -106,14 +106,10 @@ def _turning_far(context: DriveContext) -> SignalColumns:
 
 def _lit_until(context: DriveContext, flags: Flags, lit: Flags) -> Flags:
     """Flags of states from which on an indicator is lit until one that is flagged."""
-    columns, never = np.arange(context.states), context.states
-
-    def next_one(found: Flags) -> NDArray[intp]:
-        soonest: NDArray[intp] = np.where(found, columns, never)[:, ::-1]
-        return np.minimum.accumulate(soonest, axis=1)[:, ::-1]
-
-    until = next_one(flags & lit)
-    lasts: Flags = lit & (until < next_one(~lit)) & (until < context.spans.end)
+    spans, rows = context.spans, np.flatnonzero(lit.any(axis=1))
+    lasts, lit = np.zeros_like(lit), lit[rows]
+    until = spans.next_state(flags[rows] & lit)
+    lasts[rows] = lit & (until < spans.next_state(~lit))
     return lasts
 
 

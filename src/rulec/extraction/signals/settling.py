@@ -11,6 +11,7 @@ import numpy as np
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.tracks.tracks import Flags
 from rulec.trace.end_to_end import EndToEnd
+from rulec.trace.plain_arrays import distinct
 
 _HAIR = 1e-6
 _MOST_CHANGES = 2
@@ -116,13 +117,16 @@ def _beside_flagged(changed: Flags, flags: Flags, spans: EndToEnd) -> Flags:
 def _brief_at_ends(column: SignalColumn, least: int, spans: EndToEnd) -> Flags:
     """Flags of the values that a column, or rows, begins or ends with for fewer states."""
     brief, either = np.zeros(column.shape, dtype=bool), np.logical_or.accumulate
-    for own, flags in zip(spans.parted(column), spans.parted(brief), strict=True):
-        most = min(least, own.shape[-1]) - 1
-        if most > 0:
-            begins = own[..., :most] != own[..., 1 : most + 1]
-            ends = own[..., -most:] != own[..., -most - 1 : -1]
-            flags[..., :most] |= either(begins[..., ::-1], axis=-1)[..., ::-1]
-            flags[..., -most:] |= either(ends, axis=-1)
+    of_drive = np.minimum(least, spans.lengths) - 1
+    for most in distinct(of_drive[of_drive > 0]).tolist():
+        own = of_drive == most
+        # From each end of a drive so many states to the inside, and one more
+        near = np.arange(most + 1)
+        for edge, way in ((spans.begins, 1), (spans.begins + spans.lengths - 1, -1)):
+            columns = edge[own][:, None] + way * near
+            values = column[..., columns]
+            changes = values[..., :-1] != values[..., 1:]
+            brief[..., columns[:, :-1]] |= either(changes[..., ::-1], axis=-1)[..., ::-1]
     return brief
 
 

@@ -118,13 +118,8 @@ def _recovers(context: DriveContext) -> Flags:
     """Flags of states in which ego was faster up to ``setting_off_s`` ago: it had to brake."""
     speed = context.ego.speed[0]
     steps = round(context.thresholds.setting_off_s / context.recording.step_s)
-
-    def fastest(columns: slice) -> Floats:
-        before = np.concatenate((np.full(steps, -np.inf), speed[columns]))
-        longest: Floats = np.lib.stride_tricks.sliding_window_view(before, steps + 1).max(axis=1)
-        return longest
-
-    recovers: Flags = speed + context.tolerances.speed_mps < context.spans.each(fastest)
+    fastest = context.spans.most_of_last(speed, steps)
+    recovers: Flags = speed + context.tolerances.speed_mps < fastest
     return recovers
 
 
@@ -278,7 +273,8 @@ def _gets_past(
     at_once = is_past & (spans.next_state(past) <= spans.next_state(falls_back))
     gets_past, unsure = np.zeros((2, *context.relevant.shape), dtype=bool)
     gets_past[rows] = at_once
-    unsure[rows] = ~at_once & (is_past | (spans.next_state(~seen) <= states + horizon))
+    is_lost = spans.within(~seen, horizon) | (states + horizon >= spans.end)
+    unsure[rows] = ~at_once & (is_past | is_lost)
     return gets_past, unsure
 
 
