@@ -93,7 +93,7 @@ def _comes_up(context: DriveContext, slow: Flags) -> Flags:
     """
     spans, before = context.spans, context.spans.latest(~slow)
     ago_s = (spans.columns - before) * context.recording.step_s
-    told = (before >= spans.first) | ("light" in context.recording.complete)
+    told = (before >= spans.first) | ("arrivals" in context.recording.complete)
     comes_up: Flags = told & (ago_s < _JAM_S)
     return comes_up
 

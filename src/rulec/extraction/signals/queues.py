@@ -208,7 +208,7 @@ def dense_lines(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     all_queue = np.logical_and((queues | ~decides).all(axis=-1), decides.any(axis=-1))
     # What a few lanes are is not told of the others, but where the world of all of them ends
     few = 2 * decides.sum(axis=-1) < lanes.sum(axis=-1)
-    whole = "light" in context.recording.complete
+    whole = "arrivals" in context.recording.complete
     all_queue &= ~(few & whole)
     # Whom nobody is ahead of goes as fast as it likes, unless that one is not recorded any more:
     # it is first of a line, and half of the lanes have one

@@ -157,7 +157,7 @@ def _sets_off(context: DriveContext) -> Flags:
     spans, stood = context.spans, context.spans.latest(speed <= _CRAWLS_MPS).astype(float)
     at_first = speed[spans.first]
     before = spans.first - np.ceil(at_first / _SETS_OFF_MPS2 / step_s)
-    if "light" in context.recording.complete:
+    if "arrivals" in context.recording.complete:
         before = np.where(at_first <= _CRAWLS_MPS, before, -np.inf)
     gained_since = spans.latest(~_gains_speed(context))
     # Of what a drive begins with it is told by what follows

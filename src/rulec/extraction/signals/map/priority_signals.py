@@ -40,6 +40,7 @@ _RING, _RAIL = "conflict_on_roundabout", "conflict_with_rail"
 _CONFLICTS = (*_SIDES, _RING, _RAIL)
 _PRIORITY = frozenset({"PRIORITY", "RIGHT_OF_WAY"})
 _ARRIVALS = ("arrived_together", "other_arrived_first", "other_in_junction")
+_NEVER = np.iinfo(np.intp).max
 _ROADS = ("unregulated_junction", "own_road_ends", "other_road_ends", "on_priority_road")
 
 
@@ -226,11 +227,21 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
             first=first,
             enters=max((enters or 0) - shift, 0),
             last=min(last, context.states - 1),
-            known=known and own.sure and other.sure and settled is not None,
+            known=known
+            and own.sure
+            and other.sure
+            and settled is not None
+            and _is_seen(passages.tracks.present[other.row], first + shift, latest),
             other=other,
             together=abs(lead_s) <= context.thresholds.together_s,
             comes_first=lead_s > context.thresholds.together_s,
         )
+
+
+def _is_seen(present: Flags, first: int, last: int) -> bool:
+    """True if somebody's track has no hole between two columns, as far as it reaches."""
+    there = np.flatnonzero(present[first : last + 1])
+    return len(there) == 0 or len(there) == there[-1] - there[0] + 1
 
 
 def _kinds(context: DriveContext, own: Passage, other: Passage) -> tuple[str, ...]:
@@ -270,35 +281,49 @@ def _might_come(context: DriveContext, own: Passage) -> Iterator[str]:
         if row != own.row and last >= own.first and first <= latest:
             through.add(row)
             yield _side(float(np.degrees(turn(own.heading, tracks.heading[row, first]))))
-    rows, ends = _may_go_on(context)
-    in_time = (ends >= shift) & (ends <= latest)
-    for row, end in zip(rows[in_time].tolist(), ends[in_time].tolist(), strict=True):
-        if row in through:
+    rows, ends, back = _lost_from_sight(context)
+    # Whose way is known is in the junction on it, unless that is where it was not seen
+    in_time = (ends >= shift) & (ends <= latest) & (back > own.first)
+    for row, end, seen in zip(*(x[in_time].tolist() for x in (rows, ends, back)), strict=True):
+        if row == own.row or (row in through and seen == _NEVER):
             continue
         x, y = float(tracks.x[row, end]), float(tracks.y[row, end])
         place = shapely.Point(x, y)
         away = float(shapely.distance(area, place))
         arrives = end + away / max(float(tracks.speed[row, end]), 0.1) / step_s
-        if not own.first <= arrives <= latest:
+        if not own.first <= arrives <= min(latest, seen):
             continue
         near = shapely.shortest_line(place, area).coords[-1]
         towards = float(np.arctan2(near[1] - y, near[0] - x))
         heading = float(tracks.heading[row, end])
-        if abs(turn(towards, heading)) < np.pi / 3:
+        if away == 0.0 or abs(turn(towards, heading)) < np.pi / 3:
             yield _side(float(np.degrees(turn(own.heading, heading))))
 
 
 @once_a_recording
-def _may_go_on(context: DriveContext) -> tuple[NDArray[intp], NDArray[intp]]:
-    """The rows of all who may go on when their tracks have ended, and the last columns of these."""
+def _lost_from_sight(context: DriveContext) -> tuple[NDArray[intp], ...]:
+    """The rows of all who may go on unseen, the last columns in which they are there, and the next.
+
+    The next is ``_NEVER`` where tracks have ended.
+    """
     tracks = context.surroundings.passages.tracks
-    last = tracks.present.shape[1] - 1
-    ends = last - tracks.present[:, ::-1].argmax(axis=1)
+    present = tracks.present
     stand = np.array([body.standing for body in tracks.participants], dtype=bool)
-    go_on = tracks.present.any(axis=1) & ~stand & ~tracks.of_type("pedestrian")
+    drive = ~stand & ~tracks.of_type("pedestrian")
+    rows, ends = (present[:, :-1] & ~present[:, 1:] & drive[:, None]).nonzero()
+    last = present.shape[1] - 1
+    until_last = (present[:, last] & drive).nonzero()[0]
+    columns = np.where(present, np.arange(last + 1), _NEVER)
+    after = np.minimum.accumulate(columns[:, ::-1], axis=1)[:, ::-1]
+    back = after[rows, ends + 1]
     if "arrivals" in context.recording.complete:
-        go_on &= ends == last
-    return go_on.nonzero()[0], ends[go_on]
+        rows, ends, back = rows[back < _NEVER], ends[back < _NEVER], back[back < _NEVER]
+    never = np.full(len(until_last), _NEVER)
+    return (
+        np.append(rows, until_last),
+        np.append(ends, np.full(len(until_last), last)),
+        np.append(back, never),
+    )
 
 
 def _leaves_at_latest(context: DriveContext, own: Passage) -> float:

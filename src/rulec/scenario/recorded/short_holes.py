@@ -1,0 +1,158 @@
+"""Tracks whose short holes are filled: who was not seen for a moment was there all the same."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy import float64, int64, intp
+from numpy.typing import NDArray
+
+from rulec.recordings.recording import Lamp, Participant, Points, Recording, TrackState
+from rulec.recordings.track import Track, TrackOutlines, TrackStates
+
+_FASTER, _FASTER_MPS = 1.3, 3.0
+"""Who would have been faster than on both sides of a hole, by a part and so much, has jumped."""
+
+_LARGEST_TURN = np.pi / 4
+"""And so has who would have turned by more."""
+
+
+def without_short_holes(recording: Recording, longest_s: float) -> Recording:
+    """A recording with states where a track has none between two that are so near to each other.
+
+    They are on the cubic through the two states before and the two behind; of who jumps there are
+    none, nor is a lamp lit in them that is not on both sides.
+    """
+    most = int(longest_s / recording.step_s + 1e-9)
+    bodies = tuple([_filled(body, most, recording.step_s) for body in recording.participants])
+    if all(one is other for one, other in zip(bodies, recording.participants, strict=True)):
+        return recording
+    return replace(recording, participants=bodies)
+
+
+def _filled(body: Participant, most: int, step_s: float) -> Participant:
+    steps = _steps(body)
+    apart = np.diff(steps)
+    holes = np.flatnonzero((apart > 1) & (apart <= most))
+    if body.standing or not len(holes) or body.states.keys() != body.outlines.keys():
+        return body
+    track = body.states.track if isinstance(body.states, TrackStates) else None
+    if track is None:
+        rows = np.array([_row(body.states[step]) for step in steps.tolist()])
+    else:
+        rows = track.rows
+    own = _Known(steps, rows, 2 * most, step_s)
+    missing = [
+        steps[hole] + np.arange(1, apart[hole]) for hole in holes.tolist() if not own.jumps(hole)
+    ]
+    if not missing:
+        return body
+    new_steps = np.concatenate(missing)
+    new_rows = np.concatenate([own.at(some) for some in missing])
+    lamps = _lamps(body, steps, holes)
+    if track is not None:
+        order = np.argsort(np.concatenate((steps, new_steps)), kind="stable")
+        whole = Track(
+            np.concatenate((steps, new_steps))[order],
+            np.concatenate((rows, new_rows))[order],
+            *(track.length, track.width, track.shift),
+        )
+        return replace(body, states=TrackStates(whole), outlines=TrackOutlines(whole), lamps=lamps)
+    states, outlines = dict(body.states), dict(body.outlines)
+    for step, row in zip(new_steps.tolist(), new_rows, strict=True):
+        before = int(steps[np.searchsorted(steps, step) - 1])
+        states[step] = TrackState(*row.tolist())
+        outlines[step] = _moved(body.outlines[before], body.states[before], states[step])
+    return replace(
+        body,
+        states={step: states[step] for step in sorted(states)},
+        outlines={step: outlines[step] for step in sorted(outlines)},
+        lamps=lamps,
+    )
+
+
+def _steps(body: Participant) -> NDArray[int64]:
+    if isinstance(body.states, TrackStates):
+        return body.states.track.steps
+    return np.sort(np.fromiter(body.states, dtype=int64, count=len(body.states)))
+
+
+def _row(state: TrackState) -> tuple[float, ...]:
+    return state.x, state.y, state.heading, state.speed, state.acceleration
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Known:
+    """The steps of a track and their rows; states up to ``near`` steps away tell of a hole."""
+
+    steps: NDArray[int64]
+    rows: NDArray[float64]
+    near: int
+    step_s: float
+
+    def jumps(self, hole: int) -> bool:
+        """Would it have been faster in a hole, or turned by more, than a vehicle that drives on?"""
+        around = self._around(hole)
+        moved = np.hypot(*np.diff(self.rows[around, :2], axis=0).T)
+        speeds = moved / np.diff(self.steps[around]) / self.step_s
+        in_hole = np.searchsorted(around, hole)
+        told = np.abs(self.rows[hole : hole + 2, 3]).max()
+        fastest = max(float(told), *np.delete(speeds, in_hole).tolist(), 0.0)
+        turned = abs(_turns(np.diff(self.rows[hole : hole + 2, 2]))[0])
+        too_fast = speeds[in_hole] > fastest * _FASTER + _FASTER_MPS
+        return bool(too_fast or turned > _LARGEST_TURN)
+
+    def at(self, missing: NDArray[int64]) -> NDArray[float64]:
+        """The rows of steps that are missing, of one hole."""
+        hole = int(np.searchsorted(self.steps, missing[0])) - 1
+        before, behind = self.rows[hole], self.rows[hole + 1]
+        share = (missing - self.steps[hole]) / (self.steps[hole + 1] - self.steps[hole])
+        gained = behind - before
+        gained[2] = _turns(gained[2:3])[0]
+        values: NDArray[float64] = before + share[:, None] * gained
+        around = self._around(hole)
+        values[:, :2] = _cubic(self.steps[around], self.rows[around, :2], missing)
+        return values
+
+    def _around(self, hole: int) -> NDArray[intp]:
+        around: NDArray[intp] = np.arange(max(hole - 1, 0), min(hole + 3, len(self.steps)))
+        near: NDArray[intp] = around[np.abs(self.steps[around] - self.steps[hole]) <= self.near]
+        return near
+
+
+def _turns(angles: NDArray[float64]) -> NDArray[float64]:
+    turned: NDArray[float64] = (angles + np.pi) % (2 * np.pi) - np.pi
+    return turned
+
+
+def _cubic(
+    steps: NDArray[int64], places: NDArray[float64], wanted: NDArray[int64]
+) -> NDArray[float64]:
+    """Places on the polynomial through others, of the least degree."""
+    found = np.zeros((len(wanted), 2))
+    for k, step in enumerate(steps.tolist()):
+        others = np.delete(steps, k)
+        weight = np.prod((wanted[:, None] - others) / (step - others), axis=1)
+        found += weight[:, None] * places[k]
+    return found
+
+
+def _moved(outline: Points, before: TrackState, now: TrackState) -> Points:
+    """An outline as it is when its body has moved on."""
+    turned = now.heading - before.heading
+    cos, sin = np.cos(turned), np.sin(turned)
+    x, y = (outline - (before.x, before.y)).T
+    return np.stack((x * cos - y * sin + now.x, x * sin + y * cos + now.y), axis=1)
+
+
+def _lamps(
+    body: Participant, steps: NDArray[int64], holes: NDArray[intp]
+) -> dict[int, frozenset[Lamp]]:
+    """The lamps, with those in holes that are lit on both sides."""
+    lamps = dict(body.lamps)
+    for hole in holes.tolist():
+        before, behind = int(steps[hole]), int(steps[hole + 1])
+        if before in lamps and lamps[before] == lamps.get(behind):
+            lamps |= dict.fromkeys(range(before + 1, behind), lamps[before])
+    return lamps
