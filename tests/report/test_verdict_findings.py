@@ -6,6 +6,7 @@ import json
 import re
 from xml.etree import ElementTree
 
+import jsonschema
 import pyarrow.parquet
 import pytest
 from mcap.reader import make_reader
@@ -272,6 +273,15 @@ def test_mcap_has_an_event_for_each_finding_with_a_time(rules):
     }
     (record,) = make_reader(io.BytesIO(content)).iter_metadata()
     assert record.metadata["not_judged"] == "quiet"
+
+
+def test_messages_in_mcap_are_of_their_schemas(rules):
+    reader = make_reader(io.BytesIO(written(rules, "mcap", FOUND)), validate_crcs=True)
+    taken = set()
+    for schema, channel, message in reader.iter_messages():
+        jsonschema.validate(json.loads(message.data), json.loads(schema.data))
+        taken.add(channel.topic)
+    assert taken == {"/rulec/findings", "/rulec/log", "/rulec/scene"}
 
 
 def test_mcap_without_events_is_a_whole_file(rules):

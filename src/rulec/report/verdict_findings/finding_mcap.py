@@ -87,7 +87,11 @@ def _messages(finding: VerdictFinding) -> Iterator[TimedMessage]:
     if at_s is None:
         return
     begin_ns = max(0, round(at_s * _NS))
-    yield TimedMessage(0, begin_ns, as_json(finding))
+    # Without what is null, which is of none of the types that viewers are told
+    known = {
+        name: value for name, value in json.loads(as_json(finding)).items() if value is not None
+    }
+    yield TimedMessage(0, begin_ns, json.dumps(known))
     yield TimedMessage(1, begin_ns, json.dumps(_log(finding, begin_ns)))
     if finding.outcome == "violated" and finding.x is not None and finding.y is not None:
         yield TimedMessage(2, begin_ns, json.dumps(_scene_update(finding, begin_ns)))
@@ -153,7 +157,7 @@ _NUMBER, _WHOLE, _STRING, _YES_OR_NO = (
 _TYPES = {str: _STRING, float: _NUMBER, list: _list(_STRING)}
 _FINDING = {
     "title": "rulec.Finding",
-    # Viewers know no alternatives: what may be null is of its other type here.
+    # Viewers know no alternatives: what may be null is of its other type here, or left out.
     **_object(version=_WHOLE, **{name: _TYPES[kind] for name, kind in COLUMNS.items()}),
 }
 _TIME = _object(sec=_WHOLE, nsec=_WHOLE)
