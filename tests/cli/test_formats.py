@@ -75,8 +75,8 @@ def test_the_end_of_the_file_says_the_format(listed, tmp_path):
     assert listed("sumo", "--words", "-o", str(page)) == (0, f"wrote {page}\n", "")
     text = page.read_text()
     assert (
-        "| SUMO's floating-car data, with their net | `sumo` | \\*.xml | beside it, or `--map` |"
-        in text
+        "| SUMO's floating-car data, with their net | `sumo` | "
+        "\\*.xml, \\*.csv, \\*.parquet | beside it, or `--map` |" in text
     )
     assert "| `wet` |  |" in text
     assert listed("-o", str(tmp_path / "formats.json"))[0] == 0

@@ -186,8 +186,10 @@ FORMATS = (
     RecordingFormat(
         name="sumo",
         title="SUMO's floating-car data, with their net",
-        files="*.xml",
-        recognises=lambda glance: glance.root == "fcd-export",
+        files="*.xml, *.csv, *.parquet",
+        recognises=lambda glance: (
+            glance.root == "fcd-export" or heads.is_fcd_head(heads.head_of(glance))
+        ),
         read=_sumo,
         roads="beside it, or --map",
     ),

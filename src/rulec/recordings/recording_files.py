@@ -117,6 +117,10 @@ def read_recording(source: RecordingSource) -> Recording:
     return recording
 
 
+_OTHERS_OF_SUMO = frozenset({"netstate", "emission-export", "tripinfos", "summary", "tlsStates"})
+_FCD_INSTEAD = "SUMO writes who was where when with the option --fcd-output"
+
+
 def _format_of(source: RecordingSource) -> RecordingFormat:
     glance = Glance(source.path)
     for form in FORMATS:
@@ -129,7 +133,9 @@ def _format_of(source: RecordingSource) -> RecordingFormat:
             raise RECORDING.refused(source.path, why, help_text=way_out)
     if glance.root:
         why = f"it is XML of `{short(glance.root)}`"
-        raise RECORDING.refused(source.path, why, expected="expected `commonRoad` or `fcd-export`")
+        way_out = _FCD_INSTEAD if glance.root in _OTHERS_OF_SUMO else ""
+        expected = "expected `commonRoad` or `fcd-export`"
+        raise RECORDING.refused(source.path, why, expected=expected, help_text=way_out)
     check_readable(source.path)
     raise RECORDING.refused(source.path, "it is of no known format")
 

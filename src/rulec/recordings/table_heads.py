@@ -46,6 +46,11 @@ def is_track_head(names: Sequence[str]) -> bool:
     return found >= 3 or bool(x and y and {"speed", "heading"} & given)
 
 
+def is_fcd_head(names: Sequence[str]) -> bool:
+    """True if the names of columns are those of SUMO's floating-car data."""
+    return "timestep_time" in names and bool({"vehicle_id", "person_id"} & {*names})
+
+
 def is_lane_head(names: Sequence[str]) -> bool:
     """True if the names of columns are those of lanes, not of findings that name theirs."""
     given = {*names}

@@ -38,6 +38,10 @@ class Texts(NamedTuple):
         for start, end in zip(starts, [*starts[1:].tolist(), len(order)], strict=True):
             yield self.names[int(self.codes[order[start]])], order[start:end]
 
+    def of(self, row: int | np.intp) -> str:
+        """The text of a row."""
+        return self.names[int(self.codes[row])]
+
     def having(self, name: str) -> NDArray[bool_]:
         """Flags of the rows with a text."""
         code = self.names.index(name) if name in self.names else -1

@@ -18,6 +18,7 @@ from rulec.recordings.sumo.fcd_content import (
     FCD,
     LONGEST_ID,
     MICROSECONDS,
+    NOWHERE,
     FcdHead,
     FcdTrack,
     FloatingCarData,
@@ -27,8 +28,6 @@ from rulec.recordings.sumo.plain_fcd import read_plain_fcd
 
 _PLACE = ("x", "y", "angle", "speed")
 _place_of = itemgetter(*_PLACE)
-_NOWHERE = -(2.0**30)
-"""What SUMO writes for x and y of who is in no place, as while it is moved elsewhere."""
 
 
 def read_fcd(path: Path) -> FloatingCarData:
@@ -75,7 +74,7 @@ def _add(data: FloatingCarData, element: XmlElement) -> None:
         key = attributes["id"]
     except (KeyError, ValueError):
         raise _wrong(element) from None
-    if x == y == _NOWHERE:
+    if x == y == NOWHERE:
         return
     # NaN is not between anything
     if not (

@@ -19,6 +19,9 @@ LONGEST_ID = 200
 MICROSECONDS = 1_000_000
 """In a second: moments are whole numbers of them."""
 
+NOWHERE = -(2.0**30)
+"""What SUMO writes for x and y of who is in no place, as while it is moved elsewhere."""
+
 _OPTION = re.compile(r'<(net-file|route-files|additional-files|fcd-output\.geo)\s+value="([^"]*)"')
 
 

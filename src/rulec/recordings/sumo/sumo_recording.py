@@ -23,10 +23,12 @@ from rulec.recordings.recording import (
     Recording,
     Rounding,
 )
+from rulec.recordings.recording_format import Glance
 from rulec.recordings.recording_messages import OTHER_NET
 from rulec.recordings.road_map import RoadMap
 from rulec.recordings.sumo.fcd import demand_beside, net_beside, read_fcd
 from rulec.recordings.sumo.fcd_content import FCD, MICROSECONDS, FcdTrack, FloatingCarData
+from rulec.recordings.sumo.fcd_table import read_fcd_table
 from rulec.recordings.sumo.lanelets import net_lanelets
 from rulec.recordings.sumo.light_states import (
     light_states_beside,
@@ -35,6 +37,7 @@ from rulec.recordings.sumo.light_states import (
 )
 from rulec.recordings.sumo.net import SumoNet, read_net
 from rulec.recordings.sumo.vehicle_types import VehicleType, read_vehicle_types, vehicle_type
+from rulec.recordings.table_heads import head_of, is_fcd_head
 from rulec.recordings.track import Track, TrackOutlines, TrackStates
 
 ON_NETS = frozenset({"STOP", "YIELD", "PRIORITY", "GREEN_ARROW", "light", "rail", "roundabout"})
@@ -68,7 +71,8 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
     Raises RulecError R0610 for a file that cannot be read as what it should be, R0614 if there is
     no net, R0615 for another road's net, R0701 if a file cannot be opened.
     """
-    data = read_fcd(path)
+    is_table = is_fcd_head(head_of(Glance(path)))
+    data = read_fcd_table(path) if is_table else read_fcd(path)
     if data.head.geographic:
         why = "its places are geographic, degrees of longitude and latitude"
         raise FCD.refused(path, why, help_text="have SUMO write them without --fcd-output.geo")
