@@ -167,24 +167,25 @@ def keeps_safe_gap(context: DriveContext) -> SignalColumns:
     stand, and need not react first. And where it is too short for less than ``_BRIEF_S``, and by no
     more than ``_OUTLIERS`` tolerances: that may be what boxes err.
     """
-    _, _, may_follow = relations.ahead_in_lane(context)
     place, limits, followed = context.tolerances.place_m, context.thresholds, safe_gaps(context)
-    cells, short = followed.cells, followed.safe - followed.gap
-    wrong = np.hypot(followed.safe_error, place)
+    short, wrong = followed.safe - followed.gap, np.hypot(followed.safe_error, place)
+    # Elsewhere the distance is long enough, whoever that is
+    perhaps_short = np.flatnonzero(short > -wrong)
+    short, wrong = short.take(perhaps_short), wrong.take(perhaps_short)
+    rows, states = (places.take(perhaps_short) for places in followed.cells)
+    cells = rows, states
     stands = context.tracks.speed[cells] * KMH < limits.standing_kmh
     # One that stands, and that ego drives by, does not drive ahead
     aside = relations.way_across(context)[cells] - limits.touching_m
     room = np.where(stands, aside, -np.inf)
-    may_pass_by, follows = np.abs(room) < place, room <= 0
-    # Elsewhere the distance is long enough, whoever that is
-    perhaps_short = short > -wrong
-    moot = may_pass_by & perhaps_short
-    asked = np.flatnonzero(follows & perhaps_short)
-    moot[asked] |= _need_not_follow(context, (cells[0][asked], cells[1][asked]), short[asked])
-    safe, unknown = np.ones(may_follow.shape, dtype=bool), np.zeros(may_follow.shape, dtype=bool)
+    moot, follows = np.abs(room) < place, room <= 0
+    asked = np.flatnonzero(follows)
+    moot[asked] |= _need_not_follow(context, (rows[asked], states[asked]), short[asked])
+    shape = context.relevant.shape
+    safe, unknown = np.ones(shape, dtype=bool), np.zeros(shape, dtype=bool)
     safe[cells] = ~follows | (short <= 0)
     unknown[cells] = (follows & (np.abs(short) < wrong)) | moot
-    late, far_too_late = np.zeros((2, *may_follow.shape), dtype=bool)
+    late, far_too_late = np.zeros((2, *shape), dtype=bool)
     late[cells] = follows & (short >= wrong)
     far_too_late[cells] = follows & (short > _OUTLIERS * wrong)
     unknown |= _brief_and_slight(context, late, far_too_late)

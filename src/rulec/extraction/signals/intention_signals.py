@@ -88,16 +88,17 @@ def _turning_far(context: DriveContext) -> SignalColumns:
     """
     turns, open_end = (own_part(context, flags) for flags in _turns(context))
     lit, told = _far_indicator(context)
-    turns |= _lit_until(context, turns & lit, lit)
-    seen_last = _ends_within(context, 1)
-    if "arrivals" not in context.recording.complete:
-        # Who signals and leaves the map may turn beyond it
-        ahead = round(context.thresholds.preparing_s / context.recording.step_s)
-        open_end |= lit & _ends_within(context, ahead)
-    else:
-        seen_last &= context.spans.columns == context.spans.end - 1
-    drives = context.tracks.of_type("vehicle")[:, None]
-    open_end |= drives & _lit_until(context, seen_last, lit)
+    if lit.any():
+        turns |= _lit_until(context, turns & lit, lit)
+        seen_last = _ends_within(context, 1)
+        if "arrivals" not in context.recording.complete:
+            # Who signals and leaves the map may turn beyond it
+            ahead = round(context.thresholds.preparing_s / context.recording.step_s)
+            open_end |= lit & _ends_within(context, ahead)
+        else:
+            seen_last &= context.spans.columns == context.spans.end - 1
+        drives = context.tracks.of_type("vehicle")[:, None]
+        open_end |= drives & _lit_until(context, seen_last, lit)
     return SignalColumns(
         about={"turning_far": turns & lit},
         unknown={"turning_far": np.where(told, lit & open_end & ~turns, turns | open_end)},
@@ -216,13 +217,11 @@ def _about_to_overtake(context: DriveContext) -> SignalColumns:
         joins = joining[context.road.piece(np.nan_to_num(context.extents.s)), lane]
         soon &= ~joins
     lit, told = _far_indicator(context)
-    ends = _ends_within(context, steps)
-    not_caught_up = soon & ~_caught_up(context)
+    unknown = soon & ~(told & _caught_up(context))
+    if lit.any():
+        unknown |= told & lit & _ends_within(context, steps) & ~soon & ~joins
     return SignalColumns(
-        about={"about_to_overtake": soon & lit},
-        unknown={
-            "about_to_overtake": np.where(told, lit & ends & ~soon & ~joins, soon) | not_caught_up
-        },
+        about={"about_to_overtake": soon & lit}, unknown={"about_to_overtake": unknown}
     )
 
 

@@ -34,6 +34,7 @@ from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.paper_words import LATERALS, STATIONS
+from rulec.trace.cells import Cells
 
 _ALONG = 0.5
 """The sine of the angle to the road up to which one heads along it."""
@@ -108,20 +109,24 @@ def _speed_difference(context: DriveContext) -> SignalColumns:
 def _time_to_collision(context: DriveContext) -> SignalColumns:
     """How long ego takes to who is ahead in its lane, both as fast as they are."""
     measured, surely, perhaps = relations.ahead_in_lane(context)
-    place, closing = context.tolerances.place_m, context.ego_extents.along - context.extents.along
-    wrong = np.hypot(context.ego.speed_error, context.tracks.speed_error)
-    way = relations.way_along(context)
+    # Ego runs into nobody else
+    cells, place = Cells.at(perhaps), context.tolerances.place_m
+    closing = cells.of(context.ego_extents.along[0]) - cells.of(context.extents.along)
+    wrong = np.hypot(cells.of(context.ego.speed_error[0]), cells.of(context.tracks.speed_error))
+    way = cells.of(relations.way_along(context))
 
     def seconds(counts: Flags, more_m: float, faster: Floats) -> Floats:
-        runs_into = counts & (faster > 0)
+        runs_into = cells.of(counts) & (faster > 0)
         taken = np.maximum(way + more_m, 0.0) / np.where(runs_into, faster, 1.0)
         return np.where(runs_into, np.minimum(taken, LONGEST_S), LONGEST_S)
 
+    seconds_measured = rounded(seconds(measured, 0.0, closing))
     soonest = seconds(perhaps, -place, closing + wrong)
     latest_s = seconds(surely, place, closing - wrong)
+    low, high = (cells.laid(own, LONGEST_S) for own in rounded_outward(soonest, latest_s))
     return SignalColumns(
-        about={"time_to_collision": rounded(seconds(measured, 0.0, closing))},
-        bounds={"time_to_collision": rounded_outward(soonest, latest_s)},
+        about={"time_to_collision": cells.laid(seconds_measured, LONGEST_S)},
+        bounds={"time_to_collision": (low, high)},
     )
 
 

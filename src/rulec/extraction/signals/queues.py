@@ -139,18 +139,15 @@ def vehicles_around(context: DriveContext) -> VehiclesAround:
     own, others = context.ego_extents, context.extents
     there = np.concatenate((np.ones((1, context.states), dtype=bool), close_by(context)))
     state, row = np.ascontiguousarray(there.T).nonzero()
-    at, is_own = (row - 1) * context.states + state, row == 0
+    at = row * context.states + state
 
     def taken(of_ego: NDArray[Any], of_others: NDArray[Any]) -> NDArray[Any]:
-        every = np.empty(len(at), dtype=of_others.dtype)
-        every[is_own] = of_ego[0, state[is_own]]
-        every[~is_own] = of_others.ravel().take(at[~is_own])
-        return every
+        return np.concatenate((of_ego, of_others)).ravel().take(at)
 
     lane = taken(own.lane, others.lane)
     # Lanes are few, so that they are soon in order; states and rows stay so within each
     order = np.argsort(lane.astype(np.uint16), kind="stable")
-    lane, state, at, is_own = (values.take(order) for values in (lane, state, at, is_own))
+    lane, state, at = (values.take(order) for values in (lane, state, at))
     s_min, s_max, along = (
         taken(getattr(own, name), getattr(others, name)) for name in ("s_min", "s_max", "along")
     )
