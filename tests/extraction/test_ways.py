@@ -6,9 +6,9 @@ from math import cos, pi, sin
 import pytest
 
 from rulec.extraction.drives import Drive, Drives, NoDrive
-from rulec.extraction.tracks.driven_route import route_stretches
-from rulec.extraction.tracks.lanelet_graph import LaneletGraph
-from rulec.extraction.tracks.map_matching import MapMatching
+from rulec.extraction.tracks.matching.driven_route import route_stretches
+from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
+from rulec.extraction.tracks.matching.map_matching import MapMatching
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
 from support.builders.recordings import lanelet, recording, straight, vehicle

@@ -78,6 +78,19 @@ def test_random_futures(world, several, n_past, rules):
     assert_equal_to_verify(candidates, world, rules, after)
 
 
+def test_the_wrong_way_on_a_motorway():
+    """Whoever comes back against the lanes is blamed for it, among others who do not."""
+    world = street([car("slow", 6.0, x=60.0)], types=["interstate"])
+    ahead = driven(world.past[-1], [(0.0, 0.0)] * 8)
+    back = [(60.0 - 6.0 * k, 3.5, np.pi, 12.0) for k in range(8)]
+    scores = assert_equal_to_verify(np.array([ahead, back]), world, GERMAN, None)
+    blamed = [
+        {one.rule for drive in found.drives for one in drive.answer.violations}
+        for found in scores.candidates
+    ]
+    assert ["wrong_way" in rules for rules in blamed] == [False, True]
+
+
 def test_order_and_company_change_nothing():
     futures = np.array([driven(BUSY.past[-1], [(a, 0.0)] * 8) for a in (-3.0, 0.0, 2.0)])
     together = score(futures, BUSY, GERMAN, BUSY.past)

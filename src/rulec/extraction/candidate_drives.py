@@ -15,9 +15,9 @@ from rulec.extraction.drive_context import EgosOnRoad, drives_context
 from rulec.extraction.drives import Drives, LaidOutMap, NoDrive
 from rulec.extraction.to_trace import Drive, TraceWriter, to_traces
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.driven_route import RouteStretch
 from rulec.extraction.tracks.junction_passages import junction_passages
-from rulec.extraction.tracks.map_matching import MapMatching, MatchedStretch
+from rulec.extraction.tracks.matching.driven_route import RouteStretch
+from rulec.extraction.tracks.matching.map_matching import MapMatching, MatchedStretch
 from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import ObjectTypes, tracks_of
@@ -177,7 +177,7 @@ class _Batch:
     ) -> tuple[DrivenRoad, _Stretch] | None:
         """The road of a stretch that can be looked at with others, and what it is called."""
         road = self._road(stretch)
-        if road is None or road.meets_itself:
+        if road is None or road.meets_itself or stretch.against:
             return None
         places, own = self.places(road, row)
         columns = slice(stretch.first, stretch.last + 1)

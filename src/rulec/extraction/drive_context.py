@@ -44,8 +44,8 @@ class DriveContext:
     where it is; ``lanes_within``: the sets of those of them that it reaches into, as it is, farther
     out and farther in by the tolerance of places; ``elsewhere``: does it drive on lanelets of
     another road? ``surroundings`` are the recording's; ``alone`` gives those of one of several
-    drives by its number, if each has others, and ego's row in them. ``computed`` holds what
-    functions have found ``once``.
+    drives by its number, if each has others, and ego's row in them. ``wrong_way``: does ego drive
+    against the road? ``computed`` holds what functions have found ``once``.
     """
 
     recording: Recording
@@ -66,6 +66,7 @@ class DriveContext:
     elsewhere: Flags
     surroundings: Surroundings
     alone: Callable[[int], tuple[Surroundings, int]] | None = None
+    wrong_way: bool = False
     computed: dict[Callable[..., object], object] = field(default_factory=dict)
 
     @cached_property

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol, TypeAlias
 
@@ -16,9 +16,10 @@ from rulec.extraction.drive_context import EgosOnRoad, drive_context, drives_con
 from rulec.extraction.recording_parts import egos_of
 from rulec.extraction.to_trace import ALL_SIGNALS, Drive, TraceWriter, to_traces
 from rulec.extraction.tracks.driven_road import DrivenRoad, DrivenRoads, junction_lanelets
-from rulec.extraction.tracks.driven_route import RouteStretch, route_stretches
-from rulec.extraction.tracks.lanelet_graph import LaneletGraph
-from rulec.extraction.tracks.map_matching import MapMatching, MatchedStretch
+from rulec.extraction.tracks.matching.driven_route import RouteStretch, route_stretches
+from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
+from rulec.extraction.tracks.matching.map_matching import MapMatching, MatchedStretch
+from rulec.extraction.tracks.matching.wrong_way import wrong_way_stretches
 from rulec.extraction.tracks.road_extents import (
     EgoPieces,
     RoadExtents,
@@ -29,7 +30,7 @@ from rulec.extraction.tracks.road_places import RoadPlaces, are_on_road, near_ro
 from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import Flags, Tracks, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
-from rulec.recordings.recording import Recording, Side
+from rulec.recordings.recording import Lanelet, Recording, Side
 from rulec.trace.end_to_end import UnlikeDrivesError
 
 FEWEST_STATES = 2
@@ -159,13 +160,25 @@ class Drives:
         yield from self.along(row, stretches)
 
     def stretches(self, row: int) -> list[RouteStretch]:
-        """The stretches of road that a participant drove."""
-        return [
+        """The stretches of road that a participant drove, along it or against it."""
+        along = [
             stretch
             for matched in self._matching.of(row)
             for stretch in route_stretches(self.recording, matched, self._map.graph)
             if stretch.last - stretch.first + 1 >= FEWEST_STATES
         ]
+        return sorted((*along, *self._against.get(row, ())), key=lambda stretch: stretch.first)
+
+    @cached_property
+    def _against(self) -> dict[int, list[RouteStretch]]:
+        """The stretches of who drove the wrong way, by row."""
+
+        def is_one_way(lanelet: Lanelet) -> bool:
+            return self._surroundings.is_surely_one_way(lanelet, self._side)
+
+        return wrong_way_stretches(
+            self.recording, self._tracks, self._matching.lanelets, is_one_way
+        )
 
     def along(self, row: int, stretches: Sequence[RouteStretch]) -> Iterator[Drive | NoDrive]:
         """The drives of a participant along stretches of road."""
@@ -185,17 +198,18 @@ class Drives:
             return NoDrive(ego, laid_out)
         road, first_piece = laid_out
         columns = slice(stretch.first, stretch.last + 1)
-        if road.meets_itself:
+        if stretch.against or road.meets_itself:
             places = self._places_of_one(road, first_piece, row, stretch)
         elif (row, stretch.first) not in self._ready:
             places = self._places_along(road, row, columns)
             self._look_ahead(road, places, (row, stretch.first))
-        if (row, stretch.first) in self._ready:
+        if not stretch.against and (row, stretch.first) in self._ready:
             return self._ready.pop((row, stretch.first))
         found = self._there(places, row, columns)
         if found is None:
             return NoDrive(ego, "it is far from its road for a while")
         context = drive_context(self._surroundings, places, self._side, *found)
+        context = replace(context, wrong_way=stretch.against)
         (drive,) = to_traces(context, [ego], [name], self._writer)
         return drive
 
@@ -213,7 +227,7 @@ class Drives:
             ego = self._tracks.participants[row].id
             for number, stretch in enumerate(stretches, 1):
                 road = self._map.road(stretch.route)
-                if not isinstance(road, str):
+                if not stretch.against and not isinstance(road, str):
                     name = ego if number == 1 else f"{ego}#{number}"
                     columns = slice(stretch.first, stretch.last + 1)
                     plans[road[0]].append((row, name, columns))
@@ -323,7 +337,7 @@ class Drives:
     def _places_of_one(
         self, road: DrivenRoad, first_piece: int, row: int, stretch: RouteStretch
     ) -> RoadPlaces:
-        """The places of all during one drive on a road that meets itself.
+        """The places of all during one drive on a road that meets itself, or against it.
 
         ``first_piece`` is the road's that the drive begins in.
         """

@@ -47,7 +47,12 @@ from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
 from rulec.extraction.signals.map.zone_signals import zone_signals
 from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.signals.settling import agreeing, settled
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, together
+from rulec.extraction.signals.signal_columns import (
+    SignalColumns,
+    SignalNames,
+    known_only,
+    together,
+)
 from rulec.extraction.tracks.tracks import Floats
 from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.logic.formula import Relation
@@ -85,6 +90,18 @@ _SIGNALS: tuple[Callable[[DriveContext, SignalNames], SignalColumns], ...] = (
     turning_conflicts,
 )
 """The signal passes, in the order in which traces name their signals."""
+
+
+_WITHOUT_DIRECTION = frozenset(
+    (
+        *("driving_side", "one_way", "road_class", "built_up", "speed", "reversing"),
+        *("ego_type", "ego_length", "ego_on_call", "told_to_go", "told_to_stop"),
+        *("hazard_lights", "headlamps", "front_fog_lamps", "rear_fog_lamps", "warning_lights"),
+        *("night", "raining", "wet", "icy", "visibility", "tunnel"),
+    )
+)
+"""What has a meaning for who drives against its road; ahead and behind, and left and right, are
+others there than for the road."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -244,6 +261,8 @@ def to_traces(
     read, spans = _names_written(writer), context.spans
     signals = together([signals_of(context, read) for signals_of in _SIGNALS])
     signals = agreeing(settled(signals, LEAST_S, context.recording.step_s, spans))
+    if context.wrong_way:
+        signals = known_only(signals, _WITHOUT_DIRECTION)
     types = [body.object_types for body in context.tracks.participants]
     chosen = written(signals, types, writer.vocabulary, writer.names, spans)
     chosen = with_assumed(chosen, writer.assumed, context.states)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -84,6 +84,19 @@ def end_to_end(parts: Sequence[SignalColumns]) -> SignalColumns:
     world, about, unknown, whom = map(joined, ("world", "about", "unknown", "whom"))
     only, texts = parts[0].only, parts[0].texts
     return SignalColumns(world, about, unknown, only=only, bounds=bounds, texts=texts, whom=whom)
+
+
+def known_only(signals: SignalColumns, names: frozenset[str]) -> SignalColumns:
+    """The signals, of which only those of some names have values."""
+    columns = {**signals.world, **signals.about}
+    unknown = {
+        name: signals.unknown.get(name, np.zeros(column.shape, dtype=bool))
+        if name in names
+        else np.ones(column.shape, dtype=bool)
+        for name, column in columns.items()
+    }
+    bounds = {name: ends for name, ends in signals.bounds.items() if name in names}
+    return replace(signals, unknown=unknown, bounds=bounds)
 
 
 def ids_by_state(flags: Flags, ids: Sequence[str]) -> SignalColumn:

@@ -12,7 +12,7 @@ import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.tracks.driven_route import pieces_of
+from rulec.extraction.tracks.matching.driven_route import pieces_of
 from rulec.extraction.tracks.tracks import Floats
 from rulec.recordings.recording import Lanelet, Points, Recording, is_lane
 from rulec.scenario.recorded.lane_coordinates import (

@@ -101,6 +101,18 @@ class Surroundings:
             self._directions[lanelet.id] = self._computed(lanelet)
         return self._directions[lanelet.id]
 
+    def is_surely_one_way(self, lanelet: Lanelet, side: Side) -> bool:
+        """True if nobody may drive against a lane: in rings, on motorways, on several lanes.
+
+        Of a carriageway with one lane some maps have one direction alone.
+        """
+        if lanelet.id in self.ring(side) or "interstate" in lanelet.types:
+            return True
+        if "intersection" in lanelet.types or not self.directions(lanelet)[0]:
+            return False
+        beside = (lanes_beside(self.recording, lanelet.id, left=left) for left in (True, False))
+        return "lanes" in self.recording.complete or any(beside)
+
     def _computed(self, lanelet: Lanelet) -> Directions:
         if "intersection" in lanelet.types:
             found = {self.directions(road) for road in self._roads_before(lanelet)}

@@ -107,8 +107,11 @@ def _tells_headings(context: DriveContext, columns: slice) -> bool:
 
 def _driving_side(context: DriveContext) -> SignalColumns:
     there, perhaps = oncoming_side(context)
+    sides = there.astype(int)
+    if context.wrong_way:
+        sides, perhaps = np.full_like(sides, _SIDES.index("wrong_way")), perhaps & False
     return SignalColumns(
-        {"driving_side": there.astype(int)},
+        {"driving_side": sides},
         unknown={"driving_side": perhaps},
         texts={"driving_side": _SIDES},
     )

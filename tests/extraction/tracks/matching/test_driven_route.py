@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from rulec.extraction.tracks.driven_route import pieces_of, route_stretches
-from rulec.extraction.tracks.lanelet_graph import LaneletGraph
-from rulec.extraction.tracks.map_matching import MapMatching
+from rulec.extraction.tracks.matching.driven_route import pieces_of, route_stretches
+from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
+from rulec.extraction.tracks.matching.map_matching import MapMatching
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
 from support.builders.drive_contexts import driven_road

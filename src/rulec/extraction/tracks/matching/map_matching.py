@@ -24,8 +24,8 @@ import numpy as np
 from numpy import bool_, intp
 from numpy.typing import NDArray
 
-from rulec.extraction.tracks.lane_candidates import SIGMA_M, LaneCandidates, candidates
-from rulec.extraction.tracks.lanelet_graph import LaneletGraph
+from rulec.extraction.tracks.matching.lane_candidates import SIGMA_M, LaneCandidates, candidates
+from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.tracks import Floats, Tracks
 from rulec.recordings.recording import Recording
 

@@ -13,8 +13,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from rulec.extraction.tracks.lanelet_graph import LaneletGraph
-from rulec.extraction.tracks.map_matching import MatchedStretch
+from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
+from rulec.extraction.tracks.matching.map_matching import MatchedStretch
 from rulec.recordings.recording import Recording
 
 _SHIFT_COST, _SHORT_COST = 1e6, 1e5
@@ -24,12 +24,14 @@ _SHIFT_COST, _SHORT_COST = 1e6, 1e5
 class RouteStretch:
     """The states of a drive along one road, and its lanelets, each beside or after the one before.
 
-    ``pieces``: for each of the ``columns`` the number of the row of lanes there.
+    ``pieces``: for each of the ``columns`` the number of the row of lanes there. ``against``: do
+    all lanes lead the other way?
     """
 
     columns: tuple[int, ...]
     route: tuple[str, ...]
     pieces: tuple[int, ...]
+    against: bool = False
 
     @property
     def first(self) -> int:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
-from rulec.extraction.tracks.lane_candidates import feet_on, leading_on
+from rulec.extraction.tracks.matching.lane_candidates import feet_on, leading_on
 from rulec.scenario.recorded.reference_line import turn
 
 

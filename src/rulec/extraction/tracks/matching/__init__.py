@@ -1,0 +1,1 @@
+"""The lanelets and the road that vehicles drove."""
