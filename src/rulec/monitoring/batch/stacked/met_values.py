@@ -36,6 +36,10 @@ class MetValues:
     def _values(self) -> dict[str, int]:
         found: dict[str, int] = {}
         for names, columns in self._known(numbers=False):
+            only = columns[0].values
+            if len(columns) == 1 and only.dtype == bool:
+                found[names[0]] = 2 * int(only.any()) + int(not only.all())
+                continue
             rows = _laid_out([_as_numbers(column.values) for column in columns])
             most = int(rows.max())
             if most < max(_BITS):

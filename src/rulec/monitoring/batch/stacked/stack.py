@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -209,8 +210,8 @@ class Stack:
             unfit = _NOWHERE
         else:
             values, upper = self._numbers(name, parts)
-            unfit = ~np.isfinite(values)
-            if upper is not None:
+            unfit = _NOWHERE if _are_fit(values, upper) else ~np.isfinite(values)
+            if upper is not None and unfit is not _NOWHERE:
                 unfit |= ~(values <= upper) | ~np.isfinite(upper)
         if unfit is not _NOWHERE and unfit.any():
             nowhere = _either(unknown, unsaid)
@@ -392,6 +393,14 @@ def _names(flags: Mapping[str, Flags], some: Callable[..., Flags]) -> set[str]:
 
 def _end_to_end(parts: Sequence[Array]) -> Array:
     return parts[0] if len(parts) == 1 else np.concatenate(parts)
+
+
+def _are_fit(low: Array, high: Array | None) -> bool:
+    """Whether all numbers are finite, each no greater than the other one."""
+    most = low if high is None else high
+    # A NaN is the least one and the greatest
+    finite = isfinite(low.min(initial=0.0)) and isfinite(most.max(initial=0.0))
+    return finite and (high is None or bool((low <= high).all()))
 
 
 def _either(one: Flags | None, other: Flags | None) -> Flags | None:

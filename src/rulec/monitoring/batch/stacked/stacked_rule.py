@@ -216,15 +216,19 @@ class StackedRule:
         sets = self.letters.sets
         if self.machine.machine.n_classes > _MOST_BITS:
             return ~np.logical_or.reduceat(self.busy_flags().take(letters), begins)
-        bits = np.array([classes or _NO_CLASS for classes in sets], dtype=np.uint64)
-        every: list[int] = np.bitwise_or.reduceat(bits.take(letters), begins).tolist()
-        ends = np.append(begins[1:], len(letters)) - 1
-        last = [sets[number] for number in letters[ends].tolist()]
-        known: dict[tuple[int, int], bool] = {}
-        for key in zip(every, last, strict=True):
-            if key not in known:
-                known[key] = key[0] < _NO_CLASS and self.machine.is_surely_kept(*key)
-        return np.array([known[key] for key in zip(every, last, strict=True)], dtype=bool)
+        own = np.array([classes or _NO_CLASS for classes in sets], dtype=np.uint64).take(letters)
+        every = np.bitwise_or.reduceat(own, begins)
+        last = own[np.append(begins[1:], len(letters)) - 1]
+        # Words are mostly kept, and so are all of whose letters any word is
+        if self._keep(*(int(np.bitwise_or.reduce(classes)) for classes in (every, last))):
+            return np.ones(len(begins), dtype=bool)
+        keys = list(zip(every.tolist(), last.tolist(), strict=True))
+        known = {key: self._keep(*key) for key in set(keys)}
+        return np.array([known[key] for key in keys], dtype=bool)
+
+    def _keep(self, every: int, last: int) -> bool:
+        """Whether all words of these classes are kept, as bits, that end with one of the last."""
+        return every < _NO_CLASS and self.machine.is_surely_kept(every, last)
 
     def answer_to(self, letters: NDArray[np.intp]) -> Answer | None:
         """What a word comes to, as the number of a letter set for each state.
