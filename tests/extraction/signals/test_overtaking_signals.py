@@ -300,3 +300,18 @@ def test_who_overtakes_beyond_the_middle_does_so_from_going_there_until_it_is_ba
     signals = overtaking_signals(context_of(found, side=side), {"overtaking"})
     told = zip(signals.world["overtaking"], signals.unknown["overtaking"], strict=True)
     assert "".join("?" if dark else "FT"[int(value)] for value, dark in told) == past
+
+
+def test_who_goes_out_behind_another_one_may_have_meant_to_pass_whom_that_one_passes():
+    """Both drive 14 m/s, 30 m apart, and the one that they would pass is 180 m ahead of ego."""
+    ys = [0, 0, 1, *[3.5] * 12, 0]
+    ego, first = (
+        vehicle(number, {k: (ahead + 7.0 * k, y) for k, y in enumerate(ys)}, speed=14)
+        for number, ahead in ((7, 0.0), (9, 30.0))
+    )
+    slow = vehicle(8, {k: (180 + 5.0 * k, 0.0) for k in range(len(ys))}, speed=10)
+    roads = [straight(1, 0, 500), lanelet(2, [(500, 4), (0, 4)])]
+    for others, perhaps in (([slow], False), ([first, slow], True)):
+        signals = overtaking_signals(context_of(recording(roads, [ego, *others])), {"overtaking"})
+        assert not signals.world["overtaking"].any()
+        assert bool(signals.unknown["overtaking"][8]) == perhaps

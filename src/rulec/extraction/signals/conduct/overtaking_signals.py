@@ -62,11 +62,15 @@ def _meanwhile(context: DriveContext, flags: Flags, during: Flags) -> Flags:
 
 
 def _close_behind(context: DriveContext) -> Flags:
-    """Flags of states in which ego would be at one in the lanes beside it soon, if that stood."""
-    far, _ = _sides(context)
+    """Flags of states in which ego would be at one beside its way soon, if that stood.
+
+    Or at one ahead that has gone to ego's side before it: of several who overtake one all wait for
+    the first.
+    """
+    _, near_side = _sides(context)
     reach = context.ego_extents.along * context.thresholds.signalling_s
     near = (relations.gap(context) <= reach) & (relations.station(context) == relations.BEHIND)
-    near &= (relations.lateral(context) == far) & context.driving_along
+    near &= (relations.lateral(context) != near_side) & context.driving_along
     close: Flags = near.any(axis=0)
     return close
 
