@@ -92,7 +92,7 @@ def test_traffic_that_has_been_slow_for_less_than_10_s_may_be_no_jam():
     # Of a drive that begins in one nobody knows how long it has been there, but where all is known
     jam = recording(lanes(2), [steady(7, 0, 0, 1), *line(1, 4), steady(30, 10, 4, 1)])
     assert not flow_signals(context_of(jam, ("1",))).unknown["congested"].any()
-    whole = replace(jam, complete=frozenset({"light"}))
+    whole = replace(jam, complete=frozenset({"arrivals"}))
     assert flow_signals(context_of(whole, ("1",))).unknown["congested"].all()
 
 
@@ -115,7 +115,7 @@ def test_all_lanes_queue_when_each_has_three_close_vehicles():
 def test_whom_nobody_is_ahead_of_is_in_no_queue(complete):
     behind = [*line(10, 2, start=-30), *line(10, 3, y=4.0, start=-30, number=30)]
     found = recording(lanes(2), [steady(7, 0, 0), *behind])
-    found = replace(found, complete=frozenset({"light"} if complete else ()))
+    found = replace(found, complete=frozenset({"arrivals"} if complete else ()))
     signals = flow_signals(context_of(found))
     assert not signals.world["dense_all_lanes"][0]
     # Where only some of the traffic is recorded there may be one
@@ -186,7 +186,7 @@ def test_a_lane_between_two_ramps_does_not_decide():
     assert dense.all()
 
 
-@pytest.mark.parametrize(("complete", "unknown"), [((), True), (("light",), False)])
+@pytest.mark.parametrize(("complete", "unknown"), [((), True), (("arrivals",), False)])
 def test_where_a_world_begins_there_are_no_queues(complete, unknown):
     found = recording([straight(1, 0, 40), straight(2, 0, 40, 4)], [steady(7, 10, 0)])
     found = replace(found, complete=frozenset(complete))
@@ -265,7 +265,7 @@ def test_ego_is_in_the_queue_on_its_own_lane(mps, queue):
     assert not first(*line(mps, 2), ego=ego)["own_lane_queue"]
 
 
-@pytest.mark.parametrize(("complete", "unknown"), [((), True), (("light",), False)])
+@pytest.mark.parametrize(("complete", "unknown"), [((), True), (("arrivals",), False)])
 def test_one_queue_where_a_world_begins_is_not_one_on_all_lanes(complete, unknown):
     """Three are on one of three lanes, which are too short for the longest queue of three."""
     short = [

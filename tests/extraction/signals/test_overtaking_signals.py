@@ -35,7 +35,7 @@ def test_who_falls_back_before_it_gets_past_may_have_given_up(slowest, known):
     x = np.cumsum([-12.0] + [mps / 2 for mps in speeds])
     ego = steady(7, 0, 0, 10, steps=20)
     other = vehicle(8, {k: (float(x[k]), 4.0) for k in range(20)})
-    whole = replace(recording(lanes(2), [ego, other]), complete=frozenset({"light"}))
+    whole = replace(recording(lanes(2), [ego, other]), complete=frozenset({"arrivals"}))
     found = overtaking_signals(context_of(whole))
     assert found.world["being_overtaken"][0] == known
     assert found.unknown["being_overtaken"][0] == (not known)
@@ -75,7 +75,7 @@ def test_who_has_gained_speed_since_its_drive_began_may_be_getting_it_up(steady_
     passes = {k: (places[at][0] + (k - at) * 9.0, 4.0) for k in range(at - 4, at + 6)}
     found = recording(lanes(2), [vehicle(7, places), vehicle(8, passes)])
     # All traffic is in it, so that nobody who is as fast at first has stood just before
-    signals = overtaking_signals(context_of(replace(found, complete=frozenset({"light"}))))
+    signals = overtaking_signals(context_of(replace(found, complete=frozenset({"arrivals"}))))
     assert signals.world["being_overtaken"][at]
     assert signals.unknown["being_overtaken"][at] == (not known)
 
@@ -85,7 +85,7 @@ def test_a_drive_that_begins_beside_one_that_overtakes_may_begin_in_gaining_spee
     """In its first state nothing before it says whether it is getting up speed."""
     ego = vehicle(7, runs([10.0 + gained * k for k in range(16)]))
     other = vehicle(8, {k: (9.0 * k, 4.0) for k in range(16)})
-    found = replace(recording(lanes(2), [ego, other]), complete=frozenset({"light"}))
+    found = replace(recording(lanes(2), [ego, other]), complete=frozenset({"arrivals"}))
     signals = overtaking_signals(context_of(found))
     assert signals.world["being_overtaken"][0]
     assert signals.unknown["being_overtaken"][0] == (not known)
@@ -171,7 +171,7 @@ def test_who_may_have_stood_before_anybody_saw_it_may_set_off(speed, known):
 def test_who_is_put_into_all_traffic_slowly_sets_off(speed, known):
     """Simulators begin drives amid the road, at any speed: who is slow then gets going."""
     ego, other = steady(7, 0, 0, speed, steps=12), steady(8, 0, 4.0, speed + 5, steps=12)
-    whole = replace(recording(lanes(2), [ego, other]), complete=frozenset({"light"}))
+    whole = replace(recording(lanes(2), [ego, other]), complete=frozenset({"arrivals"}))
     found = overtaking_signals(context_of(whole))
     assert found.world["being_overtaken"][0]
     assert found.unknown["being_overtaken"][0] == (not known)
@@ -199,7 +199,7 @@ def coming(*others, y=4.0, side="right", count=2, steps=12, **thresholds):
     """Is ego being overtaken in the first state, by one of those on the far lane? None: unknown."""
     ego = steady(7, 0, 0, steps=steps)
     bodies = [steady(8 + k, x, y, speed, steps) for k, (x, speed) in enumerate(others)]
-    found = replace(recording(lanes(count), [ego, *bodies]), complete=frozenset({"light"}))
+    found = replace(recording(lanes(count), [ego, *bodies]), complete=frozenset({"arrivals"}))
     found = overtaking_signals(context_of(found, ("1",), side, **thresholds))
     return None if found.unknown["being_overtaken"][0] else bool(found.world["being_overtaken"][0])
 

@@ -70,7 +70,10 @@ def _close_behind(context: DriveContext) -> Flags:
     _, near_side = _sides(context)
     reach = context.ego_extents.along * context.thresholds.signalling_s
     near = (relations.gap(context) <= reach) & (relations.station(context) == relations.BEHIND)
-    near &= (relations.lateral(context) != near_side) & context.driving_along
+    # Who has gone to the lanes of the other direction is on none of the road's, nor in sight
+    goes_along = np.abs(context.extents.turned) < 1.0
+    near &= goes_along & context.tracks.of_type("vehicle")[:, None]
+    near &= relations.lateral(context) != near_side
     close: Flags = near.any(axis=0)
     return close
 
