@@ -251,3 +251,24 @@ def test_rectangles_are_rectangles(x, y, heading, length, width):
     assert across.max() == pytest.approx(width / 2)
     assert across.min() == pytest.approx(-width / 2)
     assert len({(round(a), round(b)) for a, b in zip(along, across, strict=True)}) <= 8
+
+
+@pytest.mark.parametrize(
+    ("option", "whole"),
+    [
+        ("fcd-output.attributes", True),
+        ("device.fcd.period", True),
+        ("fcd-output.filter-edges.input-file", False),
+        ("fcd-output.filter-shapes", False),
+        ("device.fcd.probability", False),
+        ("device.fcd.radius", False),
+        ("person-device.fcd.explicit", False),
+    ],
+)
+def test_who_is_not_in_data_of_a_part_of_the_traffic_may_be_there(tmp_path, option, whole):
+    fcd = data(moment(0, body()), head=f'<{option} value="1"/>')
+    found = read_recording(written(tmp_path, fcd))
+    assert ("arrivals" in found.complete) == whole
+    # What the net has is told all the same
+    assert "light" in found.complete
+    assert any(f"--{option}:" in remark for remark in found.remarks) != whole

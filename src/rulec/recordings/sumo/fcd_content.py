@@ -24,15 +24,25 @@ NOWHERE = -(2.0**30)
 
 _OPTION = re.compile(r'<(net-file|route-files|additional-files|fcd-output\.geo)\s+value="([^"]*)"')
 
+_LEAVES_OUT = re.compile(
+    r"<(fcd-output\.filter-[a-z.-]+|(?:person-)?device\.fcd\.(?:probability|explicit|radius)"
+    r"|person-fcd-output)\s+value="
+)
+"""Options with which floating-car data have a part of the traffic only."""
+
 
 @dataclass(frozen=True, slots=True)
 class FcdHead:
-    """SUMO's configuration, a comment at the head of its output."""
+    """SUMO's configuration, a comment at the head of its output.
+
+    ``leaves_out``: the options by which some of the traffic is not in the data.
+    """
 
     net: str = ""
     demand: tuple[str, ...] = ()
     additional: tuple[str, ...] = ()
     geographic: bool = False
+    leaves_out: tuple[str, ...] = ()
 
 
 def _unescaped(text: str) -> str:
@@ -56,6 +66,7 @@ def fcd_head(comment: str) -> FcdHead:
         (*routes, *additional),
         additional,
         options.get("fcd-output.geo") in ("true", "1", "yes", "on"),
+        tuple(sorted(set(_LEAVES_OUT.findall(comment)))),
     )
 
 

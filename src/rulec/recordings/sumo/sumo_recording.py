@@ -49,6 +49,8 @@ COMPLETE = ON_NETS | {"officer", "arrivals"}
 
 Who is in the data no longer has arrived where it was going."""
 
+_TRAFFIC = frozenset({"arrivals"})
+
 NEAR_M = 1000.0
 """Nobody in the data is farther from the net than this."""
 
@@ -102,8 +104,8 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
         problems=(),
         form="SUMO data",
         side=net.side,
-        remarks=tuple(_remarks(unknown, net)),
-        complete=COMPLETE,
+        remarks=(*_remarks(unknown, net), *_left_out(data)),
+        complete=COMPLETE - _TRAFFIC if data.head.leaves_out else COMPLETE,
         rounding=_rounding(data),
     )
 
@@ -161,6 +163,12 @@ def _remarks(unknown: Iterable[str], net: SumoNet) -> Iterator[str]:
     lights = [f"`{short(name)}`" for name in net.unknown_lights()]
     if lights:
         yield f"the programmes of these traffic lights are not known: {_some(lights)}"
+
+
+def _left_out(data: FloatingCarData) -> Iterator[str]:
+    if data.head.leaves_out:
+        options = _some([f"--{name}" for name in data.head.leaves_out])
+        yield f"only a part of the traffic is in the data, by {options}: who else drives is unknown"
 
 
 def _some(names: list[str]) -> str:
