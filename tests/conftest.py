@@ -10,6 +10,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from rulec.automata import compiler, prefix_machines
+from rulec.cache.keeping import keeping
 from support import hidden_spot
 from support.kept_for_a_run import FOLDER
 from support.remembered_books import remember_books
@@ -72,8 +73,8 @@ def pytest_configure(config):
 
 @pytest.fixture(scope="module")
 def compiled_anew():
-    """For tests of the compiler itself: nothing is remembered."""
-    with pytest.MonkeyPatch.context() as patch:
+    """For tests of the compiler itself: nothing is remembered, and nothing that ships is taken."""
+    with pytest.MonkeyPatch.context() as patch, keeping(on=False):
         patch.setattr(compiler, "answers_to", ASKED)
         patch.setattr(prefix_machines, "answers_to", ASKED)
         yield

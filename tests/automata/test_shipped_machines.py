@@ -75,12 +75,15 @@ def test_a_shipped_text_is_not_parsed(folder, monkeypatch):
     text = (shipped_caches.rulebooks_folder() / "esterle2019" / "esterle2019.rules").read_text()
     shutil.copy(rulebooks_folder() / "shipped.tree", folder)
     source = Source("a.rules", text)
+    monkeypatch.setattr(tree_cache, "parse", None)
+    assert tree_cache.parsed(source) == parse(source)
     with keeping():
-        monkeypatch.setattr(tree_cache, "parse", None)
         file, mistakes = tree_cache.parsed(source)
         assert (file, mistakes) == parse(source)
         with pytest.raises(TypeError):
             tree_cache.parsed(Source("a.rules", text + "\n"))
+    with keeping(on=False), pytest.raises(TypeError):
+        tree_cache.parsed(source)
     assert not (folder / "cache").exists()
 
 
@@ -104,8 +107,12 @@ def test_a_shipped_rulebook_is_not_compiled(folder, monkeypatch):
     shutil.copy(rulebooks_folder() / "shipped.machine", folder)
     rulebook = read_rulebook("esterle2019").rulebook
     monkeypatch.setattr(compiler, "answers_to", ASKED)
-    fresh = StepCompiler(rulebook).at_own_steps()
+    with keeping(on=False):
+        fresh = StepCompiler(rulebook).at_own_steps()
     monkeypatch.setattr(compiler, "_worker", None)
+    # Who imports rulec keeps nothing, but has what ships.
+    assert StepCompiler(rulebook).at_own_steps().rules == fresh.rules
+    assert not [*folder.rglob("*.machine")][1:]
     with keeping():
         shown = StepCompiler(rulebook).at_own_steps()
         assert shown.rules == fresh.rules

@@ -193,6 +193,17 @@ def test_a_junction():
     assert {state["turn"] for state in told} == {"straight_on"}
 
 
+def test_a_way_through_a_junction_may_begin_at_a_lanelet_that_a_cut_out_has_not():
+    lanes = [
+        straight(1, 0, 100, successors=("2",)),
+        straight(2, 100, 120, predecessors=("1",), types=frozenset({"intersection"})),
+        lanelet(5, [(110, -9), (110, 9)], predecessors=("99",), types=frozenset({"intersection"})),
+        zebra(),
+    ]
+    told = states(recording(lanes, [going(7, 84, 10.0, count=5)]), "7")
+    assert [state["junction_zone"] for state in told] == [False] * 2 + [True] * 3
+
+
 @pytest.mark.parametrize(("side", "turn"), [("right", "turn_far"), ("left", "turn_near")])
 def test_a_turn_to_the_left(side, turn):
     bend = [(100, 0), (104, 0.8), (107.6, 3), (110, 6.6), (110.8, 10.6)]

@@ -11,7 +11,7 @@ from rulec.batch import worker_pool
 from rulec.batch.batch_messages import process_lost
 from rulec.batch.jobs import Jobs, available_processors, chosen_jobs
 from rulec.batch.worker_pool import LostTask, in_order
-from rulec.cache.keeping import is_keeping, keeping
+from rulec.cache.keeping import recalled, recalling
 
 
 def squares(most, number):
@@ -137,12 +137,12 @@ def test_a_lost_process_is_said_of_its_file():
     assert "by signal 9" in found.message
 
 
-def _keeps(_):
-    yield is_keeping()
+def _recalls(_):
+    yield recalled()
 
 
-@pytest.mark.parametrize("on", [True, False])
-def test_what_is_kept_here_is_kept_there(on):
-    with keeping(on=on):
-        results = [result for _, result in in_order(_keeps, range(2), Jobs(2))]
-    assert results == [on, on]
+@pytest.mark.parametrize("what", ["all", "shipped", "none"])
+def test_what_is_recalled_here_is_recalled_there(what):
+    with recalling(what):
+        results = [result for _, result in in_order(_recalls, range(2), Jobs(2))]
+    assert results == [what, what]

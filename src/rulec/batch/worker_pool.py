@@ -15,7 +15,7 @@ from time import monotonic
 from typing import Generic, NoReturn, TypeVar
 
 from rulec.batch.jobs import Jobs
-from rulec.cache.keeping import is_keeping, keeping
+from rulec.cache.keeping import Recalled, recalled, recalling
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -110,7 +110,7 @@ class _Worker(Generic[Task, Result]):
         # A forked process would have locks of threads that are not in it.
         context = multiprocessing.get_context("spawn")
         self.connection, theirs = context.Pipe()
-        given = work, theirs, is_keeping()
+        given = work, theirs, recalled()
         self.process: BaseProcess = context.Process(target=_serve, args=given, daemon=True)
         self.process.start()
         theirs.close()
@@ -232,12 +232,12 @@ class _Pool(Generic[Task, Result]):
 def _serve(
     work: Callable[[Task], Iterator[Result]],
     connection: Connection,
-    keeps: bool,
+    what: Recalled,
 ) -> None:
-    """Do tasks until nobody is there to give any; what it ``keeps`` is as where it was started."""
+    """Do tasks until nobody is there to give any, recalling ``what`` those who started it do."""
     # What a task has begun, such as processes of its own, is ended with it.
     signal.signal(signal.SIGTERM, _leave)
-    with suppress(EOFError, OSError), keeping(on=keeps):
+    with suppress(EOFError, OSError), recalling(what):
         while True:
             task = connection.recv()
             try:

@@ -22,6 +22,12 @@ def test_a_map_is_of_the_united_states(tmp_path):
     assert road.complete == frozenset()
 
 
+def test_a_mark_of_the_order_of_bytes_is_none_of_the_map(tmp_path):
+    path = write_map(tmp_path)
+    path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
+    assert read_map(path, 0.1).lanelets.keys() == read_map(write_map(tmp_path), 0.1).lanelets.keys()
+
+
 def test_bounds_keep_their_points_and_have_as_many(lanelets):
     lane = lanelets["10"]
     assert lane.left.tolist() == [[0, 0], [30, 0], [60, 0]]

@@ -17,7 +17,7 @@ import msgspec
 from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.worker import compiler_choice
-from rulec.cache.keeping import is_keeping
+from rulec.cache.keeping import knows_shipped
 from rulec.cache.kept_bytes import KeptBytes
 from rulec.cache.shipped_bytes import ShippedBytes, shipped, shipped_key
 
@@ -56,7 +56,9 @@ class MachineCache:
         self._compiler = f"{choice} {_installed()}" if self._kept.can_be else None
         # Who chooses a compiler gets what it makes, and who has no Spot what the other one makes.
         is_usual = not compiler_choice.choice() and (choice or find_spec(compiler_choice.SPOT))
-        self._shipped = shipped(SHIPPED, MAKERS) if is_keeping() and is_usual else ShippedBytes({})
+        self._shipped = (
+            shipped(SHIPPED, MAKERS) if knows_shipped() and is_usual else ShippedBytes({})
+        )
         self._choice = choice
 
     def recalled(self, jobs: Sequence[Job]) -> tuple[list[Done | None], str | None]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from codecs import BOM_UTF8
 from pathlib import Path
 from typing import TypeVar
 
@@ -24,7 +25,7 @@ def read_json(path: Path, form: XmlFormat, kind: type[T]) -> T:
     if len(data) > form.largest_bytes:
         raise form.refused(path, f"it is larger than {form.largest_bytes:,} bytes")
     try:
-        return msgspec.json.decode(data, type=kind)
+        return msgspec.json.decode(data.removeprefix(BOM_UTF8), type=kind)
     except (msgspec.DecodeError, UnicodeDecodeError, ValueError) as reason:
         words = "".join(x if x.isprintable() else "?" for x in str(reason)[:200])
         raise form.refused(path, words) from None

@@ -28,7 +28,6 @@ from rulec.recordings.recording_messages import OTHER_NET
 from rulec.recordings.road_map import RoadMap
 from rulec.recordings.sumo.fcd import demand_beside, net_beside, read_fcd
 from rulec.recordings.sumo.fcd_content import FCD, MICROSECONDS, FcdTrack, FloatingCarData
-from rulec.recordings.sumo.fcd_table import read_fcd_table
 from rulec.recordings.sumo.lanelets import net_lanelets
 from rulec.recordings.sumo.light_states import (
     light_states_beside,
@@ -73,8 +72,7 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
     Raises RulecError R0610 for a file that cannot be read as what it should be, R0614 if there is
     no net, R0615 for another road's net, R0701 if a file cannot be opened.
     """
-    is_table = is_fcd_head(head_of(Glance(path)))
-    data = read_fcd_table(path) if is_table else read_fcd(path)
+    data = _content(path)
     if data.head.geographic:
         why = "its places are geographic, degrees of longitude and latitude"
         raise FCD.refused(path, why, help_text="have SUMO write them without --fcd-output.geo")
@@ -108,6 +106,15 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
         complete=COMPLETE - _TRAFFIC if data.head.leaves_out else COMPLETE,
         rounding=_rounding(data),
     )
+
+
+def _content(path: Path) -> FloatingCarData:
+    if not is_fcd_head(head_of(Glance(path))):
+        return read_fcd(path)
+    # What unpacks and reads tables: few of these files are any.
+    from rulec.recordings.sumo.fcd_table import read_fcd_table
+
+    return read_fcd_table(path)
 
 
 def read_sumo_map(path: Path, step_s: float) -> RoadMap:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 from contextlib import suppress
 
-from rulec.cache.keeping import is_keeping
+from rulec.cache.keeping import knows_shipped
 from rulec.cache.kept_bytes import KeptBytes
 from rulec.cache.shipped_bytes import shipped, shipped_key
 from rulec.diagnostics import Diagnostic, Source
@@ -32,7 +32,7 @@ MAKERS = (
 
 def parsed(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
     """What ``parse`` says of a text, from the cache if it is there, and kept there if not."""
-    if not is_keeping():
+    if not knows_shipped():
         return parse(source)
     known = _recalled(shipped(SHIPPED, MAKERS).recall(shipped_key(source.text)), source)
     if known is not None:
@@ -53,7 +53,7 @@ def parsed(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
 
 def ships_in_form(text: str) -> bool:
     """Tell whether a text is one that ships, and so is in form."""
-    return is_keeping() and shipped_key(text) in shipped(SHIPPED, MAKERS).keys
+    return knows_shipped() and shipped_key(text) in shipped(SHIPPED, MAKERS).keys
 
 
 def as_bytes(file: tree.File, source: Source) -> bytes:

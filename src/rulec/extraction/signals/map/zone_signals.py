@@ -151,7 +151,7 @@ def _crossings_over_lit_lanes(context: DriveContext) -> Recording:
         way.area
         for junction in context.surroundings.passages.junctions
         for way in junction.ways
-        if walkers and any(lanelets[entry].lights for entry in way.entries)
+        if walkers and any(lanelets[x].lights for x in way.entries if x in lanelets)
     ]
     area = shapely.union_all(lit)
     over = {name: x for name, x in walkers.items() if area.intersects(lanelet_area(x))}
@@ -170,7 +170,7 @@ def _junctions_with_lights_untold(context: DriveContext) -> Stretches:
     lit = [
         junction
         for junction in context.surroundings.passages.junctions
-        if any(known[entry].lights for way in junction.ways for entry in way.entries)
+        if any(known[x].lights for way in junction.ways for x in way.entries if x in known)
     ]
     names = {name for junction in lit for way in junction.ways for name in way.names}
     return [
