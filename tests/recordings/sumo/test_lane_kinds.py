@@ -70,7 +70,28 @@ def test_a_kilometre_before_there_are_none(tmp_path, length, known):
 
 def test_a_lane_that_ends_beside_others_is_none_of_those_that_go_on(tmp_path):
     found = kinds(tmp_path, edge("a", "x", "y", 2), edge("b", "y", "z", 1), lead("a", "b", (1, 0)))
-    assert found == {"b_0": "mainCarriageWay"}
+    assert found == dict.fromkeys(("a_1", "b_0"), "mainCarriageWay")
+
+
+def test_before_a_lane_of_a_motorway_ends_the_others_go_on(tmp_path):
+    """Three lanes, four beside a ramp, then two: nobody leaves, whichever lane ends."""
+    found = kinds(
+        tmp_path,
+        *(
+            edge("a", "x", "y", 3),
+            edge("on", "o", "y", 1, LINK),
+            edge("b", "y", "z", 4, length=300),
+        ),
+        *(edge("c", "z", "w", 3, length=300), edge("d", "w", "v", 2), lead("on", "b", (0, 0))),
+        lead("a", "b", (0, 1), (1, 2), (2, 3)),
+        *(lead("b", "c", (1, 0), (2, 1), (3, 2)), lead("c", "d", (0, 0), (1, 1))),
+    )
+    through = {f"{name}_{k}" for name, ks in (("a", "01"), ("b", "12"), ("c", "01")) for k in ks}
+    assert {key for key, kind in found.items() if kind == "mainCarriageWay"} == {
+        *through,
+        *("d_0", "d_1"),
+    }
+    assert found["b_0"] == "accessRamp"
 
 
 def test_lanes_that_join_and_leave(tmp_path):

@@ -86,7 +86,7 @@ def _trip(number, at, demand, net, pick):
     kind = _kind(demand.planted, pick)
     start, end = _ends(net, pick)
     lane = "best" if len(net.edges[start].lanes) < 3 else "random"
-    if kind == "left_hogger":
+    if kind == "left_hogger" and len(net.edges[start].lanes) == 3:
         lane = pick.choice(("1", "2"))
     words = f'departLane="{lane}" departSpeed="max" departPos="base"'
     name = f"{kind}.{number}"

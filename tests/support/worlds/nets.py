@@ -205,10 +205,37 @@ def _motorway(pick, lefthand):
     return {"nod": _nodes(nodes), "edg": _edges([f'id="a_b" from="a" to="b" {what}'])}
 
 
+def _merge(pick, lefthand):
+    """A carriageway of three lanes that a ramp joins, and the lane farthest from it ends later."""
+    first, beside, then = pick.randrange(350, 500), pick.randrange(200, 300), 500
+    places = {"a": 0, "b": first, "c": first + beside, "d": first + beside + then}
+    places["e"] = places["d"] + pick.randrange(400, 600)
+    aside = 80 if lefthand else -80
+    nodes = [f'id="{name}" x="{x}" y="0"' for name, x in places.items()]
+    nodes.append(f'id="r" x="{first - 350}" y="{aside}"')
+    what = 'speed="33.33" type="highway.motorway" priority="9"'
+    edges = [
+        f'id="{one}_{other}" from="{one}" to="{other}" numLanes="{lanes}" {what}'
+        for one, other, lanes in (("a", "b", 3), ("b", "c", 4), ("c", "d", 3), ("d", "e", 2))
+    ]
+    ramp = 'numLanes="1" speed="22.22" type="highway.motorway_link" priority="5"'
+    edges.append(f'id="r_b" from="r" to="b" {ramp}')
+    ways = [("r_b", "b_c", 0, 0), *(("a_b", "b_c", k, k + 1) for k in range(3))]
+    ways += [("b_c", "c_d", k + 1, k) for k in range(3)]
+    ways += [("c_d", "d_e", k, k) for k in range(2)]
+    rows = "".join(
+        f'<connection from="{one}" to="{other}" fromLane="{lane}" toLane="{on}"/>\n'
+        for one, other, lane, on in ways
+    )
+    rows = f"<connections>\n{rows}</connections>\n"
+    return {"nod": _nodes(nodes), "edg": _edges(edges), "con": rows}
+
+
 _PLAIN = {
     "priority": _priority("priority"),
     "priority_stop": _priority("priority_stop"),
     "roundabout": _roundabout,
     "zebra": _zebra,
     "motorway": _motorway,
+    "merge": _merge,
 }

@@ -32,6 +32,7 @@ def _kinds():
         yield WorldKind(name=f"roundabout{hand}", layout="roundabout", **junction)
         yield WorldKind(name=f"zebra{hand}", layout="zebra", demand=zebra, **more)
         yield WorldKind(name=f"motorway{hand}", layout="motorway", demand=motorway, **more)
+        yield WorldKind(name=f"merge{hand}", layout="merge", demand=motorway, **more)
     # In Britain nobody has priority at a junction without signs
     yield WorldKind(
         name="right_before_left", layout="right_before_left", demand=crowded, ends_s=65, book="de"

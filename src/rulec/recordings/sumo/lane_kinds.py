@@ -2,10 +2,10 @@
 
 A lane goes on where each lane of its road leads to one of the next road, for the next kilometre or
 up to the net's end: signs and arrows that send lanes to places of their own stand no earlier. A
-road of one lane needs none. Of a motorway lanes may come beside them and leave there, which send
-those that go on to no place of their own. Lanes join and leave where links do (``_link`` in the
-road's type); and a lane that comes from another road than those beside it, and ends, is there to
-join, whatever the types are.
+road of one lane needs none. Of a motorway lanes may come beside them, and leave or end there, which
+send those that go on to no place of their own. Lanes join and leave where links do (``_link`` in
+the road's type); and a lane that comes from another road than those beside it, and ends, is there
+to join, whatever the types are.
 """
 
 from __future__ import annotations
@@ -63,8 +63,7 @@ def lane_kinds(net: SumoNet, drivable: Set[str]) -> dict[str, str]:
                 kinds.update(dict.fromkeys(_from_joining(net, lane, edges, back), "accessRamp"))
         if motorway and not through and _LINK not in net.edges[edge].type:
             going_on = [lane for lane in lanes if kinds.get(lane) not in _RAMPS]
-            if _stays(net, going_on, onward):
-                kinds.update(dict.fromkeys(going_on, "mainCarriageWay"))
+            kinds.update(dict.fromkeys(_that_stay(net, going_on, onward), "mainCarriageWay"))
     return kinds
 
 
@@ -84,29 +83,37 @@ def _from_joining(net: SumoNet, lane: str, edges: _Lanes, back: _Lanes) -> list[
     return []
 
 
-def _stays(net: SumoNet, lanes: list[str], onward: _Lanes) -> bool:
-    """True if these lanes lead on beside each other, wherever others join them or leave."""
+def _that_stay(net: SumoNet, lanes: list[str], onward: _Lanes) -> list[str]:
+    """Those of these lanes that lead on beside each other, wherever others join, leave or end.
+
+    None where they lead to several roads.
+    """
     way, seen = 0.0, set[str]()
-    while lanes and way < _AHEAD_M and any(onward.get(lane) for lane in lanes):
-        following = {net.lanes[end].edge.id for lane in lanes for end in onward.get(lane, [])}
+    now = {lane: lane for lane in lanes}
+    while now and way < _AHEAD_M and any(onward.get(lane) for lane in now.values()):
+        now = {lane: at for lane, at in now.items() if onward.get(at)}
+        following = {net.lanes[end].edge.id for at in now.values() for end in onward[at]}
         if len(following) > 1:
-            return False
+            return []
         if following <= seen:
             break
         seen |= following
-        lanes = _beside_each_other(net, lanes, onward)
-        way += float(np.hypot(*np.diff(net.lanes[lanes[0]].shape, axis=0).T).sum()) if lanes else 0
-    return bool(lanes)
+        after = _beside_each_other(net, [*now.values()], onward)
+        now = {lane: after[at] for lane, at in now.items() if at in after}
+        if now:
+            shape = net.lanes[next(iter(now.values()))].shape
+            way += float(np.hypot(*np.diff(shape, axis=0).T).sum())
+    return list(now)
 
 
-def _beside_each_other(net: SumoNet, lanes: list[str], onward: _Lanes) -> list[str]:
+def _beside_each_other(net: SumoNet, lanes: list[str], onward: _Lanes) -> dict[str, str]:
     """The lanes to which these lead, one each, the farthest from the kerb; none if one has none."""
-    found: list[str] = []
+    found: dict[str, str] = {}
     for lane in sorted(lanes, key=lambda name: -net.lanes[name].index):
-        after = [end for end in onward.get(lane, []) if end not in found]
+        after = [end for end in onward.get(lane, []) if end not in found.values()]
         if not after:
-            return []
-        found.append(max(after, key=lambda name: net.lanes[name].index))
+            return {}
+        found[lane] = max(after, key=lambda name: net.lanes[name].index)
     return found
 
 

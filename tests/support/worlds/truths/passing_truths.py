@@ -9,7 +9,7 @@ _QUEUE_M, _QUEUE = 110.0, 3
 _SLOW_MPS = 17.0
 """A queue beside which one may pass goes at 60 km/h at most, 16.7 m/s."""
 
-_NEARER_M, _BESIDE_M, _ALIKE = 0.9, 6.0, 0.7
+_NEARER_M, _BESIDE_M, _ALIKE = 0.9, 10.0, 0.7
 _ABOUT_M = 0.5
 """Where two are so nearly level nobody can say whether they are."""
 
@@ -59,10 +59,18 @@ def _passes(world, track, other):
         if not nearer[around].any() and not moves:
             continue
         sure = nearer[around].all() and not moves and not to_the_end
-        sure &= begin * world.step_s >= _SEEN_S
+        sure &= begin * world.step_s >= _SEEN_S and not _on_ramp(world, track, own, around)
         sure &= (begin, end) in level and not _in_queues(world, track, other, first + begin)
         at = ((first + begin - 10) * world.step_s, (first + end + 10) * world.step_s)
         yield Fact(track.id, "near_side_passing", *at, bool(sure), other.id)
+
+
+def _on_ramp(world, track, own, around):
+    """True if one is on a lane to join from, on which one may be faster: it leads no farther."""
+    starts = {link.start for link in world.net.links.values()}
+    goes_on = {world.net.lanes[lane].edge for lane in starts}
+    lanes = set(track.lane[own][around])
+    return any(lane not in starts and world.net.lanes[lane].edge in goes_on for lane in lanes)
 
 
 def _past_junctions(world, one, another, same):
