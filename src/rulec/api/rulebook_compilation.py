@@ -107,6 +107,12 @@ def compile_rulebook(
         return reference if step is None else reference.at_step(step)
     from rulec.automata.compiler import lower
     from rulec.automata.step_compilation import StepCompiler, build_automata
+    from rulec.rulebook.rulebook_model import Rulebook
+
+    if not isinstance(reference, Rulebook):
+        raise TypeError(
+            f"rules are a rulebook's name, its path, or a Rulebook, not {type(reference).__name__}"
+        )
 
     return build_automata(lower(reference, step, any_step=any_step), StepCompiler(reference))
 

@@ -79,7 +79,7 @@ class RulebookQuestions(RulebookVerbs):
         first: str | Path,
         second: str | Path,
         *,
-        patterns: Sequence[str] = (),
+        patterns: str | Sequence[str] = (),
         step_s: Fraction | float | None = None,
         witnesses: int = 1,
         paired: Mapping[str, str] | None = None,
@@ -106,7 +106,7 @@ class RulebookQuestions(RulebookVerbs):
         diff = diff_rulebooks(
             first=book.rulebook,
             second=second_book.rulebook,
-            patterns=patterns,
+            patterns=(patterns,) if isinstance(patterns, str) else patterns,
             step_s=None if step_s is None else exact_step(step_s),
             tell=on_progress,
             most=witnesses,

@@ -109,12 +109,17 @@ class RulebookVerbs(SessionSettings):
         """
         from rulec.code_generation.monitor_files import write_monitor
 
+        if language not in ("c", "rust", "ros2"):
+            raise ValueError(f'the language is "c", "rust" or "ros2", not {language!r}')
         compiled = self._compiled(rules)
         paths = write_monitor(compiled, Path(folder), objects or {}, prove=prove, language=language)
         return tuple(paths)
 
     def write_ltl(
-        self, reference: str | Path, folder: str | Path, step_s: float | Fraction | None = None
+        self,
+        reference: str | Path | Rulebook,
+        folder: str | Path,
+        step_s: float | Fraction | None = None,
     ) -> tuple[Path, ...]:
         """Write a rulebook's formulas in LTL, for Spot, PRISM and nuXmv; the paths.
 
@@ -126,7 +131,7 @@ class RulebookVerbs(SessionSettings):
         from rulec.ltl_export.ltl_files import write_ltl
 
         step = None if step_s is None else exact_step(step_s)
-        rulebook = self.load_rulebook(reference)
+        rulebook = self.load_rulebook(reference) if isinstance(reference, str | Path) else reference
         return tuple(write_ltl(rulebook, lower(rulebook, step), Path(folder)))
 
     def verify_compiled(self, path: str | Path) -> tuple[RuleProof, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from datetime import date
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -32,6 +33,13 @@ class SessionSettings:
     search_path: Sequence[str | Path] = ()
     at: str = ""
     on_warning: Callable[[Sequence[Diagnostic]], object] = field(default=ignore, repr=False)
+
+    def __post_init__(self) -> None:
+        if self.at:
+            try:
+                date.fromisoformat(self.at)
+            except ValueError:
+                raise ValueError(f"`{self.at}` is no day such as 2026-01-31") from None
 
     def _warn(self, diagnostics: Sequence[Diagnostic]) -> None:
         if diagnostics:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, get_args
 
 from rulec.api.session_settings import SessionSettings
 
@@ -95,7 +95,13 @@ class TraceVerbs(SessionSettings):
         Raises RulecError R0751 if there is no compiler.
         """
         from rulec.monitoring.batch.batch_verify import verify_many
+        from rulec.trace import Trace
 
+        if isinstance(traces, Trace | str | Path):
+            raise TypeError(
+                f"verify_many takes several traces, not {type(traces).__name__}: "
+                "rulec.read_traces(path) yields those of a file, rulec.verify judges one"
+            )
         if assumptions is not None:
             traces = (assumptions.of([item])[0] for item in traces)
         if engine == "c":
@@ -196,7 +202,13 @@ class TraceVerbs(SessionSettings):
                 step than the world's.
         """
         from rulec.scoring.score import score
+        from rulec.scoring.traffic_world import TrafficWorld
 
+        if not isinstance(world, TrafficWorld):
+            raise TypeError(
+                f"the world is a TrafficWorld, not {type(world).__name__}: "
+                "rulec.TrafficWorld(recording, ego)"
+            )
         return score(candidates, world, self._compiled(rules), after)
 
     def find(
@@ -246,7 +258,7 @@ class TraceVerbs(SessionSettings):
     def rates_of_findings(
         self,
         findings: str | Path | Sequence[str | Path],
-        by: Sequence[GroupKey] = (),
+        by: GroupKey | Sequence[GroupKey] = (),
         *,
         confidence: float = 0.95,
         seed: int = 0,
@@ -260,8 +272,15 @@ class TraceVerbs(SessionSettings):
             RulecError: R0701, R0706, R0715 if drives were judged differently, R0716 for what has
                 none, R0717 without the extra ``rates``.
         """
+        from rulec.rates.drive_counts import GroupKey as Known
         from rulec.rates.rates_of_findings import rates_of_findings
 
+        by = (by,) if isinstance(by, str) else by
+        known = get_args(Known)
+        if unknown := [name for name in by if name not in known]:
+            raise ValueError(f"drives are told apart by {', '.join(known)}, not by {unknown[0]!r}")
+        if not 0 < confidence < 1:
+            raise ValueError(f"the confidence is between 0 and 1, such as 0.95, not {confidence}")
         paths = [findings] if isinstance(findings, str | Path) else findings
         return rates_of_findings([*map(str, paths)], by, confidence=confidence, seed=seed)
 

@@ -44,6 +44,12 @@ class RequestedDrives:
     as_recorded: bool = False
     defaults: bool = False
 
+    def __post_init__(self) -> None:
+        # One alone, and ids that are numbers in the file
+        given: object = self.egos
+        egos = (given,) if isinstance(given, str | int) else self.egos
+        object.__setattr__(self, "egos", tuple(map(str, egos)))
+
 
 @dataclass(slots=True)
 class SelectedDrives:

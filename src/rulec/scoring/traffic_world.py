@@ -47,6 +47,11 @@ class TrafficWorld:
     )
 
     def __post_init__(self) -> None:
+        if not isinstance(self.recording, Recording):
+            raise TypeError(
+                f"the recording is a Recording, not {type(self.recording).__name__}: "
+                "rulec.read_recording(path) reads one"
+            )
         name = self.ego or self.recording.ego
         known = {body.id: body for body in self.recording.participants if body.states}
         if name not in known or known[name].standing:

@@ -46,6 +46,8 @@ def as_bytes(drawing: Drawing, form: str, file: str, theme: Theme = "auto") -> b
 
     Raises RulecError: R0707 if a PNG or PDF cannot be made.
     """
+    if form not in ("svg", "png", "pdf", "html"):
+        raise ValueError(f'the form is "svg", "png", "pdf" or "html", not {form!r}')
     if form == "html":
         return (drawing.page(theme) if drawing.page else _as_page(drawing)).encode()
     width = max(picture.width for picture in drawing.pictures)
