@@ -15,6 +15,8 @@ FOLLOWING = "docs/samples/following.xml"
         (lambda: rulec.verify(TRACE, 3), TypeError, "a Rulebook, not int"),
         (lambda: rulec.verify_many("a.jsonl", "esterle2019"), TypeError, "read_traces"),
         (lambda: rulec.verify_many(TRACE, "esterle2019"), TypeError, "several traces, not Trace"),
+        (lambda: rulec.find("CONGESTED", [TRACE], TRACE), TypeError, "name or path, not Trace"),
+        (lambda: rulec.find("CONGESTED", {"track": [1]}), TypeError, "not dict: .*from_columns"),
         (lambda: rulec.TrafficWorld(FOLLOWING), TypeError, "read_recording"),
         (lambda: rulec.score([], None, "esterle2019"), TypeError, "a TrafficWorld, not NoneType"),
         (lambda: rulec.rates_of_findings("a", by="raod"), ValueError, "country, road, .*'raod'"),

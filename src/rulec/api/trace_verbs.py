@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, get_args
 
@@ -215,7 +215,7 @@ class TraceVerbs(SessionSettings):
         self,
         formula: str,
         drives: str | Path | Recording | Iterable[Trace | RulecError],
-        rulebook: str = "",
+        rulebook: str | Path = "",
         wanted: RequestedDrives | None = None,
         map_path: str | Path | None = None,
         *,
@@ -241,7 +241,17 @@ class TraceVerbs(SessionSettings):
         from rulec.recordings.recording_format import RecordingSource
         from rulec.rulebook.formula_query import read_query
 
-        words = {"rulebook": rulebook, "vocabulary": vocabulary}
+        if not isinstance(rulebook, str | Path):
+            raise TypeError(
+                f"find takes a rulebook's name or path, not {type(rulebook).__name__}: "
+                "its text may be in a file"
+            )
+        if isinstance(drives, Mapping):
+            raise TypeError(
+                f"drives are a file, a Recording or traces, not {type(drives).__name__}: "
+                "rulec.recording_from_columns(tracks, lanes) makes a recording"
+            )
+        words = {"rulebook": str(rulebook), "vocabulary": vocabulary}
         query = read_query(formula, **words, search_path=self.search_path, at=self.at)
         request = wanted or RequestedDrives()
         if isinstance(drives, Recording):
