@@ -135,6 +135,19 @@ def test_signs_of_who_goes_first_hold_until_ego_drives_in(drawn, signs, name):
     assert not found[-1]
 
 
+def test_a_sign_within_a_junction_does_not_hold_up_to_the_next_one():
+    """As on the way onto a ring that has a junction for each of its roads."""
+    lanes = road(None)
+    lanes[1] = replace(lanes[1], signs=frozenset({"YIELD"}))
+    lanes[2] = straight(3, 120, 130, predecessors=(2,), successors=(4,))
+    lanes += [
+        straight(4, 130, 150, predecessors=(3,), successors=(5,), types=INSIDE, junction="z"),
+        straight(5, 150, 300, predecessors=(4,)),
+    ]
+    ego = context(lanes, 105, 117, 121, 124, 130, route=("1", "2", "3", "4", "5"))
+    assert map_signals(ego).world["give_way_sign"].tolist() == [True, True, True, False, False]
+
+
 def test_signs_do_not_hold_up_to_a_junction_far_behind_their_line():
     lanes = road(75.0, ["YIELD"])
     found = map_signals(context(lanes, 60, 72, 76, 90, 102)).world["give_way_sign"]

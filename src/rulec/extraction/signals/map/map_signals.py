@@ -40,6 +40,8 @@ _SIGNS: Mapping[str, tuple[Set[str], bool]] = {
 _SIGN_REACH_M = 20.0
 """The junction whose ways a sign is about begins so near behind its line."""
 
+_HAIR_M = 0.01
+
 _OVERRULED = ("give_way_sign", "stop_sign")
 _AT_WORK = ("green_light", "amber_light", "red_light")
 """What signs say who goes first, and lights that come before them."""
@@ -136,18 +138,23 @@ def _holds_to_line(context: DriveContext, signs: Set[str], *, of_junction: bool)
             begins = float(context.road.borders[piece])
             for lane in distinct(context.ego_lane).tolist():
                 if signs & context.road.lanelet(piece, lane).signs:
-                    _, line = stop_line(context, piece, lane)
+                    first, line = stop_line(context, piece, lane)
                     if of_junction:
-                        line = _next_junction(context, line)
+                        line = max(line, _next_junction(context, first))
                     there = (before >= begins) & (before <= line)
                     holds |= there & (context.ego_lane == lane)
     return holds
 
 
 def _next_junction(context: DriveContext, line: float) -> float:
-    """Where the junction behind a line begins on ego's road, or the line if none is near."""
-    begins = [low for low, _ in context.road.junctions if 0.0 <= low - line <= _SIGN_REACH_M]
-    return min(begins, default=line)
+    """Where the junction behind a line begins on ego's road, or the line if none is near.
+
+    A line within a junction, or at its end, is of that one.
+    """
+    if any(low + _HAIR_M < line < high + _HAIR_M for low, high in context.road.junctions):
+        return line
+    behind = [low for low, _ in context.road.junctions if line <= low + _HAIR_M]
+    return min((low for low in behind if low - line <= _SIGN_REACH_M), default=line)
 
 
 def crossings_told(context: DriveContext) -> bool:
