@@ -30,8 +30,8 @@ def pieces(
     """
     offset = stream.tell()
     for lines in _in_lines(stream):
-        fits = len(lines) <= LONGEST_ROW and _is_plain(lines)
-        piece = _parsed(lines, columns) if fits else None
+        n_lines = _plain_lines(lines) if len(lines) <= LONGEST_ROW else None
+        piece = _parsed(lines, n_lines, columns) if n_lines else None
         if piece is None:
             stream.seek(offset)
             yield rows_from(stream, number)
@@ -56,33 +56,34 @@ def _in_lines(stream: IO[bytes]) -> Iterator[bytes]:
         yield b"".join(rest)
 
 
-def _is_plain(lines: bytes) -> bool:
-    """Test that Arrow and the csv module would cut the lines alike."""
+def _plain_lines(lines: bytes) -> int | None:
+    """The number of lines, None if Arrow and the csv module might not cut them alike."""
     if lines.startswith((b"\n", b"\r", b"\xef\xbb\xbf")) or b"\0" in lines:
-        return False
+        return None
     has_returns = b"\r" in lines
     if has_returns and (lines.count(b"\r") != lines.count(b"\r\n") or b"\n\r\n" in lines):
-        return False
+        return None
     begin, end = int(lines.startswith(b'"')), int(lines.endswith(b'"'))
     end += lines.count(b'"\r\n') if has_returns else 0
-    n_quotes = 0
+    n_quotes, n_lines = 0, int(not lines.endswith(b"\n"))
     whole = np.frombuffer(lines, np.uint8)
     # In pieces that stay near to the processor; each begins with the last byte of the one before.
     for start in range(0, len(whole), _NEAR_BYTES):
         text = whole[start : start + _NEAR_BYTES + 1]
         ends_row, quotes = text == ord("\n"), text == ord('"')
         if (ends_row[1:] & ends_row[:-1]).any():
-            return False  # a blank line
+            return None  # a blank line
+        n_lines += np.count_nonzero(ends_row[:_NEAR_BYTES])
         n_quotes += np.count_nonzero(quotes[:_NEAR_BYTES])
         if n_quotes:
             separates = ends_row | (text == ord(","))
             begin += np.count_nonzero(quotes[1:] & separates[:-1])
             end += np.count_nonzero(quotes[:-1] & separates[1:])
     # Every quote begins or ends a cell.
-    return begin == end and begin + end == n_quotes
+    return n_lines if begin == end and begin + end == n_quotes else None
 
 
-def _parsed(lines: bytes, columns: Sequence[str]) -> Piece | None:
+def _parsed(lines: bytes, n_lines: int, columns: Sequence[str]) -> Piece | None:
     """The cells as texts; None if there is something wrong with them."""
     try:
         table = csv.read_csv(
@@ -106,7 +107,7 @@ def _parsed(lines: bytes, columns: Sequence[str]) -> Piece | None:
     except pyarrow.ArrowException:
         return None
     (piece,) = table.combine_chunks().to_batches(max_chunksize=len(table))
-    if len(piece) != lines.count(b"\n") + (not lines.endswith(b"\n")):
+    if len(piece) != n_lines:
         return None  # there are lines within quotes
     longest = max(int(lengths_in(column).max(initial=0)) for column in piece.columns)
     return piece if longest <= _LONGEST_CELL else None
