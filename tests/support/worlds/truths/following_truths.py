@@ -24,6 +24,9 @@ _STANDS_MPS = 0.3
 _HEADWAY_S = {"gb": 2.0, "fr": 2.0}
 """Where the law counts seconds instead."""
 
+_LEAVES_MPS = {"fr": 0.8}
+"""Where it asks of who follows, and one that is faster by 3 km/h is not followed but leaves."""
+
 
 def needed(book, speed, leading):
     """The gap (m) in which who reacts after a second still stops behind the other."""
@@ -55,6 +58,7 @@ def following_facts(world):
         short = np.where(led, needed(world.book, speed, leading) - gap, -np.inf)
         steady = led & surely_led & ~world.changing[track.id]
         steady &= ~_leader_changing(world, track)
+        steady &= leading - speed < _LEAVES_MPS.get(world.book, np.inf)
         steady[: round(_FALLS_BACK_S / world.step_s)] = False
         steady &= ~_stops_behind(world, speed, leading, gap)
         possible = (short > -_PERHAPS_M) | _beside_short(world, track)
