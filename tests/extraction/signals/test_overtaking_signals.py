@@ -103,6 +103,21 @@ def test_who_had_to_brake_regains_its_speed(before, known):
     assert found.unknown["being_overtaken"][at] == (not known)
 
 
+@pytest.mark.parametrize("complete", [(), ("arrivals",)])
+@pytest.mark.parametrize(
+    ("first_s", "gained", "known"), [(4, 0.5, False), (12, 0.5, True), (4, 0.0, True)]
+)
+def test_who_gains_speed_may_have_braked_before_it_was_seen(first_s, gained, known, complete):
+    """Ego goes at 16 m/s for so long, and gains 1 m/s2 then, or nothing."""
+    at = 2 * first_s + 2
+    places = runs([16.0] * (at - 2) + [16.0 + gained * k for k in range(8)])
+    passes = {k: (places[at][0] + (k - at) * 11.0, 4.0) for k in range(at - 4, at + 6)}
+    found = recording(lanes(2), [vehicle(7, places), vehicle(8, passes)])
+    signals = overtaking_signals(context_of(replace(found, complete=frozenset(complete))))
+    assert signals.world["being_overtaken"][at]
+    assert signals.unknown["being_overtaken"][at] == (not (known or complete))
+
+
 @pytest.mark.parametrize(("ago_s", "known"), [(4, False), (12, True)])
 def test_who_has_turned_into_a_road_gets_up_speed_yet(ago_s, known):
     """Ego turns right at 8 m/s, and drives on beside one at 15 m/s."""

@@ -104,7 +104,7 @@ def _being_overtaken(context: DriveContext) -> SignalColumns:
     dense, surely, not_told = dense_lines(context)
     # Lanes that move off beside each other do not overtake, and who has joined gets up speed yet
     joined = _was(context, on_ramp) | _was(context, _comes_round(context))
-    moot = _sets_off(context) | _recovers(context) | joined | not_told
+    moot = _sets_off(context) | _recovers(context) | _may_recover(context) | joined | not_told
     # Where all lanes queue, one that is faster does not overtake (Vienna, Art. 11(6)(a))
     return SignalColumns(
         {"being_overtaken": ~dense & overtaken},
@@ -128,6 +128,20 @@ def _recovers(context: DriveContext) -> Flags:
     fastest = context.spans.most_of_last(speed, steps)
     recovers: Flags = speed + context.tolerances.speed_mps < fastest
     return recovers
+
+
+def _may_recover(context: DriveContext) -> Flags:
+    """Flags of states in which ego accelerates so soon after it was first seen.
+
+    It may have had to brake, or have joined, before. Where all traffic is recorded nobody did.
+    """
+    spans, own = context.spans, context.ego
+    if "arrivals" in context.recording.complete:
+        return np.zeros(context.states, dtype=bool)
+    seen_s = (spans.columns - spans.first) * context.recording.step_s
+    gains = own.acceleration[0] > context.thresholds.accelerating_mps2
+    may: Flags = gains & (seen_s < context.thresholds.setting_off_s)
+    return may
 
 
 def _comes_round(context: DriveContext) -> Flags:
