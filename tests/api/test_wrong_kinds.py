@@ -24,6 +24,18 @@ FOLLOWING = "docs/samples/following.xml"
         (lambda: rulec.write_monitor("esterle2019", "a", language="java"), ValueError, "'java'"),
         (lambda: rulec.draw_drive(FOLLOWING, "de", form="gif"), ValueError, "not 'gif'"),
         (lambda: rulec.load_rulebook("de", at="yesterday"), ValueError, "no day such as"),
+        (lambda: rulec.verify(TRACE, "esterle2019", {"ends": 1}), TypeError, "Assumptions, not"),
+        (lambda: rulec.verify_many([TRACE], "esterle2019", {}), TypeError, "Assumptions, not dict"),
+        (lambda: rulec.find_maneuvers("s2", "de", assumptions="cut"), TypeError, "not str"),
+        (lambda: rulec.verify_recording(FOLLOWING, "de", {}), TypeError, "RequestedDrives, not"),
+        (lambda: rulec.find("CONGESTED", FOLLOWING, wanted={}), TypeError, "RequestedDrives, not"),
+        (lambda: rulec.draw_drive(FOLLOWING, "de", wanted="1"), TypeError, "RequestedDrives, not"),
+        (lambda: rulec.draw("x"), TypeError, "is drawn, not str"),
+        (lambda: rulec.Assumptions(ends="maybe"), ValueError, "not 'maybe'"),
+        (lambda: rulec.Assumptions(values="built_up"), TypeError, "a mapping of names, not str"),
+        (lambda: rulec.Thresholds(near_m=-1), ValueError, "`near_m` is a number from 0 .*not -1"),
+        (lambda: rulec.Thresholds(near_m="1"), ValueError, "not '1'"),
+        (lambda: rulec.Thresholds(near_m=float("nan")), ValueError, "not nan"),
     ],
 )
 def test_a_wrong_kind_is_said(call, error, said):

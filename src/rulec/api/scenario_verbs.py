@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from rulec.api.argument_kinds import ASSUMPTIONS, expect
 from rulec.api.session_settings import SessionSettings
 
 if TYPE_CHECKING:
@@ -65,6 +66,7 @@ class ScenarioVerbs(SessionSettings):
         from rulec.monitoring.assumptions import Assumptions
         from rulec.planning import SceneReading, evaluate, partition_for
 
+        expect(assumptions, Assumptions, ASSUMPTIONS)
         reading = SceneReading(assumptions or Assumptions(), told_only)
         compiled = self._compiled(rules)
         options["partition"] = partition_for(compiled, options.get("partition"))
@@ -139,6 +141,7 @@ class ScenarioVerbs(SessionSettings):
         """
         from rulec.api import pictures
         from rulec.partition import NavigationGraph
+        from rulec.planning import Maneuvers
         from rulec.report.pictures.drawing.picture_formats import as_bytes
         from rulec.trace import Trace
 
@@ -147,6 +150,11 @@ class ScenarioVerbs(SessionSettings):
                 raise TypeError("a trace is drawn as rules read it: give them")
             used = self._compiled(rules).fitted_to(subject.step_s)
             return as_bytes(pictures.trace_drawing(subject, used), form, subject.id)
+        if not isinstance(subject, NavigationGraph | Maneuvers):
+            raise TypeError(
+                f"a navigation graph, maneuvers or a trace is drawn, not {type(subject).__name__}: "
+                "rulec.navigation_graph(scenario) makes one"
+            )
         draw = pictures.graph_drawing if as_graph else pictures.scene_drawing
         if isinstance(subject, NavigationGraph):
             drawing = draw(subject, None, maneuver)

@@ -104,6 +104,14 @@ class Thresholds:
     together_s: float = 1.0
     """Who reach a junction within so long reach it at the same time."""
 
+    def __post_init__(self) -> None:
+        for own in fields(self):
+            given: object = getattr(self, own.name)
+            is_number = isinstance(given, int | float) and not isinstance(given, bool)
+            if not (is_number and 0 <= given <= LARGEST):  # type: ignore[operator]
+                message = f"`{own.name}` is a number from 0 to {LARGEST:,.0f}, not {given!r}"
+                raise ValueError(message)
+
 
 USUAL = Thresholds()
 

@@ -33,6 +33,15 @@ class Assumptions:
     defaults: bool = False
     step_s: float | None = None
 
+    def __post_init__(self) -> None:
+        if self.ends not in (None, "complete", "cut"):
+            raise ValueError(f'a trace ends "complete" or "cut", not {self.ends!r}')
+        if not isinstance(self.values, Mapping):
+            raise TypeError(
+                f"values are a mapping of names, not {type(self.values).__name__}: "
+                '{"built_up": True}'
+            )
+
     def __bool__(self) -> bool:
         given = self.ends is not None or self.step_s is not None
         return given or bool(self.values) or self.defaults

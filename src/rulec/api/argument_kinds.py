@@ -1,0 +1,13 @@
+"""Whether what verbs are given is of the kind that they take."""
+
+from __future__ import annotations
+
+
+def expect(given: object, kind: type, way_out: str) -> None:
+    """Raise TypeError, with what to give instead, for what is neither of a kind nor None."""
+    if given is not None and not isinstance(given, kind):
+        raise TypeError(f"expected {kind.__name__}, not {type(given).__name__}: {way_out}")
+
+
+ASSUMPTIONS = 'rulec.Assumptions(ends="cut")'
+WANTED = 'rulec.RequestedDrives(egos=["12"])'
