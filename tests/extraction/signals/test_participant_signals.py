@@ -431,7 +431,7 @@ def test_the_gap_to_one_that_is_lost_as_it_goes_aside_is_moot(drift, unknown):
     assert signals.unknown["safe_gap"][0, 2] == unknown
 
 
-@pytest.mark.parametrize(("drift", "unknown"), [(0.5, True), (-0.5, True), (0.2, False)])
+@pytest.mark.parametrize(("drift", "unknown"), [(0.5, True), (-0.5, True), (0.05, False)])
 def test_the_gap_to_one_that_begins_to_go_aside_and_is_lost_is_moot(drift, unknown):
     """It is seen up to 2.5 s, 1 m farther aside, and has 2.5 s more for the second metre."""
     places = {k: (10 + 2.5 * k, drift * max(k - 3, 0)) for k in range(6)}
@@ -439,6 +439,28 @@ def test_the_gap_to_one_that_begins_to_go_aside_and_is_lost_is_moot(drift, unkno
     signals = participant_signals(context_of(recording([straight(1, -100, 300, 0, 8.0)], bodies)))
     assert not signals.about["safe_gap"][0, 2]
     assert signals.unknown["safe_gap"][0, 2] == unknown
+
+
+@pytest.mark.parametrize(
+    ("across", "other_mps", "lost", "unknown"),
+    [
+        (0.25, 5.0, "other", True),
+        (0.25, 5.0, "both", True),
+        (0.25, 10.0, "other", False),
+        (0.1, 5.0, "other", False),
+    ],
+)
+def test_who_closes_in_and_goes_aside_may_have_changed_lanes_unseen(
+    across, other_mps, lost, unknown
+):
+    """Ego is at 10 m/s; they are seen together for 1 s of the 4 s in which they may part."""
+    last = 2
+    ego = {k: (5 * k, across * k / 2) for k in range(last + 1 if lost == "both" else 10)}
+    ahead = {k: (10 + other_mps / 2 * k, 0.0) for k in range(last + 1)}
+    bodies = [vehicle(7, ego, speed=10.0), vehicle(8, ahead, speed=other_mps)]
+    signals = participant_signals(context_of(recording(lanes(2), bodies)))
+    assert not signals.about["safe_gap"][0, 0]
+    assert signals.unknown["safe_gap"][0, 0] == unknown
 
 
 @pytest.mark.parametrize(("aside", "unknown"), [(1.5, True), (1.1, False)])

@@ -30,6 +30,12 @@ from rulec.trace.plain_arrays import distinct
 
 _AWAY_MPS = 0.3
 
+_DRIFT_MPS = 0.2
+"""Who moves sideways by less keeps its lane."""
+
+_MOVES_OFF_MPS2 = 1.0
+"""Who changes lanes gains speed sideways so hard at most, about."""
+
 _BRIEF_S = 1.0
 
 _OUTLIERS = 3.0
@@ -102,8 +108,9 @@ def parts_soon(context: DriveContext, cells: tuple[NDArray[intp], ...]) -> Flags
 
     Or who are clear of ego at its side then, as on a broad lane; or who are lost from sight before,
     and go aside by ``_AWAY_MPS``, or do so from each other when they are seen last, such that they
-    may be clear of each other then. Where ways part in a junction nobody is clear of one that stops
-    before.
+    may be clear of each other then; if ego closes in on them, also where they go aside by
+    ``_DRIFT_MPS``, and a change of lanes may have them clear. Where ways part in a junction nobody
+    is clear of one that stops before.
     """
     horizon = round(context.thresholds.parting_s / context.recording.step_s)
     (pairs, places), others, own = pair_states(context, cells), context.extents, context.ego_extents
@@ -121,11 +128,14 @@ def parts_soon(context: DriveContext, cells: tuple[NDArray[intp], ...]) -> Flags
         parts |= spans.next_state(apart & inside, horizon) <= np.minimum(stopped, until)
     middles = others.d_min[at] + others.d_max[at], own.d_min[0, columns] + own.d_max[0, columns]
     side = np.sign(middles[0] - middles[1])
-    gone = spans.next_state(~seen, horizon)
+    gone = spans.next_state(~seen)
     last = np.clip(gone - 1, spans.first, spans.end - 1)
     away = ((others.across[at] - own.across[0, columns]) * side)[last]
     still, left_s = way_across[last], (until - last) * context.recording.step_s
     swings_out = (away >= _AWAY_MPS) & (still + away * left_s > -context.tolerances.place_m)
+    closes_in = (own.along[0, columns] - others.along[at])[last] > context.tolerances.speed_mps
+    moved = still + away * left_s + _MOVES_OFF_MPS2 / 2 * left_s**2
+    swings_out |= closes_in & (away > _DRIFT_MPS) & (moved > context.thresholds.touching_m)
     lost = gone <= np.minimum(np.where(inside[last], stopped, until), until)
     parts |= seen & lost & ((others.across[at] * side >= _AWAY_MPS) | swings_out)
     found: Flags = parts[places]
