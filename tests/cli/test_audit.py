@@ -205,8 +205,16 @@ def test_the_treaty_and_a_country(capsys):
     status, out, err = run(capsys, "vienna", "at", "--examples", *fatal)
     assert (status, err) == (0, "")
     assert "\nprovisions cited in at, and the rules they are in\n" in out
-    # The railways' law, which says it in Austria, was not read.
-    assert "\n  Art. 11(8)(b) " in out.split("\nat: ")[1].split("\nprovisions cited in vienna")[1]
+    # The railways' law, which says it in Austria, and nothing of the treaty alone.
+    own = out.split("\nat: ")[1]
+    assert "\n  Eisenbahnkreuzungsverordnung 2012 § 96(1) Z 1, 2 " in own
+    assert "\nprovisions cited in vienna" not in own
+
+
+def test_provisions_of_the_treaty_that_a_country_inherits(capsys):
+    status, out, err = run(capsys, "it")
+    assert (status, err) == (0, "")
+    assert "\n  Art. 17(1) " in out.split("\nprovisions cited in vienna")[1]
 
 
 def test_a_compiled_rulebook_is_not_enough(folder, capsys):
