@@ -79,3 +79,11 @@ def test_drives_agree_or_are_unlike():
     assert not spans.agreed([0, []])
     with pytest.raises(UnlikeDrivesError):
         spans.agreed([True, False])
+
+
+def test_nothing_is_within_less_than_no_steps():
+    """As where the time to look back is shorter than half a step, less the state itself."""
+    spans, flags = EndToEnd((0, 2, 5)), np.array([True, False, True, True, False])
+    assert not spans.within(flags, -1).any()
+    assert not spans.within_last(flags, -1).any()
+    assert spans.within(flags, 0).tolist() == flags.tolist()

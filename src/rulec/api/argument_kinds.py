@@ -9,5 +9,5 @@ def expect(given: object, kind: type, way_out: str) -> None:
         raise TypeError(f"expected {kind.__name__}, not {type(given).__name__}: {way_out}")
 
 
-ASSUMPTIONS = 'rulec.Assumptions(ends="cut")'
-WANTED = 'rulec.RequestedDrives(egos=["12"])'
+ASSUMPTIONS_EXAMPLE = 'rulec.Assumptions(ends="cut")'
+REQUEST_EXAMPLE = 'rulec.RequestedDrives(egos=["12"])'

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from rulec.api.argument_kinds import ASSUMPTIONS, expect
+from rulec.api.argument_kinds import ASSUMPTIONS_EXAMPLE, expect
 from rulec.api.session_settings import SessionSettings
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ class ScenarioVerbs(SessionSettings):
         from rulec.monitoring.assumptions import Assumptions
         from rulec.planning import SceneReading, evaluate, partition_for
 
-        expect(assumptions, Assumptions, ASSUMPTIONS)
+        expect(assumptions, Assumptions, ASSUMPTIONS_EXAMPLE)
         reading = SceneReading(assumptions or Assumptions(), told_only)
         compiled = self._compiled(rules)
         options["partition"] = partition_for(compiled, options.get("partition"))

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, get_args
 
-from rulec.api.argument_kinds import ASSUMPTIONS, WANTED, expect
+from rulec.api.argument_kinds import ASSUMPTIONS_EXAMPLE, REQUEST_EXAMPLE, expect
 from rulec.api.session_settings import SessionSettings
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ class TraceVerbs(SessionSettings):
                 "rulec.read_traces(path) yields; recorded traffic goes to "
                 "rulec.verify_recording(path, rules)"
             )
-        expect(assumptions, Assumptions, ASSUMPTIONS)
+        expect(assumptions, Assumptions, ASSUMPTIONS_EXAMPLE)
         if assumptions is not None:
             trace = assumptions.applied(trace)
         return verify(trace, self._compiled(rules))
@@ -106,7 +106,7 @@ class TraceVerbs(SessionSettings):
                 f"verify_many takes several traces, not {type(traces).__name__}: "
                 "rulec.read_traces(path) yields those of a file, rulec.verify judges one"
             )
-        expect(assumptions, Assumptions, ASSUMPTIONS)
+        expect(assumptions, Assumptions, ASSUMPTIONS_EXAMPLE)
         if assumptions is not None:
             traces = (assumptions.of([item])[0] for item in traces)
         if engine == "c":
@@ -180,7 +180,7 @@ class TraceVerbs(SessionSettings):
                 f"a recording or its file is judged, not {type(recording).__name__}: "
                 "rulec.recording_from_columns(tracks, lanes) makes one of a data frame"
             )
-        expect(wanted, RequestedDrives, WANTED)
+        expect(wanted, RequestedDrives, REQUEST_EXAMPLE)
         file = recording if isinstance(recording, str | Path) else recording.name
         if isinstance(recording, str | Path):
             recording = self.read_recording(recording, map_path)
@@ -257,7 +257,7 @@ class TraceVerbs(SessionSettings):
                 f"drives are a file, a Recording or traces, not {type(drives).__name__}: "
                 "rulec.recording_from_columns(tracks, lanes) makes a recording"
             )
-        expect(wanted, RequestedDrives, WANTED)
+        expect(wanted, RequestedDrives, REQUEST_EXAMPLE)
         words = {"rulebook": str(rulebook), "vocabulary": vocabulary}
         query = read_query(formula, **words, search_path=self.search_path, at=self.at)
         request = wanted or RequestedDrives()
@@ -331,7 +331,7 @@ class TraceVerbs(SessionSettings):
         from rulec.extraction.selection import RequestedDrives
         from rulec.report.pictures.drawing.picture_formats import as_bytes
 
-        expect(wanted, RequestedDrives, WANTED)
+        expect(wanted, RequestedDrives, REQUEST_EXAMPLE)
         vehicle, part, _ = ego.partition("#")
         request = replace(wanted or RequestedDrives(), egos=(vehicle,) if vehicle else ())
         verdicts = self.verify_recording(recording, rules, request, map_path)

@@ -114,14 +114,14 @@ class EndToEnd:
         """Flags that hold at a state or at most ``steps`` states later, or also earlier."""
         if not flags.any():
             return flags
-        soon: _Flags = flags.copy()
+        soon: _Flags = flags & (steps >= 0)
         for shift, is_inside in self._shifts(steps):
             soon[..., :-shift] |= soon[..., shift:] & is_inside
         return soon | self.within_last(flags, steps) if around else soon
 
     def within_last(self, flags: _Flags, steps: int) -> _Flags:
         """Flags that hold at a state or at most ``steps`` states before it."""
-        held: _Flags = flags.copy()
+        held: _Flags = flags & (steps >= 0)
         for shift, is_inside in self._shifts(steps):
             held[..., shift:] |= held[..., :-shift] & is_inside
         return held

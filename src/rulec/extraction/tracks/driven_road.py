@@ -38,7 +38,7 @@ _FEWEST_CORNERS = 20
 
 _HAIR_M = 0.01
 
-LED_M = 10.0
+TURN_REACH_M = 10.0
 """Where no map marks junctions, by crossing lanelets, ways have begun to turn so far before them.
 
 What crosses others is often no more than the middle of a turn.
@@ -55,7 +55,7 @@ class DrivenRoad:
     Piece ``i`` lies from ``borders[i]`` to ``borders[i + 1]``; ``rows[i]`` are the lanelets beside
     each other there, a lane each, from the right, None where the map has none; ``own_lanes[i]`` is
     the one along which the road leads. ``crossings`` are pedestrian crossings and ``junctions``
-    junctions, from where to where along the road, which the map has ``marked`` or not.
+    junctions, from where to where along the road; ``junctions_marked``: has the map marked them?
     ``meets_itself``: is a place beside several pieces, as on a ring?
     """
 
@@ -66,7 +66,7 @@ class DrivenRoad:
     lanes: Lanes
     crossings: tuple[tuple[float, float], ...]
     junctions: tuple[tuple[float, float], ...]
-    marked: bool
+    junctions_marked: bool
     meets_itself: bool = False
 
     def lanelet(self, piece: int, lane: int) -> Lanelet:
@@ -98,10 +98,10 @@ class DrivenRoad:
         By its directions so far aside of them, or where it comes to a junction that nobody marked.
         """
         low, high = start - aside_m, end + aside_m
-        if not self.marked:
+        if not self.junctions_marked:
             before, after = self.piece(np.array([low, high])).tolist()
-            low = min(low, max(start - LED_M, float(self.borders[before])))
-            high = max(high, min(end + LED_M, float(self.borders[after + 1])))
+            low = min(low, max(start - TURN_REACH_M, float(self.borders[before])))
+            high = max(high, min(end + TURN_REACH_M, float(self.borders[after + 1])))
         return float(turn(*self.line.headings_at(np.array([low, high])).tolist()))
 
     def piece(self, s: Floats) -> NDArray[intp]:
@@ -132,7 +132,7 @@ class DrivenRoads:
     def __init__(self, recording: Recording, junctions: Set[str]) -> None:
         self._recording = recording
         self._junctions = junctions
-        self._marked = are_marked(recording)
+        self._marks_junctions = marks_junctions(recording)
         self._layouts: dict[tuple[tuple[str, ...], ...], _Layout] = {}
         self._roads: dict[tuple[_Layout, tuple[int, ...]], DrivenRoad] = {}
 
@@ -174,7 +174,7 @@ class DrivenRoads:
                 crossings_along(recording, layout.line, layout.lanes, 0.0, layout.line.length)
             ),
             junctions=tuple(runs_along(borders, [number in self._junctions for number in entries])),
-            marked=self._marked,
+            junctions_marked=self._marks_junctions,
             meets_itself=_meets_itself([recording.lanelets[number] for number in entries], borders),
         )
 
@@ -260,7 +260,7 @@ def runs_along(borders: Floats, flags: Sequence[bool]) -> Iterator[tuple[float, 
             yield float(borders[run[0]]), float(borders[run[-1] + 1])
 
 
-def are_marked(recording: Recording) -> bool:
+def marks_junctions(recording: Recording) -> bool:
     """True if a recording's map marks junctions, or says that all are marked."""
     lanes = filter(is_lane, recording.lanelets.values())
     return "junctions" in recording.complete or any("intersection" in x.types for x in lanes)
@@ -273,7 +273,7 @@ def junction_lanelets(recording: Recording) -> frozenset[str]:
     says that all are marked.
     """
     lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
-    if not lanes or are_marked(recording):
+    if not lanes or marks_junctions(recording):
         return frozenset(lanelet.id for lanelet in lanes if "intersection" in lanelet.types)
     lines = [shapely.LineString(lanelet.centre) for lanelet in lanes]
     firsts, seconds = shapely.STRtree(lines).query(lines, predicate="crosses")

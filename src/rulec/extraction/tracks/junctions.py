@@ -11,7 +11,7 @@ from itertools import pairwise, takewhile
 import numpy as np
 import shapely
 
-from rulec.extraction.tracks.driven_road import LED_M, are_marked, junction_lanelets
+from rulec.extraction.tracks.driven_road import TURN_REACH_M, junction_lanelets, marks_junctions
 from rulec.recordings.recording import (
     ALL_STOP,
     REGULATING,
@@ -39,14 +39,14 @@ Interval = tuple[float, float]
 class JunctionWay:
     """A way through a junction: lanelets end to end, from the one before it to the one after.
 
-    ``entries`` and ``exits`` are the lanelets before and after it. ``led``: the directions (rad) in
-    which the road comes to it and goes on, where these are not those of its ends.
+    ``entries`` and ``exits`` are the lanelets before and after it. ``road_headings``: the
+    directions (rad) in which the road comes and goes on, where these are not those of its ends.
     """
 
     lanelets: tuple[Lanelet, ...]
     entries: frozenset[str]
     exits: frozenset[str]
-    led: tuple[float, float] | None = None
+    road_headings: tuple[float, float] | None = None
 
     @cached_property
     def line(self) -> shapely.LineString:
@@ -68,7 +68,7 @@ class JunctionWay:
     @property
     def turned(self) -> float:
         """The angle (rad) by which it turns to the left."""
-        return float(turn(*(self.led or self.headings)))
+        return float(turn(*(self.road_headings or self.headings)))
 
     @property
     def names(self) -> frozenset[str]:
@@ -169,11 +169,13 @@ def junctions_of(recording: Recording) -> tuple[Junction, ...]:
     told = bool(recording.complete & REGULATING) or any(
         lanelet.signs & REGULATING for lanelet in recording.lanelets.values()
     )
-    junctions, marked = [], are_marked(recording)
+    junctions, marked = [], marks_junctions(recording)
     for name, lanelets in members.items():
         ways = tuple(_ways({lanelet.id: lanelet for lanelet in lanelets}))
         if not marked:
-            ways = tuple([replace(way, led=_led(recording, way)) for way in ways])
+            ways = tuple(
+                [replace(way, road_headings=_road_headings(recording, way)) for way in ways]
+            )
         regulated = _regulated(recording, lanelets, ways)
         if regulated is None and told and not _may_be_regulated(recording, ways):
             regulated = False
@@ -221,14 +223,14 @@ def _ways(members: Mapping[str, Lanelet]) -> Iterator[JunctionWay]:
                     yield JunctionWay(chain, frozenset(entries), frozenset(exits))
 
 
-def _led(recording: Recording, way: JunctionWay) -> tuple[float, float]:
-    """The directions (rad) of the road ``LED_M`` before and behind a way, or at its ends."""
+def _road_headings(recording: Recording, way: JunctionWay) -> tuple[float, float]:
+    """The directions (rad) of the road ``TURN_REACH_M`` before and behind a way, or at its ends."""
     first, last, known = way.lanelets[0], way.lanelets[-1], recording.lanelets
     begins, ends = way.headings
     for entry in [known[x].centre for x in first.predecessors if x in known][:1]:
-        begins = _heading_from(entry[::-1], LED_M) + np.pi
+        begins = _heading_from(entry[::-1], TURN_REACH_M) + np.pi
     for exit_ in [known[x].centre for x in last.successors if x in known][:1]:
-        ends = _heading_from(exit_, LED_M)
+        ends = _heading_from(exit_, TURN_REACH_M)
     return begins, ends
 
 

@@ -19,6 +19,7 @@ from rulec.recordings.sumo.fcd_content import (
     LONGEST_ID,
     MICROSECONDS,
     NOWHERE,
+    PLACE,
     FcdHead,
     FcdTrack,
     FloatingCarData,
@@ -26,8 +27,7 @@ from rulec.recordings.sumo.fcd_content import (
 )
 from rulec.recordings.sumo.plain_fcd import read_plain_fcd
 
-_PLACE = ("x", "y", "angle", "speed")
-_place_of = itemgetter(*_PLACE)
+_place_of = itemgetter(*PLACE)
 
 
 def read_fcd(path: Path) -> FloatingCarData:
@@ -109,7 +109,7 @@ def _add(data: FloatingCarData, element: XmlElement) -> None:
 
 def _wrong(element: XmlElement) -> RulecError:
     element.text("id")
-    for key in _PLACE:
+    for key in PLACE:
         element.number(key)
     element.number("acceleration", 0.0)
     raise AssertionError("one of these is not a number")

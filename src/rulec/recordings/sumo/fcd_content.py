@@ -19,6 +19,9 @@ LONGEST_ID = 200
 MICROSECONDS = 1_000_000
 """In a second: moments are whole numbers of them."""
 
+PLACE = ("x", "y", "angle", "speed")
+"""What is said of everybody."""
+
 NOWHERE = -(2.0**30)
 """What SUMO writes for x and y of who is in no place, as while it is moved elsewhere."""
 

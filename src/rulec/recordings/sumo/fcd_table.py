@@ -22,12 +22,12 @@ from rulec.recordings.sumo.fcd_content import (
     LONGEST_ID,
     MICROSECONDS,
     NOWHERE,
+    PLACE,
     FcdTrack,
     FloatingCarData,
 )
 
 _TIME = "timestep_time"
-_PLACE = ("x", "y", "angle", "speed")
 _MORE = ("acceleration", "signals")
 _TEXTS = ("id", "type", "lane", "edge", "vehicle")
 
@@ -36,7 +36,7 @@ def read_fcd_table(path: Path) -> FloatingCarData:
     """The table's content. Raises RulecError R0610 if it is none, R0701, R0706."""
     table = open_table(path, FCD)
     kinds = [kind for kind in sorted(BODIES) if f"{kind}_id" in table.names]
-    needed = [f"{kind}_{name}" for kind in kinds for name in _PLACE]
+    needed = [f"{kind}_{name}" for kind in kinds for name in PLACE]
     for name in (_TIME, *needed):
         if name not in table.names:
             raise table.refused(f"it has no column `{name}`")
@@ -76,13 +76,13 @@ def _add(
     if carrier is not None:
         # Who rides in a vehicle is a part of it
         rows = rows[~np.array([bool(carrier.names[code]) for code in carrier.codes[rows]])]
-    place = np.stack([columns.numbers[f"{kind}_{name}"][rows] for name in _PLACE], axis=-1)
+    place = np.stack([columns.numbers[f"{kind}_{name}"][rows] for name in PLACE], axis=-1)
     is_there = ~(place[:, :2] == NOWHERE).all(axis=1)
     rows, place = rows[is_there], place[is_there]
     odd = np.argwhere(~(np.abs(place) < LARGEST))
     if odd.size:
         row, name = odd[0].tolist()
-        raise columns.wrong(int(rows[row]), f"its column `{kind}_{_PLACE[name]}` holds no number")
+        raise columns.wrong(int(rows[row]), f"its column `{kind}_{PLACE[name]}` holds no number")
     twice = np.flatnonzero(np.diff(at[rows]) == 0)
     if twice.size:
         why = f"`{short(key)}` is twice in one time step"

@@ -66,8 +66,11 @@ def test_what_depends_on_the_direction_has_no_value():
     """One that comes towards it is neither ahead nor behind, by the road's direction."""
     drive = only(recording(carriageways(), [westward(7), eastward(8, 100)]))
     for state in drive.trace.states:
-        for name in ("ahead_for", "stopped", "lane", "light", "lane_change", "limit"):
-            value = state.get(name, UNKNOWN)
+        directed = {"ahead_for", "stopped", "lane", "light", "lane_change", "crosses_stop_line"}
+        told = directed & state.keys()
+        assert {"lane", "light"} <= told, told
+        for name in told:
+            value = state[name]
             assert UNKNOWN in (value, *(value.values() if isinstance(value, dict) else ())), name
 
 

@@ -81,16 +81,15 @@ def _states_against(
         states, numbers = tree.query(points, predicate="dwithin", distance=_GAP_M)
         headings = tracks.heading[rows, columns]
         motions = np.arctan2(tracks.vy[rows, columns], tracks.vx[rows, columns])
-        of_lane = [np.flatnonzero(numbers == number) for number in range(len(lanes))]
         against = np.zeros(len(states), dtype=bool)
-        for lanelet, own in zip(lanes, of_lane, strict=True):
-            if len(own):
-                at = states[own]
-                against[own] = _leads_against(lanelet, points[at], headings[at], motions[at])
-        for state, number, leads in zip(
-            states.tolist(), numbers.tolist(), against.tolist(), strict=True
-        ):
-            near.setdefault(state, []).extend([lanes[number]] if leads else [])
+        order = np.argsort(numbers, kind="stable")
+        begins = np.flatnonzero(np.diff(numbers[order], prepend=-1))
+        for own in np.split(order, begins[1:]) if len(order) else ():
+            at = states[own]
+            lanelet = lanes[int(numbers[own[0]])]
+            against[own] = _leads_against(lanelet, points[at], headings[at], motions[at])
+        for state, number in zip(states[against].tolist(), numbers[against].tolist(), strict=True):
+            near.setdefault(state, []).append(lanes[number])
     one_way = _surely(recording, [lanelet for own in near.values() for lanelet in own], is_one_way)
     one_way -= _drawn_the_other_way(recording, rows, near, matched)
     lanelets = {
