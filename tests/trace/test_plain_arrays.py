@@ -7,7 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.trace.plain_arrays import distinct, median, medians, medians_hold, sorted_in
+from rulec.trace.plain_arrays import (
+    distinct,
+    median,
+    medians,
+    medians_hold,
+    quantile,
+    sorted_in,
+)
 
 
 @pytest.mark.parametrize("numbers", [[], [3], [2, 1, 2], [[5, 1], [1, 5]], [0.5, -0.0, 0.0]])
@@ -18,6 +25,16 @@ def test_distinct_numbers_are_those_of_numpy(numbers):
 @pytest.mark.parametrize("numbers", [[3], [2.5, 1], [4, 1, 3], [0.1, 0.3, 0.2, 0.7], [1, np.nan]])
 def test_the_median_is_that_of_numpy(numbers):
     assert median(np.array(numbers)) == pytest.approx(np.median(numbers), abs=0.0, nan_ok=True)
+
+
+@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=12), st.floats(0, 1))
+def test_quantiles_are_those_of_numpy(numbers, share):
+    wanted = np.quantile(numbers, share)
+    assert quantile(np.array(numbers), share) == pytest.approx(wanted, rel=1e-9, abs=1e-9)
+
+
+def test_what_is_no_number_has_no_quantile():
+    assert np.isnan(quantile(np.array([1.0, np.nan]), 0.5))
 
 
 @given(st.lists(st.tuples(st.integers(0, 9), st.integers(-3, 3)), max_size=60), st.booleans())

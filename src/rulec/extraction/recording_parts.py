@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Participant, Recording, StatedError, WholeRecording
-from rulec.recordings.track import TrackOutlines
+from rulec.recordings.track import TrackOutlines, TrackStates
+from rulec.trace.plain_arrays import median
 from rulec.value_display import short_repr
 
 MOST_CELLS = 3 << 17
@@ -165,18 +166,27 @@ def _noise_m(recording: Recording) -> float:
     bodies = [body for body in _moving(recording) if "vehicle" in body.object_types]
     sizes = [_third_differences(body) for body in bodies[:: len(bodies) // _TRACKS + 1]]
     every = np.concatenate([np.empty(0), *sizes])
-    return float(np.median(every)) * _OF_MEDIAN / _THIRD if len(every) >= _ENOUGH else 0.0
+    return median(every) * _OF_MEDIAN / _THIRD if len(every) >= _ENOUGH else 0.0
 
 
 def _third_differences(body: Participant) -> NDArray[np.float64]:
     """The sizes of the third differences of a participant's first places, along both axes."""
-    steps = [*islice(body.states, _STATES)]
-    states = (body.states[step] for step in steps)
-    places = np.array([(state.x, state.y) for state in states]).reshape(-1, 2)
-    in_turn = np.array(steps[3:]) - np.array(steps[:-3]) == 3
+    steps, places = _first_places(body)
+    in_turn = steps[3:] - steps[:-3] == 3
     moves = np.hypot(*(places[3:] - places[:-3]).T) > _MOVES_M
     sizes: NDArray[np.float64] = np.abs(np.diff(places, 3, axis=0)[in_turn & moves]).ravel()
     return sizes
+
+
+def _first_places(body: Participant) -> tuple[NDArray[intp], NDArray[np.float64]]:
+    """A participant's first steps, and where it is in each (m, a row each)."""
+    if isinstance(body.states, TrackStates):
+        track = body.states.track
+        return track.steps[:_STATES], track.rows[:_STATES, :2]
+    steps = [*islice(body.states, _STATES)]
+    states = (body.states[step] for step in steps)
+    places = np.array([(state.x, state.y) for state in states]).reshape(-1, 2)
+    return np.array(steps, dtype=intp), places
 
 
 def _in_the_middle(stated: Iterable[StatedError]) -> StatedError:

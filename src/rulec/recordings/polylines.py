@@ -7,6 +7,7 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.recordings.recording import Points
+from rulec.trace.plain_arrays import distinct
 
 _SHARPEST = 0.5
 """Where the line turns back on itself its border would run away; so far it may, at most."""
@@ -52,7 +53,7 @@ def parallel_line(points: Points, offset: float | NDArray[float64]) -> Points:
 def paired(line: Points, other: Points) -> tuple[Points, Points]:
     """Two lines side by side with a point for each of both's, at equal parts of their lengths."""
     parts = [_parts(line), _parts(other)]
-    at = np.unique(np.concatenate(parts))
+    at = distinct(np.concatenate(parts))
     at = at[np.append(True, np.diff(at) > _ONE)]
     # The ends are both's, however close a point is
     at[0], at[-1] = 0.0, 1.0

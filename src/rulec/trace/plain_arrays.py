@@ -52,6 +52,20 @@ def median(values: NDArray[Any]) -> float:
     return float(ascending[(len(ascending) - 1) // 2] + ascending[middle]) / 2
 
 
+def quantile(values: NDArray[Any], share: float) -> float:
+    """The number that a share of those in an array are below, of which there is one at least.
+
+    Between two of them it is on the line through both; NaN if one is.
+    """
+    ascending = np.sort(values, axis=None)
+    if np.isnan(ascending[-1]):
+        return float(ascending[-1])
+    place = share * (len(ascending) - 1)
+    below = min(int(place), len(ascending) - 1)
+    low, high = ascending[below], ascending[min(below + 1, len(ascending) - 1)]
+    return float(low + (high - low) * (place - below))
+
+
 def in_order(groups: NDArray[np.intp]) -> NDArray[np.intp]:
     """The places of whole numbers in ascending order; equal ones stay in theirs."""
     # Small ones are sorted in linear time

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rulec.recordings.recording import Lanelet, Recording, is_lane
 from rulec.recordings.track import Track
+from rulec.trace.plain_arrays import median, quantile
 
 _HIGHEST_KMH = 162.0
 """No sign says more: 160 km/h is the highest limit of a country's roads."""
@@ -29,6 +30,9 @@ _EVERY_S = 1.0
 
 _ROUND_MPS = 5.0
 _ALMOST_MPS = 0.005
+_FAST = 0.9
+"""A vehicle is fast where it drives as fast as in its fastest tenth of places, or faster."""
+
 _RAILS = frozenset({"rail", "tram"})
 
 
@@ -45,15 +49,16 @@ def limit_doubts(recording: Recording, tracks: Sequence[Track]) -> Iterator[str]
     if len(tracks) < _FEWEST_FAST:
         return
     most, least = _shares(tracks, recording.step_s, lanes, limits)
-    if len(most) >= _FEWEST_FAST and np.median(most) > _TOO_FAST:
+    if len(most) >= _FEWEST_FAST and (usual := median(np.array(most))) > _TOO_FAST:
         yield (
-            f"half of the vehicles drive {np.median(most):.2g} times the limit or faster: limits "
+            f"half of the vehicles drive {usual:.2g} times the limit or faster: limits "
             "may be in another unit, such as mph or m/s in the place of km/h"
         )
     is_round = (np.abs(limits - np.round(limits / _ROUND_MPS) * _ROUND_MPS) < _ALMOST_MPS).all()
-    if is_round and len(least) >= _FEWEST_SLOW and np.percentile(least, 90) < _TOO_SLOW:
+    fast = quantile(np.array(least), _FAST) if least else np.inf
+    if is_round and len(least) >= _FEWEST_SLOW and fast < _TOO_SLOW:
         yield (
-            f"nine in ten vehicles drive {np.percentile(least, 90):.2g} times the limit or slower, "
+            f"nine in ten vehicles drive {fast:.2g} times the limit or slower, "
             "and limits are whole numbers of m/s: they may be in km/h or mph"
         )
 
@@ -86,5 +91,5 @@ def _shares(
         np.minimum.at(lowest, rows, limits[lane])
         on = highest > 0
         for found, limit in zip(shares, (highest, lowest), strict=True):
-            found.append(float(np.percentile(speeds[on] / limit[on], 90)))
+            found.append(quantile(speeds[on] / limit[on], _FAST))
     return shares

@@ -14,6 +14,7 @@ from rulec.recordings.doubts.limit_doubts import limit_doubts
 from rulec.recordings.doubts.road_doubts import road_doubts
 from rulec.recordings.recording import Recording
 from rulec.recordings.track import Track, TrackStates
+from rulec.trace.plain_arrays import median
 
 _MOST_BODIES = 60
 _FEWEST_BODIES = 3
@@ -43,7 +44,7 @@ def with_doubts(recording: Recording, refused: Callable[[str], RulecError]) -> R
     recording = replace(recording, remarks=(*recording.remarks, *doubts)) if doubts else recording
     if len(tracks) < _FEWEST_BODIES:
         return recording
-    angle = float(np.median([_askew_deg(track) for track in tracks]))
+    angle = median(np.array([_askew_deg(track) for track in tracks]))
     if angle > _ACROSS_DEG:
         why = (
             f"headings do not fit the motion: vehicles move {angle:.0f}° away from them in the "
@@ -70,13 +71,13 @@ def _tracks(recording: Recording) -> list[Track]:
 def _doubts(tracks: list[Track], recording: Recording, angle: float) -> Iterator[str]:
     if angle > _ASKEW_DEG:
         yield f"vehicles move {angle:.0f}° off their headings, which may be in degrees"
-    fastest = float(np.median([_mean_mps(track, recording.step_s) for track in tracks]))
+    fastest = median(np.array([_mean_mps(track, recording.step_s) for track in tracks]))
     if fastest > _FASTEST_MPS:
         yield (
             f"half of the vehicles move at {fastest * 3.6:,.0f} km/h or more: columns, or units of "
             "times or places, may be wrong"
         )
-    ratio = float(np.median([_speed_ratio(track, recording.step_s) for track in tracks]))
+    ratio = median(np.array([_speed_ratio(track, recording.step_s) for track in tracks]))
     # Tables have said so themselves, of all their rows
     told = any(remark.startswith(_SPEEDS) for remark in recording.remarks)
     if ratio > 0 and not 1 / _ALIKE <= ratio <= _ALIKE and not told:

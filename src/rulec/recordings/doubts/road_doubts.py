@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +14,7 @@ from rulec.diagnostics import SourceLocation
 from rulec.recordings.recording import Lanelet, Participant, Points, Recording, is_lane
 from rulec.recordings.recording_messages import OTHER_NET
 from rulec.recordings.track import Track, TrackStates
+from rulec.trace.plain_arrays import distinct
 
 NEAR_M = 50.0
 """Somebody in a recording is no farther from its roads than this."""
@@ -116,28 +117,36 @@ class _Roads:
         self._tree = shapely.STRtree([shapely.Polygon(line).buffer(0) for line in outlines])
         self._middles = [one.centre for one in lanes]
 
-    def shares(self, bodies: Iterable[Moves]) -> tuple[float, float]:
+    def shares(self, bodies: Sequence[Moves]) -> tuple[float, float]:
         """Of the places of each body those on a lane, and on one along it, in the mean."""
-        found = np.array([self._of_one(moves) for moves in bodies])
-        on, along = found.mean(axis=0).tolist()
-        return on, along
-
-    def _of_one(self, moves: Moves) -> tuple[float, float]:
+        moves = np.concatenate(bodies)
         rows, lanes = self._tree.query(shapely.points(moves[:, :2]), predicate="intersects")
-        along = {
-            row
-            for row, lane in zip(rows.tolist(), lanes.tolist(), strict=True)
-            if _leads(self._middles[lane], moves[row])
-        }
-        return len(np.unique(rows)) / len(moves), len(along) / len(moves)
+        on, along = np.zeros((2, len(moves)), dtype=bool)
+        on[rows] = True
+        for lane in distinct(lanes).tolist():
+            there = rows[lanes == lane]
+            along[there] |= _leads(self._middles[lane], moves[there])
+        begins = np.cumsum([0, *map(len, bodies[:-1])])
+        sizes = np.array([*map(len, bodies)])
+        on_share, along_share = (
+            float((np.add.reduceat(flags, begins, dtype=np.intp) / sizes).mean())
+            for flags in (on, along)
+        )
+        return on_share, along_share
 
 
-def _leads(middle: Points, move: NDArray[float64]) -> bool:
-    """Does a lane lead where somebody goes, where it is nearest?"""
+def _leads(middle: Points, moves: Moves) -> NDArray[np.bool_]:
+    """Flags of moves that a lane leads along, where it is nearest to each."""
     ways = np.diff(middle, axis=0)
-    at = int(np.argmin(np.hypot(*(middle[:-1] + ways / 2 - move[:2]).T)))
-    cross = ways[at, 0] * move[3] - ways[at, 1] * move[2]
-    return bool(abs(np.arctan2(cross, ways[at] @ move[2:])) < _ASTRAY)
+    x, y = (middle[:-1] + ways / 2).T
+    away = np.hypot(x - moves[:, :1], y - moves[:, 1:2])
+    way_x, way_y = ways[away.argmin(axis=1)].T
+    cross, dot = (
+        way_x * moves[:, 3] - way_y * moves[:, 2],
+        way_x * moves[:, 2] + way_y * moves[:, 3],
+    )
+    leads: NDArray[np.bool_] = np.abs(np.arctan2(cross, dot)) < _ASTRAY
+    return leads
 
 
 def _moves(track: Track) -> Moves:
@@ -145,7 +154,7 @@ def _moves(track: Track) -> Moves:
     places = track.rows[:, :2]
     driven = np.append(0.0, np.hypot(*np.diff(places, axis=0).T).cumsum())
     rows = np.searchsorted(driven, np.linspace(0.0, driven[-1], _MOST_PLACES))
-    some = places[np.unique(rows)]
+    some = places[distinct(rows)]
     return np.column_stack((some[:-1], np.diff(some, axis=0)))
 
 
