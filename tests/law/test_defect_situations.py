@@ -24,6 +24,7 @@ GREEN_TURN = {
     "crossing_kind": "directed_crossing",
     "crossing_use": {"p": "on_crossing"},
     "crosses_side_road": {"p": True},
+    "station": {"p": "behind"},
     "speed": 15,
 }
 
