@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from rulec.extraction.signals.conduct.next_lane_signals import next_lane_signals
+from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of, steady, told_on_both_sides
 from support.builders.recordings import lanelet, recording, straight, vehicle
@@ -17,6 +18,12 @@ def signals(lanes, *bodies, route=("1",), **thresholds):
     """The words, unknown ones as "?", which are the same in the mirror."""
     found = recording(lanes, bodies, step_s=STEP_S)
     return told_on_both_sides(next_lane_signals, found, route, **thresholds)
+
+
+def lanes_of(lanes, *bodies):
+    """Which lane ego is in (0 at the kerb, 2 farthest), and how many more than one there are."""
+    found = told_on_both_sides(ego_signals, recording(lanes, bodies, step_s=STEP_S), ("1",))
+    return int(found["lane"][0]), int(found["lanes"][0])
 
 
 def ego(x=0.0, mps=10.0, steps=4, y=0.0):
@@ -160,6 +167,24 @@ def test_a_hard_shoulder_is_no_lane_beside_ego():
     assert signals(two_lanes(), ego(100), slow)["other_lane_available"][0] == "True"
     left = [straight(1, 0, 600, left_of=2), replace(road[1], types=road[0].types)]
     assert signals(left, ego(100), slow)["other_lane_available"][0] == "False"
+
+
+def test_a_lane_for_cycles_is_none_for_a_car():
+    """Beside one lane ego's is the only one; between two there is none to go to at once."""
+    cycles, behind = frozenset({"bicycleLane"}), steady(9, 0, 4, 10.0)
+    one = [straight(1, 0, 600, left_of=2, types=cycles), straight(2, 0, 600, 4, right_of=1)]
+    assert lanes_of(one, ego(100, y=4), behind) == (0, 0)
+    rider = replace(ego(100, y=4), type="bicycle")
+    assert lanes_of(one, rider, behind) == (2, 1)
+    assert signals(one, rider, behind)["near_lane_is_free"][0] == "True"
+    turning = [
+        straight(1, 0, 600, left_of=2),
+        straight(2, 0, 600, 4, right_of=1, left_of=3, types=cycles),
+        straight(3, 0, 600, 8, right_of=2),
+    ]
+    others = (ego(100, y=8), steady(9, 0, 8, 10.0))
+    assert lanes_of(turning, *others) == (2, 1)
+    assert signals(turning, *others)["near_lane_is_free"][0] == "False"
 
 
 @pytest.mark.parametrize(("x", "free"), [(197, "True"), (199, "?")])

@@ -17,8 +17,8 @@ from rulec.recordings.recording import Lanelet
 
 _Value = TypeVar("_Value")
 
-SHOULDER = "shoulder"
-"""The type of a hard shoulder."""
+SHOULDER, CYCLE_LANE = "shoulder", "bicycleLane"
+"""The types of hard shoulders, and of lanes for cycles alone."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -100,22 +100,32 @@ def map_contents(context: DriveContext) -> MapContents:
 def travel_lanes(context: DriveContext) -> Flags:
     """Flags of the lanes (second axis) beside ego that are there to be driven on, by state.
 
-    All that exist but hard shoulders, which are no part of the carriageway, and what is beyond
-    these, which is another one, as a road beside the main one.
+    All that exist but hard shoulders, which are no part of the carriageway, what is beyond these,
+    which is another one, as a road beside the main one, and lanes for cycles, unless ego is one.
     """
-    if SHOULDER not in map_contents(context).types:
-        return context.existing_lanes
-    rows = context.road.rows
-    of_pieces = np.array([[x is not None and SHOULDER in x.types for x in row] for row in rows])
-    shoulders = of_pieces[context.road.piece(context.ego_extents.s[0])]
+    types, travel = map_contents(context).types, context.existing_lanes
+    if CYCLE_LANE in types:
+        travel = travel & ~(
+            _lanes_of(context, CYCLE_LANE) & ~context.ego_is("light_rider")[:, None]
+        )
+    if SHOULDER not in types:
+        return travel
+    shoulders = _lanes_of(context, SHOULDER)
     # How many are nearer to the kerb than each lane
-    nearer = np.cumsum(shoulders, axis=1) - shoulders
+    nearer: NDArray[intp] = np.cumsum(shoulders, axis=1) - shoulders
     lanes, own = np.arange(shoulders.shape[1]), context.ego_lane[:, None]
     low, high = np.minimum(lanes, own), np.maximum(lanes, own)
-    between = (
+    between: NDArray[intp] = (
         np.take_along_axis(nearer, high, axis=1)
         - np.take_along_axis(nearer, low, axis=1)
         - np.take_along_axis(shoulders, low, axis=1)
     )
-    travel: Flags = context.existing_lanes & ~shoulders & (between <= 0)
-    return travel
+    return travel & ~shoulders & (between <= 0)
+
+
+def _lanes_of(context: DriveContext, kind: str) -> Flags:
+    """Flags of the lanes (second axis) of a type beside ego, by state."""
+    rows = context.road.rows
+    of_pieces = np.array([[x is not None and kind in x.types for x in row] for row in rows])
+    of_states: Flags = of_pieces[context.road.piece(context.ego_extents.s[0])]
+    return of_states

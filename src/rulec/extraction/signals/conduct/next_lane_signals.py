@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.ego_lanelets import SHOULDER, own_lanelets, travel_lanes
+from rulec.extraction.signals.ego_lanelets import CYCLE_LANE, SHOULDER, own_lanelets, travel_lanes
 from rulec.extraction.signals.map.lanes_ahead import Leads, junctions_ahead
 from rulec.extraction.signals.queues import LOOSE, close_by, lanes_that_go_on, queues_by_lane
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
@@ -34,7 +34,7 @@ _SOON_M = 10.0
 
 _SOLID = frozenset({"solid", "double_solid"})
 
-_BUS_LANE = frozenset({"busLane"})
+_BUS_LANE, _CYCLE_LANE = frozenset({"busLane"}), frozenset({CYCLE_LANE})
 _RESERVED = frozenset({SHOULDER, *_BUS_LANE})
 _RAMPS = frozenset({JOINING, "exitRamp"})
 
@@ -103,9 +103,9 @@ def _far_lane_is_free(context: DriveContext) -> Flags:
 def _near_lane_is_free(context: DriveContext) -> Flags:
     """Flags of states in which ego, in the next lane to the kerb, would be at safe distances.
 
-    It cannot go there across a solid line, as beside lanes for who turns off, nor to a bus lane,
-    nor, from a lane that is none, to one for who comes or leaves, nor to one that leads elsewhere
-    at the junction that ego gets to within ``preparing_s``.
+    It cannot go there across a solid line, as beside lanes for who turns off, nor to a bus lane or
+    across one for cycles, nor, from a lane that is none, to one for who comes or leaves, nor to one
+    that leads elsewhere at the junction that ego gets to within ``preparing_s``.
     """
     limits, others, taken = (
         context.thresholds,
@@ -127,7 +127,8 @@ def _near_lane_is_free(context: DriveContext) -> Flags:
     behind, ahead = np.where(leads, own, other), np.where(leads, other, own)
     safe = limits.reaction_s * behind + (behind**2 - ahead**2) / (2 * limits.braking_mps2)
     taken[cells[1][(station == relations.BESIDE) | (gap < safe)]] = True
-    free: Flags = ~there | ~(taken | kept)
+    cycles_beside = _is_beside(context, _CYCLE_LANE) & ~context.ego_is("light_rider")
+    free: Flags = np.where(there, ~(taken | kept), ~cycles_beside)
     return free
 
 
