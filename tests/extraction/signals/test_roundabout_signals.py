@@ -10,13 +10,14 @@ from functools import cache
 import numpy as np
 import pytest
 
+from rulec.extraction.signals.conduct.next_lane_signals import next_lane_signals
 from rulec.extraction.signals.map.junction_signals import junction_signals
 from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
 from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.tracks.rings import ring_lanelets
-from support.builders.drive_contexts import along, context_of
+from support.builders.drive_contexts import along, context_of, steady, told_on_both_sides
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
 RADIUS_M, STEP_S = 15.0, 0.25
@@ -307,3 +308,22 @@ def test_before_a_ring_drivers_choose_lanes_by_where_they_leave_it(own, unknown)
     signals = participant_signals(context_of(found, ROUTE))
     assert signals.unknown["leads_elsewhere"][0, 0] == unknown
     assert not signals.about["leads_elsewhere"][0, 0]
+
+
+@pytest.mark.parametrize(("metres_away", "free"), [(30, "?"), (190, "True")])
+def test_before_a_ring_drivers_sort_themselves_by_lanes(metres_away, free):
+    """Nobody sees by which exit they mean to leave it; 10 s of driving are 100 m at 10 m/s."""
+    first, before, inner, piece, *others = roundabout("arms")
+    near = lanelet("a0", [(-290, -4), (-30, -4)], successors=first.successors, left_of="a")
+    beside = [replace(before, left_of="b"), inner, replace(piece, left_of="d")]
+    onto = joining((-30, 0), 0, around(200, 200, 1, RADIUS_M - 4)[0], 290)
+    ways = {"a": [(-290, 0), (-30, 0)], "b": onto, "d": around(200, 250, 13, RADIUS_M - 4)}
+    far = [lanelet(name, way, right_of=f"{name}0") for name, way in ways.items()]
+    far = [replace(one, successors=(on,)) for one, on in zip(far, ("b", "d"), strict=False)] + far[
+        2:
+    ]
+    start = -30 - metres_away
+    bodies = [steady(7, start, 0), steady(9, start - 90, 0)]
+    lanes = recording((near, *beside, *others, *far), bodies, step_s=0.5)
+    told = told_on_both_sides(next_lane_signals, lanes, ("a", "b", "d"))
+    assert told["near_lane_is_free"][0] == free

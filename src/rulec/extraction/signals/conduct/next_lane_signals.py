@@ -17,6 +17,7 @@ from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import CYCLE_LANE, SHOULDER, own_lanelets, travel_lanes
 from rulec.extraction.signals.map.lanes_ahead import Leads, junctions_ahead
+from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.queues import LOOSE, close_by, lanes_that_go_on, queues_by_lane
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import (
@@ -150,8 +151,8 @@ def _of_no_use(context: DriveContext) -> Flags:
     Somebody slower is on it whom ego would come up to in twice ``catching_up_s``; it begins or ends
     near ego while others go on, as beside a ramp; it becomes a shoulder or a lane for buses within
     ``preparing_s``; it is full, but for a hole; ego is in a slow queue itself, with others on the
-    next lane, too; or drivers sort themselves by lanes before a junction, of which nobody knows
-    beyond the map's end.
+    next lane, too; or drivers sort themselves by lanes before a junction or a ring, of which nobody
+    knows beyond the map's end.
     """
     lane, there = _next_lane(context, context.side)
     states = np.arange(context.states)
@@ -187,7 +188,8 @@ def _slower_ahead(context: DriveContext, lane: NDArray[intp], states: NDArray[in
 def _sorted_ahead(context: DriveContext) -> tuple[Flags, Flags]:
     """Where the next lane to the kerb leads elsewhere than ego, and where drivers choose lanes.
 
-    They do before lights, and where one lane leads to several roads, from ``preparing_s`` before.
+    They do before lights and rings, and where one lane leads to several roads, from
+    ``preparing_s`` before.
     """
     lane, there = _next_lane(context, context.side)
     front, reach = context.ego_extents.s_max[0], _reach(context)
@@ -197,6 +199,8 @@ def _sorted_ahead(context: DriveContext) -> tuple[Flags, Flags]:
         leads = [junction.leads[number] for number in np.minimum(lane, len(junction.leads) - 1)]
         elsewhere |= nears & np.array([lead is Leads.ELSEWHERE for lead in leads])
         sorting |= nears & np.array([junction.lit or lead is Leads.BOTH for lead in leads])
+    for begins, *_ in roundabouts(context):
+        sorting |= there & (front <= begins) & (begins - front <= reach)
     return elsewhere, sorting & ~elsewhere
 
 
