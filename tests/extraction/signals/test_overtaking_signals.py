@@ -317,6 +317,25 @@ def test_who_overtakes_beyond_the_middle_does_so_from_going_there_until_it_is_ba
     assert "".join("?" if dark else "FT"[int(value)] for value, dark in told) == past
 
 
+@pytest.mark.parametrize(
+    ("kind", "past"), [("urban", "TTTTTTTTTTTTTTTF"), ("bicycleLane", "FFFFFFFFFFFFFFFF")]
+)
+def test_a_cycle_is_overtaken_but_on_a_lane_of_its_own(kind, past):
+    """Ego, 10 m/s faster, comes up to it in 4 s, and is 2 s past it in the last state."""
+    ys = [0, 0, 1, *[3.5] * 12, 0]
+    ego = vehicle(7, {k: (7.0 * k, y) for k, y in enumerate(ys)}, speed=14)
+    places = {k: (40 + 2.0 * k, -3.0) for k in range(len(ys))}
+    cycle = replace(vehicle(8, places, speed=4), type="bicycle")
+    roads = [
+        straight(1, 0, 500, left_of=None, right_of=3),
+        lanelet(2, [(500, 4), (0, 4)]),
+        straight(3, 0, 500, -3, 2.0, left_of=1, types=frozenset({kind})),
+    ]
+    told = overtaking_signals(context_of(recording(roads, [ego, cycle])), {"overtaking"})
+    assert "".join("FT"[int(value)] for value in told.world["overtaking"]) == past
+    assert not told.unknown["overtaking"].any()
+
+
 def test_who_goes_out_behind_another_one_may_have_meant_to_pass_whom_that_one_passes():
     """Both drive 14 m/s, 30 m apart, and the one that they would pass is 180 m ahead of ego."""
     ys = [0, 0, 1, *[3.5] * 12, 0]

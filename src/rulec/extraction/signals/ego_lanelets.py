@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.signal_passes import once_a_map
+from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Lanelet
 
@@ -125,7 +126,12 @@ def travel_lanes(context: DriveContext) -> Flags:
 
 def _lanes_of(context: DriveContext, kind: str) -> Flags:
     """Flags of the lanes (second axis) of a type beside ego, by state."""
-    rows = context.road.rows
-    of_pieces = np.array([[x is not None and kind in x.types for x in row] for row in rows])
-    of_states: Flags = of_pieces[context.road.piece(context.ego_extents.s[0])]
+    of_states: Flags = lanes_of_type(context.road, kind)[
+        context.road.piece(context.ego_extents.s[0])
+    ]
     return of_states
+
+
+def lanes_of_type(road: DrivenRoad, kind: str) -> Flags:
+    """Flags of the lanes (second axis) of a type, by the road's pieces."""
+    return np.array([[x is not None and kind in x.types for x in row] for row in road.rows])

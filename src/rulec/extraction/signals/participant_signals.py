@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.ego_lanelets import SHOULDER, lanes_of_type
 from rulec.extraction.signals.following_signals import keeps_safe_gap
 from rulec.extraction.signals.intention_signals import may_have_broken_down
 from rulec.extraction.signals.map.lanes_ahead import leads_elsewhere
@@ -279,9 +280,7 @@ def _on_shoulder(context: DriveContext) -> SignalColumns:
         beyond = -others.middle_from(there.argmax(axis=2))
     else:
         beyond = others.middle_from(there.shape[2] - there[..., ::-1].argmax(axis=2))
-    shoulders = np.array(
-        [[x is not None and "shoulder" in x.types for x in row] for row in context.road.rows]
-    )
+    shoulders = lanes_of_type(context.road, SHOULDER)
     inside = shoulders[context.road.piece(np.nan_to_num(others.s)), others.lane]
     vehicles = context.tracks.of_type("vehicle")[:, None] & there.any(axis=2)
     along = vehicles & ~context.elsewhere & (np.abs(np.sin(others.turned)) < _ALONG)

@@ -9,7 +9,12 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.manoeuvre_signals import oncoming_side
-from rulec.extraction.signals.ego_lanelets import own_lanelets
+from rulec.extraction.signals.ego_lanelets import (
+    CYCLE_LANE,
+    lanes_of_type,
+    map_contents,
+    own_lanelets,
+)
 from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.queues import dense_lines
@@ -192,14 +197,14 @@ def _sets_off(context: DriveContext) -> Flags:
 
 
 def _overtakes(context: DriveContext) -> tuple[Flags, Flags]:
-    """Flags of ego overtaking a slower vehicle, and of it perhaps doing so.
+    """Flags of ego overtaking a slower vehicle or cycle, and of it perhaps doing so.
 
     Who overtakes is at the far side, from shortly before it is beside the other until it is just
     past.
     """
     far, _ = _sides(context)
     slower: Flags = context.extents.along < context.ego_extents.along
-    slower &= (relations.lateral(context) == far) & context.driving_along
+    slower &= (relations.lateral(context) == far) & (context.driving_along | _ride_along(context))
     cells = slower.nonzero()
     beside = relations.station(context)[cells] == relations.BESIDE
     surely, perhaps = (_ahead_and_past(context, cells, tolerances) for tolerances in (0.0, 1.0))
@@ -207,6 +212,16 @@ def _overtakes(context: DriveContext) -> tuple[Flags, Flags]:
     overtakes[cells[1][surely | beside]] = True
     unsure[cells[1][perhaps]] = True
     return overtakes, unsure
+
+
+def _ride_along(context: DriveContext) -> Flags:
+    """Flags of cycles that go ego's way on its lanes, but for those that are for them alone."""
+    others, rides = context.extents, context.tracks.of_type("light_rider")
+    along = context.in_sight & rides[:, None] & (abs(others.turned) < 1.0) & context.on_lanes
+    if CYCLE_LANE in map_contents(context).types:
+        lanes = lanes_of_type(context.road, CYCLE_LANE)
+        along = along & ~lanes[context.road.piece(np.nan_to_num(others.s)), others.lane]
+    return along
 
 
 def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
