@@ -77,6 +77,23 @@ def test_whose_side_of_a_two_way_road(y, expected, side):
     assert told(manoeuvre_signals, "driving_side", two_way(), ego, side=side) == expected
 
 
+@pytest.mark.parametrize("side", ["right", "left"])
+@pytest.mark.parametrize(
+    ("ys", "expected"),
+    [
+        # Over the middle for 1.5 s, of steps of 0.5 s, out and back; then for 2 s
+        ((0, 2.1, 2.1, 2.1, 4, 4, 2.1, 0), "FFFFTTFF"),
+        ((0, 2.1, 2.1, 2.1, 2.1, 4, 4, 4), "F????TTT"),
+        # Who wavers may have been there, and of who comes from there before it was seen none knows
+        ((0, 2.1, 0, 0, 0, 0, 0, 0), "F?FFFFFF"),
+        ((2.1, 0, 0, 0, 0, 0, 0, 4), "?FFFFFFT"),
+    ],
+)
+def test_only_when_one_goes_over_the_middle_is_in_doubt(ys, expected, side):
+    ego = car(*((50.0 + 10 * k, y) for k, y in enumerate(ys)), heading=0.0)
+    assert told(manoeuvre_signals, "driving_side", two_way(), ego, side=side) == expected
+
+
 def test_sides_that_are_nobody_s():
     # One way, not told, and where ego crosses the other half to somewhere
     ego = steady(7, 50, 2.4)

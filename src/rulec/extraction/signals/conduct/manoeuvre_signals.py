@@ -107,7 +107,7 @@ def _tells_headings(context: DriveContext, columns: slice) -> bool:
 
 def _driving_side(context: DriveContext) -> SignalColumns:
     there, perhaps = oncoming_side(context)
-    sides = there.astype(int)
+    perhaps, sides = perhaps & ~_goes_over(context, there, perhaps), there.astype(int)
     if context.wrong_way:
         sides, perhaps = np.full_like(sides, _SIDES.index("wrong_way")), perhaps & False
     return SignalColumns(
@@ -115,6 +115,24 @@ def _driving_side(context: DriveContext) -> SignalColumns:
         unknown={"driving_side": perhaps},
         texts={"driving_side": _SIDES},
     )
+
+
+def _goes_over(context: DriveContext, there: Flags, perhaps: Flags) -> Flags:
+    """Flags of states between one surely on a half of the road and one surely on the other.
+
+    There only the moment is in doubt, unless ego stays about the middle for longer than
+    ``passed_s``.
+    """
+    spans, own = context.spans, ~there & ~perhaps
+    (own_before, own_after), (before, after) = (
+        (spans.latest(side), spans.next_state(side)) for side in (own, there)
+    )
+    goes = (own_before > before) & (after < own_after)
+    comes = (before > own_before) & (own_after < after)
+    least = round(context.thresholds.passed_s / context.recording.step_s)
+    short = np.minimum(own_after, after) - np.maximum(own_before, before) <= least
+    over: Flags = (goes | comes) & short
+    return over
 
 
 @once
