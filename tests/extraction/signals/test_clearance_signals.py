@@ -101,6 +101,18 @@ def test_who_stands_in_ego_s_lane(x, y, blocked):
     assert found["obstructed"] == [str(blocked)] * 4
 
 
+@pytest.mark.parametrize(
+    ("mps", "x", "blocked"), [(15, 63, True), (15, 67, False), (5, 35, False), (15, -40, False)]
+)
+def test_who_is_fast_goes_out_early_for_one_that_never_moves(mps, x, blocked):
+    """Ego's front is 2 m ahead of its middle, and the other one's rear 2 m behind: 59 and 63 m."""
+    stands = vehicle(9, dict.fromkeys(range(4), (x, 0.0)))
+    assert signals(two_ways(), ego(mps=mps), stands)["obstructed"][0] == str(blocked)
+    # One that stands for a while may wait in a queue
+    waits = vehicle(9, {**dict.fromkeys(range(3), (x, 0.0)), 3: (x + 5.0, 0.0)})
+    assert signals(two_ways(), ego(mps=mps), waits)["obstructed"][0] == "False"
+
+
 def test_ego_passes_an_obstacle_on_the_lane_beside():
     """Ego is over the mark with most of its body, and not yet past the one that stands."""
     lanes = [straight(1, 0, 600, left_of=3), straight(3, 0, 600, 4, right_of=1)]

@@ -106,7 +106,7 @@ def _obstructed(context: DriveContext) -> Flags:
     used = own.inside[0] > 0
     used[np.arange(context.states), context.ego_lane] = True
     blocked, present = np.zeros(context.states, dtype=bool), presence_cells(context)
-    near = present.part(np.flatnonzero(present.of(relations.gap(context)) <= _OBSTACLE_M))
+    near = present.part(np.flatnonzero(_near_obstacle(context)))
     stands = near.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
     cells = near.part(np.flatnonzero(stands & near.of(context.relevant)))
     sets, columns = cells.of(context.lanes_within[0]), cells.columns
@@ -119,6 +119,20 @@ def _obstructed(context: DriveContext) -> Flags:
         _, high = context.extents.cells_from_bound(part, bound + 1)
         blocked[part.columns[np.maximum(low, -high) < width[part.columns]]] = True
     return blocked
+
+
+def _near_obstacle(context: DriveContext) -> Flags:
+    """Flags of presences that ego goes round now: for one that never moves it goes out earlier."""
+    present, tracks = presence_cells(context), context.tracks
+    gap, along = present.of(relations.gap(context)), context.ego_extents.along[0]
+    near: Flags = gap <= _OBSTACLE_M
+    reach = along[present.columns] * context.thresholds.parting_s
+    early = ~near & (gap <= reach) & (present.of(relations.station(context)) == relations.BEHIND)
+    early &= present.of(tracks.speed) * KMH < context.thresholds.standing_kmh
+    for row in np.unique(present.rows[early]).tolist():
+        moves = tracks.present[row] & (tracks.speed[row] * KMH >= context.thresholds.standing_kmh)
+        near |= early & (present.rows == row) & (not moves.any())
+    return near
 
 
 def _room_on_near_side(context: DriveContext) -> Flags:
