@@ -12,6 +12,7 @@ from pathlib import Path
 from random import Random
 from unittest import mock
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -313,6 +314,47 @@ def test_many_numbers_are_those_that_are_written(numbers):
     else:
         found = [column.values[code] for code in column.codes[:-2].tolist()]
     assert found == [float(text) for text in texts]
+
+
+@given(st.lists(st.sampled_from([None, "", "a", "aa", "ab", "ba", "aba", "b", "1", "1.0", "11"])))
+def test_a_column_has_the_values_that_are_written(texts):
+    column = arrow_blocks._texts_read(pyarrow.array(texts, pyarrow.string()), csv_table._value)
+    assert column.given.tolist() == [bool(text) for text in texts]
+    rows = np.flatnonzero(column.given)
+    expected = [csv_table._value(text) for text in texts if text]
+    assert trace_blocks.cells_of(column, rows) == expected
+
+
+@pytest.mark.parametrize("odd", ["?", "TRUE", " true", "left", "1"])
+def test_a_column_of_truth_values_in_which_late_there_is_something_else(odd, monkeypatch):
+    rows = rows_of(drives()[:100])
+    rain = rows[0].index("rain")
+    place = next(n for n, row in enumerate(rows) if row[:2] == ["t90", "1"] and row[rain])
+    rows[place][rain] = odd
+    data, read = as_csv(rows), []
+    expected = row_by_row(data, "csv", traffic())
+    assert expected[:90] == [verify_or_reason(trace, traffic()) for trace in drives()[:90]]
+    for module in (table_reader, arrow_blocks):
+        monkeypatch.setattr(module, "traces_in", noted(module.traces_in, read))
+    assert by_columns(data, "csv", traffic(), 6_000) == expected
+    # Blocks that have only truth values there are read as others are.
+    assert "t10" not in read
+    assert "t99" not in read
+
+
+def test_large_csv_is_read_without_what_takes_long_to_load(tmp_path):
+    (tmp_path / "t.csv").write_bytes(written(drives(), "csv"))
+    program = """
+import sys
+from rulec.trace.formats import csv_table
+csv_table.LARGE_BYTES = 1
+chunks = [*csv_table.read_csv(open("t.csv", "rb"), "t.csv")]
+print([type(one).__name__ for one in chunks], *{"pyarrow.compute", "pandas"} & {*sys.modules})
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=tmp_path
+    )
+    assert done.stdout == "['Block', 'Block']\n"
 
 
 def test_the_rulebook_of_a_trace_is_the_one_for_its_step():

@@ -173,7 +173,7 @@ def outlined(block: Block) -> BlockPresence:
     is_first = np.zeros(n_rows, dtype=bool)
     is_first[starts[:-1]] = True
     onward = np.diff(step, prepend=0)
-    in_order = not step[is_first].any() and np.isin(onward[~is_first], (0, 1)).all()
+    in_order = not step[is_first].any() and (is_first | (onward == 0) | (onward == 1)).all()
     if (names.codes < 0).any() or not in_order:
         raise OddTableError
     length = step[starts[1:] - 1] + 1

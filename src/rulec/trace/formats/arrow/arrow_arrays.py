@@ -1,6 +1,7 @@
 """Arrow's arrays as numpy's, from their buffers.
 
 Arrow's own ways load pandas, where that is installed, which takes longer than to read most files.
+Its functions are called by their names, for ``pyarrow.compute`` describes all of them first, 30 ms.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import numpy as np
 import pyarrow
 from numpy.typing import NDArray
 from pyarrow import types
+from pyarrow._compute import CastOptions, DictionaryEncodeOptions, call_function
 
 
 def given_in(array: Any) -> NDArray[np.bool_]:
@@ -39,13 +41,32 @@ def truths_in(array: Any) -> NDArray[np.bool_]:
     return np.zeros(len(array), dtype=bool) if buffer is None else _bits(buffer, array)
 
 
-def lengths_in(array: Any) -> NDArray[np.int32]:
-    """The bytes of each text of an array."""
+def ends_in(array: Any) -> NDArray[np.int32]:
+    """Where the first text of an array begins, and where each of them ends."""
     buffer = array.buffers()[1]
     if buffer is None:
-        return np.zeros(len(array), dtype=np.int32)
-    ends = np.frombuffer(buffer, np.int32, len(array) + 1, array.offset * 4)
-    return np.diff(ends)
+        return np.zeros(len(array) + 1, dtype=np.int32)
+    return np.frombuffer(buffer, np.int32, len(array) + 1, array.offset * 4)
+
+
+def lengths_in(array: Any) -> NDArray[np.int32]:
+    """The bytes of each text of an array."""
+    return np.diff(ends_in(array))
+
+
+def list_lengths_in(array: Any) -> Any:
+    """How many values each list of an array has, as Arrow's array."""
+    return call_function("list_value_length", [array])
+
+
+def cast_to(array: Any, kind: Any) -> Any:
+    """An array as one of another type. Raises ArrowInvalid."""
+    return call_function("cast", [array], CastOptions.safe(kind))
+
+
+def are_equal(array: Any, other: Any) -> NDArray[np.bool_]:
+    """Where an array has a value, and the same as another one or as a scalar."""
+    return flags_in(call_function("equal", [array, other]))
 
 
 def codes_in(array: Any) -> tuple[NDArray[Any], Sequence[Any]]:
@@ -53,8 +74,12 @@ def codes_in(array: Any) -> tuple[NDArray[Any], Sequence[Any]]:
     if types.is_null(array.type):
         return np.full(len(array), -1), ()
     is_dictionary = types.is_dictionary(array.type)
-    encoded = array if is_dictionary else array.dictionary_encode()
+    encoded = array
+    if not is_dictionary:
+        encoded = call_function("dictionary_encode", [array], DictionaryEncodeOptions())
     codes, values = numbers_in(encoded.indices), encoded.dictionary.to_pylist()
+    if codes.dtype != np.int32:
+        codes = codes.astype(np.int64, copy=False)
     # There may be no cells, or no values; codes of what is not given are arbitrary.
     if encoded.indices.null_count:
         codes = np.where(given_in(encoded.indices), codes, -1)
@@ -64,7 +89,29 @@ def codes_in(array: Any) -> tuple[NDArray[Any], Sequence[Any]]:
             own = np.array([-1 if one is None else places[one] for one in values] or [-1])
             codes = np.where(codes < 0, -1, own.take(codes))
             values = list(places)
-    return codes.astype(np.int64, copy=False), values
+    return codes, values
+
+
+def runs_in(array: Any) -> tuple[NDArray[Any], Sequence[Any]]:
+    """As ``codes_in``, sooner of cells of which many in a row are the same."""
+    runs = call_function("run_end_encode", [array])
+    codes, values = codes_in(runs.values)
+    return np.repeat(codes, np.diff(numbers_in(runs.run_ends), prepend=0)), values
+
+
+def one_in(array: Any) -> tuple[NDArray[np.int8], str] | None:
+    """As ``codes_in`` of texts that are all the same, None of others."""
+    ends, data = ends_in(array), array.buffers()[2]
+    lengths = np.diff(ends)
+    size = int(lengths.max(initial=0))
+    given = lengths > 0
+    if not size or size * np.count_nonzero(given) != ends[-1] - ends[0]:
+        return None
+    text = np.frombuffer(data, np.uint8)[ends[0] : ends[-1]]
+    # So long are all of them.
+    if (text[size:] != text[:-size]).any():
+        return None
+    return given.astype(np.int8) - np.int8(1), text[:size].tobytes().decode()
 
 
 def cells_in(column: Any) -> NDArray[Any]:

@@ -5,21 +5,28 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow
 from numpy.typing import NDArray
-from pyarrow import compute, types
+from pyarrow import types
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.resource_limits import STATES
 from rulec.trace.formats import table_blocks as blocks
 from rulec.trace.formats.arrow.arrow_arrays import (
+    are_equal,
+    array_of_truths,
+    cast_to,
     codes_in,
+    ends_in,
     given_in,
     lengths_in,
+    list_lengths_in,
     numbers_in,
+    one_in,
+    runs_in,
     truths_in,
 )
 from rulec.trace.formats.table_reader import (
@@ -41,16 +48,26 @@ from rulec.vocabulary.written_numbers import WrittenNumber, number_written
 Piece = Any
 """A record batch."""
 
+CodesReader = Callable[[Any], tuple[NDArray[Any], Sequence[Any]]]
+
 _SHORT = 15
 """Numbers of so many characters are floats, but for tiny ones with an exponent."""
 
 _TINY = 1e-290
 
+_FEW_ROWS = 1 << 10
+
 _DIGIT = re.compile(r"\A[-+.]?[0-9]")
 
 
+class WholeTraces(NamedTuple):
+    """A piece with whose end a trace ends, too; others follow."""
+
+    piece: Piece
+
+
 def cut(
-    pieces: Iterable[Piece | Iterator[Row] | RulecError],
+    pieces: Iterable[Piece | WholeTraces | Iterator[Row] | RulecError],
     table: Table,
     first: int,
     file: SourceLocation,
@@ -67,8 +84,13 @@ def cut(
         if isinstance(piece, RulecError):
             yield [piece]
             return
+        if isinstance(piece, WholeTraces):
+            whole = [*waiting, piece.piece]
+            yield _block(whole, table, first, file)
+            first, waiting = first + sum(map(len, whole)), []
+            continue
         if not isinstance(piece, pyarrow.RecordBatch):
-            rows = chain(_rows(waiting, first), piece)
+            rows = chain(_rows(waiting, first, table), piece)
             yield from in_chunks(traces_in(rows, table, file))
             return
         if not len(piece):
@@ -91,19 +113,22 @@ def _last_start(waiting: Sequence[Piece], piece: Piece, table: Table) -> int | N
     """Start of the last trace of a piece; None if earlier."""
     at = table.at[TRACE]
     names = piece.column(at)
-    start = _start_of_last(names)
+    start = start_of_last(names)
     goes_on = not waiting or waiting[-1].column(at)[-1] == names[0]
     return None if start == 0 and goes_on else start
 
 
-def _start_of_last(names: Any) -> int:
+def start_of_last(names: Any) -> int:
     """The row with which the last trace begins, by the column that names them."""
     if not types.is_string(names.type) or not names[-1].as_py():
         return int(blocks.trace_starts(coded(names))[-1])
-    # Its name is looked for, which takes less than to tell all names apart
-    same = compute.equal(names, names[-1])
-    others = np.flatnonzero(~(truths_in(same) & given_in(same)))
-    return int(others[-1]) + 1 if len(others) else 0
+    # Its name is looked for, which takes less than to tell all names apart.
+    for size in (_FEW_ROWS, len(names)):
+        begin = max(len(names) - size, 0)
+        others = np.flatnonzero(~are_equal(names.slice(begin), names[-1]))
+        if len(others):
+            return begin + int(others[-1]) + 1
+    return 0
 
 
 def _block(
@@ -111,12 +136,14 @@ def _block(
 ) -> Sequence[Trace | RulecError]:
     if not pieces:
         return list(traces_in((), table, file))
+    if any(piece.schema != pieces[0].schema for piece in pieces):
+        pieces = [_as_texts(piece) for piece in pieces]
     whole = pyarrow.Table.from_batches(pieces).combine_chunks().to_batches()[0]
     partial = _partial_rows(whole, table)
     try:
         columns = columns_of(whole, table)
     except (blocks.OddTableError, ValueError):  # a number that cannot be
-        return list(traces_in(_rows([whole], first), table, file))
+        return list(traces_in(_rows([whole], first, table), table, file))
     said = np.zeros(len(whole), dtype=bool)
     for column in columns.values():
         said |= _odd_values(column)
@@ -125,7 +152,7 @@ def _block(
     starts = np.append(blocks.trace_starts(names), len(whole))
 
     def rows(start: int, stop: int) -> Iterator[Row]:
-        return _rows([whole.slice(start, stop - start)], first + start)
+        return _rows([whole.slice(start, stop - start)], first + start, table)
 
     unknown = _unknown_rows(whole, table)
     if unknown is None:
@@ -158,7 +185,7 @@ def _unknown_rows(piece: Piece, table: Table) -> Mapping[str, NDArray[np.int64]]
         return {}
     if not types.is_list(lists.type) or not types.is_string(lists.type.value_type):
         return None
-    lengths = compute.list_value_length(lists)
+    lengths = list_lengths_in(lists)
     codes, names = codes_in(lists.flatten())
     if (codes < 0).any():
         return None
@@ -186,11 +213,22 @@ def _odd_values(column: blocks.Column) -> NDArray[np.bool_] | bool:
     return np.array(which).take(column.codes) & column.given if any(which) else False
 
 
-def _rows(pieces: Iterable[Piece], first: int) -> Iterator[Row]:
+def _rows(pieces: Iterable[Piece], first: int, table: Table) -> Iterator[Row]:
+    if table.has_texts:
+        pieces = map(_as_texts, pieces)
     cells = chain.from_iterable(
         zip(*[column.to_pylist() for column in piece.columns], strict=True) for piece in pieces
     )
     return enumerate(cells, first)
+
+
+def _as_texts(piece: Piece) -> Piece:
+    """A piece with its truth values as they are written."""
+    columns = [
+        cast_to(column, pyarrow.string()) if types.is_boolean(column.type) else column
+        for column in piece.columns
+    ]
+    return pyarrow.RecordBatch.from_arrays(columns, names=piece.schema.names)
 
 
 def columns_of(piece: Any, table: Table) -> Mapping[str, blocks.Column]:
@@ -203,21 +241,23 @@ def columns_of(piece: Any, table: Table) -> Mapping[str, blocks.Column]:
         steps = _whole(array) if name == STEP else None
         if steps is not None:
             columns[name] = steps
+        elif name == TRACE and types.is_string(array.type):
+            columns[name] = coded(array, runs_in)
         elif name in NAMES:
-            columns[name] = coded(array)
+            columns[name] = (_one_text(array, str) if table.has_texts else None) or coded(array)
+        elif types.is_boolean(array.type):
+            codes = np.where(given_in(array), truths_in(array), np.int8(-1))
+            columns[name] = blocks.Coded(codes, (False, True))
         elif table.has_texts:
             columns[name] = _texts_read(array, table.value)
         elif types.is_integer(array.type) or types.is_floating(array.type):
             columns[name] = _numbers(array)
-        elif types.is_boolean(array.type):
-            codes = np.where(given_in(array), truths_in(array), np.int8(-1))
-            columns[name] = blocks.Coded(codes, (False, True))
         else:
             columns[name] = coded(array)
     return columns
 
 
-def coded(array: Any) -> blocks.Coded:
+def coded(array: Any, codes_in: CodesReader = codes_in) -> blocks.Coded:
     """Column of dictionary codes; empty texts are no value."""
     codes, values = codes_in(array)
     if "" in values:
@@ -227,7 +267,7 @@ def coded(array: Any) -> blocks.Coded:
 
 def _numbers(array: Any) -> blocks.Numbers:
     try:
-        numbers = numbers_in(array.cast(pyarrow.float64()))
+        numbers = numbers_in(cast_to(array, pyarrow.float64()))
     except pyarrow.ArrowInvalid:  # floats cannot tell such whole numbers apart
         raise blocks.OddTableError from None
     return blocks.Numbers(numbers, given_in(array), whole=types.is_integer(array.type))
@@ -238,11 +278,11 @@ def _whole(array: Any) -> blocks.Coded | None:
     if types.is_string(array.type):
         lengths = lengths_in(array)
         try:
-            array = array.cast(pyarrow.int64())
+            array = cast_to(array, pyarrow.int64())
         except pyarrow.ArrowInvalid:
             return None
         # Arrow reads `0x10` and `-0`, too.
-        if (lengths != _n_digits(numbers_in(array)))[given_in(array)].any():
+        if ((lengths != _n_digits(numbers_in(array))) & given_in(array)).any():
             return None
     if not types.is_int64(array.type):
         return None
@@ -251,44 +291,60 @@ def _whole(array: Any) -> blocks.Coded | None:
     return blocks.Coded(np.where(fits, steps, -1), range(len(steps)))
 
 
-def _n_digits(steps: NDArray[np.int64]) -> NDArray[np.intp]:
-    return np.searchsorted(10 ** np.arange(1, 19), steps, "right") + 1
+def _n_digits(steps: NDArray[np.int64]) -> NDArray[np.int8]:
+    found, most = np.ones(len(steps), dtype=np.int8), int(steps.max(initial=0))
+    for power in range(1, len(str(most))):
+        found += steps >= 10**power
+    return found
 
 
 def _texts_read(array: Any, value: Callable[[str], PartialValue]) -> blocks.Column:
     """A column of texts, or of the numbers that they say."""
-    numbers = _numbers_said(array)
-    if numbers is not None:
-        return numbers
+    found = _one_text(array, value) or _numbers_said(array)
+    if found is not None:
+        return found
     texts = coded(array)
     return blocks.Coded(texts.codes, [value(text) if text else "" for text in texts.values])
 
 
+def _one_text(array: Any, value: Callable[[str], PartialValue]) -> blocks.Coded | None:
+    """A column in which all texts are the same; None if they are not."""
+    found = one_in(array)
+    return None if found is None else blocks.Coded(found[0], [value(found[1])])
+
+
 def _numbers_said(array: Any) -> blocks.Numbers | None:
     """The numbers of a column in which each text is the decimal that its float stands for."""
-    given = given_in(array)
+    lengths = lengths_in(array)
+    given = lengths > 0
     # It takes Arrow long to refuse texts that are none.
     if not given.any() or not _DIGIT.search(array[int(given.argmax())].as_py()):
         return None
     try:
-        found = array.cast(pyarrow.float64())
+        found = cast_to(array, pyarrow.float64())
     except pyarrow.ArrowInvalid:  # of numbers there are some that Arrow does not read, such as `.5`
         return None
     numbers = numbers_in(found)
-    sizes = np.abs(numbers[given])
+    sizes = np.abs(np.where(given, numbers, 1.0))
     # Arrow reads `nan`; and what is written with an exponent may be nearer to 0 than any float.
-    if not np.isfinite(sizes).all():
+    if not np.isfinite(sizes.max()):
         return None
-    is_tiny = not sizes.min(initial=1.0) > _TINY
-    if is_tiny and compute.any(compute.match_substring(array, "e", ignore_case=True)).as_py():
+    if not sizes.min() > _TINY and _has_exponents(array):
         return None
-    long = np.flatnonzero((lengths_in(array) > _SHORT) & given)
+    long = np.flatnonzero(lengths > _SHORT)
     if len(long):
         places = pyarrow.Array.from_buffers(
             pyarrow.int64(), len(long), [None, pyarrow.py_buffer(long.astype(np.int64))]
         )
-        texts, again = array.take(places), found.take(places).cast(pyarrow.string())
-        others = texts.filter(compute.not_equal(texts, again)).to_pylist()
+        texts, again = array.take(places), cast_to(found.take(places), pyarrow.string())
+        others = texts.filter(array_of_truths(~are_equal(texts, again))).to_pylist()
         if any(isinstance(number_written(text), WrittenNumber) for text in others):
             return None
     return blocks.Numbers(numbers, given)
+
+
+def _has_exponents(array: Any) -> bool:
+    _, _, data = array.buffers()
+    ends = ends_in(array)
+    text = np.frombuffer(data, np.uint8)[ends[0] : ends[-1]]
+    return bool(np.isin(text, (ord("e"), ord("E"))).any())
