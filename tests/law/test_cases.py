@@ -22,12 +22,17 @@ FOUND_SINCE = {
     ("T9", "au-nsw"): ["forbidden", "r. 160(2)"],
     ("T10", "au-nsw"): ["forbidden", "r. 164"],
     ("L91", "in"): ["allowed"],
+    ("T7", "jp"): ["allowed"],
+    ("X5", "jp"): ["allowed"],
+    ("X6", "jp"): ["allowed"],
+    ("L29", "jp"): ["allowed"],
 }
 """What a law says where who wrote the case found no rule, and one was read since.
 
 Austria: § 26a(2) of the StVO binds in built-up areas alone; so does New South Wales's r. 77, and
 its r. 164 wants who is beside a tram at a stop to wait, and its r. 160(2) nobody to pass one on
-its right. India: regulation 12(1)(f) of 2017 lets one turn left at red.
+its right. India: regulation 12(1)(f) of 2017 lets one turn left at red. Japan: art. 18(3) on
+passing cycles is in force since 2026-04-01.
 """
 
 
