@@ -9,9 +9,10 @@ from pathlib import Path
 import pytest
 
 import rulec
+from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.cli.main import main
 from rulec.code_generation.compiled_c.c_library import CLibrary
-from rulec.code_generation.letter_cells import class_of, letter_cells
+from rulec.code_generation.letter_cells import EXCLUDED, LEAF, letter_cells
 from rulec.code_generation.monitor_files import monitor_texts
 from rulec.code_generation.monitor_layout import monitor_layout
 from rulec.code_generation.written_names import Identifiers, c_string, in_comment
@@ -89,6 +90,14 @@ def test_identifiers_are_apart_and_none_of_a_language():
     assert all(re.fullmatch("[a-z](_?[a-zA-Z0-9])*_?[0-9]*", one) for one in found)
     assert not {"int", "class", "fn"} & set(found)
     assert not any("__" in one or one.startswith("rulec_") for one in found)
+
+
+def class_of(cells, digits):
+    """The class of a letter, looked up as the generated monitors do."""
+    at = cells[0]
+    while at < LEAF:
+        at = cells[at + 1 + digits[cells[at]]]
+    return IMPOSSIBLE if at == EXCLUDED else at - LEAF
 
 
 def test_a_diagram_has_the_class_of_every_letter(esterle):

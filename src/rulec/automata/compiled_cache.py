@@ -87,7 +87,7 @@ def recalled(
     if known is None or not _is_valid(known, question) or known.rulebook is None:
         return None
     text, compiled = replace(known, rulebook=None), known.rulebook
-    return _cached(compiled, CachedSteps(question, text, compiled), file, text), text.warnings
+    return _cached(compiled, CachedSteps(question, text, compiled), file), text.warnings
 
 
 def remembered(
@@ -102,7 +102,7 @@ def remembered(
     text = Compilation(question.stamp, day, tuple(dependencies), tuple(warnings))
     file = _File(question, _OWN)
     file.write(text, compiled)
-    return _cached(compiled, CachedSteps(question, text, compiled, steps), file, text)
+    return _cached(compiled, CachedSteps(question, text, compiled, steps), file)
 
 
 def _today() -> str:
@@ -146,11 +146,9 @@ class _File:
             tidy(self.path.parent, _ENDING, MOST_FILES)
 
 
-def _cached(
-    compiled: CompiledRulebook, steps: CachedSteps, file: _File, text: Compilation
-) -> CompiledRulebook:
+def _cached(compiled: CompiledRulebook, steps: CachedSteps, file: _File) -> CompiledRulebook:
     known = compiled.prefixes if isinstance(compiled.prefixes, StoredPrefixes) else None
-    return replace(compiled, recompile=steps, prefixes=CachedPrefixes(file, text, known))
+    return replace(compiled, recompile=steps, prefixes=CachedPrefixes(file, known))
 
 
 class CachedSteps:
@@ -205,7 +203,7 @@ class CachedSteps:
         if known is not None and _depends_on(known) == _depends_on(text):
             if known.rulebook is None:
                 return RulecError(known.problems)
-            return _cached(known.rulebook, self, file, text)
+            return _cached(known.rulebook, self, file)
         try:
             compiled = _sharing(compile_it(), self._own)
         except RulecError as error:
@@ -219,7 +217,7 @@ class CachedSteps:
         # Its source may have been changed since it was recalled.
         if compiled.sources == self._own.sources:
             file.write(text, compiled)
-        return _cached(compiled, self, file, text)
+        return _cached(compiled, self, file)
 
     def _compiler(self) -> StepCompiler:
         if self._steps is None:
@@ -266,7 +264,6 @@ class CachedPrefixes:
     """A ``PrefixCompiler`` whose machines join the file of their rulebook."""
 
     _file: _File
-    _text: Compilation
     _stored: StoredPrefixes | None = None
 
     def __call__(self, rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:

@@ -38,7 +38,6 @@ class EgoBoxes:
 
     s: Bounds
     d: Bounds
-    speed: Bounds
     mean_speed: Bounds
     half_length: Bounds
     half_width: Bounds
@@ -104,7 +103,6 @@ def _boxes(
     return EgoBoxes(
         s=(s0, s1),
         d=(d0, d1),
-        speed=(slow, fast),
         mean_speed=means,
         half_length=lengths,
         half_width=widths,

@@ -53,14 +53,6 @@ def letter_cells(
     return min((_cells(table, one) for one in orders), key=len)
 
 
-def class_of(cells: Sequence[int], digits: Sequence[int]) -> int:
-    """The class of a letter, given by its reads' digits; IMPOSSIBLE if facts exclude it."""
-    at = cells[0]
-    while at < LEAF:
-        at = cells[at + 1 + digits[cells[at]]]
-    return IMPOSSIBLE if at == EXCLUDED else at - LEAF
-
-
 def _cells(table: NDArray[np.int64], order: Sequence[int]) -> Cells:
     """The diagram that asks reads in this order."""
     sizes = [table.shape[read] for read in order]

@@ -71,11 +71,6 @@ class RuleTerms:
     propositions: tuple[Proposition, ...]
     past: tuple[Proposition, ...]
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Of all its propositions, the rule's own first."""
-        return tuple(one.name for one in (*self.propositions, *self.past))
-
 
 def rule_terms(rulebook: Rulebook, lowered: RuleFormula, phrases: Mapping[str, str]) -> RuleTerms:
     """The terms of a rule. Raises RulecError R0754 if they would be too long."""

@@ -111,16 +111,6 @@ class Unit:
     dimension: Dimension
     factor: Fraction
 
-    def ratio(self, unit: Unit) -> Fraction:
-        """The factor from this unit to ``other``: 5/18 for km/h and m/s.
-
-        Raises ValueError: the units measure different dimensions.
-        """
-        if self.dimension != unit.dimension:
-            measures = f"{self.dimension.name}, {unit.text} {unit.dimension.name}"
-            raise ValueError(f"{self.text} measures {measures}")
-        return self.factor / unit.factor
-
 
 @dataclass(frozen=True, slots=True)
 class Refusal:

@@ -58,7 +58,10 @@ def test_a_standing_participant_is_there_all_the_time():
     assert found.x[1].tolist() == [5, 5, 5, 5]
     assert found.speed[1].tolist() == [0, 0, 0, 0]
     # Its outline is handed out once
-    assert [(row, column) for row, column, _ in found.outlines()] == [(0, 0), (0, 3), (1, 0)]
+    bodies = found.bodies
+    assert [*zip(bodies.rows.tolist(), bodies.columns.tolist(), strict=True)] == [
+        *((0, 0), (0, 3), (1, 0))
+    ]
 
 
 def test_types_include_their_supertypes():

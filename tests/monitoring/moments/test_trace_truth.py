@@ -70,8 +70,7 @@ def rows_of(formula, trace, semantics):
     truth = TraceTruth(tables, semantics, trace.ends)
     return {
         tables.objects[item]: (
-            int(part.first[row]),
-            int(part.last[row]),
+            *(int(ends[row]) for ends in truth.stretch_of(part.choices)),
             part.sure[row],
             part.possible[row],
         )

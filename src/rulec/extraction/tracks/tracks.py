@@ -5,7 +5,7 @@ Rows are participants, in the order of the file; columns are time steps, from ``
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from copy import copy
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
@@ -81,16 +81,6 @@ class Tracks:
     acceleration_error: Floats
     on_lane: Flags
     on_crosswalk: Flags
-
-    def outlines(self, *, repeated: bool = False) -> Iterator[tuple[int, int, Points]]:
-        """Row, column and outline of participants.
-
-        Those that stand for good have one, unless it is to be ``repeated``.
-        """
-        for row, body in enumerate(self.participants):
-            columns, own = _outlines_of(body, self.first, self.present[row], repeated=repeated)
-            for column, outline in zip(columns.tolist(), own, strict=True):
-                yield row, column, outline
 
     @cached_property
     def bodies(self) -> Bodies:

@@ -15,14 +15,12 @@ from rulec.syntax.split_file import FileSplitter
 
 @dataclass(frozen=True, slots=True)
 class PieceAtCursor:
-    """What stands before the name at the cursor.
+    """Piece of a text up to the name at the cursor, which begins at character ``start``.
 
-    ``begun`` is the part of that name which is there, from character ``start`` of the text on.
     ``tokens`` are those of the piece, ``kind`` is what it is; ``accepted`` are the grammar's
     terminals that can follow. ``in_rule`` and ``in_vocabulary``: it stands between their braces.
     """
 
-    begun: str
     start: int
     kind: Start | None
     tokens: tuple[Token, ...]
@@ -57,20 +55,19 @@ def piece_at(names: DocumentNames, offset: int) -> PieceAtCursor | None:
         return None
     if tokens and tokens[-1].kind in ("unterminated", "quoted"):
         return None
-    begun = text[start:offset]
     in_vocabulary = names.file.kind == "vocabulary" and bool(tokens)
     parts = list(FileSplitter(Source("", before), tokens).split()) if tokens else []
     last = parts[-1] if parts else None
     if isinstance(last, RulePieces):
         closed = last.body or tokens[last.last - 1].text in ("{", "}")
         if tokens[last.last - 1].text == "}" and _is_balanced(tokens[last.first : last.last]):
-            return _none_yet((begun, start), in_vocabulary=in_vocabulary)
+            return _none_yet(start, in_vocabulary=in_vocabulary)
         if not closed:
-            return _of("rule_head", last.head, (begun, start), (before, tokens))
-        return _in_rule(last, (begun, start), (before, tokens))
+            return _of("rule_head", last.head, start, (before, tokens))
+        return _in_rule(last, start, (before, tokens))
     if last is None or tokens[-1].text == "{":
-        return _none_yet((begun, start), in_vocabulary=in_vocabulary)
-    return _of("item", last, (begun, start), (before, tokens), in_vocabulary=in_vocabulary)
+        return _none_yet(start, in_vocabulary=in_vocabulary)
+    return _of("item", last, start, (before, tokens), in_vocabulary=in_vocabulary)
 
 
 def _begin(names: DocumentNames, start: int) -> int:
@@ -86,22 +83,20 @@ def _is_balanced(tokens: list[Token]) -> bool:
     return signs.count("{") == signs.count("}")
 
 
-def _in_rule(
-    rule: RulePieces, name: tuple[str, int], read: tuple[str, list[Token]]
-) -> PieceAtCursor:
+def _in_rule(rule: RulePieces, start: int, read: tuple[str, list[Token]]) -> PieceAtCursor:
     part = rule.body[-1] if rule.body else None
     ended = read[1][-1].text == "}"
     if part is None or (ended and _is_balanced(_tokens_of(part, read[1]))):
-        return _none_yet(name, "clause", in_rule=True)
+        return _none_yet(start, "clause", in_rule=True)
     if isinstance(part, ExamplePieces):
         if part.states:
-            return _of("state", part.states[-1], name, read, in_rule=True)
-        return _of("example_head", part.head, name, read, in_rule=True)
-    return _of("clause", part, name, read, in_rule=True)
+            return _of("state", part.states[-1], start, read, in_rule=True)
+        return _of("example_head", part.head, start, read, in_rule=True)
+    return _of("clause", part, start, read, in_rule=True)
 
 
 def _none_yet(
-    name: tuple[str, int],
+    start: int,
     kind: Start | None = None,
     *,
     in_rule: bool = False,
@@ -109,7 +104,7 @@ def _none_yet(
 ) -> PieceAtCursor:
     """Where a piece may begin, of which nothing is written but perhaps its first word."""
     return PieceAtCursor(
-        *name,
+        start,
         kind,
         tokens=(),
         accepted=frozenset(),
@@ -126,7 +121,7 @@ def _tokens_of(part: Piece | ExamplePieces, tokens: list[Token]) -> list[Token]:
 def _of(
     kind: Start,
     piece: Piece,
-    name: tuple[str, int],
+    start: int,
     read: tuple[str, list[Token]],
     *,
     in_rule: bool = False,
@@ -136,7 +131,7 @@ def _of(
     inside = tuple(tokens[piece.first : piece.last])
     text = before[inside[0].start :] if inside else ""
     return PieceAtCursor(
-        *name,
+        start,
         kind,
         tokens=inside,
         accepted=accepted_after(kind, text),

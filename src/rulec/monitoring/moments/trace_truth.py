@@ -52,16 +52,13 @@ class ChosenObjects:
 class FormulaTruth:
     """The truth of a formula at every state, a row for each choice of objects.
 
-    ``rows`` are which of the choices that were asked about; ``first`` and ``last`` (one a row) the
-    states in which all their objects are there. ``sure`` and ``possible`` (rows x states) are False
-    elsewhere. Behind the last state of a row that goes on for ever are those until nothing changes
-    any more.
+    ``rows`` are which of the choices that were asked about. ``sure`` and ``possible`` (rows x
+    states) are False where not all their objects are there. Behind the last state of a row that
+    goes on for ever are those until nothing changes any more.
     """
 
     choices: ChosenObjects
     rows: Places
-    first: Places
-    last: Places
     sure: NDArray[np.bool_]
     possible: NDArray[np.bool_]
 
@@ -150,8 +147,6 @@ class TraceTruth:
         return FormulaTruth(
             choices=own,
             rows=rows,
-            first=first,
-            last=last,
             sure=truth.sure & there,
             possible=truth.possible & there,
         )

@@ -31,7 +31,6 @@ class LanePiece:
     """A part of a lane between two points of its centre."""
 
     id: str
-    lane: str
     start: int
     end: int
 
@@ -84,7 +83,7 @@ def _there(part: NeighbourPart, index: int) -> int:
 def _pieces(name: str, cuts: set[int], count: int) -> Iterator[LanePiece]:
     ends = [0, *sorted(cuts), count - 1]
     for number, (start, end) in enumerate(pairwise(ends), 1):
-        yield LanePiece(name if len(ends) == 2 else f"{name}.{number}", name, start, end)
+        yield LanePiece(name if len(ends) == 2 else f"{name}.{number}", start, end)
 
 
 def neighbours_of_pieces(

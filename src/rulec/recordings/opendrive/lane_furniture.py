@@ -284,7 +284,6 @@ def _place_line(street: _Street, road: MapRoad, thing: RoadObject) -> None:
 _LINE = RoadSignal(
     id="",
     s=0.0,
-    t=0.0,
     orientation="none",
     type="294",
     subtype="",

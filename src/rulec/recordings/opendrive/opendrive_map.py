@@ -58,7 +58,6 @@ _NAMED = 5
 class _Whole:
     """What has been found out of a file's lanes; ``borders`` are those of lanes that are there."""
 
-    content: OpenDrive
     pieces: Mapping[str, Sequence[RoadPiece]]
     borders: Mapping[tuple[str, int, int], Lines]
     links: LaneLinks
@@ -100,7 +99,6 @@ def read_opendrive_map(path: Path) -> RoadMap:
     }
     links = lane_links(content, pieces)
     whole = _Whole(
-        content=content,
         pieces=pieces,
         borders=_borders(path, pieces),
         links=links,

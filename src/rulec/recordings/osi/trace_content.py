@@ -25,7 +25,6 @@ _ONLY_ID: Table = {1: STATIC["lane"][1]}
 class TraceContent:
     """A trace as far as it has been read. ``static``: kind -> id -> message."""
 
-    path: Path
     times: list[int] = field(default_factory=list)
     objects: dict[str, MovingObject] = field(default_factory=dict)
     bulbs: dict[str, Bulb] = field(default_factory=dict)
@@ -107,7 +106,7 @@ class TraceContent:
 
 def read_content(path: Path) -> TraceContent:
     """Read a trace. Raises RulecError R0610, R0701."""
-    content = TraceContent(path)
+    content = TraceContent()
     for frame in frames(path):
         content.add(frame)
     if not content.times:

@@ -128,7 +128,6 @@ class RoadSignal:
 
     id: str
     s: float
-    t: float
     orientation: Orientation
     type: str
     subtype: str
@@ -225,7 +224,6 @@ class RoadJunction:
     """A junction; ``priorities`` are pairs of roads, the first of which goes first."""
 
     id: str
-    type: str
     connections: tuple[Connection, ...]
     priorities: tuple[tuple[str, str], ...]
 

@@ -52,7 +52,7 @@ def _add(content: OpenDrive, tree: Tree) -> None:
 def _junction(tree: Tree) -> RoadJunction:
     connections = [x for child in tree.all("connection") if (x := _connection(child))]
     priorities = [(text(x, "high"), text(x, "low")) for x in tree.all("priority") if text(x, "low")]
-    return RoadJunction(name(tree), text(tree, "type"), tuple(connections), tuple(priorities))
+    return RoadJunction(name(tree), tuple(connections), tuple(priorities))
 
 
 def _connection(tree: Tree) -> Connection | None:

@@ -34,7 +34,6 @@ def _signal(tree: Tree) -> RoadSignal:
     return RoadSignal(
         id=name(tree),
         s=length(tree, "s"),
-        t=number(tree, "t", 0.0),
         orientation=orientation(tree),
         type=text(tree, "type"),
         subtype=text(tree, "subtype"),
