@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,16 +23,19 @@ from rulec.cli.options.output_options import (
 )
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import read_machines, rulebooks_named
-from rulec.cli.verdict_outputs import FORMATS, verdict_outputs
+from rulec.cli.verdict_outputs import FORMATS, VerdictOutputs, verdict_outputs
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import page_width, print_remark
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+    from rulec.cli.recording_run import RecordingRun
+    from rulec.cli.trace_run import TraceRun
     from rulec.code_generation.compiled_c.c_engine import CEngine
     from rulec.fleet.drive_rows import DriveRows
     from rulec.monitoring.verdict import EngineName
     from rulec.recordings.recording_inputs import InputFiles
+    from rulec.report.verdicts.batch_table import BatchTally
     from rulec.trace.formats.trace_files import Format
     from rulec.trace.trace_model import Ending
 
@@ -130,7 +133,6 @@ def command(
     """
     # Formats of recordings, 80 ms: not for --help.
     from rulec.recordings.recording_inputs import input_files
-    from rulec.report.verdicts.batch_table import BatchTally
 
     inputs = input_files(files)
     refuse_overwriting(to, inputs.paths)
@@ -140,104 +142,201 @@ def command(
         raise click.UsageError("standard input is read once; give a file, or one rulebook")
     form = scenario_options.trace_format(options)
     recordings = _recordings(inputs, form, named=options["input_format"] is not None)
-    about = {name: value for name, value in options.items() if name != "assumed"}
-    about["input_format"] = None
-    option = scenario_options.given_drives_option({"egos": egos, **about})
-    if option and not recordings and not inputs.problems:
-        # Formats of recordings, as above.
-        from rulec.recordings.recording_files import check_readable
-        from rulec.recordings.recording_inputs import STANDARD_INPUT
-
-        for path in inputs.paths:
-            if path != STANDARD_INPUT:
-                check_readable(Path(path))
-        raise click.UsageError(
-            f"{option} is for recorded traffic, and no file looks like it; add `--input-format "
-            "tracks`, or another of `rulec formats`, to hear what is missing"
-        )
-    if ends is not None and recordings:
-        raise click.UsageError("--end is for traces; a recording is always cut.")
-    if engine == "c" and recordings:
-        raise click.UsageError(
-            "--engine c is for traces; `rulec traces --recorded` writes drives as such."
-        )
-    if step_s is not None and (recordings or Fraction(str(float(step_s))) != step_s):
-        raise click.UsageError("--step is a decimal, and for traces; a recording has its own step.")
-    for one in to if len(books) > 1 else ():
-        if one.form not in _OF_SEVERAL_BOOKS:
-            raise click.UsageError(
-                f"{one.form} is of one rulebook; of several give one of "
-                f"{', '.join(_OF_SEVERAL_BOOKS)}, or judge by each in a call of its own"
-            )
-    if len(recordings) > 1 and any(one.form == "mcap" for one in to):
-        raise click.UsageError("MCAP has one time line: give one recording.")
-    traces = [path for path in inputs.paths if path not in recordings]
     is_json_alone = to == (Output(STANDARD_OUTPUT, "json"),)
     usual = 0 if is_json_alone or len(inputs.paths) > 1 or len(books) > 1 else 1
-    to_explain = usual if n_explained is None else n_explained
+    request = VerifyRequest(
+        inputs=inputs,
+        recordings=recordings,
+        traces=[path for path in inputs.paths if path not in recordings],
+        form=form,
+        ends=ends,
+        step_s=step_s,
+        egos=egos,
+        options=options,
+        engine=engine,
+        jobs=jobs,
+        n_explained=usual if n_explained is None else n_explained,
+        every_part=every_part,
+        strict=strict,
+    )
+    _check_inputs(request)
+    _check_outputs(request, to, n_books=len(books))
     for searched in inputs.searched:
         print_remark(f"rulec: {searched.in_words}")
     if exposure and not any(one.form in TABLES for one in to):
         raise click.UsageError("--exposure is for tables: -o FILE.jsonl, FILE.csv, FILE.parquet.")
     with verdict_outputs(to, books[0], with_rows=exposure) as outputs:
         complaints = Complaints()
-        tallies: list[tuple[CompiledRulebook, BatchTally]] = []
-        violated, judged, complete = False, False, True
+        results = []
         for rules in books:
             if len(books) > 1:
                 outputs.text(f"{'' if rules is books[0] else chr(10)}by {rules.name}")
             if exposure:
                 outputs.to_rows = _to_rows(rules, egos, options, ends)
-            by_rules, total = False, BatchTally()
-            if recordings or inputs.problems:
-                # numpy and shapely, 250 ms: only for recordings.
-                from rulec.batch.recording_judge import JudgeSettings
-                from rulec.cli.recording_run import RecordingRun
-
-                to_rows = outputs.to_rows
-                settings = JudgeSettings(
-                    rules,
-                    scenario_options.requested_drives(egos, options, rules.vocabulary),
-                    scenario_options.recording_source("-", dict(options)),
-                    to_explain=to_explain,
-                    every_part=every_part,
-                    width=page_width(),
-                    text=outputs.wants_text,
-                    lines=outputs.wants_lines,
-                    findings=outputs.wants_findings,
-                    to_rows=None if to_rows is None else to_rows.of_answer,
-                )
-                recorded = RecordingRun(settings, outputs, complaints)
-                for problem in inputs.problems:
-                    recorded.not_read(problem)
-                if recordings:
-                    recorded.files(recordings, jobs)
-                violated |= bool(recorded.total.violated) or (strict and recorded.open_hard)
-                by_rules, complete = recorded.judged, complete and recorded.complete
-                total.include(recorded.total)
-            if traces:
-                # Formats of traces, 30 ms: not for recordings.
-                from rulec.cli.trace_run import TraceRun
-
-                assumed = scenario_options.assumptions(ends, options["assumed"], rules.vocabulary)
-                step = None if step_s is None else float(step_s)
-                assumed = replace(assumed, step_s=step)
-                judge = None if engine == "python" else _c_engine(rules)
-                traced = TraceRun(rules, outputs, complaints, to_explain, every_part, engine=judge)
-                traced.files(traces, form, assumed)
-                violated |= bool(traced.total.violated) or (strict and traced.open_hard)
-                by_rules |= traced.judged
-                complete &= not traced.total.not_judged
-                total.include(traced.total)
-            tallies.append((rules, total))
-            judged = by_rules and (judged or rules is books[0])
+            results.append(_judge(request, rules, outputs, complaints))
         if len(books) > 1:
             # Verdicts and recordings: only where there are some.
             from rulec.report.verdicts import side_by_side
 
+            tallies = [(rules, one.total) for rules, one in zip(books, results, strict=True)]
             outputs.text(f"\n{side_by_side.as_text(tallies)}")
     complaints.close()
-    return ExitStatus.after(answered=judged and complete, failed=violated)
+    return ExitStatus.after(
+        answered=all(one.judged and one.complete for one in results),
+        failed=any(one.violated for one in results),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class VerifyRequest:
+    """Files of recordings and of traces, and how they are to be judged."""
+
+    inputs: InputFiles
+    recordings: Sequence[str]
+    traces: Sequence[str]
+    form: Format | None
+    ends: Ending | None
+    step_s: Fraction | None
+    egos: tuple[str, ...]
+    options: Mapping[str, Any]
+    engine: EngineName
+    jobs: Jobs
+    n_explained: int
+    every_part: bool
+    strict: bool
+
+
+@dataclass
+class VerifyResult:
+    """Sums over files judged by one rulebook.
+
+    ``judged``: was any, or is there no rule? ``complete``: was each? ``violated``: hard rules are,
+    or, with ``--strict``, are open.
+    """
+
+    total: BatchTally
+    judged: bool = False
+    complete: bool = True
+    violated: bool = False
+
+
+def _check_inputs(request: VerifyRequest) -> None:
+    """Refuse options that the files are not for. Raises click.UsageError, RulecError."""
+    about = {name: value for name, value in request.options.items() if name != "assumed"}
+    about["input_format"] = None
+    option = scenario_options.given_drives_option({"egos": request.egos, **about})
+    if option and not request.recordings and not request.inputs.problems:
+        # Formats of recordings, 80 ms: not for --help.
+        from rulec.recordings.recording_files import check_readable
+        from rulec.recordings.recording_inputs import STANDARD_INPUT
+
+        for path in request.inputs.paths:
+            if path != STANDARD_INPUT:
+                check_readable(Path(path))
+        raise click.UsageError(
+            f"{option} is for recorded traffic, and no file looks like it; add `--input-format "
+            "tracks`, or another of `rulec formats`, to hear what is missing"
+        )
+    if request.ends is not None and request.recordings:
+        raise click.UsageError("--end is for traces; a recording is always cut.")
+    if request.engine == "c" and request.recordings:
+        raise click.UsageError(
+            "--engine c is for traces; `rulec traces --recorded` writes drives as such."
+        )
+    step_s = request.step_s
+    if step_s is not None and (request.recordings or Fraction(str(float(step_s))) != step_s):
+        raise click.UsageError("--step is a decimal, and for traces; a recording has its own step.")
+
+
+def _check_outputs(request: VerifyRequest, to: Sequence[Output], *, n_books: int) -> None:
+    """Refuse formats that cannot hold all that is asked for. Raises click.UsageError."""
+    for one in to if n_books > 1 else ():
+        if one.form not in _OF_SEVERAL_BOOKS:
+            raise click.UsageError(
+                f"{one.form} is of one rulebook; of several give one of "
+                f"{', '.join(_OF_SEVERAL_BOOKS)}, or judge by each in a call of its own"
+            )
+    if len(request.recordings) > 1 and any(one.form == "mcap" for one in to):
+        raise click.UsageError("MCAP has one time line: give one recording.")
+
+
+def _judge(
+    request: VerifyRequest,
+    rules: CompiledRulebook,
+    outputs: VerdictOutputs,
+    complaints: Complaints,
+) -> VerifyResult:
+    """Judge all files by one rulebook."""
+    # Formats of recordings, 80 ms: not for --help.
+    from rulec.report.verdicts.batch_table import BatchTally
+
+    result = VerifyResult(BatchTally())
+    if request.recordings or request.inputs.problems:
+        recorded = _judge_recordings(request, rules, outputs, complaints)
+        _include(result, recorded, strict=request.strict)
+        result.complete &= recorded.complete
+    if request.traces:
+        traced = _judge_traces(request, rules, outputs, complaints)
+        _include(result, traced, strict=request.strict)
+        result.complete &= not traced.total.not_judged
+    return result
+
+
+def _judge_recordings(
+    request: VerifyRequest,
+    rules: CompiledRulebook,
+    outputs: VerdictOutputs,
+    complaints: Complaints,
+) -> RecordingRun:
+    # numpy and shapely, 250 ms: only for recordings.
+    from rulec.batch.recording_judge import JudgeSettings
+    from rulec.cli.recording_run import RecordingRun
+
+    to_rows = outputs.to_rows
+    settings = JudgeSettings(
+        rules,
+        scenario_options.requested_drives(request.egos, request.options, rules.vocabulary),
+        scenario_options.recording_source("-", dict(request.options)),
+        to_explain=request.n_explained,
+        every_part=request.every_part,
+        width=page_width(),
+        text=outputs.wants_text,
+        lines=outputs.wants_lines,
+        findings=outputs.wants_findings,
+        to_rows=None if to_rows is None else to_rows.of_answer,
+    )
+    run = RecordingRun(settings, outputs, complaints)
+    for problem in request.inputs.problems:
+        run.not_read(problem)
+    if request.recordings:
+        run.files(request.recordings, request.jobs)
+    return run
+
+
+def _judge_traces(
+    request: VerifyRequest,
+    rules: CompiledRulebook,
+    outputs: VerdictOutputs,
+    complaints: Complaints,
+) -> TraceRun:
+    # Formats of traces, 30 ms: not for recordings.
+    from rulec.cli.trace_run import TraceRun
+
+    assumed = scenario_options.assumptions(
+        request.ends, request.options["assumed"], rules.vocabulary
+    )
+    step = None if request.step_s is None else float(request.step_s)
+    engine = None if request.engine == "python" else _c_engine(rules)
+    n_explained, every_part = request.n_explained, request.every_part
+    run = TraceRun(rules, outputs, complaints, n_explained, every_part, engine=engine)
+    run.files(request.traces, request.form, replace(assumed, step_s=step))
+    return run
+
+
+def _include(result: VerifyResult, run: RecordingRun | TraceRun, *, strict: bool) -> None:
+    result.violated |= bool(run.total.violated) or (strict and run.open_hard)
+    result.judged |= run.judged
+    result.total.include(run.total)
 
 
 def _c_engine(rules: CompiledRulebook) -> CEngine:
