@@ -10,7 +10,7 @@ from rulec.extraction import recording_parts as parting
 from rulec.extraction.recording_parts import looked_at
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
-from rulec.extraction.source_tolerances import tolerances_of
+from rulec.extraction.tracks.source_tolerances import tolerances_of
 from rulec.extraction.traffic_thresholds import USUAL
 from rulec.extraction.violation_evidence import evidence_of
 from rulec.monitoring.explain.explanation import explain

@@ -117,7 +117,7 @@ ANSWERED = {
         "analysis/test_rulebook_findings.py::test_findings",
     ),
     "a headway of another speed than its page names": (
-        "extraction/test_source_tolerances.py::test_time_headway_and_speed_are_of_the_same_speed",
+        "extraction/tracks/test_source_tolerances.py::test_time_headway_and_speed_are_of_the_same_speed",
     ),
     "a past with an object of another type": (
         "planning/test_before.py::test_who_is_of_another_type_now_is_somebody_else",

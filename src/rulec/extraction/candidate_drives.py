@@ -11,7 +11,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.drive_context import EgosOnRoad, drives_context
+from rulec.extraction.context_arrays import EgosOnRoad, drives_context
 from rulec.extraction.drives import Drives, LaidOutMap, NoDrive
 from rulec.extraction.to_trace import Drive, TraceWriter, to_traces
 from rulec.extraction.tracks.driven_road import DrivenRoad

@@ -12,7 +12,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.drive_context import EgosOnRoad, drive_context, drives_context
+from rulec.extraction.context_arrays import EgosOnRoad, drive_context, drives_context
 from rulec.extraction.recording_parts import egos_of
 from rulec.extraction.to_trace import ALL_SIGNALS, Drive, TraceWriter, to_traces
 from rulec.extraction.tracks.driven_road import DrivenRoad, DrivenRoads, junction_lanelets

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rulec.extraction.source_tolerances import OTHERS, Tolerances
+from rulec.extraction.tracks.source_tolerances import OTHERS, Tolerances
 from rulec.extraction.tracks.track_motion import Poses, motion_of
 
 EXACT = Tolerances(0.01, 0.01, 0.005)

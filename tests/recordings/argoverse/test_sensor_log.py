@@ -7,7 +7,7 @@ import pytest
 
 from rulec import read_recording
 from rulec.diagnostics import RulecError
-from rulec.extraction.source_tolerances import tolerances_of
+from rulec.extraction.tracks.source_tolerances import tolerances_of
 from support.builders.argoverse_files import LOG_ID, box, pose, write_log
 
 SWEEPS = [1_000_000_000 + 100_000_000 * k + jitter for k, jitter in enumerate((0, -300_000, 0))]

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rulec.extraction.drive_context import drive_context
+from rulec.extraction.context_arrays import drive_context
 from rulec.extraction.tracks.driven_road import DrivenRoads, junction_lanelets
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.tracks.road_extents import road_extents

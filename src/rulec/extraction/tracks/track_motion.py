@@ -9,7 +9,7 @@ import numpy as np
 from numpy import bool_, float64, intp
 from numpy.typing import NDArray
 
-from rulec.extraction.source_tolerances import Tolerances
+from rulec.extraction.tracks.source_tolerances import Tolerances
 
 _LEAST_PART = 0.7
 """Whose motion is less along its heading than at 45° has a heading that says nothing."""

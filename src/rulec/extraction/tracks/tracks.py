@@ -18,7 +18,7 @@ from numpy import bool_, float64, intp
 from numpy.typing import NDArray
 
 from rulec.extraction.recording_parts import looked_at
-from rulec.extraction.source_tolerances import tolerances_of
+from rulec.extraction.tracks.source_tolerances import tolerances_of
 from rulec.extraction.tracks.track_motion import Poses, motion_of
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Lanelet, Participant, Points, Recording, is_lane

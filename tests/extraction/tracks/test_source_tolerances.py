@@ -8,7 +8,7 @@ import pytest
 from rulec.extraction.signals.conduct.overtaking_signals import overtaking_signals
 from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.participant_signals import participant_signals
-from rulec.extraction.source_tolerances import (
+from rulec.extraction.tracks.source_tolerances import (
     DRONES,
     NGSIM,
     OTHERS,

@@ -1,0 +1,134 @@
+"""Arrays of a recording cut to one drive, or to several end to end, and to who is near ego."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
+
+from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.tracks.road_extents import RoadExtents
+from rulec.extraction.tracks.road_places import RoadPlaces
+from rulec.extraction.tracks.surroundings import Surroundings
+from rulec.extraction.tracks.tracks import Flags
+from rulec.recordings.recording import Side
+from rulec.trace.end_to_end import EndToEnd
+from rulec.trace.laid_out import LaidOut
+
+
+def drive_context(
+    surroundings: Surroundings, places: RoadPlaces, side: Side, ego: int, columns: slice
+) -> DriveContext:
+    """The part of a recording that one drive is about: ``ego``'s row, in a range of columns."""
+    own = np.array([ego])
+    tracks, extents = places.tracks.part(own, columns), places.extents.part(own, columns)
+    relevant, in_sight = _near(places, (columns,), extents)
+    relevant[ego] = in_sight[ego] = False
+    rows = (relevant | in_sight).any(axis=1).nonzero()[0]
+    n_states = columns.stop - columns.start
+    return DriveContext(
+        recording=surroundings.recording,
+        thresholds=places.thresholds,
+        side=side,
+        road=places.road,
+        spans=EndToEnd.of_one(n_states),
+        steps=tracks.first + np.arange(n_states),
+        own=surroundings,
+        ego=tracks,
+        ego_extents=extents,
+        tracks=places.tracks.part(rows, columns),
+        extents=places.extents.part(rows, columns),
+        relevant=relevant[rows],
+        in_sight=in_sight[rows],
+        lanes_there=places.lanes_there[rows, columns],
+        lanes_within=tuple(
+            sets[rows, columns] for sets in places.lanes_within(surroundings.tolerances.place_m)
+        ),
+        elsewhere=places.elsewhere[rows, columns],
+        surroundings=surroundings,
+    )
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class EgosOnRoad:
+    """Drives along one road: rows of ``places``, and the columns in which each is.
+
+    ``own`` are the egos' surroundings, ``alone`` those of one of them by the number of its drive.
+    """
+
+    places: RoadPlaces
+    rows: Sequence[int]
+    columns: Sequence[slice]
+    own: Surroundings
+    alone: Callable[[int], tuple[Surroundings, int]] | None = None
+
+
+def drives_context(
+    surroundings: Surroundings, places: RoadPlaces, side: Side, egos: EgosOnRoad
+) -> DriveContext:
+    """The parts of a recording that several drives along one road are about.
+
+    Egos with surroundings of their ``own`` are not among the others.
+    """
+    lengths = [columns.stop - columns.start for columns in egos.columns]
+    spans = EndToEnd((0, *np.cumsum(lengths).tolist()))
+    columns = np.concatenate([np.arange(own.start, own.stop) for own in egos.columns])
+    members = np.array(egos.rows, dtype=intp)
+    own = spans.spread(members)[None], columns[None]
+    ego = egos.places.extents.at(*own)
+    relevant, in_sight = _near(places, egos.columns, ego)
+    if egos.own is surroundings:
+        relevant[own[0], spans.columns] = in_sight[own[0], spans.columns] = False
+    are_near = relevant | in_sight
+    rows = are_near.any(axis=1).nonzero()[0]
+    laid = LaidOut(rows, egos.columns, ~spans.any(are_near[rows]))
+    return DriveContext(
+        recording=surroundings.recording,
+        thresholds=places.thresholds,
+        side=side,
+        road=places.road,
+        spans=spans,
+        steps=places.tracks.first + columns,
+        own=egos.own,
+        ego=egos.places.tracks.at(*own, members),
+        ego_extents=ego,
+        tracks=places.tracks.end_to_end(laid),
+        extents=places.extents.end_to_end(laid),
+        relevant=relevant[rows],
+        in_sight=in_sight[rows],
+        lanes_there=laid(places.lanes_there),
+        lanes_within=tuple(
+            laid(sets) for sets in places.lanes_within(surroundings.tolerances.place_m)
+        ),
+        elsewhere=laid(places.elsewhere),
+        surroundings=surroundings,
+        alone=egos.alone,
+    )
+
+
+def _near(places: RoadPlaces, ranges: Sequence[slice], ego: RoadExtents) -> tuple[Flags, Flags]:
+    """Flags of participants (rows) that count for ego, and that are in its sight.
+
+    By state, those of several ``ranges`` end to end.
+    """
+    limits, extents = places.thresholds, places.extents
+
+    columns = np.concatenate([np.arange(own.start, own.stop) for own in ranges])
+
+    def laid(values: NDArray[Any]) -> NDArray[Any]:
+        return values[:, ranges[0]] if len(ranges) == 1 else values.take(columns, axis=1)
+
+    gap = laid(extents.s_min) - ego.s_max
+    np.maximum(gap, ego.s_min - laid(extents.s_max), out=gap)
+    # A little farther, since speeds are known to some tolerance
+    reach = ego.along - laid(extents.along)
+    reach += 1.0
+    np.maximum(reach, 0.0, out=reach)
+    reach *= limits.catching_up_s
+    relevant = laid(places.counts) & (gap <= limits.near_m) & ~np.isnan(ego.s_min)
+    in_sight = laid(places.seen) & (gap <= np.maximum(limits.near_m, reach, out=reach))
+    return relevant, in_sight
