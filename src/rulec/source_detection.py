@@ -1,4 +1,4 @@
-"""How sources of the language begin, which tells them from other programs' files."""
+"""Detection of the language's sources by their first words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether what verbs are given is of the kind that they take."""
+"""Type checks of the arguments of public functions."""
 
 from __future__ import annotations
 

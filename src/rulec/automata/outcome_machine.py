@@ -1,4 +1,4 @@
-"""Machines whose outputs are outcomes, and what they come to where letters are not known.
+"""Machines with outcomes as outputs, and runs of them on unknown letters.
 
 A word of sets of letters stands for every word that has one of each set. The machine then steps on
 sets of states (the subset construction, made as it is met). Of a set only the states that are least

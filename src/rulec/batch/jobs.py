@@ -1,4 +1,4 @@
-"""How many processes work, and from when on."""
+"""Number of worker processes, and the time after which they start."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What is kept from one call to the next: the folder, its owner, values in files."""
+"""Caches between calls: their folder, its owner, values in files."""

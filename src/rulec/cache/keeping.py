@@ -1,4 +1,4 @@
-"""Which trees and machines are recalled: a command line keeps them, who imports rulec does not.
+"""Whether trees and machines are cached: only by the command line.
 
 What ships with rulec is read by both: nothing is written for that.
 """

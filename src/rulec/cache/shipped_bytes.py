@@ -1,4 +1,4 @@
-"""What ships with rulec beside its rulebooks: bytes by keys that say all that they come from.
+"""Caches that ship with rulec: bytes by keys of their sources.
 
 A file of a kind begins with a digest of the code that made it. Where that code is another one now,
 as it may be in a checkout, nothing of the file is used; nor is what is not as it was written.

@@ -1,4 +1,4 @@
-"""What the words of recorded drives are in the cells of a navigation graph."""
+"""Words of recorded drives evaluated in the cells of a navigation graph."""
 
 from rulec.cell_words.cell_words import CellWords, cell_words
 

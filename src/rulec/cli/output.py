@@ -1,4 +1,4 @@
-"""What a verb opens and prints: rulebooks, errors, files, findings."""
+"""Opening of inputs and printing of results, shared by verbs."""
 
 from __future__ import annotations
 

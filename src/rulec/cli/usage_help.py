@@ -1,4 +1,4 @@
-"""What to try where a command is given wrongly: an example, the word that is meant."""
+"""Advice after usage errors: an example, a similar word."""
 
 from __future__ import annotations
 

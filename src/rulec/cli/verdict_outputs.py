@@ -1,4 +1,4 @@
-"""Where verdicts go: text, lines of JSON and findings, to standard output and to files."""
+"""Destinations of verdicts: text, JSON Lines and findings, printed or in files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where everything of a monitor has its place: seats, reads, cells, entries, instances.
+"""Memory layout of a generated monitor: seats, reads, cells, entries, instances.
 
 A rule has an instance for each choice of seats that its variables may stand for. Objects of a type
 sit on the seats of the nearest type above it for which there are any.

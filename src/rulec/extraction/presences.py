@@ -1,4 +1,4 @@
-"""When participants count for ego: runs of states, their cells in arrays, and their names."""
+"""Stretches of states in which participants count for ego, with their names."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A long recording in parts: those who drive one after the other, with all who are there meanwhile.
+"""Parts of a long recording: successive drives, with participants present meanwhile.
 
 Arrays of participants by time steps grow with the square of a recording's length. A part has whole
 tracks, of all who are there while one of its egos is, or so shortly before or after that ego might

@@ -1,4 +1,4 @@
-"""What findings were judged by: rulebook, version, thresholds and assumptions, as texts.
+"""Identity of a judgement: rulebook, version, thresholds and assumptions, as texts.
 
 Findings of one fleet may be added up only if all of these are the same.
 """

@@ -1,4 +1,4 @@
-"""What a table holds, tracks or traces, and whether its drives are whole."""
+"""Kind of a table, tracks or traces; whether its drives are complete."""
 
 from __future__ import annotations
 

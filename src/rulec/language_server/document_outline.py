@@ -1,4 +1,4 @@
-"""The parts of a document: its outline, and what can be folded away."""
+"""Outline and folding ranges of a document."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One editor's session: its workspace, and what has been found and sent."""
+"""State of one editor's session: workspace, results, published diagnostics."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What to put into an editor's settings, so that it starts this rulec's language server."""
+"""Settings with which editors start this rulec's language server."""
 
 from __future__ import annotations
 

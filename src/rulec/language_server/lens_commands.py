@@ -1,4 +1,4 @@
-"""What the lenses above rules do when they are clicked."""
+"""Commands of code lenses."""
 
 from __future__ import annotations
 

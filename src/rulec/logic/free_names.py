@@ -1,4 +1,4 @@
-"""What formulas speak of: variables, declarations, inputs; and formulas with other variables."""
+"""Free variables, declarations and inputs of formulas; substitution of variables."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a rule says, what is known of its propositions, and what its history means, as terms."""
+"""Terms of a rule: its formula, facts about propositions, history variables."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is assumed of traces where they do not tell."""
+"""Assumptions about values and ends that traces leave open."""
 
 from __future__ import annotations
 

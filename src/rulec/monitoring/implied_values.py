@@ -1,4 +1,4 @@
-"""What a state leaves out, where a fact makes it follow from what it says."""
+"""Values that a state omits and facts imply."""
 
 from __future__ import annotations
 

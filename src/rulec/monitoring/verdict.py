@@ -1,4 +1,4 @@
-"""Verdicts as data, and what of a running trace affects later ones."""
+"""Verdicts as data, and the carried state of running traces."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the last way through a scenario ends, who closes it, and what would open it."""
+"""Dead ends of a scenario: last layer, who closes it, remedies."""
 
 from __future__ import annotations
 

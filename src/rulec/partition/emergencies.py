@@ -1,4 +1,4 @@
-"""How hard every way through a scenario brakes at least, where that is harder than usual."""
+"""Least braking on all ways through a scenario, where it is hard."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""How often rules are violated: rates with intervals, from the rows of findings."""
+"""Rates of violations with intervals, from the rows of findings."""

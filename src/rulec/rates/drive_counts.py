@@ -1,4 +1,4 @@
-"""What findings count, drive by drive."""
+"""Counts of findings, drive by drive."""
 
 from __future__ import annotations
 

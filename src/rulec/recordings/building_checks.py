@@ -1,4 +1,4 @@
-"""Checks of what programs build, all of which are done before anything is said."""
+"""Checks of recordings that programs build, reported all at once."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a format of recordings is, and where one is read from."""
+"""Format of recordings as data, and the source of a recording."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A formula that is asked of traces, with the words that it is in."""
+"""Formula asked of traces, with its vocabulary and variables."""
 
 from __future__ import annotations
 

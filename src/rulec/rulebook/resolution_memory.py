@@ -1,4 +1,4 @@
-"""What of a rulebook's last resolution still holds after an edit."""
+"""Results of a rulebook's last resolution that an edit leaves valid."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is wrong with the name that a new rulebook was to have."""
+"""Mistakes in the name of a new rulebook."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a word that nothing is called here is declared or defined: other books and vocabularies.
+"""Undeclared words found in other rulebooks and vocabularies.
 
 Texts are searched, not parsed, and only once there is a mistake to mend.
 """

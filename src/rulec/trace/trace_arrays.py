@@ -1,4 +1,4 @@
-"""One trace as arrays: what is said of the world, and of each object while it is there."""
+"""One trace as arrays: values of the world, and of each object."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which articles a rule's ``cite`` names: `§ 5(4) s. 2, 7a` is sentence 2 of § 5(4), and § 7a."""
+"""Parser of citations: `§ 5(4) s. 2, 7a` cites two articles."""
 
 from __future__ import annotations
 

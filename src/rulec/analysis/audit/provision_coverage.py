@@ -1,4 +1,4 @@
-"""What has become of each article of a rulebook's law: the lawyer's progress bar."""
+"""Coverage of a law by a rulebook: the treatment of each article."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which rules can be judged on what a source tells, before there is any trace from it."""
+"""Basis of each rule's verdicts on a source, before there are traces."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which rules of a rulebook can have to do with each other."""
+"""Relevance filter: pairs of rules that share words, directly or by axioms."""
 
 from __future__ import annotations
 

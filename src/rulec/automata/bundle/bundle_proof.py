@@ -1,4 +1,4 @@
-"""What the independent checker finds of a compiled rulebook's file."""
+"""Proofs of a compiled rulebook's file by the independent checker."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the cache of compiled rulebooks keeps, as a text with rows of integers beside it.
+"""Serialisation of cached compiled rulebooks: JSON with rows of integers beside it.
 
 A file is made of parts, each behind those that it is made of, and equal ones are there once: rules
 share most of what they speak of. Nothing is checked but that the file is as this rulec wrote it.

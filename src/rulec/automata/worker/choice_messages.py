@@ -1,4 +1,4 @@
-"""Message about a compiler that there is not."""
+"""Message about an unknown compiler."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which compiler makes automata: Spot where it is installed, unless somebody says otherwise.
+"""Choice between the two compilers: Spot if installed, else decision diagrams.
 
 It is an environment variable's, so that processes that are started meanwhile compile alike.
 """

@@ -1,4 +1,4 @@
-"""What a compiler's process says: first what it can do, then an answer to each job.
+"""Messages from a compiler's process: its abilities, then answers to jobs.
 
 Where there are no processes, as in a browser, the answers are given in this one.
 """

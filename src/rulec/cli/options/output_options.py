@@ -1,4 +1,4 @@
-"""Where an answer goes, and in which format: one rule for all verbs.
+"""Options for the output's destination and format, the same for all verbs.
 
 The ending of the file decides, `--output-format` where it says nothing, whose short form is
 `--json`. What is unclear is refused before the verb begins.

@@ -1,4 +1,4 @@
-"""How well a source of recorded traffic knows places and speeds.
+"""Accuracy of positions and speeds, by the source of a recording.
 
 Within these of its threshold a word is unknown, and a number is an interval. Errors that have
 nothing to do with each other add up as squares (JCGM 100:2008, 5.1.2).

@@ -1,4 +1,4 @@
-"""What is computed once for a recording: its junctions and passages, and its carriageways."""
+"""Facts of a whole recording, computed once: junctions, passages, carriageways."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an engine is: who judges units of work, in whatever processes."""
+"""Interface of engines, which judge units of work in other processes."""
 
 from __future__ import annotations
 

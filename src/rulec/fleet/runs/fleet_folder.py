@@ -1,4 +1,4 @@
-"""The folder of a fleet's findings: what is in it, by what it was judged, and what is done."""
+"""Folder of a fleet's findings: contents, origin, units that are done."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a run over a fleet has done, as text."""
+"""Summary of a fleet run as text."""
 
 from __future__ import annotations
 

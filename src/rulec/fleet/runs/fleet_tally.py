@@ -1,4 +1,4 @@
-"""What files of findings come to: drives, hours, kilometres, and rules by outcome."""
+"""Sums over files of findings: drives, hours, kilometres, rules by outcome."""
 
 from __future__ import annotations
 

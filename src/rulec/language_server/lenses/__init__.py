@@ -1,1 +1,1 @@
-"""What is shown between the lines: hints within them, lenses above rules."""
+"""Inlay hints and code lenses."""

@@ -1,4 +1,4 @@
-"""Lines above rules: what can be asked of each, and what the answer was."""
+"""Code lenses above rules: questions about each, and their answers."""
 
 from __future__ import annotations
 

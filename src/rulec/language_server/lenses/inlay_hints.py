@@ -1,4 +1,4 @@
-"""What a text means and does not say: shown between its words, not written."""
+"""Inlay hints: meanings that a text leaves implicit."""
 
 from __future__ import annotations
 

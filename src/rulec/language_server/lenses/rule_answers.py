@@ -1,4 +1,4 @@
-"""What can be asked of one rule that takes a compiler: its examples, its sentence, its parent."""
+"""Answers about a rule that take a compiler: examples, sentence, parent."""
 
 # Imports within functions: compilers, automata and reports take 400 ms, and are for who asks.
 

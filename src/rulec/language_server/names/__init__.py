@@ -1,1 +1,1 @@
-"""What names mean in a document, and where they stand in all of them."""
+"""Definitions and references of names, in a document and in the workspace."""

@@ -1,4 +1,4 @@
-"""What a name means, in Markdown, for who points at it."""
+"""Hover texts of names, in Markdown."""
 
 from __future__ import annotations
 

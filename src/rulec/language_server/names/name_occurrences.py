@@ -1,4 +1,4 @@
-"""Where names stand in a file, and what each of them means there."""
+"""Occurrences of names in a file, with their meanings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a thing is declared and used, in all rulebooks and vocabularies of the workspace."""
+"""Declarations and uses of a thing in all files of the workspace."""
 
 from __future__ import annotations
 

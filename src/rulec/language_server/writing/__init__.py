@@ -1,1 +1,1 @@
-"""Help for who is writing: what fits at the cursor, and what mends a mistake."""
+"""Completions at the cursor and quick fixes of mistakes."""

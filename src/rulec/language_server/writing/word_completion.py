@@ -1,4 +1,4 @@
-"""What can be written at the cursor: words that fit, by the grammar and by their types."""
+"""Completions at the cursor, by the grammar and by types."""
 
 from __future__ import annotations
 

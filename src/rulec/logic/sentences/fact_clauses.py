@@ -1,4 +1,4 @@
-"""What a state says, as clauses: ``ego is behind 2 and the gap from ego to 2 is 19.8 m``."""
+"""Facts of a state as clauses: ``the gap is 19.8 m``."""
 
 from __future__ import annotations
 

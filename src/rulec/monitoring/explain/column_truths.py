@@ -1,4 +1,4 @@
-"""Whether what a rule reads is true in each state, by the columns of a trace in arrays."""
+"""Truth of a rule's atoms by state, from columns of a trace."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The states that an explanation looks at, and what a rule reads of them."""
+"""States that an explanation covers, with the values that a rule reads."""
 
 from __future__ import annotations
 

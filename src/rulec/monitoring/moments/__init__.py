@@ -1,1 +1,1 @@
-"""Where a formula holds in a trace: at every state and for every choice of objects, on arrays."""
+"""Truth of a formula at every state for every choice of objects."""

@@ -1,4 +1,4 @@
-"""What a trace in arrays says of names, a row for each object."""
+"""Name tables of traces in arrays, a row for each object."""
 
 from __future__ import annotations
 

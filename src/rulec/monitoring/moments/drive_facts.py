@@ -1,4 +1,4 @@
-"""What rates need of judged traces beside their verdicts: how long, on what road, how exposed."""
+"""Exposure of judged traces: duration, distance, road, opportunities."""
 
 from __future__ import annotations
 

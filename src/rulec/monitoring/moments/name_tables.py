@@ -1,4 +1,4 @@
-"""What traces say of names: for each of them a row for each object, a column for each state."""
+"""Tables of each name's values: rows are objects, columns are states."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a monitor begins with and goes on by: recorded traces, files of saved monitors, streams."""
+"""Sources of a monitor: recorded traces, saved monitors, streams."""
 
 from __future__ import annotations
 

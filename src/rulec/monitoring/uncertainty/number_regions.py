@@ -1,4 +1,4 @@
-"""Numbers as far as comparisons tell them apart: limits, and what lies between them."""
+"""Regions of the number line between the limits of comparisons."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What may still come of each state of a machine, before a word of sets of letter classes."""
+"""Reachable outcomes of a machine's states before a word of letter sets."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What ego can drive: reachable cells, and trajectories through them."""
+"""Drivability for ego: reachable cells, and trajectories through them."""

@@ -1,4 +1,4 @@
-"""What driving into a cell costs at least, whatever trajectory leads there."""
+"""Lower bounds on the cost of driving into a cell."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What driving through some first cells of a path costs at least, however it goes on.
+"""Lower bounds on the cost of driving through a path's first cells.
 
 One linear program is kept, whose rows are switched on for the cells, and for the others that ego
 stays beside: each next one is near the last one, and solved in a few steps.

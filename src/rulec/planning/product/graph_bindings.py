@@ -1,4 +1,4 @@
-"""Bindings of rules to a graph's objects; of many only those that some path may not keep."""
+"""Bindings of rules to a graph's objects that some path may violate."""
 
 from __future__ import annotations
 

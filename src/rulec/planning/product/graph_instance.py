@@ -1,4 +1,4 @@
-"""A rule with objects bound, and what it reads in every node of a graph."""
+"""Bound rule with its reads in every node of a graph."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which files of Argoverse 2 lie beside each other."""
+"""Files of Argoverse 2 that belong together, by their names."""
 
 from __future__ import annotations
 

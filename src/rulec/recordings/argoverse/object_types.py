@@ -1,4 +1,4 @@
-"""What Argoverse 2 calls its objects, and how large those are of which it does not say it.
+"""Object categories of Argoverse 2, with usual sizes.
 
 By `av2.datasets.motion_forecasting.data_schema.ObjectType`, and by
 `av2.datasets.sensor.constants.AnnotationCategories` with the data set's annotation taxonomy.

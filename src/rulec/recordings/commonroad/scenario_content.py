@@ -1,4 +1,4 @@
-"""What has been read of a CommonRoad scenario, and the recording that it makes."""
+"""Contents of a CommonRoad scenario, and the recording made of it."""
 
 from __future__ import annotations
 

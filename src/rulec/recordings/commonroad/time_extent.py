@@ -1,4 +1,4 @@
-"""How far apart the time steps of a file are, which decides how much memory it takes."""
+"""Limits on the spread of a file's time steps, which bounds memory."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What 123D's data sets call their objects, by number.
+"""Object labels of 123D's data sets, by number.
 
 By the enumerations in `py123d.parser.registry` and `py123d.datatypes.detections` (0.7): each data
 set keeps its own labels; a file names the enumeration that it goes by.

@@ -1,1 +1,1 @@
-"""What recordings of all formats say that cannot be so, or hardly."""
+"""Plausibility checks of recordings of all formats."""

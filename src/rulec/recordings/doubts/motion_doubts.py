@@ -1,4 +1,4 @@
-"""What is said of tracks that their own places contradict: wrong units, steps and axes."""
+"""Plausibility of tracks: units, steps and axes that positions contradict."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The first line of a CSV: names of columns, and what stands between them."""
+"""Header line of a CSV: names of columns and their delimiter."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far the bounds of lanes are from their centres."""
+"""Distances of lanes' bounds from their centres."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who goes first on the ways through a junction, by the regulatory elements ``right_of_way``.
+"""Priority at junctions, by regulatory elements ``right_of_way``.
 
 They name lanelets before a junction, or those in it. Where lights say who waits they hold only when
 these are out of order.

@@ -1,4 +1,4 @@
-"""What the tags of Lanelet2 say of lanelets and their bounds, in the words of recordings.
+"""Tags of Lanelet2's lanelets and bounds, in the words of recordings.
 
 By LaneletAndAreaTagging and LinestringTagging in the folder lanelet2_core/doc of
 https://github.com/fzi-forschungszentrum-informatik/Lanelet2; `road_shoulder` and `pedestrian_lane`

@@ -1,4 +1,4 @@
-"""What regulatory elements say of lanelets: lights, signs, limits, and lines to stop at.
+"""Regulatory elements of lanelets: lights, signs, limits, stop lines.
 
 Lanelet2 lets the lanelet before a line refer to a light or sign, Autoware the one behind it. Here
 they are for the lanelets that end at the line, as in all recordings.

@@ -1,4 +1,4 @@
-"""What lanelets share: ends with those that follow, bounds with those beside them.
+"""Topology of lanelets: successors by shared ends, neighbours by shared bounds.
 
 As of Lanelet2's routing graph, by nodes and ways, whatever else lies in the same place.
 """

@@ -1,4 +1,4 @@
-"""Which junctions are crossroads, and who goes first there.
+"""Crossroads and priority at the junctions of an OpenDRIVE map.
 
 The standard has a junction wherever roads part or join, also where ramps leave a motorway. For
 traffic law it is one where three roads or more meet, and traffic comes from unlike directions.

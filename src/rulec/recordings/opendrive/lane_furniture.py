@@ -1,4 +1,4 @@
-"""What signals say to lanes: lights, signs, limits, and stop lines.
+"""Signals as they apply to lanes: lights, signs, limits, stop lines.
 
 A light, a sign to stop or to give way, and a stop line belong to the lane before the junction that
 they stand at, also where the file has them on the roads within it, whose ways then begin there.

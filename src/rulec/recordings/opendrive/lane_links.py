@@ -1,4 +1,4 @@
-"""Which lanes lead to which: links within roads, between roads, and through junctions.
+"""Successors of lanes within roads, between roads, and through junctions.
 
 The file links ends of lanes; which of both leads to the other follows from where they are driven.
 """

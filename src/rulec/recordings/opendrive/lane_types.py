@@ -1,4 +1,4 @@
-"""What lanes and roads are for, in the words of lanelets."""
+"""Lane and road types, in the words of lanelets."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What signals are, by the catalogues that their types are numbers of.
+"""Catalogues of signals, by country and type number.
 
 The standard's own (country ``OpenDRIVE``) has traffic lights and marks on the road; what else a
 signal is called is the number of a country's catalogue, Germany's where none is named.

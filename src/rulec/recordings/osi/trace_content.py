@@ -1,4 +1,4 @@
-"""What an ASAM OSI trace holds, gathered message by message: tracks grow, all else is kept once."""
+"""Contents of an ASAM OSI trace, collected message by message."""
 
 from __future__ import annotations
 

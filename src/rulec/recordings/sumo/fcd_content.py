@@ -1,4 +1,4 @@
-"""What floating-car data hold: the file's head, its moments, and the track of each participant."""
+"""Contents of floating-car data: head, times, and a track per participant."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the lanes of a SUMO net are for: going on with their road, joining it, leaving it.
+"""Kinds of lanes of a SUMO net: continuing, joining, leaving.
 
 A lane goes on where each lane of its road leads to one of the next road, for the next kilometre or
 up to the net's end: signs and arrows that send lanes to places of their own stand no earlier. A

@@ -1,4 +1,4 @@
-"""Who goes first at the junctions of a SUMO net, and what signs say so.
+"""Priority at the junctions of a SUMO net, and its signs.
 
 A junction of a net has for each way through it the bits of its ``request``: those of the other ways
 whose traffic it waits for, and those whose traffic is in its way.

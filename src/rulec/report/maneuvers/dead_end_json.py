@@ -1,4 +1,4 @@
-"""Where the last way through a scenario ends, as JSON."""
+"""Dead ends of a scenario as JSON."""
 
 from __future__ import annotations
 

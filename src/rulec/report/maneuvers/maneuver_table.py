@@ -1,4 +1,4 @@
-"""How many maneuvers satisfy rulebooks: of several scenarios, or by several rulebooks."""
+"""Table of satisfying maneuvers, by scenarios or by rulebooks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What stands beside pictures: titles, legends, numbers on axes, letters for cells."""
+"""Titles, legends, axis labels and cell letters of pictures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What has been proved of compiled rulebooks, as text and as JSON."""
+"""Proofs of compiled rulebooks as text and as JSON."""
 
 from __future__ import annotations
 

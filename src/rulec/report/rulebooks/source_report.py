@@ -1,4 +1,4 @@
-"""What rules rest on where a source tells only some words, as text and Markdown."""
+"""Bases of rules on a partial source, as text and Markdown."""
 
 from __future__ import annotations
 

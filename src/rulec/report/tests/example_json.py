@@ -1,4 +1,4 @@
-"""Outcomes of examples, and what they cover, as JSON; docs/commands.md describes it."""
+"""Outcomes and coverage of examples as JSON; docs/commands.md describes it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How an open verdict comes out, in as few cases as say the same.
+"""Cases of an open verdict, merged into as few as possible.
 
 Cases that differ in one name alone, and have all the values that it can have, are one without it
 (Quine and McCluskey's prime implicants, of more values than two); of these enough are taken to

@@ -1,4 +1,4 @@
-"""When the states of a trace are, beside their numbers."""
+"""Times of a trace's states, beside their numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The rulebooks and vocabularies that there are, by name."""
+"""Catalogue of the available rulebooks and vocabularies."""
 
 from __future__ import annotations
 

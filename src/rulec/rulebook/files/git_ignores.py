@@ -1,4 +1,4 @@
-"""What git ignores: the patterns of ``.gitignore`` files, as gitignore(5) describes them.
+"""Files that git ignores, by ``.gitignore`` as gitignore(5) describes it.
 
 Own ones and not a library's, since a stranger writes the patterns: matching takes time that grows
 with the length of pattern times name, however many ``*`` there are. The user's own list of patterns

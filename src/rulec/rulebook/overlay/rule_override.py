@@ -1,4 +1,4 @@
-"""What an override makes of an inherited rule, and what of it is lost."""
+"""Effect of an override on an inherited rule, and its losses."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is wrong within a rule, with the provision that the rule comes from."""
+"""Diagnostics within a rule, with a note of the provision cited."""
 
 from __future__ import annotations
 

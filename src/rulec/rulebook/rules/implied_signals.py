@@ -1,4 +1,4 @@
-"""Signals that facts make true: who is parked stands, whether or not a trace says so."""
+"""Signals implied by facts: a parked vehicle stands."""
 
 from __future__ import annotations
 

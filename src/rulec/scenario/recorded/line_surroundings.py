@@ -1,4 +1,4 @@
-"""Which places are far from a line, by a grid of squares laid over it."""
+"""Distance filter around a line, by a grid of squares."""
 
 from __future__ import annotations
 

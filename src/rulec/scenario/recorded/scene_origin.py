@@ -1,4 +1,4 @@
-"""What a recorded scene was made of, and the way back from its coordinates."""
+"""Origin of a recorded scene, and the transformation back to its recording."""
 
 from __future__ import annotations
 

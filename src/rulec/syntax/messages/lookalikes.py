@@ -1,4 +1,4 @@
-"""What a file shows otherwise than it is read: characters in comments, and names alike.
+"""Misleading characters in comments, and confusable names.
 
 After UTS #39 (Unicode Security Mechanisms): two names are confusable if they have one skeleton, the
 text with each letter replaced by the one that all that look like it stand for.

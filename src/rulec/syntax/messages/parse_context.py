@@ -1,4 +1,4 @@
-"""The place where a piece cannot go on, and what could have stood there."""
+"""Position of a syntax error, with the tokens expected there."""
 
 from __future__ import annotations
 

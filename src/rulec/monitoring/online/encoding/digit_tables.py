@@ -1,4 +1,4 @@
-"""What reads may be, by encoded values of which some may not be known."""
+"""Possible digits of reads, by encoded values that may be unknown."""
 
 from __future__ import annotations
 

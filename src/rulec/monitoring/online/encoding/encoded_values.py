@@ -1,4 +1,4 @@
-"""Encoders that check values, and what encoded values mean for the letters of rules.
+"""Encoders that check values, and the digits of encoded values.
 
 Numbers are reduced to the breakpoints that they reach.
 """

@@ -1,4 +1,4 @@
-"""Those who may count for a rule's reads: of many of whom a state says the same, few are enough.
+"""Objects in counts: of many alike in a state, a few suffice.
 
 What reads come to does not depend on names, and beyond its highest threshold no count has another
 digit. So states of dense traffic are looked at once for all that differ only in who is where. And

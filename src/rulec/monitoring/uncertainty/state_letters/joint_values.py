@@ -1,4 +1,4 @@
-"""What words and truths may be together, as bits of all the ways in which they can be.
+"""Joint values of words and truths, as bits of their combinations.
 
 Each way to give the subjects values has a bit, as in a truth table: what is said of a subject, what
 a fact allows and where a read has a digit are sets of bits. So what a partly known state allows is

@@ -1,4 +1,4 @@
-"""What reads and formulas speak of in a state, and of that what is not known."""
+"""Subjects of reads and formulas, and those unknown in a state."""
 
 from __future__ import annotations
 

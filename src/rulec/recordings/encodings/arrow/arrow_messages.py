@@ -1,4 +1,4 @@
-"""How much Arrow's messages unpack to, found before Arrow unpacks anything.
+"""Unpacked size of Arrow messages, found before Arrow unpacks them.
 
 By the Arrow columnar format's "Serialization and Interprocess Communication" (format version 1.5):
 a file holds messages, each with metadata as a flatbuffer and a body whose buffers may be packed.

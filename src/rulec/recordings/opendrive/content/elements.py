@@ -1,4 +1,4 @@
-"""What an OpenDRIVE file holds, as data: roads, lanes, signals, objects, junctions.
+"""Elements of an OpenDRIVE file: roads, lanes, signals, objects, junctions.
 
 Names are the standard's (ASAM OpenDRIVE 1.8). ``s`` (m) is along a road's reference line, ``t`` (m)
 to its left; lanes left of it have ids above 0, those right of it below 0, numbered outward.

@@ -1,4 +1,4 @@
-"""What a picture consists of: areas, lines and words, in px.
+"""Shapes of a picture: areas, lines and words, in px.
 
 ``y`` grows downwards. A style is a name in ``styles.STYLES``; a tip is what a reader is told who
 points at a mark.
