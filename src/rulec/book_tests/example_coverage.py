@@ -25,6 +25,7 @@ from rulec.logic.kleene import holds
 from rulec.monitoring.verify import letter_reader_of
 from rulec.rulebook.rulebook_model import Rule
 from rulec.value_display import short_repr
+from rulec.vocabulary import Vocabulary
 from rulec.witnesses.coverage_witness import (
     CoverageWitness,
     coverage_witness,
@@ -135,6 +136,61 @@ def _by_rule(run: ExampleRun) -> Iterator[tuple[Rule, CompiledRule, list[Example
         yield rule, compiled, outcomes[id(rule)]
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _RuleExamples:
+    """A rule's monitor, a shortest word to each reachable state, a witness of each letter class."""
+
+    rule: Rule
+    machine: MealyMonitor
+    vocabulary: Vocabulary
+    axioms: Sequence[Formula]
+    paths: Mapping[int, tuple[int, ...]]
+    witnesses: Mapping[int, CoverageWitness]
+
+    @property
+    def unsettled(self) -> list[int]:
+        """The reachable states in which the verdict is not settled for good."""
+        sinks = (self.machine.rejecting_sink, self.machine.accepting_sink)
+        return [state for state in sorted(self.paths) if state not in sinks]
+
+    def uncovered(
+        self, source: int, symbol: int, last: CoverageWitness | None = None
+    ) -> UncoveredEdge:
+        """The edge with its shortest example, whose ``last`` state may be given."""
+        before = [self.witnesses[letter_class] for letter_class in self.paths[source]]
+        return UncoveredEdge(
+            source,
+            self.machine.successors[source][symbol],
+            (*before, self.witnesses[symbol] if last is None else last),
+            self.machine.outputs[source][symbol],
+        )
+
+    def untouched(self, side: LimitSide) -> UntouchedLimit | None:
+        """The limit with an example that is close to it on a side, if that makes a difference."""
+        found = deciding_edges(side, self.machine, self.unsettled)
+        for source, letter in itertools.islice(found, _MOST_TRIED):
+            formula = self.rule.formula
+            last = coverage_witness(letter, self.machine, formula, self.vocabulary, self.axioms)
+            says = close_state(last.says, side, self.machine, self.vocabulary)
+            if says is not None:
+                symbol = self.machine.letters[letter]
+                edge = self.uncovered(source, symbol, replace(last, says=says))
+                return UntouchedLimit(side.comparison, side.holds, edge)
+        return None
+
+
+def _rule_examples(
+    rule: Rule, machine: MealyMonitor, vocabulary: Vocabulary, axioms: Sequence[Formula]
+) -> _RuleExamples:
+    letters = possible_letters(machine)
+    witnesses = {
+        symbol: coverage_witness(letter, machine, rule.formula, vocabulary, axioms)
+        for symbol, letter in letters.items()
+    }
+    paths = _shortest_paths(machine, letters)
+    return _RuleExamples(rule, machine, vocabulary, axioms, paths=paths, witnesses=witnesses)
+
+
 def _coverage(
     rule: Rule,
     compiled: CompiledRule,
@@ -143,30 +199,9 @@ def _coverage(
     axioms: Sequence[Formula],
 ) -> RuleCoverage:
     machine = compiled.machine
-    letters = possible_letters(machine)
-    paths = _shortest_paths(machine, letters)
-    sinks = (machine.rejecting_sink, machine.accepting_sink)
-    edges = [
-        (state, symbol)
-        for state in sorted(paths)
-        if state not in sinks
-        for symbol in sorted(letters)
-    ]
+    known = _rule_examples(rule, machine, rulebook.vocabulary, axioms)
+    edges = list(itertools.product(known.unsettled, sorted(known.witnesses)))
     taken = {edge for outcome in outcomes for edge in _taken(machine, outcome.word)}
-    states = {
-        symbol: coverage_witness(letter, machine, rule.formula, rulebook.vocabulary, axioms)
-        for symbol, letter in letters.items()
-    }
-    missing_edges = tuple(
-        UncoveredEdge(
-            source,
-            machine.successors[source][symbol],
-            tuple(states[letter_class] for letter_class in (*paths[source], symbol)),
-            machine.outputs[source][symbol],
-        )
-        for source, symbol in edges
-        if (source, symbol) not in taken
-    )
     values = [
         (proposition, value)
         for proposition, possible in truth_values(
@@ -184,37 +219,14 @@ def _coverage(
             state = reader.view(number)
             seen |= {(atom, holds(atom, own_names(rule), state)) for atom, _ in values}
             near.update(touched(sides, own_names(rule), state))
-    missing_values = tuple(value for value in values if value not in seen)
-    unsettled = [state for state in sorted(paths) if state not in sinks]
-
-    def untouched(side: LimitSide) -> UntouchedLimit | None:
-        found = deciding_edges(side, machine, unsettled)
-        for source, letter in itertools.islice(found, _MOST_TRIED):
-            last = coverage_witness(letter, machine, rule.formula, rulebook.vocabulary, axioms)
-            says = close_state(last.says, side, machine, rulebook.vocabulary)
-            if says is not None:
-                symbol = machine.letters[letter]
-                edge = UncoveredEdge(
-                    source,
-                    machine.successors[source][symbol],
-                    (
-                        *(states[letter_class] for letter_class in paths[source]),
-                        replace(last, says=says),
-                    ),
-                    machine.outputs[source][symbol],
-                )
-                return UntouchedLimit(side.comparison, side.holds, edge)
-        return None
-
-    missing_limits = tuple(
-        limit for side in sides if side not in near and (limit := untouched(side)) is not None
-    )
+    limits = [known.untouched(side) for side in sides if side not in near]
+    missing_limits = tuple(limit for limit in limits if limit is not None)
     return RuleCoverage(
         rule=rule.name,
         n_edges=len(edges),
-        missing_edges=missing_edges,
+        missing_edges=tuple(known.uncovered(*edge) for edge in edges if edge not in taken),
         n_values=len(values),
-        missing_values=missing_values,
+        missing_values=tuple(value for value in values if value not in seen),
         n_limits=len(near) + len(missing_limits),
         missing_limits=missing_limits,
     )
