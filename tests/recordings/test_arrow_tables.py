@@ -13,9 +13,9 @@ from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.arrow import arrow_tables
 from rulec.recordings.encodings.arrow.arrow_messages import OddMessageError, batch_size
 from rulec.recordings.encodings.arrow.arrow_tables import Wanted, read_table
-from rulec.recordings.encodings.xml_element import XmlFormat
+from rulec.recordings.encodings.file_format import FileFormat
 
-FORM = XmlFormat("a table", "", "it has rows", 10_000_000)
+FORM = FileFormat("a table", "it has rows", 10_000_000)
 WANTED = Wanted(numbers=("x",), whole=("n",), texts=("t",), optional=frozenset({"t"}))
 TABLE = pyarrow.table({"x": [1.5, 2.0], "n": [3, 4], "t": ["a", "b"], "more": [None, None]})
 

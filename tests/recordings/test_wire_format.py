@@ -10,17 +10,11 @@ from hypothesis import strategies as st
 
 from rulec.diagnostics import RulecError
 from rulec.recordings.encodings import wire_format
-from rulec.recordings.encodings.wire_format import (
-    Field,
-    Message,
-    WireFile,
-    WireFormat,
-    Words,
-    wire_file,
-)
+from rulec.recordings.encodings.file_format import BinaryFormat
+from rulec.recordings.encodings.wire_format import Field, Message, WireFile, Words, wire_file
 from support.builders.wire_bytes import counted, double, field, varint, whole
 
-FORM = WireFormat("a test", "there is no way out", 1000)
+FORM = BinaryFormat("a test", "there is no way out", 1000)
 COLOURS = Words({0: "red", 2: "green"})
 INNER = {1: Field("x", "double"), 2: Field("deeper", {})}
 INNER[2] = Field("deeper", INNER)

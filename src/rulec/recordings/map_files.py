@@ -11,13 +11,14 @@ from rulec.files import opened
 from rulec.recordings import table_heads as heads
 from rulec.recordings.argoverse.argoverse_files import MAP as MAP_ARCHIVES
 from rulec.recordings.argoverse.argoverse_files import is_named
-from rulec.recordings.encodings.xml_element import XmlFormat, short
+from rulec.recordings.encodings.file_format import FileFormat
+from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.recording_format import Glance
 
 if TYPE_CHECKING:
     from rulec.recordings.road_map import RoadMap
 
-MAP = XmlFormat("a map", "", "`rulec formats` lists the maps that are read")
+MAP = FileFormat("a map", "`rulec formats` lists the maps that are read")
 
 
 @dataclass(frozen=True, slots=True)

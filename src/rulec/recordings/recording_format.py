@@ -9,16 +9,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from rulec.files import opened
+from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.safe_xml import is_xml, root_of
-from rulec.recordings.encodings.xml_element import XmlFormat
 
 if TYPE_CHECKING:
     from rulec.recordings.recording import Recording
 
 _HEAD_BYTES = 4096
 
-RECORDING = XmlFormat(
-    "recorded traffic", "", "`rulec formats` lists the formats that are read, and how files look"
+RECORDING = FileFormat(
+    "recorded traffic", "`rulec formats` lists the formats that are read, and how files look"
 )
 
 

@@ -13,10 +13,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.diagnostics import RulecError
-from rulec.recordings.encodings.wire_format import WireFormat
+from rulec.recordings.encodings.file_format import BinaryFormat
 from rulec.recordings.scenarionet.restricted_pickle import read_pickle
 
-FORM = WireFormat("some pickle", "give another", 10_000_000)
+FORM = BinaryFormat("some pickle", "give another", 10_000_000)
 
 
 def read(tmp_path, content):

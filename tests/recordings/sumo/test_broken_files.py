@@ -7,7 +7,7 @@ import pytest
 from rulec import read_recording
 from rulec.diagnostics import RulecError
 from rulec.recordings.encodings import safe_xml
-from rulec.recordings.encodings.xml_element import XmlFormat
+from rulec.recordings.encodings.file_format import XmlFormat
 from rulec.scenario import Choice, load_scenario
 from support.builders.sumo_files import ROAD_NET, TYPES, body, data, moment, written
 
@@ -216,7 +216,7 @@ def test_too_much_is_not_read(tmp_path, monkeypatch):
     monkeypatch.setattr(safe_xml, "_BLOCK", 100)
     from rulec.recordings.sumo import fcd
 
-    monkeypatch.setattr(fcd, "FCD", XmlFormat("data", "fcd-export", "less", 300))
+    monkeypatch.setattr(fcd, "FCD", XmlFormat("data", "less", 300, root="fcd-export"))
     assert "too large: at most 300 bytes" in problem_with(written(tmp_path, GOOD)).message
 
 

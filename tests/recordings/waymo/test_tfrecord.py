@@ -3,11 +3,11 @@
 import pytest
 
 from rulec.diagnostics import RulecError
+from rulec.recordings.encodings.file_format import BinaryFormat
 from rulec.recordings.encodings.tfrecord import checksum, tfrecords
-from rulec.recordings.encodings.wire_format import WireFormat
 from support.builders.waymo_files import crc32c, record
 
-FORM = WireFormat("some records", "take others", 1000)
+FORM = BinaryFormat("some records", "take others", 1000)
 
 
 def read(tmp_path, content):

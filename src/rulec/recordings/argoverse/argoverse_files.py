@@ -6,7 +6,8 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from rulec.diagnostics import named
-from rulec.recordings.encodings.xml_element import XmlFormat, short
+from rulec.recordings.encodings.file_format import FileFormat
+from rulec.recordings.encodings.xml_element import short
 
 SCENARIO = "scenario_*.parquet"
 ANNOTATIONS = "annotations*.feather"
@@ -26,18 +27,18 @@ def has(folder: Path, pattern: str) -> bool:
     return folder.is_dir() and next(folder.glob(pattern), None) is not None
 
 
-def only_in(path: Path, pattern: str, form: XmlFormat) -> Path:
+def only_in(path: Path, pattern: str, form: FileFormat) -> Path:
     """The file itself, or the only one with such a name in a folder. Raises RulecError R0610."""
     return _only(path, path, pattern, form, "name one of them") if path.is_dir() else path
 
 
-def map_beside(path: Path, form: XmlFormat) -> Path:
+def map_beside(path: Path, form: FileFormat) -> Path:
     """The map beside a file, or in the folder `map` there. Raises RulecError R0610."""
     folder = path.parent if has(path.parent, MAP) else path.parent / "map"
     return _only(path, folder, MAP, form, "name the map with --map FILE")
 
 
-def _only(path: Path, folder: Path, pattern: str, form: XmlFormat, way_out: str) -> Path:
+def _only(path: Path, folder: Path, pattern: str, form: FileFormat, way_out: str) -> Path:
     found = sorted(folder.glob(pattern)) if folder.is_dir() else []
     if len(found) == 1:
         return found[0]

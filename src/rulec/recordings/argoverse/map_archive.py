@@ -17,15 +17,15 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.typed_json import read_json
-from rulec.recordings.encodings.xml_element import LARGEST, XmlFormat, short
+from rulec.recordings.encodings.xml_element import LARGEST, short
 from rulec.recordings.polylines import ends_apart, leads_the_same_way, paired, without_repeats
 from rulec.recordings.recording import LONGEST_M, Lanelet, LaneMark, Points
 from rulec.recordings.road_map import RoadMap, crosswalk
 
-MAP_ARCHIVE = XmlFormat(
+MAP_ARCHIVE = FileFormat(
     "a map of Argoverse 2",
-    "",
     "it is `log_map_archive_*.json`, as the data set has it beside its tracks",
     50_000_000,
 )

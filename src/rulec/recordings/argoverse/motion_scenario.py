@@ -25,13 +25,13 @@ from rulec.recordings.argoverse.object_types import (
 )
 from rulec.recordings.argoverse.sweep_grid import rates
 from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, read_table
-from rulec.recordings.encodings.xml_element import XmlFormat, short
+from rulec.recordings.encodings.file_format import FileFormat
+from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.recording import MOST_STEPS, Participant, Recording
 from rulec.recordings.track import Track, TrackOutlines, TrackStates
 
-MOTION = XmlFormat(
+MOTION = FileFormat(
     "a motion forecasting scenario of Argoverse 2",
-    "",
     "it is `scenario_*.parquet`, as the data set has it",
 )
 

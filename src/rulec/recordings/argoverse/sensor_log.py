@@ -29,12 +29,12 @@ from rulec.recordings.argoverse.object_types import (
 from rulec.recordings.argoverse.sweep_boxes import TrackBoxes, participant, with_riders
 from rulec.recordings.argoverse.sweep_grid import NANOSECONDS, on_grid
 from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, read_table
-from rulec.recordings.encodings.xml_element import XmlFormat, short
+from rulec.recordings.encodings.file_format import FileFormat
+from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.recording import Recording
 
-SENSOR = XmlFormat(
+SENSOR = FileFormat(
     "a sensor log of Argoverse 2",
-    "",
     "it is `annotations.feather`, with `city_SE3_egovehicle.feather` beside it, as the data set "
     "has them",
 )

@@ -8,7 +8,7 @@ import numpy as np
 from numpy import float64, int64
 from numpy.typing import NDArray
 
-from rulec.recordings.encodings.xml_element import XmlFormat
+from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.recording import MOST_STEPS, SPARSEST
 
 NANOSECONDS = 1_000_000_000
@@ -23,7 +23,7 @@ _MOST_OFF = 0.25
 """How far a moment may lie off its step, as a part of it."""
 
 
-def on_grid(path: Path, form: XmlFormat, moments: NDArray[int64]) -> tuple[NDArray[int64], float]:
+def on_grid(path: Path, form: FileFormat, moments: NDArray[int64]) -> tuple[NDArray[int64], float]:
     """The time steps of ascending moments (ns), and how long (s) one takes.
 
     Raises RulecError R0610 for moments that are on no grid, or too far apart.

@@ -11,16 +11,17 @@ from rulec.recordings.commonroad.areas import wanted_of_point
 from rulec.recordings.commonroad.countries import country_in
 from rulec.recordings.commonroad.scenario_content import Content, add, add_step, to_recording
 from rulec.recordings.commonroad.states import wanted_of_state
+from rulec.recordings.encodings.file_format import XmlFormat
 from rulec.recordings.encodings.tree import Tree
-from rulec.recordings.encodings.xml_element import XmlFormat, short
+from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.encodings.xml_tree import Alike, scan_trees, whole_tree
 from rulec.recordings.recording import Recording
 from rulec.recordings.road_map import RoadMap
 
 COMMONROAD = XmlFormat(
     "a CommonRoad scenario",
-    "commonRoad",
     "CommonRoad's format is described at https://commonroad.in.tum.de",
+    root="commonRoad",
 )
 VERSIONS = ("2018b", "2020a")
 

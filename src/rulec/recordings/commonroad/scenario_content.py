@@ -31,7 +31,8 @@ from rulec.recordings.commonroad.planning_problems import (
 )
 from rulec.recordings.commonroad.time_extent import TimeExtent
 from rulec.recordings.commonroad.traffic_signs import SignElement, read_sign
-from rulec.recordings.encodings.tree import FileFormat, Tree
+from rulec.recordings.encodings.file_format import FileFormat
+from rulec.recordings.encodings.tree import Tree
 
 SHORTEST_STEP_S = 1e-6
 

@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from rulec.recordings.encodings.tree import FileFormat, Tree
+from rulec.recordings.encodings.file_format import FileFormat
+from rulec.recordings.encodings.tree import Tree
 from rulec.recordings.recording import MOST_STEPS, SPARSEST
 
 SPARSEST_STATES = 200

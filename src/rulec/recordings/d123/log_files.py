@@ -15,13 +15,12 @@ from typing import Any
 from rulec.diagnostics import SourceLocation
 from rulec.recordings.d123.message_pack import OddPackError, unpacked
 from rulec.recordings.encodings.arrow.arrow_tables import LONGEST_TEXT, ArrowTable
-from rulec.recordings.encodings.xml_element import XmlFormat
+from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.recording import Side
 from rulec.recordings.recording_messages import NET_MISSING
 
-LOG = XmlFormat(
+LOG = FileFormat(
     "a log of 123D",
-    "",
     "it is a folder with `sync.arrow`, `box_detections_se3.arrow` and `ego_state_se3.arrow`, as "
     "py123d writes them",
     1_000_000_000,

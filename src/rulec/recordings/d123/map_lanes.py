@@ -24,13 +24,14 @@ from rulec.recordings.d123.message_pack import OddPackError, unpacked
 from rulec.recordings.d123.stop_zones import SIGNS, StopZone, with_signs
 from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, read_table
 from rulec.recordings.encodings.arrow.nested_columns import Nested
-from rulec.recordings.encodings.xml_element import LARGEST, XmlFormat
+from rulec.recordings.encodings.file_format import FileFormat
+from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.polylines import leads_the_same_way, paired, without_repeats
 from rulec.recordings.recording import LONGEST_M, Lanelet, LaneMark, ObservedLight, Points
 from rulec.recordings.road_map import RoadMap, crosswalk_with_outline
 
-MAP = XmlFormat(
-    "a map of 123D", "", "it is `map.arrow`, or `DATASET_PLACE.arrow`, as py123d writes them"
+MAP = FileFormat(
+    "a map of 123D", "it is `map.arrow`, or `DATASET_PLACE.arrow`, as py123d writes them"
 )
 _LANE, _LANE_GROUP, _CROSSWALK, _STOP_ZONE, _ROAD_LINE = 0, 1, 3, 7, 9
 _LAYERS = frozenset({_LANE, _LANE_GROUP, _CROSSWALK, _STOP_ZONE, _ROAD_LINE})

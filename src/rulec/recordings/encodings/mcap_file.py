@@ -14,8 +14,8 @@ from typing import IO, NamedTuple
 from zlib import crc32
 
 from rulec.files import opened
+from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.packed_chunks import unpacked
-from rulec.recordings.encodings.tree import FileFormat
 from rulec.recordings.encodings.xml_element import short
 
 MAGIC = b"\x89MCAP0\r\n"

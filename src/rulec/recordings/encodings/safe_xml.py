@@ -12,7 +12,8 @@ from xml.parsers.expat import ExpatError, ParserCreate, XMLParserType, errors
 
 from rulec.diagnostics import RulecError
 from rulec.files import opened
-from rulec.recordings.encodings.xml_element import XmlElement, XmlFormat, short
+from rulec.recordings.encodings.file_format import FileFormat, XmlFormat
+from rulec.recordings.encodings.xml_element import XmlElement, short
 
 LONGEST_TAG = 1_000_000
 """Bytes; expat keeps a tag in memory until it ends."""
@@ -127,7 +128,7 @@ def _scan(
         parser.CommentHandler = parser.CharacterDataHandler = None
 
 
-def root_of(path: Path, form: XmlFormat) -> str:
+def root_of(path: Path, form: FileFormat) -> str:
     """The name of a file's root element; ``form`` says what to call a file that has none.
 
     Raises RulecError R0610 for a file that is no XML, R0701 for one that cannot be read.
@@ -182,7 +183,7 @@ def blocks_of(path: Path) -> Iterator[bytes]:
             yield block
 
 
-def _parse(parser: XMLParserType, block: bytes, path: Path, form: XmlFormat) -> None:
+def _parse(parser: XMLParserType, block: bytes, path: Path, form: FileFormat) -> None:
     try:
         parser.Parse(block, False)
     except (LookupError, ValueError):

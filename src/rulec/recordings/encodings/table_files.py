@@ -26,6 +26,7 @@ from rulec.recordings.encodings.csv_head import (
     is_number,
     separator_of,
 )
+from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.table_columns import (
     MOST_COLUMNS,
     MOST_ROWS,
@@ -34,7 +35,7 @@ from rulec.recordings.encodings.table_columns import (
     Texts,
     checked_numbers,
 )
-from rulec.recordings.encodings.xml_element import XmlFormat, short
+from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.recording_messages import NOT_A_RECORDING
 from rulec.trace.formats.arrow.parquet_columns import parquet_columns, parquet_names
 
@@ -44,7 +45,7 @@ LARGEST_NUMBER = 1e19
 _ROWS_AT_ONCE = 1 << 16
 
 
-def open_table(path: Path, form: XmlFormat, names: Sequence[str] = ()) -> ColumnTable:
+def open_table(path: Path, form: FileFormat, names: Sequence[str] = ()) -> ColumnTable:
     """The table in a file; ``names`` are those of its columns if its first row has none.
 
     Raises RulecError R0610 for a file that is none, R0701 for one that cannot be read, R0706 if
@@ -111,7 +112,7 @@ class _Blanks:
 
 
 @contextmanager
-def _lines(path: Path, form: XmlFormat, refused: Any) -> Iterator[io.TextIOWrapper]:
+def _lines(path: Path, form: FileFormat, refused: Any) -> Iterator[io.TextIOWrapper]:
     """The lines of a text that may be packed, read within limits."""
     with opened(path) as stream:
         packed = stream.read(2) == PACKED

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
 from rulec.files import opened
-from rulec.recordings.encodings.wire_format import WireFormat
+from rulec.recordings.encodings.file_format import BinaryFormat
 
 _HEAD = struct.Struct("<QI")
 _FOOT = struct.Struct("<I")
@@ -38,7 +38,7 @@ class TfRecord(NamedTuple):
     content: bytes
 
 
-def tfrecords(path: Path, form: WireFormat) -> Iterator[TfRecord | RulecError]:
+def tfrecords(path: Path, form: BinaryFormat) -> Iterator[TfRecord | RulecError]:
     """The records of a file, with an error (R0610) in the place of one that is broken.
 
     After a broken length nothing can be found any more, and the error is the last that comes.

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol
 
 from rulec.diagnostics import RulecError
+from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.xml_element import LARGEST, short
 
 MOST_ELEMENTS = 1_000_000
@@ -21,22 +21,6 @@ LONGEST_ID = 18
 
 SMALLEST = 1e-100
 """Numbers closer to 0 are 0: geometry squares what it divides by, which then is none."""
-
-
-class FileFormat(Protocol):
-    """A format of files, which says what is wrong in one."""
-
-    def refused(
-        self,
-        path: Path,
-        why: str,
-        place: int | None = None,
-        /,
-        *,
-        expected: str = "",
-        help_text: str = "",
-    ) -> RulecError:
-        """The error (R0610) for a place in a file: its line, or its byte."""
 
 
 Texts = tuple[bytes, ...]

@@ -9,12 +9,12 @@ from typing import TypeVar
 import msgspec
 
 from rulec.files import opened
-from rulec.recordings.encodings.xml_element import XmlFormat
+from rulec.recordings.encodings.file_format import FileFormat
 
 T = TypeVar("T")
 
 
-def read_json(path: Path, form: XmlFormat, kind: type[T]) -> T:
+def read_json(path: Path, form: FileFormat, kind: type[T]) -> T:
     """The content of a file as a value of a type, which bounds its depth.
 
     Raises RulecError R0610 for a file that is larger than the format allows, broken, or holds

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, NamedTuple, TypeAlias
 
-from rulec.diagnostics import RulecError, SourceLocation
+from rulec.diagnostics import RulecError
 from rulec.files import opened
-from rulec.recordings.recording_messages import NOT_A_RECORDING
+from rulec.recordings.encodings.file_format import BinaryFormat
 
 MOST_VALUES = 1_000_000
 """In one field of the outermost message, some 300 MB of memory."""
@@ -79,37 +79,13 @@ class WireField(NamedTuple):
     place: int
 
 
-@dataclass(frozen=True, slots=True)
-class WireFormat:
-    """A format of Protocol Buffers: its name with an article."""
-
-    words: str
-    help: str
-    largest_bytes: int = 50_000_000
-
-    def refused(
-        self,
-        path: Path,
-        why: str,
-        place: int | None = None,
-        *,
-        expected: str = "",
-        help_text: str = "",
-    ) -> RulecError:
-        """The error (R0610) for a file of another format, with the byte if that is known."""
-        where = "" if place is None else f"at byte {place:,}, "
-        message = f"the file cannot be read as {self.words}: {where}{why}"
-        file = SourceLocation(str(path))
-        return NOT_A_RECORDING.error(file, message, expected=expected, help=help_text or self.help)
-
-
 @dataclass(slots=True)
 class WireFile:
     """A file's bytes, or those from its byte ``begin`` on. Its methods raise RulecError R0610."""
 
     data: bytes
     path: Path
-    form: WireFormat
+    form: BinaryFormat
     begin: int = 0
     _n_values: int = 0
 
@@ -236,7 +212,7 @@ class WireFile:
         return self.wrong(why, place)
 
 
-def wire_file(path: Path, form: WireFormat) -> WireFile:
+def wire_file(path: Path, form: BinaryFormat) -> WireFile:
     """The bytes of a file.
 
     Raises RulecError R0610 for one that is empty or too large, R0701 if it cannot be read.

@@ -6,35 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.parsers.expat import XMLParserType
 
-from rulec.diagnostics import RulecError, SourceLocation
-from rulec.recordings.recording_messages import NOT_A_RECORDING
+from rulec.diagnostics import RulecError
+from rulec.recordings.encodings.file_format import FileFormat
 
 LARGEST = 1e8
 """Numbers in a file are smaller than this, places included: the earth is not so large."""
-
-
-@dataclass(frozen=True, slots=True)
-class XmlFormat:
-    """A format of XML files: its name with an article, and its root element."""
-
-    words: str
-    root: str
-    help: str
-    largest_bytes: int = 200_000_000
-
-    def refused(
-        self,
-        path: Path,
-        why: str,
-        place: int | None = None,
-        *,
-        expected: str = "",
-        help_text: str = "",
-    ) -> RulecError:
-        """The error (R0610) for a file of another format, with the line if that is known."""
-        message = f"the file cannot be read as {self.words}: {why}"
-        where = SourceLocation(str(path), place)
-        return NOT_A_RECORDING.error(where, message, expected=expected, help=help_text or self.help)
 
 
 @dataclass(slots=True)
@@ -46,7 +22,7 @@ class XmlElement:
     attributes: dict[str, str]
     parser: XMLParserType
     path: Path
-    form: XmlFormat
+    form: FileFormat
 
     def get(self, key: str) -> str:
         """An attribute's text, empty if it is missing."""

@@ -16,15 +16,10 @@ from pathlib import Path
 from xml.etree import ElementTree
 from xml.parsers.expat import ExpatError, ParserCreate
 
+from rulec.recordings.encodings.file_format import FileFormat, XmlFormat
 from rulec.recordings.encodings.safe_xml import blocks_of, scan_names
-from rulec.recordings.encodings.tree import (
-    LONGEST_TEXT,
-    MOST_ELEMENTS,
-    AlikeElements,
-    FileFormat,
-    Tree,
-)
-from rulec.recordings.encodings.xml_element import XmlFormat, short
+from rulec.recordings.encodings.tree import LONGEST_TEXT, MOST_ELEMENTS, AlikeElements, Tree
+from rulec.recordings.encodings.xml_element import short
 
 LARGEST_BYTES = 4_000_000
 """Larger files are read one child of the root after the other, in little memory."""

@@ -9,13 +9,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 from rulec.diagnostics import RulecError
+from rulec.recordings.encodings.file_format import XmlFormat
 from rulec.recordings.encodings.safe_xml import scan
-from rulec.recordings.encodings.xml_element import XmlElement, XmlFormat, short
+from rulec.recordings.encodings.xml_element import XmlElement, short
 
 LANELET2 = XmlFormat(
     "a Lanelet2 map",
-    "osm",
     "Lanelet2's format is described at https://github.com/fzi-forschungszentrum-informatik/Lanelet2",
+    root="osm",
 )
 
 MOST_NODES = 1_000_000

@@ -11,6 +11,7 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError, did_you_mean
+from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.table_columns import (
     ColumnKind,
     ColumnTable,
@@ -19,7 +20,7 @@ from rulec.recordings.encodings.table_columns import (
     unread_remark,
 )
 from rulec.recordings.encodings.table_files import open_table, table_of
-from rulec.recordings.encodings.xml_element import LARGEST, XmlFormat, short
+from rulec.recordings.encodings.xml_element import LARGEST, short
 from rulec.recordings.lanes.lanes_along import (
     CLOSEST_M,
     LANE_TYPES,
@@ -32,9 +33,8 @@ from rulec.recordings.polylines import without_repeats
 from rulec.recordings.recording import LONGEST_M, Lanelet, LaneMark, Points, Side
 from rulec.recordings.road_map import RoadMap
 
-LANES = XmlFormat(
+LANES = FileFormat(
     "lanes as a table",
-    "",
     "it has a row for each point of a lane's centre line, with the columns `lane`, `x`, `y`",
     200_000_000,
 )

@@ -11,12 +11,13 @@ from typing import Any, NamedTuple
 
 from rulec.diagnostics import RulecError, named
 from rulec.files import opened
+from rulec.recordings.encodings.file_format import BinaryFormat
 from rulec.recordings.encodings.mcap_file import MAGIC, McapChannel, read_messages
-from rulec.recordings.encodings.wire_format import Table, WireFile, WireFormat
+from rulec.recordings.encodings.wire_format import Table, WireFile
 from rulec.recordings.osi.message_fields import fields_of, id_of
 from rulec.recordings.osi.osi_tables import LIKE_TRUTH, MESSAGES, TRUTHS, VIEWS
 
-OSI = WireFormat(
+OSI = BinaryFormat(
     "an ASAM OSI trace",
     "its messages have to be `GroundTruth`, or `SensorView` with ground truth in them",
 )

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from rulec.diagnostics import RulecError
-from rulec.recordings.encodings.wire_format import WireFormat
+from rulec.recordings.encodings.file_format import BinaryFormat
 from rulec.recordings.encodings.xml_element import short
 
 MOST_OPCODES = 5_000_000
@@ -38,7 +38,7 @@ class PickleMachine:
 
     data: bytes
     path: Path
-    form: WireFormat
+    form: BinaryFormat
     place: int = 0
     begin: int = 0
     stack: list[Any] = field(default_factory=list)

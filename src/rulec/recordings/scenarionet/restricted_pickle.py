@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from rulec.files import opened
-from rulec.recordings.encodings.wire_format import WireFormat
+from rulec.recordings.encodings.file_format import BinaryFormat
 from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.scenarionet.pickle_machine import (
     MOST_OPCODES,
@@ -58,7 +58,7 @@ _NAMES: Mapping[str, str] = MappingProxyType(
 _DTYPE = re.compile(r"[<>|=]?(?:b1|[iu][1248]|f[248]|[US][0-9]{1,4})")
 
 
-def read_pickle(path: Path, form: WireFormat) -> Any:
+def read_pickle(path: Path, form: BinaryFormat) -> Any:
     """The value in a pickle: ``None``, numbers, texts, bytes, lists, tuples, dicts, sets, arrays.
 
     What lies in itself may be in itself; who goes through it has to bound that. Raises RulecError

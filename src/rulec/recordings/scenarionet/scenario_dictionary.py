@@ -15,7 +15,7 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
-from rulec.recordings.encodings.wire_format import WireFormat
+from rulec.recordings.encodings.file_format import BinaryFormat
 from rulec.recordings.encodings.xml_element import LARGEST, short
 
 MOST_NUMBERS = 5_000_000
@@ -39,7 +39,7 @@ class KeyedValue:
     value: Any
     way: tuple[str, ...]
     path: Path
-    form: WireFormat
+    form: BinaryFormat
     left: NumbersLeft = field(default_factory=NumbersLeft)
 
     def wrong(self, why: str) -> RulecError:

@@ -11,7 +11,7 @@ from numpy import float64, int64
 from numpy.typing import NDArray
 
 from rulec.recordings.adjacency import with_untold_neighbours
-from rulec.recordings.encodings.wire_format import WireFormat
+from rulec.recordings.encodings.file_format import BinaryFormat
 from rulec.recordings.lane_centres.body_tracks import BoxTrack, bridged, gaps_remark, participant
 from rulec.recordings.lane_centres.centre_lanelets import ALL_JUNCTIONS, centre_lanelets
 from rulec.recordings.lane_centres.even_steps import even_steps
@@ -21,7 +21,7 @@ from rulec.recordings.scenarionet.restricted_pickle import read_pickle
 from rulec.recordings.scenarionet.scenario_dictionary import KeyedValue
 from rulec.recordings.scenarionet.scenarionet_features import road_features
 
-SCENARIONET = WireFormat(
+SCENARIONET = BinaryFormat(
     "a scenario of ScenarioNet's",
     "it is a pickle of one scenario's dictionary, as ScenarioNet's converters write it",
     200_000_000,

@@ -6,13 +6,13 @@ import re
 from array import array
 from dataclasses import dataclass, field
 
-from rulec.recordings.encodings.xml_element import XmlFormat
+from rulec.recordings.encodings.file_format import XmlFormat
 
 FCD = XmlFormat(
     "SUMO's floating-car data",
-    "fcd-export",
     "SUMO writes them with the option --fcd-output",
     2_000_000_000,
+    root="fcd-export",
 )
 BODIES = frozenset({"vehicle", "person", "container"})
 LONGEST_ID = 200

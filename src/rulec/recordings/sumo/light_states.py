@@ -9,18 +9,19 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
+from rulec.recordings.encodings.file_format import XmlFormat
 from rulec.recordings.encodings.safe_xml import root_of, scan
-from rulec.recordings.encodings.xml_element import XmlElement, XmlFormat
+from rulec.recordings.encodings.xml_element import XmlElement
 from rulec.recordings.sumo.fcd import demand_beside, named_beside
 from rulec.recordings.sumo.fcd_content import FcdHead
 from rulec.recordings.sumo.net import ProgrammeReader, SignalProgramme
 
 STATES = XmlFormat(
     "SUMO's states of traffic lights",
-    "tlsStates",
     "SUMO writes them for a `timedEvent` of the type `SaveTLSStates`",
+    root="tlsStates",
 )
-_ADDITIONAL = XmlFormat("an additional file of SUMO", "additional", "SUMO takes it with -a")
+_ADDITIONAL = XmlFormat("an additional file of SUMO", "SUMO takes it with -a", root="additional")
 _A_DAY_S = 86_400.0
 
 

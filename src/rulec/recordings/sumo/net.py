@@ -8,11 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
+from rulec.recordings.encodings.file_format import XmlFormat
 from rulec.recordings.encodings.safe_xml import scan
-from rulec.recordings.encodings.xml_element import XmlElement, XmlFormat, short
+from rulec.recordings.encodings.xml_element import XmlElement, short
 from rulec.recordings.recording import LONGEST_M, Light, Points, Side
 
-NET = XmlFormat("a SUMO net", "net", "SUMO's program `netconvert` makes such files")
+NET = XmlFormat("a SUMO net", "SUMO's program `netconvert` makes such files", root="net")
 
 LANE_WIDTH_M = 3.2
 """SUMO's, where a net says nothing else."""

@@ -7,13 +7,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 
+from rulec.recordings.encodings.file_format import XmlFormat
 from rulec.recordings.encodings.safe_xml import root_of, scan
-from rulec.recordings.encodings.xml_element import XmlElement, XmlFormat
+from rulec.recordings.encodings.xml_element import XmlElement
 
 DEMAND = XmlFormat(
     "SUMO's vehicle types",
-    "routes",
     "they are the elements `vType` of a file of routes, or of an additional file",
+    root="routes",
 )
 _ROOTS = ("routes", "additional")
 

@@ -17,9 +17,9 @@ import numpy as np
 from numpy import int64
 
 from rulec.recordings.commonroad.countries import country_in, side_in
+from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.table_columns import ColumnKind, NamedColumns, Texts, named_columns
 from rulec.recordings.encodings.table_files import open_table
-from rulec.recordings.encodings.xml_element import XmlFormat
 from rulec.recordings.recording import Recording
 from rulec.recordings.road_map import RoadMap
 from rulec.recordings.tracks.even_times import framed_times
@@ -29,9 +29,8 @@ from rulec.recordings.tracks.track_rows import TrackRows
 if TYPE_CHECKING:
     from rulec.recordings.recording_format import RecordingSource
 
-INTERACTION = XmlFormat(
+INTERACTION = FileFormat(
     "tracks of INTERACTION",
-    "",
     "`vehicle_tracks_NNN.csv` has the columns `track_id`, `timestamp_ms`, `agent_type`, `x`, `y`, "
     "`vx`, `vy`, `psi_rad`, `length`, `width`",
     4_000_000_000,

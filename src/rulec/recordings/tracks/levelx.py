@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy import int64
 
+from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.table_columns import ColumnKind, NamedColumns, Texts, named_columns
 from rulec.recordings.encodings.table_files import open_table
-from rulec.recordings.encodings.xml_element import XmlFormat, short
+from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.recording import Recording
 from rulec.recordings.tracks.derived_motion import along
 from rulec.recordings.tracks.even_times import EvenTimes, framed_times
@@ -29,9 +30,8 @@ from rulec.recordings.tracks.track_rows import TrackRows
 if TYPE_CHECKING:
     from rulec.recordings.recording_format import RecordingSource
 
-LEVELX = XmlFormat(
+LEVELX = FileFormat(
     "tracks of levelXdata",
-    "",
     "give `NN_tracks.csv`, with `NN_tracksMeta.csv` and `NN_recordingMeta.csv` beside it",
     4_000_000_000,
 )

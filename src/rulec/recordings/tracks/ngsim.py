@@ -16,9 +16,9 @@ import numpy as np
 from numpy import int64
 
 from rulec.recordings.encodings.csv_head import is_number
+from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.table_columns import ColumnKind, NamedColumns, Texts, named_columns
 from rulec.recordings.encodings.table_files import open_table
-from rulec.recordings.encodings.xml_element import XmlFormat
 from rulec.recordings.recording import Recording
 from rulec.recordings.recording_format import Glance
 from rulec.recordings.table_heads import head_of
@@ -29,9 +29,8 @@ from rulec.recordings.tracks.track_rows import TrackRows
 if TYPE_CHECKING:
     from rulec.recordings.recording_format import RecordingSource
 
-NGSIM_TRACKS = XmlFormat(
+NGSIM_TRACKS = FileFormat(
     "trajectories of NGSIM",
-    "",
     "give `trajectories-0750am-0805am.txt` or the like, or a table with the names of its columns",
     4_000_000_000,
 )

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy import int64
 
+from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.table_columns import ColumnKind, NamedColumns, Texts, named_columns
 from rulec.recordings.encodings.table_files import open_table
-from rulec.recordings.encodings.xml_element import XmlFormat
 from rulec.recordings.recording import Recording
 from rulec.recordings.tracks.derived_motion import along
 from rulec.recordings.tracks.even_times import even_times
@@ -25,8 +25,8 @@ from rulec.recordings.tracks.track_rows import TrackRows
 if TYPE_CHECKING:
     from rulec.recordings.recording_format import RecordingSource
 
-OMEGA_PRIME = XmlFormat(
-    "tracks in OMEGA-PRIME's columns", "", "see the specification of omega-prime", 4_000_000_000
+OMEGA_PRIME = FileFormat(
+    "tracks in OMEGA-PRIME's columns", "see the specification of omega-prime", 4_000_000_000
 )
 _VEHICLE, _PEDESTRIAN = 2, 3
 _SUBTYPES = {

@@ -12,6 +12,7 @@ import numpy as np
 from rulec.recordings.doubts.motion_doubts import with_doubts
 from rulec.recordings.doubts.road_doubts import check_near
 from rulec.recordings.encodings.csv_head import is_number
+from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.table_columns import (
     ColumnKind,
     ColumnTable,
@@ -20,7 +21,7 @@ from rulec.recordings.encodings.table_columns import (
     unread_remark,
 )
 from rulec.recordings.encodings.table_files import open_table, table_of
-from rulec.recordings.encodings.xml_element import XmlFormat, short
+from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.lanes.lane_table import lane_map
 from rulec.recordings.map_files import read_map
 from rulec.recordings.recording import Lamp, Recording
@@ -32,9 +33,8 @@ from rulec.recordings.tracks.track_rows import TrackRows
 if TYPE_CHECKING:
     from rulec.recordings.recording_format import RecordingSource
 
-TRACKS = XmlFormat(
+TRACKS = FileFormat(
     "tracks as a table",
-    "",
     "it has a row for each time of each track, with the columns `track`, `t`, `x`, `y`",
     4_000_000_000,
 )

@@ -12,8 +12,9 @@ from numpy import float64, int64
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
+from rulec.recordings.encodings.file_format import BinaryFormat
 from rulec.recordings.encodings.tfrecord import TfRecord, tfrecords
-from rulec.recordings.encodings.wire_format import WireFile, WireFormat
+from rulec.recordings.encodings.wire_format import WireFile
 from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.lane_centres.body_tracks import BoxTrack, bridged, gaps_remark, participant
 from rulec.recordings.lane_centres.centre_lanelets import ALL_JUNCTIONS, centre_lanelets
@@ -24,7 +25,7 @@ from rulec.recordings.waymo.waymo_features import add_feature, add_lights
 from rulec.recordings.waymo.waymo_messages import CheckedMessage, checked
 from rulec.recordings.waymo.waymo_tables import SCENARIO, SCENARIO_ID
 
-WAYMO = WireFormat(
+WAYMO = BinaryFormat(
     "scenarios of Waymo's Open Motion Dataset",
     "they are the files `*.tfrecord-*` below `scenario/`, not those below `tf_example/`",
     100_000_000,

@@ -23,7 +23,8 @@ from rulec.recordings.encodings.arrow.nested_columns import (
     OddColumnError,
     nested_column,
 )
-from rulec.recordings.encodings.xml_element import LARGEST, XmlFormat, short
+from rulec.recordings.encodings.file_format import FileFormat
+from rulec.recordings.encodings.xml_element import LARGEST, short
 from rulec.trace.formats.arrow.parquet import without_arrow
 
 MOST_ROWS = 5_000_000
@@ -63,7 +64,7 @@ class ArrowTable:
     """
 
     path: Path
-    form: XmlFormat
+    form: FileFormat
     rows: int
     numbers: Mapping[str, NDArray[float64]]
     whole: Mapping[str, NDArray[int64]]
@@ -100,7 +101,7 @@ class Wanted:
         return (*self.nested_numbers, *self.nested_whole, *self.nested_texts, *self.nested_bytes)
 
 
-def read_table(path: Path, form: XmlFormat, wanted: Wanted) -> ArrowTable:
+def read_table(path: Path, form: FileFormat, wanted: Wanted) -> ArrowTable:
     """Read columns of a Parquet or Feather file.
 
     Raises RulecError R0610 for a file that is none, is damaged or too large, or lacks a column,
@@ -147,7 +148,7 @@ def _arrow(path: Path) -> Any:
     return pyarrow
 
 
-def _read(arrow: Any, data: bytes, path: Path, form: XmlFormat, wanted: Wanted) -> Any:
+def _read(arrow: Any, data: bytes, path: Path, form: FileFormat, wanted: Wanted) -> Any:
     if data.startswith(FEATHER_MARK):
         return _feather(arrow, data, path, form, wanted)
     if data.startswith(PARQUET_MARK):
@@ -161,7 +162,7 @@ def _read(arrow: Any, data: bytes, path: Path, form: XmlFormat, wanted: Wanted) 
     raise form.refused(path, "it is neither Parquet nor Feather" if data else "it is empty")
 
 
-def _feather(arrow: Any, data: bytes, path: Path, form: XmlFormat, wanted: Wanted) -> Any:
+def _feather(arrow: Any, data: bytes, path: Path, form: FileFormat, wanted: Wanted) -> Any:
     # The messages one after the other, without the table of contents, which could point anywhere
     messages = arrow.py_buffer(data).slice(_HEADER_BYTES)
     rows = unpacked = 0
@@ -177,7 +178,7 @@ def _feather(arrow: Any, data: bytes, path: Path, form: XmlFormat, wanted: Wante
     return table.select(columns)
 
 
-def _parquet(arrow: Any, data: bytes, path: Path, form: XmlFormat, wanted: Wanted) -> Any:
+def _parquet(arrow: Any, data: bytes, path: Path, form: FileFormat, wanted: Wanted) -> Any:
     plain = arrow.parquet.ParquetFile(arrow.BufferReader(data))
     columns = _present(plain.schema_arrow.names, path, form, wanted)
     # Texts as numbers in a dictionary: each may be there a million times
@@ -201,13 +202,13 @@ def _parquet(arrow: Any, data: bytes, path: Path, form: XmlFormat, wanted: Wante
     return arrow.Table.from_batches(batches)
 
 
-def _too_much(path: Path, form: XmlFormat, rows: int) -> RulecError:
+def _too_much(path: Path, form: FileFormat, rows: int) -> RulecError:
     why = f"its table of {rows:,} rows is too large"
     expected = f"{MOST_ROWS:,} rows at most, {MOST_CELLS:,} cells and {MOST_BYTES:,} bytes"
     return form.refused(path, why, expected=f"expected {expected}")
 
 
-def _present(names: Iterable[str], path: Path, form: XmlFormat, wanted: Wanted) -> list[str]:
+def _present(names: Iterable[str], path: Path, form: FileFormat, wanted: Wanted) -> list[str]:
     known = list(names)
     doubled = sorted({name for name in known if known.count(name) > 1 and name in wanted.names})
     if doubled:

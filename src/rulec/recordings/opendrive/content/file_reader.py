@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from rulec.recordings.encodings.file_format import XmlFormat
 from rulec.recordings.encodings.tree import Tree
-from rulec.recordings.encodings.xml_element import XmlFormat, short
+from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.encodings.xml_tree import scan_trees
 from rulec.recordings.opendrive.content.elements import Connection, OpenDrive, RoadJunction
 from rulec.recordings.opendrive.content.road_reader import read_road
 from rulec.recordings.opendrive.content.tree_values import contact_point, lane_number, name, text
 
 OPENDRIVE = XmlFormat(
-    "an OpenDRIVE map", "OpenDRIVE", "ASAM describes the format: https://www.asam.net"
+    "an OpenDRIVE map", "ASAM describes the format: https://www.asam.net", root="OpenDRIVE"
 )
 
 
