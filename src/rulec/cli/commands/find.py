@@ -58,13 +58,7 @@ FORMATS = {**endings_of("text", "json"), **TABLES}
 @click.option(
     "--sure", is_flag=True, help="Only what holds for sure, whatever may be true of the unknown."
 )
-@click.option(
-    "--ego",
-    "egos",
-    multiple=True,
-    metavar="ID",
-    help="In recorded traffic: only this vehicle's drive.  [default: everybody's]",
-)
+@scenario_options.egos_option
 @scenario_options.drives_options
 @scenario_options.recording_or_trace_options
 @output_options(FORMATS, "the moments")

@@ -69,13 +69,7 @@ _OF_SEVERAL_BOOKS = ("text", "json", "jsonl", "csv", "parquet")
     "Of traces: take S for the seconds from state to state where a trace's own differ by at most a "
     "twentieth, as a logger's clock makes them; others are not judged."
 )
-@click.option(
-    "--ego",
-    "egos",
-    multiple=True,
-    metavar="ID",
-    help="In recorded traffic: only this vehicle's drive.  [default: everybody's]",
-)
+@scenario_options.egos_option
 @scenario_options.drives_options
 @scenario_options.recording_or_trace_options
 @shared.choice_option(

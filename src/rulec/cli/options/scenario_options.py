@@ -243,6 +243,14 @@ reading_options = combined(
 )
 """What holds where a scenario does not tell; ``scene_reading`` takes their values."""
 
+egos_option = click.option(
+    "--ego",
+    "egos",
+    multiple=True,
+    metavar="ID",
+    help="In recorded traffic: only this vehicle's drive.  [default: everybody's]",
+)
+
 drives_options = combined(
     [
         click.option(

@@ -51,10 +51,6 @@ class TextColumn:
     codes: NDArray[int64]
     values: tuple[str, ...]
 
-    def rows(self) -> list[str]:
-        """The text of each row."""
-        return [self.values[code] for code in self.codes.tolist()]
-
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ArrowTable:
