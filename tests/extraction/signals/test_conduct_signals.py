@@ -10,6 +10,7 @@ from rulec.extraction.signals.conduct.lane_change_signals import lane_change_sig
 from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
 from rulec.extraction.signals.conduct.reason_signals import reason_signals
 from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
+from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.map.crossing_signals import crossing_signals
 from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
@@ -92,6 +93,22 @@ def test_whose_side_of_a_two_way_road(y, expected, side):
 def test_only_when_one_goes_over_the_middle_is_in_doubt(ys, expected, side):
     ego = car(*((50.0 + 10 * k, y) for k, y in enumerate(ys)), heading=0.0)
     assert told(manoeuvre_signals, "driving_side", two_way(), ego, side=side) == expected
+
+
+@pytest.mark.parametrize("side", ["right", "left"])
+@pytest.mark.parametrize(
+    ("ys", "expected"),
+    [
+        # Of 2 m of width 0.3 m have to be on either side of the middle of the road, at y = 2
+        ((0, 1.2, 1.6, 2.4, 3.6, 3.6, 2.1, 0), "FFTTFFTF"),
+        # At the middle for longer than 2 s before it goes, and never going
+        ((1.6, 1.6, 1.6, 1.6, 1.6, 1.6, 3, 4), "FFTTTTFF"),
+        ((0, 1.6, 1.6, 1.6, 1.6, 1.6, 1.6, 0), "FFFFFFFF"),
+    ],
+)
+def test_who_goes_over_the_middle_is_in_two_lanes(ys, expected, side):
+    ego = car(*((50.0 + 10 * k, y) for k, y in enumerate(ys)), heading=0.0)
+    assert told(ego_signals, "straddling", two_way(), ego, side=side) == expected
 
 
 def test_sides_that_are_nobody_s():

@@ -135,3 +135,9 @@ def _lanes_of(context: DriveContext, kind: str) -> Flags:
 def lanes_of_type(road: DrivenRoad, kind: str) -> Flags:
     """Flags of the lanes (second axis) of a type, by the road's pieces."""
     return np.array([[x is not None and kind in x.types for x in row] for row in road.rows])
+
+
+def room_beside(context: DriveContext) -> tuple[Floats, Floats]:
+    """The room (m) in ego's lane to the right and to the left of it."""
+    lane, own = context.steady_lane, context.ego_extents
+    return own.from_bound(lane)[0][0], -own.from_bound(lane + 1)[1][0]

@@ -10,7 +10,8 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
-from rulec.extraction.signals.ego_lanelets import travel_lanes
+from rulec.extraction.signals.conduct.manoeuvre_signals import goes_over_the_middle
+from rulec.extraction.signals.ego_lanelets import room_beside, travel_lanes
 from rulec.extraction.signals.measured_numbers import own_speed, speed_bounds
 from rulec.extraction.signals.queues import lanes_that_go_on
 from rulec.extraction.signals.signal_columns import (
@@ -20,7 +21,7 @@ from rulec.extraction.signals.signal_columns import (
     rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import Passes, signals_by
-from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.extraction.tracks.tracks import Flags
 from rulec.trace.plain_arrays import medians
 
 _EGO_TYPES = {
@@ -149,7 +150,10 @@ def _rank(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
 
 
 def _straddling(context: DriveContext) -> SignalColumns:
-    """Whether ego is in two lanes; unknown where places, or the map, decide it."""
+    """Whether ego is in two lanes; unknown where places, or the map, decide it.
+
+    Also on its way over the middle of the road, to the lanes of the other direction or back.
+    """
     place, offset = context.tolerances.place_m, context.map_offset_m
     states = np.flatnonzero(_near_a_bound(context))
     shifts = [np.zeros(len(states)), *([offset[states]] if offset.any() else [])]
@@ -166,6 +170,8 @@ def _straddling(context: DriveContext) -> SignalColumns:
     both = (inside & context.existing_lanes[states]).sum(axis=-1) > 1
     straddling, unknown = np.zeros((2, context.states), dtype=bool)
     straddling[states], unknown[states] = both[0], both.any(axis=0) & ~both.all(axis=0)
+    over = goes_over_the_middle(context)
+    straddling, unknown = straddling | over, unknown & ~over
     return SignalColumns({"straddling": straddling}, unknown={"straddling": unknown})
 
 
@@ -176,12 +182,6 @@ def _near_a_bound(context: DriveContext) -> Flags:
     least = context.thresholds.touching_m - loose - _HAIR_M
     near: Flags = (across > least[:, None]).any(axis=1)
     return near
-
-
-def room_beside(context: DriveContext) -> tuple[Floats, Floats]:
-    """The room (m) in ego's lane to the right and to the left of it."""
-    lane, own = context.steady_lane, context.ego_extents
-    return own.from_bound(lane)[0][0], -own.from_bound(lane + 1)[1][0]
 
 
 def _place_in_lane(context: DriveContext) -> NDArray[intp]:

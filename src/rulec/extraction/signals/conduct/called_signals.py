@@ -20,8 +20,7 @@ from rulec.extraction.signals.conduct.others_lamps import (
     moves,
     stands,
 )
-from rulec.extraction.signals.ego_lanelets import own_lanelets
-from rulec.extraction.signals.ego_signals import room_beside
+from rulec.extraction.signals.ego_lanelets import own_lanelets, room_beside
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, ids_by_state
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags

@@ -135,6 +135,37 @@ def _goes_over(context: DriveContext, there: Flags, perhaps: Flags) -> Flags:
     return over
 
 
+def goes_over_the_middle(context: DriveContext) -> Flags:
+    """Flags of states in which ego is on both halves of a road, as it goes to the other or back.
+
+    Up to ``passed_s`` before it is on the other half, or after. Who only drives at the edge of its
+    own for long goes nowhere.
+    """
+    there, _ = oncoming_side(context)
+    if not there.any():
+        return np.zeros(context.states, dtype=bool)
+    spans, least = context.spans, context.thresholds.touching_m
+    low, high = _bounds_beyond_far_edge(context)
+    on_both = (low < -least) & (high > least)
+    within = round(context.thresholds.passed_s / context.recording.step_s)
+    stays, at = on_both | there, spans.columns
+    before, after = spans.latest(there), spans.next_state(there)
+    goes = (after < spans.next_state(~stays)) & (after - at <= within)
+    comes = (before > spans.latest(~stays)) & (at - before <= within)
+    over: Flags = on_both & (goes | comes)
+    return over
+
+
+def _bounds_beyond_far_edge(context: DriveContext) -> tuple[Floats, Floats]:
+    """How far (m) the nearer and the farther side of ego are beyond that edge."""
+    lanes, own = context.existing_lanes, context.ego_extents
+    if context.side == "right":
+        right, left = own.from_bound(lanes.shape[1] - lanes[:, ::-1].argmax(axis=1))
+        return right[0], left[0]
+    right, left = own.from_bound(lanes.argmax(axis=1))
+    return -left[0], -right[0]
+
+
 @once
 def oncoming_side(context: DriveContext) -> tuple[Flags, Flags]:
     """Flags of ego on the other half of a two-way road, along which it drives, and of perhaps so.
