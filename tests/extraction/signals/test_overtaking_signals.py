@@ -336,6 +336,18 @@ def test_a_cycle_is_overtaken_but_on_a_lane_of_its_own(kind, past):
     assert not told.unknown["overtaking"].any()
 
 
+@pytest.mark.parametrize("side", ["right", "left"])
+def test_who_overtakes_over_the_middle_does_so_as_soon_as_its_side_is_over_it(side):
+    """Ego is 2 m wide: at y = 1.6 its side is 0.6 m beyond the middle of the road."""
+    ys = [0, 1.2, 1.6, 1.6, 3.5, 3.5, 3.5, 3.5, 3.5, 3.5, 1.6, 1.6, 1.2, 0]
+    ego = vehicle(7, {k: (7.0 * k, y) for k, y in enumerate(ys)}, speed=14)
+    slow = vehicle(8, {k: (30 + 2.5 * k, 0.0) for k in range(len(ys))}, speed=5)
+    found = recording([straight(1, 0, 500), lanelet(2, [(500, 4), (0, 4)])], [ego, slow])
+    found = mirrored_recording(found) if side == "left" else found
+    told = overtaking_signals(context_of(found, side=side), {"overtaking"}).world["overtaking"]
+    assert "".join("FT"[int(value)] for value in told) == "FFTTTTTTTTTTFF"
+
+
 def test_who_goes_out_behind_another_one_may_have_meant_to_pass_whom_that_one_passes():
     """Both drive 14 m/s, 30 m apart, and the one that they would pass is 180 m ahead of ego."""
     ys = [0, 0, 1, *[3.5] * 12, 0]

@@ -144,9 +144,7 @@ def goes_over_the_middle(context: DriveContext) -> Flags:
     there, _ = oncoming_side(context)
     if not there.any():
         return np.zeros(context.states, dtype=bool)
-    spans, least = context.spans, context.thresholds.touching_m
-    low, high = _bounds_beyond_far_edge(context)
-    on_both = (low < -least) & (high > least)
+    spans, on_both = context.spans, on_both_halves(context)
     within = round(context.thresholds.passed_s / context.recording.step_s)
     stays, at = on_both | there, spans.columns
     before, after = spans.latest(there), spans.next_state(there)
@@ -154,6 +152,15 @@ def goes_over_the_middle(context: DriveContext) -> Flags:
     comes = (before > spans.latest(~stays)) & (at - before <= within)
     over: Flags = on_both & (goes | comes)
     return over
+
+
+@once
+def on_both_halves(context: DriveContext) -> Flags:
+    """Flags of states in which ego's body is on either side of the far edge of its lanes."""
+    low, high = _bounds_beyond_far_edge(context)
+    least = context.thresholds.touching_m
+    on_both: Flags = (low < -least) & (high > least)
+    return on_both
 
 
 def _bounds_beyond_far_edge(context: DriveContext) -> tuple[Floats, Floats]:

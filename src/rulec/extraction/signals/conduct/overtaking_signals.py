@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.conduct.manoeuvre_signals import oncoming_side
+from rulec.extraction.signals.conduct.manoeuvre_signals import on_both_halves, oncoming_side
 from rulec.extraction.signals.ego_lanelets import (
     CYCLE_LANE,
     lanes_of_type,
@@ -44,13 +44,14 @@ def overtaking_signals(context: DriveContext, names: SignalNames = None) -> Sign
 
 
 def _overtaking(context: DriveContext) -> SignalColumns:
-    """Whether ego overtakes, on the oncoming side from where it goes there until it is back.
+    """Whether ego overtakes, beyond the middle of the road from going there until it is back.
 
     Unknown of who goes there behind another and back: it may have given up.
     """
     overtakes, unsure = _overtakes(context)
     there, perhaps = oncoming_side(context)
     if (side := there | perhaps).any():
+        side |= on_both_halves(context)
         overtakes = overtakes | _meanwhile(context, overtakes, side)
         unsure = unsure | _meanwhile(context, unsure | _close_behind(context), side)
     return SignalColumns({"overtaking": overtakes}, unknown={"overtaking": unsure & ~overtakes})
