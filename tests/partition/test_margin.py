@@ -7,7 +7,7 @@ from hypothesis import assume, given
 
 from rulec.diagnostics import RulecError
 from rulec.partition import Layer, navigation_graph
-from rulec.partition.navigation_graph import edges
+from rulec.partition.graph_edges import edges
 from rulec.scenario import ConstantAcceleration, Ego, Obstacle, Road, Scenario, load_scenario
 from support.generators.random_scenarios import scenarios
 

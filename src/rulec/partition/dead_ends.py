@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from rulec.diagnostics import RulecError
 from rulec.partition.cell_graph import NavigationGraph
-from rulec.partition.navigation_graph import GraphOptions, navigation_graph
+from rulec.partition.navigation_graph import GraphOptions, has_way
 from rulec.scenario import Box
 from rulec.scenario.motion import swept
 from rulec.scenario.time_grid import MAX_LAYERS
@@ -87,6 +87,6 @@ def _opens(graph: NavigationGraph, change: GraphOptions) -> bool:
         **change,
     }
     try:
-        return navigation_graph(graph.scenario, **options).leads_to_a_goal
+        return has_way(graph.scenario, **options)
     except RulecError:
         return False

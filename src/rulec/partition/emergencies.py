@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rulec.partition.cell_graph import NavigationGraph
-from rulec.partition.navigation_graph import COMFORTABLE, navigation_graph
+from rulec.partition.navigation_graph import COMFORTABLE, has_way_within
 
 _WITHIN = 0.1
 """It is found as nearly as this (m/s²)."""
@@ -22,15 +22,7 @@ def least_braking(graph: NavigationGraph) -> float | None:
         return None
 
     def is_enough(braking: float) -> bool:
-        return navigation_graph(
-            graph.scenario,
-            partition=graph.partition,
-            adjacency=graph.adjacency,
-            extent=graph.extent,
-            step_s=graph.step_s,
-            horizon_s=float(graph.step * (len(graph.layers) - 1)),
-            bounds=replace(bounds, braking=braking),
-        ).leads_to_a_goal
+        return has_way_within(graph, replace(bounds, braking=braking))
 
     least, enough = COMFORTABLE, bounds.braking
     if is_enough(least):

@@ -1,0 +1,99 @@
+"""The edges of a navigation graph, and how long each of its changes of cell stays open.
+
+An edge from A at layer p to B at p + 1: A continues as some A', B continues some B°, A and B° are
+adjacent or the same at p, A' and B at p + 1. If B continues A it is staying. Else it is a change,
+and it stays open as long as the two remain adjacent: the longest run of layers back from (A, B°)
+and on from (A', B), following continuations. The 2019 paper names the quantity; this reading of it
+is ours.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from operator import itemgetter
+
+from rulec.partition.cell_graph import Edges, Margins
+from rulec.partition.cells import cell_links
+from rulec.partition.cells.cell_model import Layer
+
+_Runs = Sequence[Mapping[int, int]]
+"""For each cell, its neighbours, and for how many layers each of them has been one."""
+
+
+def edges(
+    layers: Sequence[Layer], onward: Sequence[cell_links.Links]
+) -> tuple[tuple[Edges, ...], tuple[Margins, ...]]:
+    """Successors of every cell and their margins, in layers.
+
+    ``onward[p]`` are the continuations from layer p to p + 1. The margin of staying is None.
+    """
+    back = [
+        cell_links.inverse(links, len(after.cells))
+        for links, after in zip(onward, layers[1:], strict=True)
+    ]
+    so_far = _runs(layers, back)
+    to_come = _runs(layers[::-1], onward[::-1])[::-1]
+    successors: list[Edges] = []
+    margins: list[Margins] = []
+    for p, links in enumerate(onward):
+        rows: list[tuple[int, ...]] = []
+        values: list[tuple[int | None, ...]] = []
+        for a, continued in enumerate(links):
+            before = _longest((run, links[origin]) for origin, run in so_far[p][a].items())
+            after = _longest_of(to_come[p + 1][image] for image in continued)
+            changes = {b: before[b] + after[b] for b in before.keys() & after.keys() - continued}
+            reached = sorted({*continued, *changes})
+            rows.append(tuple(reached))
+            values.append(tuple([changes.get(b) for b in reached]))
+        successors.append(tuple(rows))
+        margins.append(tuple(values))
+    return tuple(successors), tuple(margins)
+
+
+def _runs(layers: Sequence[Layer], back: Sequence[cell_links.Links]) -> list[_Runs]:
+    """Layers for which each adjacent pair has been adjacent so far.
+
+    ``back[p]`` leads from layer p + 1 to layer p, in whichever order of time layers are given.
+    """
+    runs: list[_Runs] = [
+        [dict.fromkeys(row, 1) for row in layer.neighbours] for layer in layers[:1]
+    ]
+    for layer, links in zip(layers[1:], back, strict=True):
+        earlier, current = runs[-1], []
+        for a, row in enumerate(layer.neighbours):
+            # The longest run with each cell before, of all cells that continue as this one
+            longest = _longest_of(earlier[origin] for origin in links[a])
+            current.append(
+                {
+                    b: 1 + max([longest.get(origin, 0) for origin in links[b]], default=0)
+                    for b in row
+                }
+            )
+        runs.append(current)
+    return runs
+
+
+def _longest_of(rows: Iterable[Mapping[int, int]]) -> dict[int, int]:
+    """The longest run with each cell."""
+    longest: dict[int, int] = {}
+    for row in rows:
+        for cell, run in row.items():
+            if run > longest.get(cell, 0):
+                longest[cell] = run
+    return longest
+
+
+def _longest(runs: Iterable[tuple[int, Iterable[int]]]) -> dict[int, int]:
+    """The longest run to each cell, of runs to several each."""
+    longest: dict[int, int] = {}
+    # The longest ones come last, and stay
+    for run, cells in sorted(runs, key=itemgetter(0)):
+        longest.update(dict.fromkeys(cells, run))
+    return longest
+
+
+def cells_after(cell: int, now: Layer, links: cell_links.Links, then: Layer) -> frozenset[int]:
+    """The successors of one cell, staying included; ``links`` are the continuations."""
+    before = frozenset[int]().union(*(links[origin] for origin in now.neighbours[cell]))
+    after = frozenset[int]().union(*(then.neighbours[image] for image in links[cell]))
+    return links[cell] | (before & after)
