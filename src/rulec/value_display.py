@@ -40,7 +40,7 @@ def _brief(value: object) -> str:
     if isinstance(value, str | bytes):
         text = repr(value[:_LONGEST_VALUE])
         return text if len(value) <= _LONGEST_VALUE else f"{text[:-1]}…{text[-1]}"
-    if isinstance(value, Collection) and len(value) > _MOST_ITEMS:
+    if isinstance(value, Collection) and _size(value) > _MOST_ITEMS:
         return f"<{len(value):,} items>"
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{_brief(k)}: {_brief(v)}" for k, v in value.items()) + "}"
@@ -51,6 +51,13 @@ def _brief(value: object) -> str:
     if len(text) > _LONGEST_VALUE and "(" in text:
         return f"{text[: text.index('(')]}(…)"
     return text if len(text) <= _LONGEST_VALUE else text[:_LONGEST_VALUE] + "…"
+
+
+def _size(value: Collection[object]) -> int:
+    try:
+        return len(value)
+    except TypeError:  # an array of no axes
+        return 0
 
 
 def short_count(number: int) -> str:

@@ -14,8 +14,12 @@ FOLLOWING = "docs/samples/following.xml"
         (lambda: rulec.compile_rulebook(None), TypeError, "a Rulebook, not NoneType"),
         (lambda: rulec.verify(TRACE, 3), TypeError, "a Rulebook, not int"),
         (lambda: rulec.verify_many("a.jsonl", "esterle2019"), TypeError, "read_traces"),
-        (lambda: rulec.verify_many(TRACE, "esterle2019"), TypeError, "several traces, not Trace"),
-        (lambda: rulec.find("CONGESTED", [TRACE], TRACE), TypeError, "name or path, not Trace"),
+        (
+            lambda: rulec.verify_many(TRACE, "esterle2019"),
+            TypeError,
+            "iterable of Trace, not Trace",
+        ),
+        (lambda: rulec.find("CONGESTED", [TRACE], TRACE), TypeError, "a str or a path, not Trace"),
         (lambda: rulec.find("CONGESTED", {"track": [1]}), TypeError, "not dict: .*from_columns"),
         (lambda: rulec.TrafficWorld(FOLLOWING), TypeError, "read_recording"),
         (lambda: rulec.score([], None, "esterle2019"), TypeError, "a TrafficWorld, not NoneType"),
@@ -30,7 +34,7 @@ FOLLOWING = "docs/samples/following.xml"
         (lambda: rulec.verify_recording(FOLLOWING, "de", {}), TypeError, "RequestedDrives, not"),
         (lambda: rulec.find("CONGESTED", FOLLOWING, wanted={}), TypeError, "RequestedDrives, not"),
         (lambda: rulec.draw_drive(FOLLOWING, "de", wanted="1"), TypeError, "RequestedDrives, not"),
-        (lambda: rulec.draw("x"), TypeError, "is drawn, not str"),
+        (lambda: rulec.draw("x"), TypeError, "Maneuvers or a Trace, not str: rulec.nav"),
         (lambda: rulec.Assumptions(ends="maybe"), ValueError, "not 'maybe'"),
         (lambda: rulec.Assumptions(values="built_up"), TypeError, "a mapping of names, not str"),
         (lambda: rulec.Thresholds(near_m=-1), ValueError, "`near_m` is a number from 0 .*not -1"),
@@ -52,3 +56,90 @@ def test_one_alone_is_as_good_as_a_list():
 def test_a_rulebook_in_memory_is_written_in_ltl(tmp_path):
     book = rulec.parse_rulebook("rulebook a signal p hard rule r { require never p }")
     assert next(path.name for path in rulec.write_ltl(book, tmp_path)) == "a.csv"
+
+
+NAN = float("nan")
+RULES = rulec.compile_rulebook("esterle2019")
+MONITOR = rulec.Monitor(RULES)
+DRIVEN = rulec.read_recording(FOLLOWING)
+VIOLATED = rulec.Violation("R9", "hard", {}, 0)
+PASSING = next(rulec.read_traces("docs/samples/traces.jsonl"))
+
+
+def traced(**changes):
+    given = {"id": "t", "step_s": 1.0, "objects": {}, "states": ({"CONGESTED": True},)} | changes
+    return rulec.Trace(**given)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"objects": None}, "`objects` is a dict by names of objects, not NoneType"),
+        ({"objects": [1]}, "`objects` is a dict by names of objects, not list"),
+        ({"objects": {"v": [1]}}, "object `v` is of type `\\[1\\]`"),
+        ({"states": None}, "`states` is a tuple of states, not NoneType"),
+        ({"states": "ab"}, "`states` is a tuple of states, not str"),
+        ({"states": ({1: 2},)}, "state 0"),
+        ({"step_s": "1"}, "`step_s` is a number of seconds, not str"),
+        ({"step_s": NAN}, "`step_s` is nan"),
+        ({"present": 3}, "`present` is a dict by names of objects, not int"),
+        ({"objects": {"v": "vehicle"}, "present": {"v": 3}}, "two states for `v`.* not 3"),
+    ],
+)
+def test_what_is_no_trace_is_said(changes, said):
+    trace = traced(**changes)
+    with pytest.raises(rulec.RulecError, match=said):
+        rulec.verify(trace, RULES)
+    (together,) = rulec.verify_many([trace], RULES)
+    assert isinstance(together, rulec.NotJudged)
+    with pytest.raises(rulec.RulecError, match=said):
+        raise together.error
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "said"),
+    [
+        (lambda: rulec.parse_rulebook(None), TypeError, "`text` is a str, not NoneType"),
+        (lambda: rulec.check("de", 3), TypeError, "`references` is a str or a path, not int"),
+        (lambda: rulec.list("books"), ValueError, "rulebooks, vocabularies.* not 'books'"),
+        (lambda: rulec.doc("esterle2019", language="it"), ValueError, "en, de, fr, not 'it'"),
+        (lambda: rulec.doc("esterle2019", form="pdf"), ValueError, "html, markdown, not 'pdf'"),
+        (lambda: rulec.Session(search_path="books"), TypeError, "iterable of str, not str"),
+        (lambda: rulec.Session(search_path=[3]), TypeError, r"`search_path\[0\]` is a str or a p"),
+        (lambda: rulec.compile_rulebook("de", step_s=NAN), ValueError, "finite number, not nan"),
+        (lambda: rulec.write_traces([TRACE, 1], "a.jsonl"), TypeError, r"`traces\[1\]` is a Trace"),
+        (lambda: next(rulec.verify_many(iter([1]), RULES)), TypeError, r"`traces\[0\]` is a Trace"),
+        (lambda: rulec.explain(VIOLATED, PASSING, RULES), ValueError, "esterle2019 has no rule"),
+        (lambda: rulec.TrafficWorld(DRIVEN, "1", "2"), TypeError, "`now_s` is a number, not str"),
+        (
+            lambda: rulec.TrafficWorld(DRIVEN, "1", NAN),
+            ValueError,
+            "`now_s` is a finite number, not nan",
+        ),
+        (lambda: rulec.TrafficWorld(DRIVEN, 1), TypeError, "`ego` is a str, not int"),
+        (lambda: rulec.RequestedDrives(None), TypeError, "`egos` is .*not NoneType"),
+        (lambda: rulec.Interval("1", 2), TypeError, "`low` is a number, not str"),
+        (lambda: rulec.Monitor.restore("de", {}), TypeError, "CompiledRulebook, not str"),
+        (lambda: rulec.layout_of([None]), ValueError, "whole numbers, such as"),
+        (lambda: rulec.navigation_graph(3), TypeError, "`scenario` is .*not int"),
+        (lambda: rulec.navigation_graph("s2", step_s="1"), TypeError, "`step_s` is a number"),
+        (lambda: rulec.find_maneuvers("s2", RULES).cheapest(-1), ValueError, "not -1"),
+        (lambda: rulec.find_maneuvers("s2", RULES).verdict(3), TypeError, "cheapest.1. has one"),
+        (lambda: rulec.traces("s2", limit=-1), ValueError, "at most, not -1"),
+        (
+            lambda: rulec.draw_drive(DRIVEN, "de", at_s=NAN),
+            ValueError,
+            "`at_s` is a finite number, not nan",
+        ),
+        (lambda: rulec.recording_from_columns(None, {}), rulec.RulecError, "of type `NoneType`"),
+        (lambda: rulec.build_recording([1], [], step_s=1), TypeError, r"`lanelets\[0\]` is a Lan"),
+        (lambda: rulec.build_lanelet("a", [(0, 0), (9, 0)], [[1], []]), rulec.RulecError, "width"),
+        (lambda: rulec.verify_recording("a" * 5000, "de"), rulec.RulecError, "too long"),
+        (lambda: rulec.write_traces([traced(id="\ud800")], "a"), rulec.RulecError, "surrogate"),
+    ],
+)
+def test_it_is_said_which_argument_is_wrong(call, error, said, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(error, match=said):
+        call()
+    assert not [*tmp_path.iterdir()]

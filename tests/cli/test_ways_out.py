@@ -143,6 +143,13 @@ def test_what_is_of_one_rulebook(arguments, tmp_path, monkeypatch, capsys):
     assert (status, "a monitor goes by one rulebook" in text) == (2, True)
 
 
+def test_a_name_is_a_rulebook_although_a_folder_is_called_so(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "esterle2019").mkdir()
+    (tmp_path / "t.jsonl").write_text('{"states": [{"CONGESTED": true}]}')
+    assert said(capsys, "find", "CONGESTED", "t.jsonl", "-r", "esterle2019")[0] == 0
+
+
 def test_a_trace_in_the_words_of_another_vocabulary(tmp_path, capsys):
     trace = tmp_path / "t.jsonl"
     trace.write_text(

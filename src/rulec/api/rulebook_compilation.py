@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import Diagnostic
+from rulec.diagnostics.argument_kinds import finite
 
 if TYPE_CHECKING:
     from rulec.automata.outcome_machine import OutcomeMachine
@@ -88,6 +89,7 @@ def compile_rulebook(
         if len(step_s) != 1:
             return _for_steps(reference, search_path, warn, list(map(exact_step, step_s)), at)
         (step_s,) = step_s
+    finite("step_s", step_s)
     step = None if step_s is None else exact_step(step_s)
     if isinstance(reference, str | Path):
         if Path(reference).suffix != ".json":

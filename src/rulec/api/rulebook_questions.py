@@ -8,10 +8,11 @@ from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, overload
+from typing import TYPE_CHECKING, Literal, get_args, overload
 
 from rulec.api.rulebook_verbs import RulebookVerbs
 from rulec.api.session_settings import ignore
+from rulec.diagnostics.argument_kinds import finite
 
 if TYPE_CHECKING:
     from rulec.analysis.audit.rulebook_audit import Audit
@@ -100,6 +101,7 @@ class RulebookQuestions(RulebookVerbs):
         from rulec.analysis.lineage.book_lineage import read_with_lineage
         from rulec.automata.thresholds import exact_step
 
+        finite("step_s", step_s)
         book, lineage = read_with_lineage(first, self.search_path, self.at)
         second_book, second_lineage = read_with_lineage(second, self.search_path, self.at)
         self._warn(list(dict.fromkeys((*book.warnings, *second_book.warnings))))
@@ -232,6 +234,7 @@ class RulebookQuestions(RulebookVerbs):
         The page in HTML has its examples as pictures. What authors wrote stays in their language.
         """
         from rulec.analysis.lineage.book_lineage import read_with_lineage
+        from rulec.logic.sentences.language import LANGUAGES
         from rulec.report.rulebooks.document.book_document import (
             as_markdown,
             contents_heading,
@@ -241,6 +244,10 @@ class RulebookQuestions(RulebookVerbs):
         from rulec.report.rulebooks.document_language import document_language
         from rulec.report.text.html_page import PageTexts, as_html
 
+        known = ("form", form, ("html", "markdown")), ("language", language, LANGUAGES)
+        for what, given, names in known:
+            if given not in names:
+                raise ValueError(f"the {what} is one of {', '.join(names)}, not {given!r}")
         loaded, lineage = read_with_lineage(reference, self.search_path, self.at)
         self._warn(loaded.warnings)
         words = document_language(loaded.rulebook, language)
@@ -264,6 +271,8 @@ class RulebookQuestions(RulebookVerbs):
         """The rulebooks, vocabularies, scenarios or codes that there are, with a title."""
         from rulec.report.text.listing import Listed
 
+        if kind not in (kinds := get_args(Kind)):
+            raise ValueError(f"what is listed is one of {', '.join(kinds)}, not {kind!r}")
         if kind == "codes":
             from rulec.report.findings.code_registry import all_codes
 

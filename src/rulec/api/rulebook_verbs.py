@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from rulec.api.session_settings import SessionSettings
+from rulec.diagnostics.argument_kinds import finite
 
 if TYPE_CHECKING:
     from rulec.api.rulebook_compilation import Rules
@@ -130,6 +131,7 @@ class RulebookVerbs(SessionSettings):
         from rulec.automata.thresholds import exact_step
         from rulec.ltl_export.ltl_files import write_ltl
 
+        finite("step_s", step_s)
         step = None if step_s is None else exact_step(step_s)
         rulebook = self.load_rulebook(reference) if isinstance(reference, str | Path) else reference
         return tuple(write_ltl(rulebook, lower(rulebook, step), Path(folder)))

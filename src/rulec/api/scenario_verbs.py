@@ -4,11 +4,11 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from rulec.api.argument_kinds import ASSUMPTIONS_EXAMPLE, expect
 from rulec.api.session_settings import SessionSettings
 
 if TYPE_CHECKING:
@@ -66,7 +66,6 @@ class ScenarioVerbs(SessionSettings):
         from rulec.monitoring.assumptions import Assumptions
         from rulec.planning import SceneReading, evaluate, partition_for
 
-        expect(assumptions, Assumptions, ASSUMPTIONS_EXAMPLE)
         reading = SceneReading(assumptions or Assumptions(), told_only)
         compiled = self._compiled(rules)
         options["partition"] = partition_for(compiled, options.get("partition"))
@@ -85,7 +84,7 @@ class ScenarioVerbs(SessionSettings):
         """The bounds of a maneuver by layer. Raises RulecError R0609 without path."""
         from rulec.partition import envelope
 
-        return envelope(graph, nodes)
+        return envelope(graph, tuple(nodes))
 
     def envelopes(self, maneuvers: Maneuvers, n: int = 1) -> tuple[Sequence[Envelope], ...]:
         """The envelopes of the ``n`` cheapest maneuvers that are satisfying, or open."""
@@ -104,13 +103,15 @@ class ScenarioVerbs(SessionSettings):
         from rulec.trace.plain_unknowns import with_plain_unknowns
         from rulec.trace.trace_model import all_traces
 
+        if limit < 0:
+            raise ValueError(f"`limit` is how many are wanted at most, not {limit}")
         scene = self.load_scenario(scenario) if isinstance(scenario, str | Path) else scenario
         if rules is None:
             options.setdefault("partition", "paper")
             graph = self.navigation_graph(scene, **options).trace_graph()
         else:
             graph = self.find_maneuvers(scene, rules, **options).paths
-        return map(with_plain_unknowns, all_traces(graph, scene.name, limit))
+        return map(with_plain_unknowns, all_traces(graph, scene.name, min(limit, sys.maxsize)))
 
     def rule_probabilities(self, maneuvers: Maneuvers, maneuver: Maneuver) -> RuleProbabilities:
         """The probability that a maneuver keeps each rule, over the obstacles' predictions."""
@@ -141,7 +142,6 @@ class ScenarioVerbs(SessionSettings):
         """
         from rulec.api import pictures
         from rulec.partition import NavigationGraph
-        from rulec.planning import Maneuvers
         from rulec.report.pictures.drawing.picture_formats import as_bytes
         from rulec.trace import Trace
 
@@ -150,11 +150,6 @@ class ScenarioVerbs(SessionSettings):
                 raise TypeError("a trace is drawn as rules read it: give them")
             used = self._compiled(rules).fitted_to(subject.step_s)
             return as_bytes(pictures.trace_drawing(subject, used), form, subject.id)
-        if not isinstance(subject, NavigationGraph | Maneuvers):
-            raise TypeError(
-                f"a navigation graph, maneuvers or a trace is drawn, not {type(subject).__name__}: "
-                "rulec.navigation_graph(scenario) makes one"
-            )
         draw = pictures.graph_drawing if as_graph else pictures.scene_drawing
         if isinstance(subject, NavigationGraph):
             drawing = draw(subject, None, maneuver)

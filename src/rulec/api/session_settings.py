@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from datetime import date
+from inspect import isfunction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rulec.diagnostics import Diagnostic
+from rulec.diagnostics.argument_kinds import checked_kinds, expected
 
 if TYPE_CHECKING:
     from rulec.api.rulebook_compilation import Rules
@@ -34,7 +36,18 @@ class SessionSettings:
     at: str = ""
     on_warning: Callable[[Sequence[Diagnostic]], object] = field(default=ignore, repr=False)
 
+    def __init_subclass__(cls) -> None:
+        """Let every verb say what it is given of the wrong kind."""
+        # A verb of two names is one function
+        checked = {verb: checked_kinds(verb) for verb in vars(cls).values() if isfunction(verb)}
+        for name, verb in list(vars(cls).items()):
+            if isfunction(verb) and not name.startswith("_"):
+                setattr(cls, name, checked[verb])
+
     def __post_init__(self) -> None:
+        expected("search_path", "Sequence[str | Path]", self.search_path)
+        expected("at", "str", self.at)
+        expected("on_warning", "Callable[[object], object]", self.on_warning)
         if self.at:
             try:
                 date.fromisoformat(self.at)

@@ -4,12 +4,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, get_args
 
-from rulec.api.argument_kinds import ASSUMPTIONS_EXAMPLE, REQUEST_EXAMPLE, expect
 from rulec.api.session_settings import SessionSettings
+from rulec.diagnostics.argument_kinds import finite
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -50,8 +50,11 @@ class TraceVerbs(SessionSettings):
         """Write traces in the format of the file's name. Raises RulecError."""
         from rulec.files import written_whole
         from rulec.trace.formats.trace_files import format_of, is_partial, kinds_in, write_traces
+        from rulec.trace.trace_model import check_trace
 
         listed = list(traces)
+        for trace in listed:
+            check_trace(trace)
         kinds = kinds_in(state for trace in listed for state in trace.states)
         partial = any(map(is_partial, listed))
         form = format_of(str(path))
@@ -67,17 +70,8 @@ class TraceVerbs(SessionSettings):
             RulecError: R0501 to R0508 if it is no trace, or the rules cannot judge it.
             TypeError: for the path of a file, which other verbs take.
         """
-        from rulec.monitoring.assumptions import Assumptions
         from rulec.monitoring.verify import verify
-        from rulec.trace import Trace
 
-        if not isinstance(trace, Trace):
-            raise TypeError(
-                f"verify takes a Trace, not {type(trace).__name__}: those that "
-                "rulec.read_traces(path) yields; recorded traffic goes to "
-                "rulec.verify_recording(path, rules)"
-            )
-        expect(assumptions, Assumptions, ASSUMPTIONS_EXAMPLE)
         if assumptions is not None:
             trace = assumptions.applied(trace)
         return verify(trace, self._compiled(rules))
@@ -97,16 +91,8 @@ class TraceVerbs(SessionSettings):
         want of values, Python does, and each verdict says by its ``engine`` which of them did.
         Raises RulecError R0751 if there is no compiler.
         """
-        from rulec.monitoring.assumptions import Assumptions
         from rulec.monitoring.batch.batch_verify import verify_many
-        from rulec.trace import Trace
 
-        if isinstance(traces, Trace | str | Path):
-            raise TypeError(
-                f"verify_many takes several traces, not {type(traces).__name__}: "
-                "rulec.read_traces(path) yields those of a file, rulec.verify judges one"
-            )
-        expect(assumptions, Assumptions, ASSUMPTIONS_EXAMPLE)
         if assumptions is not None:
             traces = (assumptions.of([item])[0] for item in traces)
         if engine == "c":
@@ -173,14 +159,7 @@ class TraceVerbs(SessionSettings):
         """
         from rulec.extraction.recording_verdicts import RecordingVerdicts
         from rulec.extraction.selection import RequestedDrives
-        from rulec.recordings.recording import Recording
 
-        if not isinstance(recording, str | Path | Recording):
-            raise TypeError(
-                f"a recording or its file is judged, not {type(recording).__name__}: "
-                "rulec.recording_from_columns(tracks, lanes) makes one of a data frame"
-            )
-        expect(wanted, RequestedDrives, REQUEST_EXAMPLE)
         file = recording if isinstance(recording, str | Path) else recording.name
         if isinstance(recording, str | Path):
             recording = self.read_recording(recording, map_path)
@@ -208,13 +187,7 @@ class TraceVerbs(SessionSettings):
                 step than the world's.
         """
         from rulec.scoring.score import score
-        from rulec.scoring.traffic_world import TrafficWorld
 
-        if not isinstance(world, TrafficWorld):
-            raise TypeError(
-                f"the world is a TrafficWorld, not {type(world).__name__}: "
-                "rulec.TrafficWorld(recording, ego)"
-            )
         return score(candidates, world, self._compiled(rules), after)
 
     def find(
@@ -247,17 +220,6 @@ class TraceVerbs(SessionSettings):
         from rulec.recordings.recording_format import RecordingSource
         from rulec.rulebook.formula_query import read_query
 
-        if not isinstance(rulebook, str | Path):
-            raise TypeError(
-                f"find takes a rulebook's name or path, not {type(rulebook).__name__}: "
-                "its text may be in a file"
-            )
-        if isinstance(drives, Mapping):
-            raise TypeError(
-                f"drives are a file, a Recording or traces, not {type(drives).__name__}: "
-                "rulec.recording_from_columns(tracks, lanes) makes a recording"
-            )
-        expect(wanted, RequestedDrives, REQUEST_EXAMPLE)
         words = {"rulebook": str(rulebook), "vocabulary": vocabulary}
         query = read_query(formula, **words, search_path=self.search_path, at=self.at)
         request = wanted or RequestedDrives()
@@ -331,7 +293,7 @@ class TraceVerbs(SessionSettings):
         from rulec.extraction.selection import RequestedDrives
         from rulec.report.pictures.drawing.picture_formats import as_bytes
 
-        expect(wanted, RequestedDrives, REQUEST_EXAMPLE)
+        finite("at_s", at_s)
         vehicle, part, _ = ego.partition("#")
         request = replace(wanted or RequestedDrives(), egos=(vehicle,) if vehicle else ())
         verdicts = self.verify_recording(recording, rules, request, map_path)

@@ -9,6 +9,7 @@ from fractions import Fraction
 from functools import partial
 
 from rulec.diagnostics import SourceLocation, did_you_mean, named
+from rulec.diagnostics.argument_kinds import expected
 from rulec.extraction.drives import Drives, NoDrive
 from rulec.extraction.recording_parts import RecordingPart, egos_of, recording_parts
 from rulec.extraction.to_trace import Drive, DrivePlaces, TraceWriter
@@ -46,8 +47,10 @@ class RequestedDrives:
 
     def __post_init__(self) -> None:
         # One alone, and ids that are numbers in the file
-        given: object = self.egos
-        egos = (given,) if isinstance(given, str | int) else self.egos
+        given: object = expected("egos", "str | int | Iterable[str | int]", self.egos)
+        expected("thresholds", "Thresholds", self.thresholds)
+        expected("assumed", "Mapping", self.assumed)
+        egos = (given,) if isinstance(given, str) or not isinstance(given, Iterable) else self.egos
         object.__setattr__(self, "egos", tuple(map(str, egos)))
 
 

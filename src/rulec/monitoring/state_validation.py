@@ -103,7 +103,7 @@ def check_objects(
     """
     OBJECTS.within(len(objects), place)
     for name, kind in objects.items():
-        if kind not in vocabulary.types:
+        if not isinstance(kind, str) or kind not in vocabulary.types:
             raise UNKNOWN_OBJECT.error(
                 place,
                 f"object `{name}` is of type `{kind}`, which `{vocabulary.name}` does not know",

@@ -12,6 +12,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple, TypedDict, get_args
 
 from rulec.diagnostics import SourceLocation, did_you_mean, named
+from rulec.diagnostics.argument_kinds import checked_kinds
 from rulec.partition.cell_graph import Edges, Margins, NavigationGraph
 from rulec.partition.cells import cell_links
 from rulec.partition.cells.cell_model import Layer, Plane
@@ -52,6 +53,7 @@ class GraphOptions(TypedDict, total=False):
     bounds: MotionBounds | str | None
 
 
+@checked_kinds
 def navigation_graph(
     scenario: Scenario,
     *,

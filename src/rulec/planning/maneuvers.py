@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import stutter_invariant
+from rulec.diagnostics.argument_kinds import checked_kinds
 from rulec.logic.free_names import names_in
 from rulec.monitoring.state_validation import partial_names
 from rulec.monitoring.uncertainty.untold_names import untold_names
@@ -160,6 +161,7 @@ class Maneuvers(Rows):
         read.intersection_update(names)
         return tuple(name for name in self.rules.vocabulary.declarations if name in read)
 
+    @checked_kinds
     def cheapest(self, n: int, *, perhaps: bool = False) -> list[Maneuver]:
         """The ``n`` cheapest satisfying maneuvers, or all if there are fewer.
 
@@ -183,6 +185,7 @@ class Maneuvers(Rows):
 
         return WitnessSearch(self.graph, self.graph.bounds)
 
+    @checked_kinds
     def verdict(self, maneuver: Maneuver) -> Verdict:
         """What a maneuver violates and what is open. Raises RulecError as ``best`` does."""
         every = self._every.instances
@@ -196,6 +199,7 @@ class Maneuvers(Rows):
         past = past_for(self.graph, self.paths, self.rules, (*HARD, *SOFT), self.after)
         return uncertain_verdict(trace, self.rules, past)
 
+    @checked_kinds
     def best(self, n: int = MOST_BEST) -> list[RankedManeuver]:
         """The least violating maneuvers: for each lowest penalty one of the cheapest.
 
@@ -207,6 +211,7 @@ class Maneuvers(Rows):
         best = _first(n, front(self._every, self._ranks))
         return [one for penalty in best for one in self._of_penalty(1, penalty, 1)]
 
+    @checked_kinds
     def ranked(self, n: int) -> list[RankedManeuver]:
         """The ``n`` best maneuvers, least violating first, or all.
 
@@ -269,6 +274,7 @@ class Maneuvers(Rows):
         perhaps = count_classes(self.perhaps, self._places)
         return replace(surely, open=perhaps.satisfying - surely.satisfying)
 
+    @checked_kinds
     def variants(self, n: int) -> list[Variant]:
         """Cheapest satisfying maneuver of each of the ``n`` cheapest classes.
 
@@ -356,6 +362,8 @@ class Maneuvers(Rows):
 
 
 def _first(n: int, items: Iterator[Item]) -> list[Item]:
+    if n < 0:
+        raise ValueError(f"`n` is how many are wanted, not {n}")
     return list(islice(items, min(n, sys.maxsize)))
 
 

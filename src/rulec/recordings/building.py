@@ -13,6 +13,7 @@ from numpy import float64
 from numpy.typing import ArrayLike, NDArray
 
 from rulec.diagnostics import did_you_mean, named
+from rulec.diagnostics.argument_kinds import expected
 from rulec.recordings.building_checks import BuildingChecks
 from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.lanes.lanes_along import (
@@ -114,7 +115,11 @@ def build_lanelet(
 def _widths(
     checks: BuildingChecks, width: ArrayLike, centre: ArrayLike, kept: Points
 ) -> NDArray[float64] | float:
-    if np.ndim(width) == 0:
+    try:
+        is_one = np.ndim(width) == 0
+    except ValueError:  # rows of different lengths
+        is_one = False
+    if is_one:
         return checks.positive("width", cast("float", width))
     if checks.found:
         return 1.0
@@ -157,6 +162,7 @@ def build_participant(
     checks = BuildingChecks(f"participant `{name:.40}`")
     if not name:
         checks.wrong("its id is empty")
+    expected("kind", "str", kind)
     checks.one_of("kind", kind, OBSTACLE_TYPES)
     step_s = checks.positive("step_s", step_s)
     times = checks.numbers("t", t)
@@ -251,7 +257,8 @@ def build_recording(
     lanelets have all of, such as ``STOP`` for signs. Raises RulecError R0617, with all that is
     wrong: shapes of arrays, numbers that are none, ids that are double or lead nowhere.
     """
-    lanes, bodies = tuple(lanelets), tuple(participants)
+    lanes = tuple(expected("lanelets", "Iterable[Lanelet]", lanelets))
+    bodies = tuple(expected("participants", "Iterable[Participant]", participants))
     checks = BuildingChecks("the recording")
     step_s = checks.positive("step_s", step_s)
     if side is not None:
@@ -274,7 +281,7 @@ def build_recording(
         _check_lanelet(lanelet, known, checks)
     for body in bodies:
         _check_participant(body, checks)
-    if ego != "":
+    if str(ego):
         checks.one_of("ego", str(ego), [one.id for one in bodies])
     checks.raise_found()
     return Recording(

@@ -94,7 +94,7 @@ class BuildingChecks:
 
     def one_of(self, name: str, value: str, known: Collection[str]) -> None:
         """Note a word that is not known."""
-        if value not in known:
+        if not isinstance(value, str) or value not in known:
             some = named(sorted(known))
             self.wrong(
                 f"`{name}` is `{value!s:.40}`", f"expected {some}", did_you_mean(str(value), known)

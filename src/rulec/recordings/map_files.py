@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rulec.diagnostics.argument_kinds import checked_kinds
 from rulec.files import opened
 from rulec.recordings import table_heads as heads
 from rulec.recordings.argoverse.argoverse_files import MAP as MAP_ARCHIVES
@@ -122,6 +123,7 @@ MAP_FORMATS = (
 )
 
 
+@checked_kinds
 def read_map(path: str | Path, step_s: float) -> RoadMap:
     """Read a map of any format; its lights count in steps of ``step_s``.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from contextlib import suppress
 from functools import partial
@@ -122,6 +123,10 @@ _FCD_INSTEAD = "SUMO writes who was where when with the option --fcd-output"
 
 
 def _format_of(source: RecordingSource) -> RecordingFormat:
+    if not os.path.lexists(source.path):
+        # Such as of too long a name, of which many questions end in an OSError
+        with opened(source.path):
+            pass
     glance = Glance(source.path)
     for form in FORMATS:
         if source.form == form.name or (source.form is None and form.recognises(glance)):

@@ -10,6 +10,7 @@ from numpy import float64
 from numpy.typing import ArrayLike, NDArray
 
 from rulec.diagnostics import SourceLocation, did_you_mean
+from rulec.diagnostics.argument_kinds import expected, finite
 from rulec.extraction.candidate_drives import CandidateDrives
 from rulec.extraction.selection import RequestedDrives, chosen_side
 from rulec.extraction.tracks.mirror import mirrored_recording
@@ -47,11 +48,10 @@ class TrafficWorld:
     )
 
     def __post_init__(self) -> None:
-        if not isinstance(self.recording, Recording):
-            raise TypeError(
-                f"the recording is a Recording, not {type(self.recording).__name__}: "
-                "rulec.read_recording(path) reads one"
-            )
+        expected("recording", "Recording", self.recording)
+        expected("ego", "str", self.ego)
+        finite("now_s", self.now_s)
+        expected("wanted", "RequestedDrives", self.wanted)
         name = self.ego or self.recording.ego
         known = {body.id: body for body in self.recording.participants if body.states}
         if name not in known or known[name].standing:

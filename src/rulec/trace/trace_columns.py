@@ -69,7 +69,10 @@ class Layout:
 
 def layout_of(lengths: Sequence[int] | NDArray[Any]) -> Layout:
     """Layout of traces of these lengths, descending; ValueError for others."""
-    result = np.asarray(lengths, dtype=np.int64)
+    try:
+        result = np.asarray(lengths, dtype=np.int64)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError("lengths of traces are whole numbers, such as [4, 4, 3]") from None
     if result.ndim != 1 or (len(result) and result[-1] < 1) or (np.diff(result) > 0).any():
         raise ValueError("lengths of traces descend, and each is at least 1")
     longest = int(result[0]) if len(result) else 0

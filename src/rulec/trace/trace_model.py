@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import islice
+from numbers import Integral, Real
 from typing import Literal
 
 from rulec.diagnostics import SourceLocation
@@ -136,6 +137,7 @@ def check_trace(trace: Trace) -> None:
 
 def check_frame(trace: Trace) -> None:
     """Check all of a trace but states and presence."""
+    _check_kinds(trace)
     if not trace.states:
         raise NO_STATES.error(
             trace.place, "the trace has no states; it needs at least one to judge"
@@ -145,9 +147,40 @@ def check_frame(trace: Trace) -> None:
         raise NOT_A_TRACE.error(trace.place, message)
 
 
+def _check_kinds(trace: Trace) -> None:
+    # Whoever writes one in Python may have put in anything
+    states: object = trace.states
+    step: object = trace.step_s
+    pairs: tuple[tuple[str, object], ...] = (
+        ("objects", trace.objects),
+        ("present", trace.present),
+    )
+    wrong = ""
+    if not isinstance(states, Sequence) or isinstance(states, str | bytes):
+        wrong = f"`states` is a tuple of states, not {type(states).__name__}"
+    elif isinstance(step, bool) or not isinstance(step, Real):
+        wrong = f"`step_s` is a number of seconds, not {type(step).__name__}"
+    for name, given in pairs:
+        # Asking for a mapping takes far longer than asking for a dictionary.
+        if type(given) is not dict and not isinstance(given, Mapping):
+            wrong = f"`{name}` is a dict by names of objects, not {type(given).__name__}"
+    if wrong:
+        raise NOT_A_TRACE.error(trace.place, wrong)
+
+
+def _is_span(given: object) -> bool:
+    if not isinstance(given, tuple | list) or len(given) != 2:
+        return False
+    return all(isinstance(end, Integral) for end in given)
+
+
 def check_presence(trace: Trace) -> None:
     """Check the presence of a trace's objects."""
-    for name, (first, last) in trace.present.items():
+    for name, span in trace.present.items():
+        if not _is_span(span):
+            message = f"`present` has two states for `{name}`, the first and the last, not {span!r}"
+            raise NOT_A_TRACE.error(trace.place, message)
+        first, last = span
         if name not in trace.objects:
             message = f"`present` speaks of `{name}`, which is not among the trace's objects"
             raise UNKNOWN_OBJECT.error(trace.place, message)

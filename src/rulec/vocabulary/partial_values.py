@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Final, Literal
 
+from rulec.diagnostics.argument_kinds import expected
+
 
 class UnknownValue(Enum):
     """The type of ``UNKNOWN``."""
@@ -37,6 +39,8 @@ class Interval:
     high: float
 
     def __post_init__(self) -> None:
+        expected("low", "float", self.low)
+        expected("high", "float", self.high)
         if not float("-inf") < self.low <= self.high < float("inf"):
             raise ValueError("an interval has finite bounds, the lower one first")
 

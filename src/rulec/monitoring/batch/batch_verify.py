@@ -78,11 +78,16 @@ def verify_many(
     n_states = 0
     for item in traces:
         chunk.append(item)
-        n_states += len(item.states) + 1 if isinstance(item, Trace) else 1
+        n_states += _n_states(item) + 1
         if n_states >= LIMITS.states_together:
             yield from verify_chunk(chunk, rulebook)
             chunk, n_states = [], 0
     yield from verify_chunk(chunk, rulebook)
+
+
+def _n_states(item: Trace | RulecError) -> int:
+    states: object = item.states if isinstance(item, Trace) else ()
+    return len(states) if isinstance(states, Sequence) else 0
 
 
 def verify_chunk(
@@ -101,7 +106,7 @@ def verify_chunk(
             except (TypeError, AttributeError, LookupError, RulecError):
                 continue  # it is no trace, or a constant changes, which ``verify`` will say
     for alike in shapes.values():
-        n_states = sum(len(trace.states or ()) for _, trace in alike)
+        n_states = sum(_n_states(trace) for _, trace in alike)
         if len(alike) >= fewest or n_states >= _LONG:
             framed = [(place, trace) for place, trace in alike if _is_framed(trace)]
             _verify_group(framed, rulebook, answers)

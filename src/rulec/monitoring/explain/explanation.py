@@ -179,7 +179,9 @@ def explain(
     if untold or trace.ends == "cut" or any(map(has_partial_values, trace.states)):
         trace = completed(trace, declared)
         rulebook = replace(rulebook, vocabulary=with_all_defaults(declared))
-    rule = next(rule for rule in rulebook.rules if rule.name == violation.rule)
+    rule = next((rule for rule in rulebook.rules if rule.name == violation.rule), None)
+    if rule is None:
+        raise ValueError(f"{rulebook.name} has no rule `{violation.rule}`, which was violated")
     binding = binding_of(violation.binding, trace.present, len(trace.states))
     reader = letter_reader_of(trace, rulebook)
     stretch = range(binding.first, binding.last + 1)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError, SourceLocation
+from rulec.diagnostics.argument_kinds import expected, finite
 from rulec.monitoring.online.bound_rules import BoundRules
 from rulec.monitoring.online.four_valued import MonitorEdge, without_sink, worst_of
 from rulec.monitoring.online.monitor_state import (
@@ -75,6 +76,9 @@ class Monitor:
                 f"a monitor takes a compiled rulebook, not {type(rulebook).__name__}: "
                 "rulec.Monitor(rulec.compile_rulebook(name_or_path))"
             )
+        finite("step_s", step_s)
+        expected("told", "Iterable[str] | None", told)
+        expected("cut", "bool", cut)
         steps = [rule.step_s for rule in rulebook.rules if rule.step_s is not None]
         self._step_s = exact_step(step_s) if step_s is not None else steps[0] if steps else None
         if self._step_s is not None:
@@ -282,6 +286,7 @@ class Monitor:
 
         Raises RulecError R0510 if this is no snapshot, one of other rules, or damaged.
         """
+        expected("rulebook", "CompiledRulebook", rulebook)
         saved, step_s = from_data(snapshot, rulebook, place)
         monitor = cls(rulebook, step_s, told=saved.told, cut=saved.cut)
         groups = monitor._now[0].bound_rules.groups

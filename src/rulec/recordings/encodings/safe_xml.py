@@ -170,8 +170,8 @@ def is_xml(path: Path) -> bool:
             return False  # what comes through a pipe can be read only once
         with opened(path) as stream:
             start = stream.read(64)
-    except RulecError:
-        return False
+    except (RulecError, OSError):
+        return False  # a name that is too long, for one
     text = start.removeprefix(b"\xef\xbb\xbf").lstrip()
     return text.startswith((b"<", b"\xff\xfe<", b"\xfe\xff\0<"))
 

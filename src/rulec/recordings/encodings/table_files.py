@@ -269,7 +269,10 @@ def table_of(columns: Mapping[str, Any], words: str) -> ColumnTable:
     # Frames of polars and tables of Arrow list their names so; a mapping does by itself
     listed = getattr(columns, "columns", columns)
     listed = getattr(columns, "column_names", listed)
-    names = _checked_names(tuple(map(str, listed)), refused)
+    try:
+        names = _checked_names(tuple(map(str, listed)), refused)
+    except TypeError:
+        raise refused(f"they are of type `{type(given).__name__}`", expected=_EXPECTED) from None
 
     def read(numbers: Sequence[str], texts: Sequence[str]) -> Columns:
         wanted = {name: np.asarray(columns[name]) for name in (*numbers, *texts)}

@@ -19,6 +19,7 @@ from rulec.trace.formats import json_line_problems
 from rulec.trace.formats.json_numbers import as_written, exactly, may_be_no_float
 from rulec.trace.formats.partial_json import BOUNDS, from_json, to_json
 from rulec.trace.formats.stream_lines import foreign, lines_as_they_come, placed
+from rulec.trace.trace_messages import NOT_A_TRACE
 from rulec.trace.trace_model import Ending, State, Trace
 
 if TYPE_CHECKING:
@@ -310,7 +311,11 @@ def write_traces(traces: Iterable[Trace], stream: IO[bytes]) -> int:
             fields["ends"] = trace.ends
         if trace.told is not None:
             fields["told"] = sorted(trace.told)
-        stream.write(encoder.encode(fields))
+        try:
+            stream.write(encoder.encode(fields))
+        except UnicodeEncodeError:
+            why = f"trace `{trace.id}` has half a character (a surrogate), which no file holds"
+            raise NOT_A_TRACE.error(trace.place, why) from None
         stream.write(b"\n")
     return count
 
