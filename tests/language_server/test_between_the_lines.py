@@ -131,6 +131,7 @@ def test_hints_show_inherited_strength(editor):
     )
 
 
+CHANGE = "also unless urban_traffic at some point"
 LENSES = """\
 rulebook lenses
 extends vienna
@@ -173,7 +174,7 @@ def test_lenses_run_examples_and_insert_what_is_missing(watched):
     assert "1 of 1 examples come out as they say" in execute(watched, run)
     watched.until(lambda: watched.refreshed, lambda now: now > before)
     run, _, insert = lenses(watched)["slow_in_town"]
-    assert run.title == "1 examples pass"
+    assert run.title == "1 example passes"
     assert "untested edges: insert the missing example" in insert.title
     example = execute(watched, insert)
     (edit,) = watched.edits[-1].changes[watched.uri("lenses.rules")]
@@ -186,6 +187,18 @@ def test_a_lens_says_a_rule_in_plain_english(watched):
     english = lenses(watched)["slow_in_town"][1]
     assert "30 km/h" in execute(watched, english)
     assert watched.messages[-1].message
+
+
+def test_a_rule_that_is_gone_is_said(watched):
+    english = lenses(watched)["slow_in_town"][1]
+    english.arguments = [english.arguments[0], "gone"]
+    assert execute(watched, english) == "the rulebook has no rule `gone`"
+    compare = lenses(watched)["being_overtaken"][2]
+    lone = LENSES.replace("extends vienna", "use road").replace("override ", "hard ")
+    assert (
+        watched.change("lenses.rules", lone.replace(CHANGE, "require never urban_traffic"), 2) == []
+    )
+    assert execute(watched, compare) == "the rulebook extends no other"
 
 
 def test_a_lens_compares_a_rule_with_its_parent(watched):

@@ -30,24 +30,26 @@ def add_commands(server: EditorSession) -> None:
     @server.command(lenses.RUN)
     async def run(uri: str, rule: str) -> str:
         asked = _asked(server, uri, rule)
-        if asked is None:
-            return _told(server, _NO_ANSWER)
+        if isinstance(asked, str):
+            return _told(server, asked)
         answer = await _examples(server, asked)
         return _told(server, answer if isinstance(answer, str) else answer.in_words(rule))
 
     @server.command(lenses.ENGLISH)
     async def in_english(uri: str, rule: str) -> str:
         asked = _asked(server, uri, rule)
-        if asked is None:
-            return _told(server, _NO_ANSWER)
+        if isinstance(asked, str):
+            return _told(server, asked)
         _, book, meant = asked
         return _told(server, await asyncio.to_thread(english, book, meant))
 
     @server.command(lenses.COMPARE)
     async def compare(uri: str, rule: str) -> str:
         asked = _asked(server, uri, rule)
-        if asked is None or len(asked[0].chain.books) < 2:
-            return _told(server, _NO_ANSWER)
+        if isinstance(asked, str):
+            return _told(server, asked)
+        if len(asked[0].chain.books) < 2:
+            return _told(server, "the rulebook extends no other")
         names, book, meant = asked
         above = names.chain.books[-2].span.source.name
         try:
@@ -64,8 +66,8 @@ def add_commands(server: EditorSession) -> None:
     @server.command(lenses.INSERT)
     async def insert(uri: str, rule: str) -> str:
         asked = _asked(server, uri, rule)
-        if asked is None:
-            return _told(server, _NO_ANSWER)
+        if isinstance(asked, str):
+            return _told(server, asked)
         answer = await _examples(server, asked)
         if isinstance(answer, str):
             return _told(server, answer)
@@ -79,21 +81,23 @@ def add_commands(server: EditorSession) -> None:
         return missing
 
 
-_NO_ANSWER = "the rulebook has mistakes, which have to be mended before"
+_MISTAKES = "the rulebook has mistakes, which have to be mended before"
 
 Asked = tuple[DocumentNames, Rulebook, Rule]
 
 
-def _asked(server: EditorSession, uri: str, name: str) -> Asked | None:
-    """A document, its rulebook and a rule of it; None if it has mistakes."""
+def _asked(server: EditorSession, uri: str, name: str) -> Asked | str:
+    """A document, its rulebook and a rule of it, or why these cannot be had."""
     known = server.names(uri)
     if known is None:
-        return None
+        return _MISTAKES
     names, _ = known
-    rule = lenses.rule_of(names, name)
     resolved = names.checked.resolved
-    if rule is None or resolved is None or resolved.rulebook is None:
-        return None
+    if resolved is None or resolved.rulebook is None:
+        return _MISTAKES
+    rule = lenses.rule_of(names, name)
+    if rule is None:
+        return f"the rulebook has no rule `{name}`"
     return names, resolved.rulebook, rule
 
 

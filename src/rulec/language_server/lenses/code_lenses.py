@@ -81,12 +81,13 @@ def _of_rule(
     elif answer.failing:
         yield f"{len(answer.failing)} of {number} examples fail", RUN
     else:
-        yield f"{number} examples pass", RUN
+        yield "1 example passes" if number == 1 else f"{number} examples pass", RUN
     yield "in plain English", ENGLISH
     if len(names.chain.books) > 1 and item.override:
         yield _beside_parent(rule, names, known), COMPARE
     if answer is not None and answer.missing:
-        yield f"{len(answer.missing)} untested edges: insert the missing example", INSERT
+        edges = f"{len(answer.missing)} untested edge{'s' if len(answer.missing) > 1 else ''}"
+        yield f"{edges}: insert the missing example", INSERT
     yield from _on_recordings(rule, answer)
 
 
