@@ -93,8 +93,9 @@ class OpenVerdict:
         ``beyond`` tells on what it depends but for some names, if that takes less time.
         """
         result = cls.__new__(cls)
-        own = {"rule": rule, "strength": strength, "binding": binding, "_reasons": reasons}
-        result.__dict__.update(own, _beyond=beyond)
+        own = result.__dict__
+        own["rule"], own["strength"], own["binding"] = rule, strength, binding
+        own["_reasons"], own["_beyond"] = reasons, beyond
         return result
 
     def depends_beyond(self, names: Set[str]) -> frozenset[str]:

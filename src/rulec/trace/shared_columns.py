@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 
@@ -38,15 +38,16 @@ class SharedColumns(Mapping[str, Any]):
         # Elsewhere the other traces are not wanted
         return dict, (dict(self),)
 
-    def with_next(self, other: Mapping[str, Any]) -> SharedColumns | None:
-        """Both parts together, if the other one follows in the same columns."""
-        if not isinstance(other, SharedColumns) or other.columns is not self.columns:
-            return None
-        if self.states.stop != other.states.start or self.cells.stop != other.cells.start:
-            return None
-        return SharedColumns(
-            self.columns,
-            self.about,
-            slice(self.states.start, other.states.stop),
-            slice(self.cells.start, other.cells.stop),
+    def is_before(self, other: Mapping[str, Any]) -> bool:
+        """Whether the other part follows in the same columns."""
+        return (
+            isinstance(other, SharedColumns)
+            and other.columns is self.columns
+            and self.states.stop == other.states.start
+            and self.cells.stop == other.cells.start
         )
+
+    def up_to(self, last: SharedColumns) -> SharedColumns:
+        """This part and all up to a later one of the same columns."""
+        states = slice(self.states.start, last.states.stop)
+        return replace(self, states=states, cells=slice(self.cells.start, last.cells.stop))

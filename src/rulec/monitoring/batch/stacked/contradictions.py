@@ -98,12 +98,12 @@ def _asked(together: Sequence[CompiledAxiom], stack: Stack) -> Iterator[_Asked]:
         yield together, Spots(np.arange(stack.n_states), {}, whole=True), {}
         return
     by_facts: dict[tuple[CompiledAxiom, ...], list[str]] = {}
-    for kind in dict.fromkeys(stack.types):
+    for kind in stack.kinds:
         own = [x for x in together if stack.vocabulary.is_subtype(kind, x.variables[0].type)]
         by_facts.setdefault(tuple(own), []).append(kind)
     for group, kinds in by_facts.items():
         if group:
-            suits = np.array([kind in kinds for kind in stack.types])
+            suits = np.array([kind in kinds for kind in stack.kinds])[stack.kind_of]
             cells = np.flatnonzero(suits[stack.object_of])
             spots = Spots(stack.state_of[cells], {_OBJECT: cells})
             yield group, spots, {_OBJECT: kinds[0]}

@@ -134,9 +134,7 @@ class CrowdedStates:
     def _kinds(self, cells: Places) -> Places:
         """A number for each cell, the same where the same is said of objects of one type."""
         stack = self._stack
-        types = {kind: place for place, kind in enumerate(dict.fromkeys(stack.types))}
-        of_object = np.array([types[kind] for kind in stack.types], dtype=np.intp)
-        kinds = of_object[stack.object_of[cells]]
+        kinds = stack.kind_of[stack.object_of[cells]]
         for name in self._about:
             for codes in _codes(stack.column(name), cells):
                 kinds = places_among(kinds * (int(codes.max(initial=0)) + 1) + codes)

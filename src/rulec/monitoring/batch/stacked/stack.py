@@ -6,7 +6,7 @@ stands in *cells*, one for each state in which an object is there, object by obj
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite
@@ -22,8 +22,8 @@ from rulec.monitoring.batch.columns.columnize import (
     encode_values,
     one_value,
 )
+from rulec.monitoring.batch.stacked.joined_traces import joined_traces
 from rulec.trace.plain_arrays import distinct
-from rulec.trace.shared_columns import SharedColumns
 from rulec.trace.trace_arrays import Flags, TraceArrays, starts_of
 from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
@@ -61,12 +61,13 @@ class Stack:
     ``begins`` is where the states of each trace begin, ``starts`` where the cells of each object
     do, both with the end of all as the last. ``said`` are the names that some state may say, and
     whether they are about objects. ``trace_of``, ``firsts`` and ``lasts`` are the trace
-    and the first and last state of each object, among all.
+    and the first and last state of each object, among all, ``kind_of`` the number of its type
+    among the ``kinds``.
     """
 
     def __init__(self, traces: Sequence[TraceArrays], vocabulary: Vocabulary) -> None:
         self.traces = traces
-        self._pieces = tuple(_pieces(traces))
+        self._pieces = tuple(joined_traces(traces))
         self.vocabulary = vocabulary
         lengths = np.array([trace.n_states for trace in traces], dtype=np.intp)
         self.begins = np.concatenate([np.zeros(1, dtype=np.intp), np.cumsum(lengths)])
@@ -78,6 +79,9 @@ class Stack:
         self.lasts = spans[:, 1] + self.begins[self.trace_of]
         self.starts = starts_of(spans)
         self.types = [kind for trace in traces for kind in trace.objects.values()]
+        self.kinds = tuple(dict.fromkeys(self.types))
+        numbers = {kind: number for number, kind in enumerate(self.kinds)}
+        self.kind_of: Places = np.array([numbers[kind] for kind in self.types], dtype=np.intp)
         self.names = [name for trace in traces for name in trace.objects]
         about = dict.fromkeys(traces[0].about, True)
         self.said = {**dict.fromkeys(traces[0].world, False), **about}
@@ -108,8 +112,8 @@ class Stack:
     def of_type(self, kind: str) -> Flags:
         """Which objects are of a type, or of one below it."""
         if kind not in self._of_type:
-            suits = {own: self.vocabulary.is_subtype(own, kind) for own in set(self.types)}
-            self._of_type[kind] = np.array([suits[own] for own in self.types], dtype=bool)
+            suits = [self.vocabulary.is_subtype(own, kind) for own in self.kinds]
+            self._of_type[kind] = np.array(suits, dtype=bool)[self.kind_of]
         return self._of_type[kind]
 
     def cells_of_type(self, kind: str) -> Places:
@@ -286,81 +290,6 @@ class Stack:
         if kind not in self._whole_types:
             self._whole_types[kind] = bool(self.of_type(kind).all())
         return self._whole_types[kind]
-
-
-@dataclass(frozen=True, slots=True)
-class _Piece:
-    """What one trace says, or several do that have their columns in the same arrays."""
-
-    columns: tuple[Mapping[str, Any], ...]
-    texts: Mapping[str, tuple[str, ...]]
-    n_objects: int
-
-    @staticmethod
-    def of(trace: TraceArrays) -> _Piece:
-        columns = (trace.world, trace.about, trace.unknown, trace.absent, trace.bounds, trace.only)
-        return _Piece(columns, trace.texts, len(trace.objects))
-
-    @property
-    def world(self) -> Mapping[str, Array]:
-        return self.columns[0]
-
-    @property
-    def about(self) -> Mapping[str, Array]:
-        return self.columns[1]
-
-    @property
-    def unknown(self) -> Mapping[str, Flags]:
-        return self.columns[2]
-
-    @property
-    def absent(self) -> Mapping[str, Flags]:
-        return self.columns[3]
-
-    @property
-    def bounds(self) -> Mapping[str, tuple[Array, Array]]:
-        return self.columns[4]
-
-    @property
-    def only(self) -> Mapping[str, Flags]:
-        return self.columns[5]
-
-    def with_next(self, other: _Piece) -> _Piece | None:
-        """Both together, if all that they say stands together."""
-        if other.texts is not self.texts:
-            return None
-        both = []
-        for own, theirs in zip(self.columns, other.columns, strict=True):
-            joined = own.with_next(theirs) if isinstance(own, SharedColumns) else None
-            if joined is None and (own or theirs or type(own) is not type(theirs)):
-                return None
-            both.append(own if joined is None else joined)
-        return _Piece(tuple(both), self.texts, self.n_objects + other.n_objects)
-
-
-def side_by_side(traces: Sequence[TraceArrays]) -> list[int]:
-    """The places of traces, those in the same arrays one after the other as they stand there."""
-    known: dict[int, int] = {}
-
-    def place(number: int) -> tuple[int, int]:
-        own = traces[number].world
-        if not isinstance(own, SharedColumns):
-            return len(traces) + number, 0
-        return known.setdefault(id(own.columns), len(known)), own.states.start
-
-    return sorted(range(len(traces)), key=place)
-
-
-def _pieces(traces: Sequence[TraceArrays]) -> Iterator[_Piece]:
-    """What the traces say, those together that are in the same arrays."""
-    last: _Piece | None = None
-    for piece in map(_Piece.of, traces):
-        joined = None if last is None else last.with_next(piece)
-        if joined is None and last is not None:
-            yield last
-        last = piece if joined is None else joined
-    if last is not None:
-        yield last
 
 
 def _joined(

@@ -20,7 +20,7 @@ from rulec.monitoring.batch.stacked.instances import (
     doubtful_instances,
 )
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
-from rulec.monitoring.batch.stacked.stacked_rule import StackedRule, stretches
+from rulec.monitoring.batch.stacked.stacked_rule import ODD, StackedRule, stretches
 from rulec.monitoring.batch.stacked.words_together import are_many
 from rulec.monitoring.batch.uncertain.partial_reader import number_of_value
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
@@ -32,9 +32,6 @@ from rulec.vocabulary.partial_values import UNKNOWN
 
 _FEW_WORDS = 1 << 5
 """Fewer words are looked at one by one, and those that are the same not looked for."""
-
-_ODD = np.uint64(0x9E3779B97F4A7C15)
-"""Of the golden ratio's digits."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,17 +56,17 @@ class StackedWords:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class StackedOutcome:
-    """What is not kept: the choice's place among the ``words``; no answer where it is odd."""
+class StackedOutcomes:
+    """What is not kept: the choices' places among the ``words``; no answers where these are odd."""
 
     words: StackedWords
-    place: int
-    answer: Answer | None
+    places: Sequence[int]
+    answers: Sequence[Answer | None]
 
 
 def outcomes(
     rule: StackedRule, reader: StackReader, rulebook: CompiledRulebook
-) -> Iterator[StackedOutcome]:
+) -> Iterator[StackedOutcomes]:
     """All choices for which a rule is not kept. Raises UnencodableError."""
     instances = doubtful_instances(rule, reader)
     if not len(instances.traces):
@@ -79,13 +76,14 @@ def outcomes(
         if words is None:
             continue
         if len(words.bounds) <= _FEW_WORDS:
-            yield from _few(words)
+            yield _few(words)
             continue
         is_odd = np.logical_or.reduceat(words.odd, words.bounds[:-1])
         alternatives = [stretches(letters, words.bounds) for letters in words.letters]
         first_alike = _first_alike(words.letters, words.bounds)
         # What is odd has a word of its own
-        first_alike = np.where(is_odd[first_alike], np.arange(len(is_odd)), first_alike)
+        by_itself = is_odd | is_odd[first_alike]
+        first_alike = np.where(by_itself, np.arange(len(is_odd)), first_alike)
         answers: dict[int, Answer | None] = dict.fromkeys(np.flatnonzero(is_odd).tolist())
         is_told = is_odd.copy()
         for place in distinct(first_alike[~is_odd]).tolist():
@@ -94,24 +92,28 @@ def outcomes(
             )
             answers[place] = answer
             is_told[place] = answer.worst != KEPT
-        for place in np.flatnonzero(is_told[first_alike] | is_odd).tolist():
-            found = None if is_odd[place] else answers[int(first_alike[place])]
-            yield StackedOutcome(words, place, found)
+        places = np.flatnonzero(is_told[first_alike])
+        found = [answers[first] for first in first_alike[places].tolist()]
+        yield StackedOutcomes(words, places.tolist(), found)
 
 
-def _few(words: StackedWords) -> Iterator[StackedOutcome]:
+def _few(words: StackedWords) -> StackedOutcomes:
     """What is not kept of few words, each looked at by itself."""
     ends = words.bounds.tolist()
+    places: list[int] = []
+    answers: list[Answer | None] = []
     any_odd = bool(words.odd.any())
     for place, (begin, end) in enumerate(pairwise(ends)):
-        if any_odd and words.odd[begin:end].any():
-            yield StackedOutcome(words, place, None)
-            continue
-        found = [words.rule.answer_to(own[begin:end]) for own in words.letters]
-        # What facts exclude is odd
-        answer = _joined([own for own in found if own is not None])
-        if answer.worst != KEPT:
-            yield StackedOutcome(words, place, answer)
+        answer: Answer | None = None
+        if not any_odd or not words.odd[begin:end].any():
+            found = [words.rule.answer_to(own[begin:end]) for own in words.letters]
+            # What facts exclude is odd
+            answer = _joined([own for own in found if own is not None])
+            if answer.worst == KEPT:
+                continue
+        places.append(place)
+        answers.append(answer)
+    return StackedOutcomes(words, places, answers)
 
 
 def _first_alike(
@@ -128,7 +130,7 @@ def _first_alike(
     sums = weights[lengths]
     for letters in alternatives:
         own = np.add.reduceat((letters + 1).astype(np.uint64) * weights[states], begins)
-        sums = sums * _ODD + own
+        sums = sums * ODD + own
     _, firsts, groups = np.unique(sums, return_index=True, return_inverse=True)
     like: NDArray[np.intp] = firsts[groups]
     if (lengths == lengths[like]).all():
@@ -140,7 +142,7 @@ def _first_alike(
 
 def _weights(count: int) -> NDArray[np.uint64]:
     """Odd numbers without a pattern, the powers of one."""
-    weights: NDArray[np.uint64] = np.cumprod(np.full(count, _ODD), dtype=np.uint64)
+    weights: NDArray[np.uint64] = np.cumprod(np.full(count, ODD), dtype=np.uint64)
     return weights
 
 

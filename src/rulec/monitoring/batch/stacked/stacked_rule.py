@@ -32,6 +32,7 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.monitoring.uncertainty.supposed_constants import ConstantsReader
 from rulec.monitoring.uncertainty.uncertain_machine import Answer, UncertainMachine
 from rulec.trace import Value
+from rulec.trace.plain_arrays import distinct
 from rulec.vocabulary import Enumeration, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
 
@@ -46,6 +47,9 @@ MOST_SETS = 1 << 14
 
 MOST_BYTES = 1 << 22
 """Words of so many bytes, whose answers are known, are kept before all are forgotten."""
+
+ODD = np.uint64(0x9E3779B97F4A7C15)
+"""Of the golden ratio's digits, a weight without a pattern."""
 
 _MOST_BITS = 63
 _NO_CLASS = 1 << _MOST_BITS
@@ -222,9 +226,9 @@ class StackedRule:
         # Words are mostly kept, and so are all of whose letters any word is
         if self._keep(*(int(np.bitwise_or.reduce(classes)) for classes in (every, last))):
             return np.ones(len(begins), dtype=bool)
-        keys = list(zip(every.tolist(), last.tolist(), strict=True))
-        known = {key: self._keep(*key) for key in set(keys)}
-        return np.array([known[key] for key in keys], dtype=bool)
+        examples, which = different_pairs(every, last)
+        keys = zip(every[examples].tolist(), last[examples].tolist(), strict=True)
+        return np.array([self._keep(*key) for key in keys], dtype=bool)[which]
 
     def _keep(self, every: int, last: int) -> bool:
         """Whether all words of these classes are kept, as bits, that end with one of the last."""
@@ -263,6 +267,25 @@ class StackedRule:
             self._answers.clear()
             self._words.clear()
             self._bytes = n_bytes
+
+
+def different_pairs(
+    one: NDArray[np.uint64], other: NDArray[np.uint64]
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """The places of the different pairs of numbers, or of all, and for each pair which it is.
+
+    They are told apart by a sum with a weight, and compared then.
+    """
+    codes = one * ODD + other
+    different = distinct(codes)
+    which: NDArray[np.intp] = np.searchsorted(different, codes)
+    every = np.arange(len(codes))
+    examples = np.empty(len(different), dtype=np.intp)
+    examples[which] = every
+    like = examples[which]
+    if ((one == one[like]) & (other == other[like])).all():
+        return examples, which
+    return every, every
 
 
 def stretches(

@@ -9,8 +9,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
+from itertools import repeat
 from operator import itemgetter
 from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
 
 from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
@@ -20,18 +23,24 @@ from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.columns.columnize import UnencodableError
 from rulec.monitoring.batch.stacked.contradictions import LinkedFacts, contradicted, linked
+from rulec.monitoring.batch.stacked.joined_traces import side_by_side
 from rulec.monitoring.batch.stacked.open_reasons import StackedReasons
-from rulec.monitoring.batch.stacked.stack import Stack, side_by_side
+from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.monitoring.batch.stacked.stack_reader import StackReader
 from rulec.monitoring.batch.stacked.stacked_outcomes import (
-    StackedOutcome,
+    StackedOutcomes,
+    StackedWords,
     outcomes,
 )
 from rulec.monitoring.batch.stacked.stacked_rule import ReadKeys, StackedRule
 from rulec.monitoring.state_validation import check_objects, check_told
 from rulec.monitoring.uncertainty.judged_rules import JudgedRules, judged_rules
+from rulec.monitoring.uncertainty.uncertain_machine import Answer as RuleAnswer
 from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict, Violation
+from rulec.trace.shared_columns import SharedColumns
 from rulec.trace.trace_arrays import TraceArrays
+from rulec.trace.trace_columns import Array
+from rulec.vocabulary import Vocabulary
 
 if TYPE_CHECKING:
     from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
@@ -44,13 +53,17 @@ _Placed: TypeAlias = tuple[tuple[int, ...], Found]
 """What is not kept, after the places of its rule and of its objects."""
 
 
+_PLACE = itemgetter(0)
+
+
 def verify_arrays(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> list[Answer]:
     """Answers for traces in arrays, in their order: a verdict, or a ``NotJudged``."""
     answers: list[Answer | None] = [None] * len(traces)
     groups: dict[object, list[int]] = {}
+    known: dict[int, frozenset[str]] = {}
     for place in side_by_side(traces):
         trace = traces[place]
-        names = frozenset(trace.world), frozenset(trace.about)
+        names = _names(trace.world, known), _names(trace.about, known)
         key = trace.step_s, trace.ends, trace.told, names
         groups.setdefault(key, []).append(place)
     for places in groups.values():
@@ -62,6 +75,23 @@ def verify_arrays(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> 
         for place, verdict in zip(places, verdicts, strict=True):
             answers[place] = verdict
     return [answer for answer in answers if answer is not None]
+
+
+def _names(said: Mapping[str, Array], known: dict[int, frozenset[str]]) -> frozenset[str]:
+    """The names of columns, which are ``known`` of those that several traces share."""
+    if not isinstance(said, SharedColumns):
+        return frozenset(said)
+    key = id(said.columns)
+    if key not in known:
+        known[key] = frozenset(said)
+    return known[key]
+
+
+def _check_objects(traces: Sequence[TraceArrays], vocabulary: Vocabulary) -> None:
+    """Check the objects of all traces, each type once. Raises RulecError."""
+    kinds = frozenset().union(*[trace.objects.values() for trace in traces])
+    check_objects({kind: kind for kind in kinds}, vocabulary)
+    check_objects(max([trace.objects for trace in traces], key=len), vocabulary)
 
 
 def _by_states(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> list[Answer]:
@@ -91,8 +121,7 @@ class _StackedRun:
         if key not in known:
             known[key] = _ready_rules(example, rules)
         self._ready = known[key]
-        for trace in traces:
-            check_objects(trace.objects, rules.vocabulary)
+        _check_objects(traces, rules.vocabulary)
         self._judged = self._ready.judged
         self._stack = Stack(traces, self._judged.vocabulary)
         self._reader = StackReader(self._stack)
@@ -110,8 +139,8 @@ class _StackedRun:
         for number, (rule, is_simple) in enumerate(zip(rules, simple, strict=True)):
             if is_simple:
                 rule.forget_many()
-                for outcome in outcomes(rule, self._reader, self._rulebook):
-                    self._add(number, outcome)
+                for found in outcomes(rule, self._reader, self._rulebook):
+                    self._add(number, found)
             else:
                 self._add_closely(number, rule)
         self._odd |= self._stack.odd_traces()
@@ -131,36 +160,48 @@ class _StackedRun:
             known[key] = tuple(linked(tuple(facts)))
         return known[key]
 
-    def _add(self, rule_number: int, outcome: StackedOutcome) -> None:
-        words, place, stack = outcome.words, outcome.place, self._stack
-        number = int(words.instances.traces[place])
-        chosen = tuple([int(own[place]) for own in words.instances.objects])
-        rule = words.rule.rule
-        names = [stack.names[item] for item in chosen]
-        binding = dict(zip(words.rule.variables, names, strict=True))
-        found: Found | None
-        if number in self._odd:
-            return
-        if outcome.answer is None:
+    def _add(self, rule_number: int, outcomes: StackedOutcomes) -> None:
+        words, stack = outcomes.words, self._stack
+        instances, variables = words.instances, words.rule.variables
+        at = np.array(outcomes.places, dtype=np.intp)
+        traces = instances.traces[at]
+        begins = (instances.firsts[at] - stack.begins[traces]).tolist()
+        objects = [own[at].tolist() for own in instances.objects]
+        choices = zip(*objects, strict=True) if objects else repeat(())
+        for place, answer, number, begin, chosen in zip(
+            outcomes.places, outcomes.answers, traces.tolist(), begins, choices, strict=False
+        ):
+            if number in self._odd:
+                continue
+            names = [stack.names[item] for item in chosen]
+            binding = dict(zip(variables, names, strict=True))
+            found = self._found_in(words, place, answer, (number, begin), binding)
+            if found is not None:
+                self._found[number].append(((rule_number, *chosen), found))
+
+    def _found_in(
+        self,
+        words: StackedWords,
+        place: int,
+        answer: RuleAnswer | None,
+        at: tuple[int, int],
+        binding: dict[str, str],
+    ) -> Found | None:
+        """What one of some words comes to, ``at`` its trace and the state that it begins in."""
+        rule, (number, begin) = words.rule.rule, at
+        if answer is None:
             try:
-                found = self._closely[number].answer(rule.name, binding)
+                return self._closely[number].answer(rule.name, binding)
             except RulecError:
                 self._odd.add(number)
-                return
-        elif outcome.answer.best == VIOLATED:
-            step = outcome.answer.step
-            if step is not None:
-                step += int(words.instances.firsts[place] - stack.begins[number])
-            found = Violation(rule.name, rule.strength, binding, step)
-        else:
-            why = partial(self._reasons.of, words, place)
-            are_two = outcome.answer.best != outcome.answer.worst
-            beyond = partial(self._reasons.beyond, words, place) if are_two else None
-            found = OpenVerdict.explained_later(
-                rule.name, rule.strength, binding, why, beyond=beyond
-            )
-        if found is not None:
-            self._found[number].append(((rule_number, *chosen), found))
+                return None
+        if answer.best == VIOLATED:
+            step = None if answer.step is None else answer.step + begin
+            return Violation(rule.name, rule.strength, binding, step)
+        why = partial(self._reasons.of, words, place)
+        are_two = answer.best != answer.worst
+        beyond = partial(self._reasons.beyond, words, place) if are_two else None
+        return OpenVerdict.explained_later(rule.name, rule.strength, binding, why, beyond=beyond)
 
     def _add_closely(self, rule_number: int, rule: StackedRule) -> None:
         for number, close in enumerate(self._closely):
@@ -174,7 +215,7 @@ class _StackedRun:
             ]
 
     def _verdict(self, number: int) -> Verdict:
-        found = [result for _, result in sorted(self._found[number], key=itemgetter(0))]
+        found = [result for _, result in sorted(self._found[number], key=_PLACE)]
         trace, judged = self._traces[number], self._judged
         violations = tuple([result for result in found if isinstance(result, Violation)])
         if trace.ends == "complete" and trace.told is None and not trace.is_partial:
