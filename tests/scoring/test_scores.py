@@ -5,6 +5,8 @@ import pytest
 
 from rulec.api.rulebook_compilation import machines
 from rulec.diagnostics import RulecError
+from rulec.extraction.tracks import tracks
+from rulec.extraction.tracks.matching import lanelet_graph
 from rulec.monitoring.verdict import OpenVerdict, Violation
 from rulec.scoring.score import score
 from rulec.scoring.scores import CandidateScore, Scores
@@ -155,3 +157,20 @@ def test_each_past_is_judged_by_itself_though_the_last_one_is_remembered():
     found = [before(world, speed) for speed in (10.0, 10.0, 30.0, 10.0)]
     assert [len(own) > 0 for own in found] == [False, False, True, False]
     assert found == [before(street(), speed) for speed in (10.0, 10.0, 30.0, 10.0)]
+
+
+def test_what_is_known_of_a_world_is_not_found_again(monkeypatch):
+    world = street([car("ahead", 12.0, x=12.0)])
+    future = steady(10.0, world.past[-1])[None]
+    before = score(future, world, GERMAN).rows()
+
+    def again(*_):
+        raise AssertionError("that is known since the world was prepared")
+
+    for module, name in (
+        (tracks, "tolerances_of"),
+        (tracks, "lanelet_area"),
+        (lanelet_graph, "lanelet_area"),
+    ):
+        monkeypatch.setattr(module, name, again)
+    assert score(future, world, GERMAN).rows() == before

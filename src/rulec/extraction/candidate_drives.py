@@ -89,7 +89,8 @@ class _Batch:
         self, among: CandidateDrives, candidates: Sequence[Participant], writer: TraceWriter
     ) -> None:
         recording, surroundings = among.recording, among.surroundings
-        tracks = tracks_of(recording, among.thresholds, candidates, among.span)
+        known = surroundings.tolerances
+        tracks = tracks_of(recording, among.thresholds, candidates, among.span, known)
         self._among = among
         self.writer = writer
         self.matching = MapMatching(recording, tracks, among.map.graph)

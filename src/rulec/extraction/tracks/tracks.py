@@ -18,7 +18,7 @@ from numpy import bool_, float64, intp
 from numpy.typing import NDArray
 
 from rulec.extraction.recording_parts import looked_at
-from rulec.extraction.tracks.source_tolerances import tolerances_of
+from rulec.extraction.tracks.source_tolerances import Tolerances, tolerances_of
 from rulec.extraction.tracks.track_motion import Poses, motion_of
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Lanelet, Participant, Points, Recording, is_lane
@@ -280,11 +280,12 @@ def tracks_of(
     thresholds: Thresholds,
     participants: Sequence[Participant] | None = None,
     span: tuple[int, int] | None = None,
+    tolerances: Tolerances | None = None,
 ) -> Tracks:
     """The tracks of the participants of a recording that occupy something.
 
     Or of others than it has. ``span`` are the first and the last step of the arrays, if they are to
-    have more than are told.
+    have more than are told; ``tolerances`` are the recording's, if they are known.
     """
     members = recording.participants if participants is None else participants
     bodies = tuple(body for body in members if body.outlines)
@@ -305,7 +306,7 @@ def tracks_of(
         Poses(x, y, heading, stated, steers),
         thresholds.smoothing_s,
         recording.step_s,
-        tolerances_of(recording),
+        tolerances or tolerances_of(recording),
     )
     types = ObjectTypes(bodies)
     users = present & types.of("vulnerable_user")[:, None]
@@ -328,9 +329,8 @@ def tracks_of(
 
 def _inside(flags: Flags, x: Floats, y: Floats, lanelets: Iterable[Lanelet]) -> Flags:
     inside = np.zeros(flags.shape, dtype=bool)
-    areas = [lanelet_area(lanelet) for lanelet in lanelets]
     rows, columns = np.nonzero(flags)
-    if areas and len(rows):
+    if len(rows) and (areas := [lanelet_area(lanelet) for lanelet in lanelets]):
         points = shapely.points(x[rows, columns], y[rows, columns])
         at, _ = shapely.STRtree(areas).query(points, predicate="intersects")
         inside[rows[at], columns[at]] = True

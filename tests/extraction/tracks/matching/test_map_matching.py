@@ -29,7 +29,7 @@ from support.generators.lanelet_grids import lanelet_grid, street
 
 def found_for(lanes, *participants):
     found = recording(lanes, participants)
-    return candidates(found, tracks_of(found, USUAL))
+    return candidates(LaneletGraph(found), tracks_of(found, USUAL))
 
 
 def costs(x=50.0, y=0.0, heading=0.0):
@@ -214,7 +214,7 @@ def test_many_drives_at_once_take_the_cheapest_paths_of_each(one, other, gaps, s
     bodies = [body for body in bodies if body.states]
     found = recording(GRID, bodies)
     tracks, graph = tracks_of(found, USUAL), LaneletGraph(found)
-    own = candidates(found, tracks)
+    own = candidates(graph, tracks)
     by_hand = [list(cheapest_by_hand(own, tracks, graph, row)) for row in range(len(bodies))]
     # As arrays, and number by number
     for few in (0, 1 << 20):

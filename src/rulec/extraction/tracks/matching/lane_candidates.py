@@ -13,10 +13,11 @@ import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
+from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
-from rulec.recordings.recording import Lanelet, Points, Recording, is_lane
+from rulec.recordings.recording import Lanelet, Points
 from rulec.scenario.recorded.reference_line import turn
-from rulec.scenario.recorded.route import directions_at, lanelet_area
+from rulec.scenario.recorded.route import directions_at
 
 NEAR_M = 3.0
 """The farthest that a vehicle may be beside a lanelet that it is matched to."""
@@ -67,19 +68,19 @@ _NONE = LaneCandidates(
 )
 
 
-def candidates(recording: Recording, tracks: Tracks) -> LaneCandidates:
+def candidates(graph: LaneletGraph, tracks: Tracks) -> LaneCandidates:
     """The lanelets near each moving participant that lead its way."""
-    lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
+    lanes, areas = graph.lanes, graph.areas
     moving = np.array([not body.standing for body in tracks.participants], dtype=bool)
     rows, columns = np.nonzero(tracks.present & moving[:, None])
     if not lanes or not len(rows):
         return _NONE
     x, y, headings = (values[rows, columns] for values in (tracks.x, tracks.y, tracks.heading))
     points = shapely.points(x, y)
-    areas = [lanelet_area(lanelet) for lanelet in lanes]
-    bounds = shapely.bounds(areas) + np.array([-1.0, -1.0, 1.0, 1.0]) * _AROUND_M
+    bounds = graph.bounds + np.array([-1.0, -1.0, 1.0, 1.0]) * _AROUND_M
     near: dict[int, NDArray[intp]] = {}
-    for number, (left, low, right, high) in enumerate(bounds.tolist()):
+    for number in _around(bounds, x, y).tolist():
+        left, low, right, high = bounds[number].tolist()
         own = np.flatnonzero((x >= left) & (x <= right) & (y >= low) & (y <= high))
         if len(own):
             own = own[leading_on(lanes[number].centre, headings[own])]
@@ -116,6 +117,14 @@ def candidates(recording: Recording, tracks: Tracks) -> LaneCandidates:
         lanes=numbers[order],
         costs=costs[order],
         along=along[order],
+    )
+
+
+def _around(bounds: Floats, x: Floats, y: Floats) -> NDArray[intp]:
+    """The rectangles that the one around some places meets; there is a place at least."""
+    left, low, right, high = bounds.T
+    return np.flatnonzero(
+        (left <= x.max()) & (right >= x.min()) & (low <= y.max()) & (high >= y.min())
     )
 
 

@@ -9,10 +9,15 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
 
 from rulec.recordings.adjacency import bordering
 from rulec.recordings.recording import Lanelet, Recording, is_lane
-from rulec.scenario.recorded.route import lanelet_length, lanes_beside
+from rulec.scenario.recorded.route import lanelet_area, lanelet_length, lanes_beside
 
 MOST_HOPS = 4
 """The number of lanelets that a vehicle passes at most between two of its states."""
@@ -52,6 +57,22 @@ class LaneletGraph:
             if pair.length >= _SHORTEST_M:
                 self._bordering[pair.right.id].append(pair.left.id)
                 self._bordering[pair.left.id].append(pair.right.id)
+
+    @cached_property
+    def lanes(self) -> tuple[Lanelet, ...]:
+        """The lanes, in the order of the file."""
+        return tuple([x for x in self._recording.lanelets.values() if is_lane(x)])
+
+    @cached_property
+    def areas(self) -> tuple[shapely.Polygon, ...]:
+        """The areas of the lanes."""
+        return tuple([lanelet_area(lanelet) for lanelet in self.lanes])
+
+    @cached_property
+    def bounds(self) -> NDArray[np.float64]:
+        """For each lane the least x and y (m) of its area, and the greatest."""
+        found: NDArray[np.float64] = shapely.bounds(np.array(self.areas, dtype=object))
+        return found
 
     def length(self, start: str) -> float:
         """The length (m) of a lane's middle."""

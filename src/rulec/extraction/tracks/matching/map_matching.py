@@ -66,7 +66,7 @@ class MapMatching:
         self.recording = recording
         self._tracks = tracks
         self._graph = graph
-        self._candidates = candidates(recording, tracks)
+        self._candidates = candidates(graph, tracks)
 
     @cached_property
     def _paths(self) -> tuple[NDArray[intp], NDArray[bool_]]:
