@@ -4,14 +4,13 @@ import os
 import random
 from dataclasses import replace
 from math import floor
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from rulec import RulecError, compile_rulebook, find_maneuvers, verify_many
+from rulec import Maneuver, RulecError, compile_rulebook, find_maneuvers, verify_many
 from rulec.scenario import Choice
 from rulec.scenario.recorded.recorded_scene import seen_from_ego
 from support.builders.recordings import RECORDINGS, recording, straight, vehicle
@@ -70,7 +69,7 @@ def compared(found, pairs, *, words=True):
         and not on_an_edge(found, nodes, motion)
     ]
     # Many motions take the same maneuver
-    verdicts = {nodes: found.verdict(SimpleNamespace(nodes=nodes)) for nodes, _ in traced}
+    verdicts = {nodes: found.verdict(Maneuver(nodes, 0.0, None)) for nodes, _ in traced}
     of_drives = verify_many([trace for _, trace in traced], found.rules)
     for (nodes, trace), of_drive in zip(traced, of_drives, strict=True):
         assert not words or list(contradicting(found, nodes, trace)) == []

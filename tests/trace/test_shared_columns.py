@@ -30,16 +30,16 @@ def test_parts_are_cut_and_joined(bounds):
     assert one["speed"].tolist() == list(range(first, middle))
     assert other["gap"].tolist() == list(range(2 * middle, 2 * last))
     assert other["near"][1].tolist() == [x + 1 for x in range(2 * middle, 2 * last)]
-    both = one.with_next(other)
-    assert both["gap"].tolist() == [*one["gap"], *other["gap"]]
-    assert (other.with_next(one) is None) == (first != last)
+    assert one.is_before(other)
+    assert one.up_to(other)["gap"].tolist() == [*one["gap"], *other["gap"]]
+    assert other.is_before(one) == (first == last)
 
 
 def test_others_are_not_joined():
     one, other = part(0, 3, 5)
     alike = SharedColumns(dict(COLUMNS), ABOUT, other.states, other.cells)
-    assert one.with_next(alike) is None
-    assert one.with_next(dict(other)) is None
+    assert not one.is_before(alike)
+    assert not one.is_before(dict(other))
 
 
 def test_elsewhere_a_part_is_by_itself():

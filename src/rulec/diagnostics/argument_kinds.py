@@ -38,7 +38,7 @@ WAYS_OUT = {
 
 _ALIASES = {
     "AdjacencyName": "str",
-    "Before": "Trace | Monitor | Mapping",
+    "Before": "Trace | Monitor | Mapping | SavedPast",
     "ExtentName": "str",
     "GroupKey": "str",
     "Kind": "str",
@@ -48,6 +48,9 @@ _ALIASES = {
     "Rules": "str | Path | CompiledRulebook | Rulebook",
     "Theme": "str",
 }
+_UNSAID = {"None", "SavedPast"}
+"""Kinds that errors do not name: no argument at all, and what only commands give."""
+
 _ANYTHING = {"Any", "ArrayLike", "Spread", "object"}
 
 
@@ -109,7 +112,7 @@ def _unexpected(name: str, annotation: str, value: object) -> TypeError:
     kinds = _kinds(annotation)
     names = [one.name for kind in kinds for one in (kind, *_kinds(kind.items))]
     ways = [WAYS_OUT[name] for name in names if name in WAYS_OUT]
-    said = [kind.said for kind in kinds if kind.name != "None"]
+    said = [kind.said for kind in kinds if kind.name not in _UNSAID]
     listed = " or ".join(filter(None, (", ".join(said[:-1]), said[-1])))
     way_out = f": {ways[0]}" if ways else ""
     return TypeError(f"`{name}` is {listed}, not {type(value).__name__}{way_out}")
