@@ -6,7 +6,7 @@ from rulec.extraction.drives import Drives, NoDrive
 from rulec.recordings.recording_files import read_recording
 from rulec.recordings.recording_format import RecordingSource
 from support.builders.drive_contexts import steady
-from support.builders.recordings import RECORDINGS, recording
+from support.builders.recordings import RECORDINGS, lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
 
 
@@ -33,6 +33,14 @@ def test_drives_of_different_lengths():
         steady(10, 35, 0, first=4, steps=4),
     ]
     assert_alike(recording(lanes(2), cars), ("7", "8", "9", "10"))
+
+
+def test_one_that_stands_in_one_drive_and_moves_in_the_next():
+    """Ego at 15 m/s would go round one that never moves 57 m ahead; this one goes on later."""
+    places = {step: (63.0 + 5 * max(step - 8, 0), 0.0) for step in range(13)}
+    cars = [steady(7, 0, 0, 15.0), steady(8, 0, 0, 15.0, first=9), vehicle(9, places)]
+    two_ways = [straight(1, 0, 600), lanelet(2, [(600, 4), (0, 4)])]
+    assert_alike(recording(two_ways, cars, step_s=0.5), ("7", "8", "9"))
 
 
 @pytest.mark.long

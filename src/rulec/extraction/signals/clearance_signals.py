@@ -14,6 +14,7 @@ from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.road_extents import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.trace.plain_arrays import distinct
 
 _BESIDE_M = 0.5
 """A vehicle needs so much more room than it is wide."""
@@ -123,15 +124,15 @@ def _obstructed(context: DriveContext) -> Flags:
 
 def _near_obstacle(context: DriveContext) -> Flags:
     """Flags of presences that ego goes round now: for one that never moves it goes out earlier."""
-    present, tracks = presence_cells(context), context.tracks
+    present = presence_cells(context)
     gap, along = present.of(relations.gap(context)), context.ego_extents.along[0]
     near: Flags = gap <= _OBSTACLE_M
     reach = along[present.columns] * context.thresholds.parting_s
     early = ~near & (gap <= reach) & (present.of(relations.station(context)) == relations.BEHIND)
-    early &= present.of(tracks.speed) * KMH < context.thresholds.standing_kmh
-    for row in np.unique(present.rows[early]).tolist():
-        moves = tracks.present[row] & (tracks.speed[row] * KMH >= context.thresholds.standing_kmh)
-        near |= early & (present.rows == row) & (not moves.any())
+    early &= present.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
+    rows, never_moves = distinct(present.rows[early]), np.zeros(len(context.relevant), dtype=bool)
+    never_moves[rows] = relations.stays(context, rows)
+    near |= early & never_moves[present.rows]
     return near
 
 
