@@ -60,9 +60,9 @@ def test_who_moves_against_its_heading_drives_backwards():
     assert told(manoeuvre_signals, "reversing", two_way(), to_and_fro) == "FFFTTTT"
 
 
-def test_headings_that_are_made_of_places_never_tell_it():
+def test_who_moves_along_its_lane_by_headings_that_are_made_of_places_drives_forwards():
     on = steady(7, 50, 0)
-    assert told(manoeuvre_signals, "reversing", two_way(), on) == "????"
+    assert told(manoeuvre_signals, "reversing", two_way(), on) == "FFFF"
     assert told(manoeuvre_signals, "reversing", two_way(), on, complete=SIMULATED) == "FFFF"
     measured = car((50, 0), (55, 0.2), (60, 0.1), (65, 0))
     assert told(manoeuvre_signals, "reversing", two_way(), measured) == "FFFF"

@@ -110,6 +110,8 @@ def test_a_motorway_with_one_lane_is_one_way():
     drive = only(recording(lanes, [westward(7)]))
     assert drive.trace.states[0]["driving_side"] == "wrong_way"
     assert drive.trace.states[0]["road_class"] == "motorway"
+    # Its heading is that of its motion: it may be backing up
+    assert drive.trace.states[5]["reversing"] is UNKNOWN
 
 
 def test_who_drives_backwards_drives_along_its_lane():

@@ -42,7 +42,11 @@ def manoeuvre_signals(context: DriveContext, names: SignalNames = None) -> Signa
 
 
 def _reversing(context: DriveContext) -> SignalColumns:
-    """Whether ego moves against its heading; unknown where headings follow from places."""
+    """Whether ego moves against its heading.
+
+    Where headings follow from places vehicles look where their lanes lead: who moves along these
+    drives forwards, and of who moves against them it is unknown.
+    """
     heading = context.ego.heading[0]
     forward = context.ego.vx[0] * np.cos(heading) + context.ego.vy[0] * np.sin(heading)
     error, least = context.ego.speed_error[0], context.thresholds.standing_kmh / KMH
@@ -52,8 +56,9 @@ def _reversing(context: DriveContext) -> SignalColumns:
     spans, jumps = context.spans, _jumps(context)
     unknown |= jumps
     if not _are_told(context):
-        for _, columns in spans.those(~jumps & ~spans.any(backs)):
-            unknown[columns] |= not _tells_headings(context, columns)
+        against = context.ego_extents.along[0] < -least
+        for _, columns in spans.those(spans.any(against) & ~jumps & ~spans.any(backs)):
+            unknown[columns] |= against[columns] & (not _tells_headings(context, columns))
     return SignalColumns({"reversing": backs}, unknown={"reversing": unknown})
 
 
