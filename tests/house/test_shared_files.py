@@ -41,6 +41,11 @@ MISSPELT = GOOD.replace("eventually f(v)", "eventually g(v)")
 FAILING = GOOD.replace('"stays"  { b(v); b(v) }', '"stays"  { b(v); f(v) }')
 
 
+def test_an_environment_that_is_a_link_stays_out_of_commits():
+    # With a slash behind it a pattern is about folders alone, and git takes a link for a file
+    assert ".venv" in (ROOT / ".gitignore").read_text(encoding="utf-8").split()
+
+
 @pytest.mark.parametrize("path", YAML_FILES, ids=lambda path: path.name)
 def test_a_yaml_file_is_read(path):
     assert yaml.safe_load(path.read_text(encoding="utf-8"))
