@@ -35,7 +35,7 @@ from rulec.recordings.recording import (
     Recording,
     Side,
 )
-from rulec.recordings.track import Track, TrackOutlines, TrackStates
+from rulec.recordings.track import Track, tracked
 from rulec.recordings.tracks import derived_motion as motion
 from rulec.recordings.tracks.road_user_types import usual_size
 
@@ -192,15 +192,7 @@ def build_participant(
     speeds = stated.get("speed", moved)
     gained = stated.get("acceleration", motion.accelerations_of(speeds, step_s))
     track = Track(steps, np.column_stack((places, turned, speeds, gained)), size[0], size[1])
-    return Participant(
-        id=name,
-        type=kind,
-        standing=standing,
-        states=TrackStates(track),
-        outlines=TrackOutlines(track),
-        lamps=lit,
-        shows=frozenset(lamps or ()),
-    )
+    return tracked(name, kind, track, standing=standing, lamps=lit, shows=frozenset(lamps or ()))
 
 
 def _steps(checks: BuildingChecks, times: NDArray[float64], step_s: float) -> NDArray[np.int64]:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy import float64, int64
 from numpy.typing import NDArray
 
-from rulec.recordings.recording import Points, TrackState
+from rulec.recordings.recording import Lamp, Participant, Points, StatedError, TrackState
 
 _CORNERS = np.array([[1, 1], [1, 0], [1, -1], [0, -1], [-1, -1], [-1, 0], [-1, 1], [0, 1]]) / 2
 """Corners and middles of the sides of a rectangle of length and width 1."""
@@ -98,3 +98,26 @@ class TrackOutlines(Mapping[int, Points]):
 
     def __len__(self) -> int:
         return len(self.track.steps)
+
+
+def tracked(
+    identifier: str,
+    kind: str,
+    track: Track,
+    *,
+    standing: bool = False,
+    lamps: Mapping[int, frozenset[Lamp]] | None = None,
+    shows: frozenset[Lamp] = frozenset(),
+    stated_error: StatedError | None = None,
+) -> Participant:
+    """A participant that follows a track."""
+    return Participant(
+        id=identifier,
+        type=kind,
+        standing=standing,
+        states=TrackStates(track),
+        outlines=TrackOutlines(track),
+        lamps=lamps or {},
+        shows=shows,
+        stated_error=stated_error,
+    )

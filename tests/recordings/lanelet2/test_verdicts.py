@@ -6,8 +6,8 @@ import shapely
 
 from rulec import compile_rulebook, judge_recording
 from rulec.recordings.map_files import read_map
-from rulec.recordings.recording import Participant, Recording
-from rulec.recordings.track import Track, TrackOutlines, TrackStates
+from rulec.recordings.recording import Recording
+from rulec.recordings.track import Track, tracked
 from support.builders.lanelet2_files import MapFile
 
 STEP_S = 0.1
@@ -29,8 +29,7 @@ def body(name, kind, start, end, speed, since=0):
     rows[:, 2:] = np.arctan2(way[1], way[0]), speed, 0.0
     size = (0.5, 0.5) if kind == "pedestrian" else (4.5, 1.8)
     track = Track(np.arange(len(along)) + since, rows, *size)
-    shows = frozenset()
-    return Participant(name, kind, False, TrackStates(track), TrackOutlines(track), shows=shows)
+    return tracked(name, kind, track)
 
 
 def along(name, corners, speed):
@@ -46,7 +45,7 @@ def along(name, corners, speed):
     rows[:, 2] = np.arctan2(*(ahead - here).T[::-1])
     rows[:, 3:] = speed, 0.0
     track = Track(np.arange(len(places)), rows, 4.5, 1.8)
-    return Participant(name, "car", False, TrackStates(track), TrackOutlines(track))
+    return tracked(name, "car", track)
 
 
 def judged(file, folder, law, *bodies):

@@ -8,10 +8,10 @@ import shapely
 
 from rulec import compile_rulebook, judge_recording
 from rulec.recordings.map_files import read_map
-from rulec.recordings.recording import NO_LANES, Light, Participant, Recording
+from rulec.recordings.recording import NO_LANES, Light, Recording
 from rulec.recordings.recording_files import read_recording
 from rulec.recordings.recording_format import RecordingSource
-from rulec.recordings.track import Track, TrackOutlines, TrackStates
+from rulec.recordings.track import Track, tracked
 from support.builders.opendrive_files import shared_map, signals, t_junction, written
 
 STEP_S = 0.1
@@ -40,7 +40,7 @@ def verdict(folder, law, speed_mps, *, end_m=180.0, colour=None, **parts):
     still = np.zeros(len(x))
     rows = np.column_stack((x, still - 1.75, still, still + speed_mps, still))
     track = Track(np.arange(len(x)), rows, 4.5, 1.8)
-    car = Participant("car", "car", False, TrackStates(track), TrackOutlines(track))
+    car = tracked("car", "car", track)
     recording = Recording("drive", STEP_S, lanelets, (car,), (), side=found.side)
     (one,) = judge_recording(recording, law).answers()
     return one.answer

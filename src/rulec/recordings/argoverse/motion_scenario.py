@@ -28,7 +28,7 @@ from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, re
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.recording import MOST_STEPS, Participant, Recording
-from rulec.recordings.track import Track, TrackOutlines, TrackStates
+from rulec.recordings.track import Track, tracked
 
 MOTION = FileFormat(
     "a motion forecasting scenario of Argoverse 2",
@@ -116,12 +116,6 @@ def _participant(
     is_ego = name == EGO
     length, width = EGO_SIZE_M if is_ego else USUAL_SIZES_M.get(kind, OTHER_SIZE_M)
     track = Track(steps, np.column_stack((x, y, heading, speed, gained)), length, width)
-    return Participant(
-        id=name,
-        type="car" if is_ego else MOTION_TYPES[kind],
-        standing=False,
-        states=TrackStates(track),
-        outlines=TrackOutlines(track),
-        shows=frozenset(),
-        stated_error=None if is_ego else ASSUMED_ERROR,
-    )
+    if is_ego:
+        return tracked(name, "car", track)
+    return tracked(name, MOTION_TYPES[kind], track, stated_error=ASSUMED_ERROR)

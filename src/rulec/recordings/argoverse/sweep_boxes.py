@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rulec.recordings.argoverse.city_frame import CityPoses
 from rulec.recordings.argoverse.sweep_grid import rates
 from rulec.recordings.recording import Participant
-from rulec.recordings.track import Track, TrackOutlines, TrackStates
+from rulec.recordings.track import Track, tracked
 
 _RIDDEN_M = 1.0
 """A rider's box is on what it rides if their middles are no farther apart."""
@@ -90,12 +90,4 @@ def participant(
     heading, moments = box.poses.headings, seconds[box.sweeps]
     speed = rates(x, moments) * np.cos(heading) + rates(y, moments) * np.sin(heading)
     rows = np.column_stack((x, y, heading, speed, rates(speed, moments)))
-    track = Track(steps[box.sweeps], rows, *box.size)
-    return Participant(
-        id=box.id,
-        type=kind,
-        standing=False,
-        states=TrackStates(track),
-        outlines=TrackOutlines(track),
-        shows=frozenset(),
-    )
+    return tracked(box.id, kind, Track(steps[box.sweeps], rows, *box.size))

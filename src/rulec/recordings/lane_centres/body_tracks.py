@@ -9,7 +9,7 @@ from numpy import float64, int64
 from numpy.typing import NDArray
 
 from rulec.recordings.recording import Participant
-from rulec.recordings.track import Track, TrackOutlines, TrackStates
+from rulec.recordings.track import Track, tracked
 
 BRIDGED_S = 0.55
 """Who is lost from sight for no longer, half a second, is taken to move evenly meanwhile.
@@ -89,15 +89,7 @@ def participant(
     taken_s = np.diff(boxes.steps, prepend=boxes.steps[0] - 1) * step_s
     gained = np.diff(speeds, prepend=speeds[0]) / taken_s
     rows = np.column_stack((boxes.centres, boxes.headings, speeds, gained))
-    track = Track(boxes.steps, rows, length, width)
-    return Participant(
-        id=name,
-        type=kind,
-        standing=standing,
-        states=TrackStates(track),
-        outlines=TrackOutlines(track),
-        shows=frozenset(),
-    )
+    return tracked(name, kind, Track(boxes.steps, rows, length, width), standing=standing)
 
 
 def _is_within(value: float, bounds: tuple[float, float]) -> bool:

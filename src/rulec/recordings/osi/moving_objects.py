@@ -15,7 +15,7 @@ from rulec.recordings.encodings.wire_format import WireFile
 from rulec.recordings.osi.message_fields import Fields, number, part, places
 from rulec.recordings.osi.message_times import TimeGrid
 from rulec.recordings.recording import Lamp, Participant, Points
-from rulec.recordings.track import Track, TrackOutlines, TrackStates
+from rulec.recordings.track import Track, tracked
 
 _CARS = ("small_car", "compact_car", "car", "luxury_car", "van")
 _KINDS: Mapping[str, str] = {
@@ -168,15 +168,8 @@ def participants(objects: Mapping[str, MovingObject], grid: TimeGrid) -> Iterato
             size = USUAL_SIZES.get(body.kind, USUAL_SIZE)
         track = Track(steps, rows, *size)
         shows = frozenset().union(*(told for told, _ in body.shown.values()))
-        yield Participant(
-            id=key,
-            type=body.kind,
-            standing=False,
-            states=TrackStates(track),
-            outlines=TrackOutlines(track),
-            lamps=_lamps_by_step(body, grid, shows),
-            shows=shows,
-        )
+        lamps = _lamps_by_step(body, grid, shows)
+        yield tracked(key, body.kind, track, lamps=lamps, shows=shows)
 
 
 def _lamps_by_step(

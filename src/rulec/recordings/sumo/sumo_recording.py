@@ -37,7 +37,7 @@ from rulec.recordings.sumo.light_states import (
 from rulec.recordings.sumo.net import SumoNet, read_net
 from rulec.recordings.sumo.vehicle_types import VehicleType, read_vehicle_types, vehicle_type
 from rulec.recordings.table_heads import head_of, is_fcd_head
-from rulec.recordings.track import Track, TrackOutlines, TrackStates
+from rulec.recordings.track import Track, tracked
 
 ON_NETS = frozenset({"STOP", "YIELD", "PRIORITY", "GREEN_ARROW", "light", "rail", "roundabout"})
 ON_NETS |= {"lanes"}
@@ -263,12 +263,10 @@ def fcd_participants(
         track = Track(own[start:end], rows[start:end], kind.length, kind.width)
         name = key if number == 1 else f"{key}_{number}"
         first, last = int(own[start]), int(own[end - 1])
-        yield Participant(
-            id=name,
-            type=kind.kind,
-            standing=False,
-            states=TrackStates(track),
-            outlines=TrackOutlines(track),
+        yield tracked(
+            name,
+            kind.kind,
+            track,
             lamps={step: lit for step, lit in lamps.items() if first <= step <= last},
             shows=_SHOWN if lamps else frozenset(),
         )

@@ -14,7 +14,7 @@ from rulec.diagnostics import RulecError, did_you_mean
 from rulec.recordings.encodings.table_columns import Columns, Texts
 from rulec.recordings.encodings.xml_element import LARGEST, short
 from rulec.recordings.recording import Lamp, Participant, id_order
-from rulec.recordings.track import Track, TrackOutlines, TrackStates
+from rulec.recordings.track import Track, tracked
 from rulec.recordings.tracks import derived_motion as motion
 from rulec.recordings.tracks.even_times import EvenTimes
 from rulec.recordings.tracks.headings_on_lanes import HeadingAt
@@ -142,12 +142,11 @@ class _Reading:
         for number, end in enumerate(ends, 1):
             part = own[start:end]
             track = self._track(kind, part, length, width)
-            yield Participant(
-                id=name if number == 1 else f"{name}_{number}",
-                type=kind,
+            yield tracked(
+                name if number == 1 else f"{name}_{number}",
+                kind,
+                track,
                 standing=standing,
-                states=TrackStates(track),
-                outlines=TrackOutlines(track),
                 lamps=self._lamps(part),
                 shows=frozenset(rows.lamps),
             )
