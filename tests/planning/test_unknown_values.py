@@ -12,7 +12,7 @@ import rulec
 from rulec.automata.compiler import compile_rulebook
 from rulec.logic.free_names import names_in
 from rulec.monitoring.online.running_monitor import Monitor
-from rulec.planning.maneuvers import evaluate
+from rulec.planning.evaluation import evaluate
 from rulec.planning.product import possible_instances
 from rulec.trace import Trace, TraceGraph
 from rulec.trace.trace_model import trace_of

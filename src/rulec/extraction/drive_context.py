@@ -12,7 +12,8 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.road_extents import LaneSets, RoadExtents, is_in
+from rulec.extraction.tracks.lane_sets import LaneSets, is_in
+from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.road_places import KMH as KMH
 from rulec.extraction.tracks.source_tolerances import Tolerances
 from rulec.extraction.tracks.surroundings import Surroundings

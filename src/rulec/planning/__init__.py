@@ -1,6 +1,7 @@
 """Navigation graphs evaluated by compiled rulebooks."""
 
-from rulec.planning.maneuvers import Maneuvers, evaluate
+from rulec.planning.evaluation import evaluate
+from rulec.planning.maneuvers import Maneuvers
 from rulec.planning.ranking.least_violating import RankedManeuver
 from rulec.planning.ranking.pruning import RulePruning
 from rulec.planning.rule_instances import SceneReading, partition_for

@@ -21,7 +21,6 @@ from rulec.planning.product.graph_product import (
     Joint,
     Memory,
     Product,
-    count_paths,
     explore,
 )
 from rulec.planning.product.node_transformers import NodeTransformers, node_transformers
@@ -39,7 +38,7 @@ from rulec.planning.ranking.pruning import (
     violating,
     violating_alone,
 )
-from rulec.planning.rule_instances import SceneReading, bind_rules, in_rule_words, past_for
+from rulec.planning.rule_instances import SceneReading, bind_rules, past_for
 from rulec.trace import TraceGraph
 from rulec.trace.trace_model import trace_of
 from rulec.value_display import Rows, short_count
@@ -365,56 +364,3 @@ def _first(n: int, items: Iterator[Item]) -> list[Item]:
     if n < 0:
         raise ValueError(f"`n` is how many are wanted, not {n}")
     return list(islice(items, min(n, sys.maxsize)))
-
-
-def evaluate(
-    graph: NavigationGraph,
-    rules: CompiledRulebook,
-    after: Before | None = None,
-    reading: SceneReading = AS_WRITTEN,
-    words: CellWords | None = None,
-) -> Maneuvers:
-    """Count a graph's paths, and those that keep every hard rule.
-
-    ``after`` has led up to the first layer, ``words`` is what is said in the graph's cells, and
-    ``reading`` what holds where they, or the scenario, do not tell. Raises RulecError: R0502 to
-    R0505 if the graph does not supply what the rules read, R0507 if a hard rule was compiled for
-    another step; R0501 to R0511 if ``after`` is no such past.
-    """
-    rules = rules.fitted_to(graph.step)
-    traces = graph.trace_graph()
-    paths = in_rule_words(graph, traces, graph.objects, rules.vocabulary, reading, words=words)
-    past = past_for(graph, paths, rules, HARD, after)
-    bound = bind_rules(graph, paths, rules, HARD, past)
-    hard = perhaps = node_transformers(paths, bound)
-    product = possible = explore(hard)
-    if any(instance.readings for instance in bound):
-        perhaps = node_transformers(paths, bound, perhaps=True)
-        possible = explore(perhaps)
-    return Maneuvers(
-        graph=graph,
-        rules=rules,
-        paths=paths,
-        traces=count_paths(paths),
-        hard=hard,
-        product=product,
-        perhaps=perhaps,
-        possible=possible,
-        past=past,
-        after=after,
-        violated_before=None if after is None else past.violations,
-        not_judged=_not_judged(paths, rules, past),
-        reading=reading,
-        words=words,
-    )
-
-
-def _not_judged(
-    paths: TraceGraph, rules: CompiledRulebook, past: CarriedState
-) -> tuple[RuleNotJudged, ...]:
-    if paths.told is None:
-        return ()
-    # As above: only where not all is known.
-    from rulec.planning.product.possible_instances import not_judged
-
-    return tuple(not_judged(paths, rules, past))

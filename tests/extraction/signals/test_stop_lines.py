@@ -8,10 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.map.junction_signals import junction_signals, stop_line
+from rulec.extraction.signals.map.junction_signals import junction_signals
 from rulec.extraction.signals.map.line_signals import line_signals
 from rulec.extraction.signals.map.map_signals import map_signals
 from rulec.extraction.signals.map.priority_signals import priority_signals
+from rulec.extraction.signals.map.stop_lines import stop_line
 from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle

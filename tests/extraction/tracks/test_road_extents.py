@@ -7,7 +7,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from rulec.extraction.tracks.road_extents import is_in, lane_sets, road_extents
+from rulec.extraction.tracks.lane_sets import is_in, lane_sets
+from rulec.extraction.tracks.road_extents import road_extents
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
 from support.builders.drive_contexts import driven_road

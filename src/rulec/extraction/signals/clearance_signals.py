@@ -12,7 +12,7 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import own_lanelets, travel_lanes
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
-from rulec.extraction.tracks.road_extents import is_in
+from rulec.extraction.tracks.lane_sets import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.plain_arrays import distinct
 

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.signal_passes import once_a_recording
-from rulec.extraction.tracks.road_extents import LaneSets, RoadExtents, lane_sets, lanes_touched
+from rulec.extraction.tracks.lane_sets import LaneSets, lane_sets, lanes_touched
+from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.paper_words import LATERALS, PAPER_TABLES, STATIONS
 from rulec.trace.cells import Cells

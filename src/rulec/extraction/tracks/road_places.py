@@ -10,13 +10,8 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.tracks.driven_road import DrivenRoad
-from rulec.extraction.tracks.road_extents import (
-    LaneSets,
-    RoadExtents,
-    and_row,
-    lane_sets,
-    lanes_touched,
-)
+from rulec.extraction.tracks.lane_sets import LaneSets, lane_sets, lanes_touched
+from rulec.extraction.tracks.road_extents import RoadExtents, and_row
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
 

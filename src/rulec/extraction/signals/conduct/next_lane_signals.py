@@ -26,7 +26,7 @@ from rulec.extraction.signals.signal_passes import (
     once_a_road,
     signals_by,
 )
-from rulec.extraction.tracks.road_extents import is_in
+from rulec.extraction.tracks.lane_sets import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.recording import JOINING, Lanelet, LaneMark, Side
 

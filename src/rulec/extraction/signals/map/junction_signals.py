@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from math import ceil, floor
-
 import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
@@ -16,20 +13,17 @@ from rulec.extraction.signals.map.priority_signals import (
     passages_of,
 )
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
+from rulec.extraction.signals.map.stop_lines import around_crossing, passes, stop_line
 from rulec.extraction.signals.measured_numbers import own_front
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, SignalNames
-from rulec.extraction.signals.signal_passes import Passes, once_a_road, signals_by
+from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.junctions import all_have_to_stop
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import STOP_SIGNS, Light, ObservedLight
 from rulec.trace.plain_arrays import distinct
 
-_LINE_REACH_M = 40.0
 _SLOWEST_MPS = 5.0
 """Who stands at the end of a drive goes on so fast."""
-
-_AT_ONCE_S = 0.05
-"""Within so short a time of a state ego crosses a line in that state: lights change less often."""
 
 _AMBER = "amber_light"
 
@@ -64,7 +58,7 @@ def _at_junction(context: DriveContext, start: float, end: float) -> Flags:
 def _enters_junction(context: DriveContext) -> SignalColumns:
     enters = np.zeros(context.states, dtype=bool)
     for start, _ in context.road.junctions:
-        enters |= _passes(context, start)
+        enters |= passes(context, start)
     return SignalColumns({"enters_junction": enters})
 
 
@@ -217,16 +211,6 @@ def _time_driven(context: DriveContext, pace_kmh: float) -> Floats:
     return driven
 
 
-def _passes(context: DriveContext, line: float) -> Flags:
-    """Flags of ego crossing a line; again only if it was back by more than places may be wrong."""
-    front, spans = own_front(context), context.spans
-    beyond = front > line
-    passes = spans.enters(beyond)
-    back = spans.latest(front <= line - context.tolerances.place_m)
-    again = spans.before(spans.latest(passes)) > np.maximum(back, spans.first - 1)
-    return passes & ~again
-
-
 def _crosses_stop_line(context: DriveContext) -> tuple[Flags, Flags]:
     """Flags of ego crossing the line of a lanelet with a stop sign, and of where it may have.
 
@@ -240,7 +224,7 @@ def _crosses_stop_line(context: DriveContext) -> tuple[Flags, Flags]:
             for lane in distinct(context.ego_lane).tolist():
                 if STOP_SIGNS & context.road.lanelet(piece, lane).signs:
                     first, last = stop_line(context, piece, lane)
-                    crosses |= _passes(context, last) & (context.ego_lane == lane)
+                    crosses |= passes(context, last) & (context.ego_lane == lane)
                     on_it = (first < front) & (front <= last) & (context.ego_lane == lane)
                     may_cross |= ends & on_it & (moves >= least)
     return crosses, (may_cross | _may_have_sign(context)) & ~crosses
@@ -293,21 +277,21 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
             if not lights:
                 continue
             first, last = stop_line(context, piece, lane)
-            passes = _passes(context, last)
+            crossed = passes(context, last)
             ahead = (front <= last) & (front > first - context.thresholds.light_reach_m)
-            while_crossing = _while_crossing(context, front, (first, last))
+            while_crossing = around_crossing(context, front, (first, last))
             every = context.road.lanelet(piece, lane).lights
             several = _way_not_known(context) if len(every) > len(lights) else crosses & False
-            for state in np.flatnonzero((ahead | passes) & (context.ego_lane == lane)).tolist():
+            for state in np.flatnonzero((ahead | crossed) & (context.ego_lane == lane)).tolist():
                 own = every if several[state] else lights
-                moments = while_crossing(state) if passes[state] else (state,)
+                moments = while_crossing(state) if crossed[state] else (state,)
                 shown = {_colour(context, own, moment) for moment in moments}
-                crosses[state] |= passes[state]
+                crosses[state] |= crossed[state]
                 colours[state] = shown.pop() if len(shown) == 1 else ""
                 at_place = slow[[*moments]]
                 amber = colours[state] == _AMBER and last - first > context.thresholds.touching_m
                 may_cross[state] |= (
-                    passes[state] and amber and at_place.any() and not at_place.all()
+                    crossed[state] and amber and at_place.any() and not at_place.all()
                 )
     return colours, crosses, may_cross
 
@@ -326,75 +310,6 @@ def _colour(context: DriveContext, lights: tuple[Light | ObservedLight, ...], st
     step = int(context.steps[state])
     shown = {COLOURS.get(light.colour_at(step), "") for light in lights}
     return shown.pop() if len(shown) == 1 else ""
-
-
-def _while_crossing(
-    context: DriveContext, front: Floats, line: tuple[float, float]
-) -> Callable[[int], range]:
-    """A function from a state in which ego is beyond a line to the states around its crossing.
-
-    It crosses between the states before and after, as fast on the way as on average, and nearer to
-    one of them than ``_AT_ONCE_S`` it crosses in that state. Where the line lies between two
-    places, all from the first one on count, or from where ego last stood beyond that.
-    """
-    first, last = line
-    stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
-    latest = context.spans.latest(_passes(context, first) | (stands & (front > first)))
-    since = np.where(latest < context.spans.first, context.spans.columns, latest)
-    at_once = _AT_ONCE_S / context.recording.step_s
-
-    def when(state: int, place: float) -> float:
-        before, after = front[state - 1], front[state]
-        if state == context.spans.first[state] or not before <= place < after:
-            return float(state)  # it stood there, or was there from the start
-        return state - float((after - place) / (after - before))
-
-    def around(state: int) -> range:
-        begin, end = when(int(since[state]), first), when(state, last)
-        begins = round(begin) if abs(round(begin) - begin) <= at_once else floor(begin)
-        ends = round(end) if abs(round(end) - end) <= at_once else ceil(end)
-        return range(begins, ends + 1)
-
-    return around
-
-
-@once_a_road
-def drawn_lines(context: DriveContext) -> dict[str, float]:
-    """The places along the road of the stop lines that the map has, by their lanelets."""
-    drawn = {
-        lanelet.id: lanelet.stop_line.mean(axis=0)
-        for row in context.road.rows
-        for lanelet in row
-        if lanelet is not None and lanelet.stop_line is not None
-    }
-    places = context.road.line.coordinates(np.reshape([*drawn.values()], (-1, 2)))[:, 0]
-    return dict(zip(drawn, places.tolist(), strict=True))
-
-
-def stop_line(context: DriveContext, piece: int, lane: int) -> tuple[float, float]:
-    """The places along the road between which the line of a lanelet is.
-
-    Who is beyond a line by less than ``touching_m`` stands at it. Where the map has no line it is
-    somewhere between the lanelet's end and the first place in the junction beyond where other ways
-    cross or join ego's.
-    """
-    lanelet, road = context.road.lanelet(piece, lane), context.road
-    end, touching = float(road.borders[piece + 1]), context.thresholds.touching_m
-    if lanelet.stop_line is not None:
-        place = drawn_lines(context)[lanelet.id]
-        if abs(place - end) <= _LINE_REACH_M:
-            return place, place + touching
-    begins, passages = 0.0, context.surroundings.passages
-    for further in range(piece + 1, len(road.rows)):
-        edge = passages.first_meeting(road.lanelet(further, lane).id)
-        begins = float(road.borders[further])
-        if edge is not None or begins - end > _LINE_REACH_M:
-            break
-    else:
-        edge = None
-    if edge is None:
-        return end, end + touching
-    return end, max(min(begins + edge, end + _LINE_REACH_M), end + touching)
 
 
 _PASSES: Passes = {

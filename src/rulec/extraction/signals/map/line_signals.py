@@ -6,7 +6,7 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
-from rulec.extraction.signals.map.junction_signals import stop_line
+from rulec.extraction.signals.map.stop_lines import stop_line
 from rulec.extraction.signals.measured_numbers import LONGEST_S, moves, own_front, own_speed
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.ego_lanelets import lanelets_at, map_contents, own_lanelets
-from rulec.extraction.signals.map.junction_signals import own_light, stop_line
+from rulec.extraction.signals.map.junction_signals import own_light
+from rulec.extraction.signals.map.stop_lines import stop_line
 from rulec.extraction.signals.measured_numbers import corner_ahead, own_front
 from rulec.extraction.signals.settling import only_when
 from rulec.extraction.signals.signal_columns import (

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import map_contents
-from rulec.extraction.signals.map.junction_signals import drawn_lines
 from rulec.extraction.signals.map.map_signals import next_crossing
+from rulec.extraction.signals.map.stop_lines import drawn_lines
 from rulec.extraction.signals.measured_numbers import corner_ahead
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, ids_by_state
 from rulec.extraction.signals.signal_passes import (

@@ -34,10 +34,10 @@ class LinkedFacts:
 
     def are_kept(self, reader: StackReader) -> bool:
         """Whether the values that are met anywhere show that no state contradicts them."""
-        key = tuple([reader.met(name) for name in self.signals])
+        key = tuple([reader.met_values.with_default(name) for name in self.signals])
         known = self._kept.get(key)
         if known is None:
-            truths = [reader.truth_anywhere(fact.formula) for fact in self.facts]
+            truths = [reader.met_values.truth_anywhere(fact.formula) for fact in self.facts]
             known = all(bool(truth.true) for truth in truths) or self._can_all_be(reader)
             self._kept[key] = known
         return known
@@ -48,7 +48,7 @@ class LinkedFacts:
         if compared or any(fact.variables for fact in self.facts):
             return False
         said: dict[tuple[str, tuple[str, ...]], PartialValue | None] = {
-            (name, ()): reader.only_value(name) for name in self.signals
+            (name, ()): reader.met_values.only_value(name) for name in self.signals
         }
         if None in said.values():
             return False

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
+from rulec.logic import formula as ltl
+from rulec.logic.fold import fold
+from rulec.monitoring.batch.columns.column_reader import KLEENE_COLUMNS, UNKNOWN, Truth, known
 from rulec.monitoring.batch.stacked.stack import FEW, Stack, StackColumn
 from rulec.trace.trace_columns import Array
-from rulec.vocabulary import Quantity
+from rulec.vocabulary import Enumeration, Quantity
+from rulec.vocabulary.partial_values import UNKNOWN as UNKNOWN_VALUE
+from rulec.vocabulary.partial_values import PartialValue
 
 _BITS = {bits: 1 << np.arange(bits, dtype=f"u{bits // 8}") for bits in (8, 64)}
 """For each number the bit in its place."""
@@ -31,6 +37,55 @@ class MetValues:
     def ends(self, name: str) -> tuple[float, float] | None:
         """The least and the greatest number of a quantity; None if some are unknown."""
         return self._ends.get(name)
+
+    def with_default(self, name: str) -> int | None:
+        """The values that a signal has anywhere, as bits, 0 if some are not known.
+
+        None for one that no state tells, and that has no default.
+        """
+        if name in self._stack.said:
+            return self.values(name)
+        default = self._stack.default(name)
+        return None if default is None or default is UNKNOWN_VALUE else 1 << int(default)
+
+    def only_value(self, name: str) -> PartialValue | None:
+        """The value that a signal has everywhere, unknown if no state tells it; None for several.
+
+        None as well if some are not known.
+        """
+        declaration, met = self._stack.vocabulary.declarations[name], self.with_default(name)
+        if met is None:
+            return UNKNOWN_VALUE if self._stack.default(name) is UNKNOWN_VALUE else None
+        if met == 0 or met & (met - 1):
+            return None
+        place = met.bit_length() - 1
+        return declaration.values[place] if isinstance(declaration, Enumeration) else bool(place)
+
+    def truth_anywhere(self, formula: ltl.Formula) -> Truth:
+        """Whether a formula without operators of time is true, or false, by the values met.
+
+        Any variable names the same object.
+        """
+
+        def proposition(part: ltl.Proposition) -> Truth:
+            if isinstance(part, ltl.Comparison):
+                return UNKNOWN
+            declaration, met = (
+                self._stack.vocabulary.declarations[part.name],
+                self.with_default(part.name),
+            )
+            if not met:
+                return UNKNOWN
+            holds = 1 << 1
+            if isinstance(declaration, Enumeration):
+                assert part.value is not None, "the rulebook has been checked"
+                holds = 1 << declaration.values.index(part.value)
+            return Truth(np.bool_(met == holds), np.bool_(not met & holds))
+
+        def identity(_: ltl.Same) -> Truth:
+            return known(np.True_)
+
+        return fold(formula, replace(KLEENE_COLUMNS, proposition=proposition, identity=identity))
 
     @cached_property
     def _values(self) -> dict[str, int]:

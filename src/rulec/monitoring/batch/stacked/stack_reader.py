@@ -63,7 +63,7 @@ class StackReader:
         self._of_kind: dict[tuple[int, str], Array] = {}
         self._changes: dict[int, Flags | None] = {}
         self._digits: dict[int, int] = {}
-        self._met = MetValues(stack)
+        self.met_values = MetValues(stack)
         self._every_state = np.arange(stack.n_states)
 
     @cached_property
@@ -132,12 +132,12 @@ class StackReader:
             )
         if ready is None:
             found = 0
-            met = self._met.values(name)
+            met = self.met_values.values(name)
             for number in range(met.bit_length()):
                 if met >> number & 1:
                     found |= read.meanings[number]
             return found
-        ends = None if ready.quantity is None else self._met.ends(name)
+        ends = None if ready.quantity is None else self.met_values.ends(name)
         if ends is None:
             return read.every
         low, high = map(ready.digit, ends)
@@ -155,7 +155,7 @@ class StackReader:
             every = Spots(stack.state_of, {read.variables[0]: self._every_cell}, whole=True)
         found = self._of(read, every)
         if isinstance(read.read, Read):
-            met = self._met.values(read.names[0])
+            met = self.met_values.values(read.names[0])
             if met & (met - 1):
                 return found
         if isinstance(found, np.ndarray) and len(found) and (found == found[0]).all():
@@ -272,52 +272,6 @@ class StackReader:
 
         return fold(formula, replace(KLEENE_COLUMNS, proposition=proposition, identity=identity))
 
-    def met(self, name: str) -> int | None:
-        """The values that a signal has anywhere, as bits, 0 if some are not known.
-
-        None for one that no state tells, and that has no default.
-        """
-        if name in self.stack.said:
-            return self._met.values(name)
-        default = self.stack.default(name)
-        return None if default is None or default is UNKNOWN_VALUE else 1 << int(default)
-
-    def only_value(self, name: str) -> PartialValue | None:
-        """The value that a signal has everywhere, unknown if no state tells it; None for several.
-
-        None as well if some are not known.
-        """
-        declaration, met = self.stack.vocabulary.declarations[name], self.met(name)
-        if met is None:
-            return UNKNOWN_VALUE if self.stack.default(name) is UNKNOWN_VALUE else None
-        if met == 0 or met & (met - 1):
-            return None
-        place = met.bit_length() - 1
-        return declaration.values[place] if isinstance(declaration, Enumeration) else bool(place)
-
-    def truth_anywhere(self, formula: ltl.Formula) -> Truth:
-        """Whether a formula without operators of time is true, or false, by the values met.
-
-        Any variable names the same object.
-        """
-
-        def proposition(part: ltl.Proposition) -> Truth:
-            if isinstance(part, ltl.Comparison):
-                return UNKNOWN
-            declaration, met = self.stack.vocabulary.declarations[part.name], self.met(part.name)
-            if not met:
-                return UNKNOWN
-            holds = 1 << 1
-            if isinstance(declaration, Enumeration):
-                assert part.value is not None, "the rulebook has been checked"
-                holds = 1 << declaration.values.index(part.value)
-            return Truth(np.bool_(met == holds), np.bool_(not met & holds))
-
-        def identity(_: ltl.Same) -> Truth:
-            return known(np.True_)
-
-        return fold(formula, replace(KLEENE_COLUMNS, proposition=proposition, identity=identity))
-
     def _compared(self, comparison: ltl.Comparison, spots: Spots, about: str) -> Truth:
         terms = []
         for factor, term in comparison.terms:
@@ -331,7 +285,7 @@ class StackReader:
     def _atom(self, atom: ltl.Atom, spots: Spots, arguments: tuple[str, ...]) -> Truth:
         declaration = self.stack.vocabulary.declarations[atom.name]
         column = self.stack.column(atom.name)
-        met = self._met.values(atom.name)
+        met = self.met_values.values(atom.name)
         values: Any
         if column is None:
             values, dark = self.stack.default(atom.name), None

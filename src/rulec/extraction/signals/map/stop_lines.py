@@ -1,0 +1,97 @@
+"""The lines at which ego has to stop: where they are, and when it crosses them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import ceil, floor
+
+import numpy as np
+
+from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.signals.measured_numbers import own_front
+from rulec.extraction.signals.signal_passes import once_a_road
+from rulec.extraction.tracks.tracks import Flags, Floats
+
+_LINE_REACH_M = 40.0
+
+_AT_ONCE_S = 0.05
+"""Within so short a time of a state ego crosses a line in that state: lights change less often."""
+
+
+def passes(context: DriveContext, line: float) -> Flags:
+    """Flags of ego crossing a line; again only if it was back by more than places may be wrong."""
+    front, spans = own_front(context), context.spans
+    beyond = front > line
+    enters = spans.enters(beyond)
+    back = spans.latest(front <= line - context.tolerances.place_m)
+    again = spans.before(spans.latest(enters)) > np.maximum(back, spans.first - 1)
+    return enters & ~again
+
+
+def around_crossing(
+    context: DriveContext, front: Floats, line: tuple[float, float]
+) -> Callable[[int], range]:
+    """A function from a state in which ego is beyond a line to the states around its crossing.
+
+    It crosses between the states before and after, as fast on the way as on average, and nearer to
+    one of them than ``_AT_ONCE_S`` it crosses in that state. Where the line lies between two
+    places, all from the first one on count, or from where ego last stood beyond that.
+    """
+    first, last = line
+    stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
+    latest = context.spans.latest(passes(context, first) | (stands & (front > first)))
+    since = np.where(latest < context.spans.first, context.spans.columns, latest)
+    at_once = _AT_ONCE_S / context.recording.step_s
+
+    def when(state: int, place: float) -> float:
+        before, after = front[state - 1], front[state]
+        if state == context.spans.first[state] or not before <= place < after:
+            return float(state)  # it stood there, or was there from the start
+        return state - float((after - place) / (after - before))
+
+    def around(state: int) -> range:
+        begin, end = when(int(since[state]), first), when(state, last)
+        begins = round(begin) if abs(round(begin) - begin) <= at_once else floor(begin)
+        ends = round(end) if abs(round(end) - end) <= at_once else ceil(end)
+        return range(begins, ends + 1)
+
+    return around
+
+
+@once_a_road
+def drawn_lines(context: DriveContext) -> dict[str, float]:
+    """The places along the road of the stop lines that the map has, by their lanelets."""
+    drawn = {
+        lanelet.id: lanelet.stop_line.mean(axis=0)
+        for row in context.road.rows
+        for lanelet in row
+        if lanelet is not None and lanelet.stop_line is not None
+    }
+    places = context.road.line.coordinates(np.reshape([*drawn.values()], (-1, 2)))[:, 0]
+    return dict(zip(drawn, places.tolist(), strict=True))
+
+
+def stop_line(context: DriveContext, piece: int, lane: int) -> tuple[float, float]:
+    """The places along the road between which the line of a lanelet is.
+
+    Who is beyond a line by less than ``touching_m`` stands at it. Where the map has no line it is
+    somewhere between the lanelet's end and the first place in the junction beyond where other ways
+    cross or join ego's.
+    """
+    lanelet, road = context.road.lanelet(piece, lane), context.road
+    end, touching = float(road.borders[piece + 1]), context.thresholds.touching_m
+    if lanelet.stop_line is not None:
+        place = drawn_lines(context)[lanelet.id]
+        if abs(place - end) <= _LINE_REACH_M:
+            return place, place + touching
+    begins, passages = 0.0, context.surroundings.passages
+    for further in range(piece + 1, len(road.rows)):
+        edge = passages.first_meeting(road.lanelet(further, lane).id)
+        begins = float(road.borders[further])
+        if edge is not None or begins - end > _LINE_REACH_M:
+            break
+    else:
+        edge = None
+    if edge is None:
+        return end, end + touching
+    return end, max(min(begins + edge, end + _LINE_REACH_M), end + touching)

@@ -1,0 +1,67 @@
+"""Sets of lanes as numbers, and those that bodies reach into."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
+
+from rulec.extraction.tracks.road_extents import RoadExtents
+from rulec.extraction.tracks.tracks import Flags, Floats
+
+LaneSets: TypeAlias = NDArray[Any]
+"""Lanes as whole numbers, of which bit ``k`` says whether lane ``k`` is among them."""
+
+
+def lane_sets(lanes: Flags) -> LaneSets:
+    """Flags of lanes (last axis) as sets."""
+    # Of more than 64 lanes they are Python's integers
+    kind = np.min_scalar_type((1 << lanes.shape[-1]) - 1)
+    sets: LaneSets = np.zeros(lanes.shape[:-1], dtype=kind)
+    for lane in range(lanes.shape[-1]):
+        sets |= lanes[..., lane].astype(kind) << lane
+    return sets
+
+
+def is_in(sets: LaneSets, lane: NDArray[intp] | int) -> Flags:
+    """Flags of the sets in which a lane is."""
+    # Of the narrow kind of the sets, so that what is found stays so
+    only = np.left_shift(1, lane, dtype=sets.dtype, casting="unsafe")
+    flags: Flags = (sets & only) != 0
+    return flags
+
+
+def lanes_touched(
+    extents: RoadExtents, there: LaneSets, least_m: Sequence[float], across: Floats | None = None
+) -> tuple[LaneSets, ...]:
+    """The sets of the lanes that are ``there`` and that bodies reach into by more than so much.
+
+    One for each of these lengths, with all bodies so much (m), by column, farther left.
+    """
+    found = tuple(np.zeros(there.shape, dtype=there.dtype) for _ in least_m)
+    ends = (extents.left_of_min, extents.left_of_max)
+    # Lane by lane, so that what is looked at stays in the processor's caches
+    low, high = (_moved(own[..., 0], across) for own in ends)
+    middle = (low + high) / 2
+    for lane in range(extents.left_of_min.shape[-1] - 1):
+        next_low, next_high = (_moved(own[..., lane + 1], across) for own in ends)
+        next_middle = (next_low + next_high) / 2
+        breadth = high - low
+        inside = np.minimum(breadth, middle - next_middle)
+        np.minimum(inside, np.minimum(high, -next_low), out=inside)
+        breadth /= 2
+        exists = is_in(there, lane)
+        for sets, least in zip(found, least_m, strict=True):
+            # A narrow body, such as a pedestrian's, is in a lane with most of it
+            touched = inside > np.minimum(least, breadth)
+            touched &= exists
+            sets |= touched.astype(sets.dtype) << lane
+        low, high, middle = next_low, next_high, next_middle
+    return found
+
+
+def _moved(values: Floats, across: Floats | None) -> Floats:
+    return values if across is None else values + across

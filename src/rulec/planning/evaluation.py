@@ -1,0 +1,72 @@
+"""A navigation graph evaluated by a compiled rulebook: the way to its maneuvers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.monitoring.verdict import CarriedState, RuleNotJudged
+from rulec.planning.maneuvers import AS_WRITTEN, Maneuvers
+from rulec.planning.product.graph_instances import HARD
+from rulec.planning.product.graph_product import count_paths, explore
+from rulec.planning.product.node_transformers import node_transformers
+from rulec.planning.rule_instances import SceneReading, bind_rules, in_rule_words, past_for
+from rulec.trace import TraceGraph
+
+if TYPE_CHECKING:
+    from rulec.cell_words import CellWords
+    from rulec.partition import NavigationGraph
+    from rulec.planning.trace_history import Before
+
+
+def evaluate(
+    graph: NavigationGraph,
+    rules: CompiledRulebook,
+    after: Before | None = None,
+    reading: SceneReading = AS_WRITTEN,
+    words: CellWords | None = None,
+) -> Maneuvers:
+    """Count a graph's paths, and those that keep every hard rule.
+
+    ``after`` has led up to the first layer, ``words`` is what is said in the graph's cells, and
+    ``reading`` what holds where they, or the scenario, do not tell. Raises RulecError: R0502 to
+    R0505 if the graph does not supply what the rules read, R0507 if a hard rule was compiled for
+    another step; R0501 to R0511 if ``after`` is no such past.
+    """
+    rules = rules.fitted_to(graph.step)
+    traces = graph.trace_graph()
+    paths = in_rule_words(graph, traces, graph.objects, rules.vocabulary, reading, words=words)
+    past = past_for(graph, paths, rules, HARD, after)
+    bound = bind_rules(graph, paths, rules, HARD, past)
+    hard = perhaps = node_transformers(paths, bound)
+    product = possible = explore(hard)
+    if any(instance.readings for instance in bound):
+        perhaps = node_transformers(paths, bound, perhaps=True)
+        possible = explore(perhaps)
+    return Maneuvers(
+        graph=graph,
+        rules=rules,
+        paths=paths,
+        traces=count_paths(paths),
+        hard=hard,
+        product=product,
+        perhaps=perhaps,
+        possible=possible,
+        past=past,
+        after=after,
+        violated_before=None if after is None else past.violations,
+        not_judged=_not_judged(paths, rules, past),
+        reading=reading,
+        words=words,
+    )
+
+
+def _not_judged(
+    paths: TraceGraph, rules: CompiledRulebook, past: CarriedState
+) -> tuple[RuleNotJudged, ...]:
+    if paths.told is None:
+        return ()
+    # As above: only where not all is known.
+    from rulec.planning.product.possible_instances import not_judged
+
+    return tuple(not_judged(paths, rules, past))
