@@ -151,3 +151,33 @@ def test_from_python():
     answers = list(judged.answers())
     assert [(one.drive.ego, one.answer.satisfied) for one in answers] == [("7", True), ("8", True)]
     assert judged.by_default(answers[0].drive.words) == {"R1": (), "R2": (), "R3": ()}
+
+
+@pytest.mark.parametrize(("stands_at", "blamed"), [(95, False), (200, True)])
+def test_who_goes_round_nobody_yet_is_on_the_wrong_side(stands_at, blamed):
+    """Ego is on the other half from 60 to 105 m: past one that stands there, or long before it."""
+    road = [straight(1, 0, 400, y=0.0), straight(2, 400, 0, y=4.0)]
+    places = {k: (10 + 5 * k, 4.0 if 10 <= k <= 19 else 0.0) for k in range(36)}
+    ego = vehicle(7, {k: at for k, at in places.items() if at[0] < 180}, speed=10.0)
+    found = violated(recording(road, [ego, going(8, stands_at, 0.0, 0.0, 36)]), GERMAN, egos=("7",))
+    assert ("wrong_way" in found["7"]) is blamed
+
+
+@pytest.mark.parametrize(("book", "rule"), [("de", True), ("us", False)])
+def test_who_drives_close_behind_a_tram(book, rule):
+    """At 15 m/s ego needs 15 + 225 / 16 m, one of 10 m/s on rails 100 / 6 m: 12.4 m between."""
+    tram = going(8, 60, 0.0, 10.0, kind="train", length=20.0)
+    for count, near in ((9, False), (15, True)):
+        ego = going(7, 10, 0.0, 15.0, count)  # 38 m behind it, 5 m less each second
+        found = violated(recording(two_lanes(), [ego, tram]), machines(book), egos=("7",))
+        blamed = "following_distance_behind_rail_vehicles" in found["7"]
+        assert blamed is (rule and near)
+
+
+@pytest.mark.parametrize(("faster", "blamed"), [(0.0, True), (2.0, False)])
+def test_whom_another_one_leaves_behind_does_not_follow_it_in_britain(faster, blamed):
+    """Ego, at 30 m/s, goes out behind one 26 m ahead that is as fast, or 7 km/h faster."""
+    ego = vehicle(7, {k: (15 * k, 0.0 if k < 6 else 4.0) for k in range(20)}, speed=30.0)
+    ahead = going(8, 30, 4.0, 30.0 + faster)
+    found = violated(recording(two_lanes(**MOTORWAY), [ego, ahead]), BRITISH, egos=("7",))
+    assert ("following_distance" in found["7"]) is blamed

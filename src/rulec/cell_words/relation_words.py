@@ -34,6 +34,7 @@ RELATIONS = frozenset(
         "ahead_for",
         "precedes",
         "one_between",
+        "parts_soon",
     }
 )
 
@@ -151,6 +152,9 @@ class Relations:
             # Whoever is ahead in ego's lane may be nearer than one in another lane
             nobody = np.broadcast_to(~ahead.any(axis=1, keepdims=True), ahead.shape)
             found["one_between"] = _truths(nobody, False)
+        if "parts_soon" in names:
+            # What ego does next is what is being chosen: nobody is excused for it beforehand
+            found["parts_soon"] = _truths(np.ones(ahead.shape, dtype=bool), False)
         if "ahead_for" in names:
             nothing = np.zeros(ahead.shape)
             found["ahead_for"] = _intervals(nothing, np.where(ahead, LONGEST_S, 0.0))

@@ -45,7 +45,8 @@ class Thresholds:
     """Who is away for no longer was there all the time."""
     reaction_s: float = 1.0
     braking_mps2: float = 8.0
-    """As hard as a vehicle brakes that has to; everybody does alike."""
+    """As hard as a vehicle brakes that has to; everybody does alike, but for what runs on rails."""
+    rail_braking_mps2: float = 3.0
     disturbing_mps2: float = 2.0
     """Who has to brake harder for one who changes lanes is in its way."""
     cutting_in_mps2: float = 2.0

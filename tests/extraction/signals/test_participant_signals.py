@@ -63,6 +63,16 @@ def test_the_safe_distance_is_that_of_two_emergency_brakings():
     assert not about(steady(8, 18.7, 0, speed=5), reaction_s=1.1)["safe_gap"]
 
 
+def test_a_tram_ahead_brakes_less_hard():
+    # 10 m in the second of reaction, and 100 / 16 - 25 / 6 m
+    tram = steady(8, 30, 0, speed=5, kind="train")
+    assert safe_distance(context(tram))[0, 0] == pytest.approx(12.083333)
+    soft = {"rail_braking_mps2": 2.0}
+    assert safe_distance(context(tram, **soft))[0, 0] == pytest.approx(10.0)
+    car = steady(8, 30, 0, speed=5)
+    assert safe_distance(context(car, **soft))[0, 0] == pytest.approx(14.6875)
+
+
 @pytest.mark.parametrize(("degrees", "needed"), [(0, 10.0), (45, 10.0), (70, 10.0), (90, 16.25)])
 def test_who_turns_off_is_as_fast_as_it_is(degrees, needed):
     """Both drive at 10 m/s; who drives across ego's way does not take itself out of it."""
@@ -150,6 +160,18 @@ def test_the_gap_to_one_that_ego_swings_out_from_is_moot(across, unknown, way):
     signals = participant_signals(context_of(recording(road, bodies)))
     assert not signals.about["safe_gap"][0, 0]
     assert signals.unknown["safe_gap"][0, 0] == unknown
+
+
+@pytest.mark.parametrize(("leaves_at", "unknown"), [(8, True), (9, False), (40, False)])
+def test_whether_one_that_leaves_within_four_seconds_is_followed_is_unknown(leaves_at, unknown):
+    places = {k: (40 + 5 * k, 4.0 if k >= leaves_at else 0.0) for k in range(20)}
+    bodies = [steady(7, 0, 0, speed=10.0, steps=20), vehicle(8, places, speed=10.0)]
+    signals = participant_signals(context_of(recording(lanes(2), bodies)))
+    assert not signals.about["parts_soon"].any()
+    assert signals.unknown["parts_soon"][0, 0] == unknown
+    # And nobody else's lane matters
+    beside = participant_signals(context(steady(8, 30, 4)))
+    assert not beside.unknown["parts_soon"].any()
 
 
 def test_only_the_next_one_ahead_precedes():

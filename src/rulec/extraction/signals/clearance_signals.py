@@ -19,7 +19,7 @@ from rulec.trace.plain_arrays import distinct
 _BESIDE_M = 0.5
 """A vehicle needs so much more room than it is wide."""
 
-_OBSTACLE_M = 30.0
+OBSTACLE_M = 30.0
 
 
 def clearance_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
@@ -126,7 +126,7 @@ def _near_obstacle(context: DriveContext) -> Flags:
     """Flags of presences that ego goes round now: for one that never moves it goes out earlier."""
     present = presence_cells(context)
     gap, along = present.of(relations.gap(context)), context.ego_extents.along[0]
-    near: Flags = gap <= _OBSTACLE_M
+    near: Flags = gap <= OBSTACLE_M
     reach = along[present.columns] * context.thresholds.parting_s
     early = ~near & (gap <= reach) & (present.of(relations.station(context)) == relations.BEHIND)
     early &= present.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh

@@ -142,6 +142,20 @@ def parts_soon(context: DriveContext, cells: tuple[NDArray[intp], ...]) -> Flags
     return found
 
 
+def may_part(context: DriveContext) -> SignalColumns:
+    """Unknown of those ahead in ego's lane who are on another one soon, and False of all others.
+
+    No law says how near they may be by then.
+    """
+    _, _, follows = relations.ahead_in_lane(context)
+    cells = follows.nonzero()
+    unknown = np.zeros(context.relevant.shape, dtype=bool)
+    unknown[cells] = parts_soon(context, cells)
+    return SignalColumns(
+        about={"parts_soon": np.zeros_like(unknown)}, unknown={"parts_soon": unknown}
+    )
+
+
 def _in_junctions(context: DriveContext, pairs: PairStates) -> Flags:
     """Flags of bodies in the junctions of ego's road."""
     inside, at = np.zeros(len(pairs.rows), dtype=bool), (pairs.rows, pairs.columns)

@@ -112,11 +112,13 @@ def safe_distance(context: DriveContext, cells: Any = ...) -> Floats:
     """The distance (m) for ego to stop behind a participant braking fully, at some cells, or all.
 
     Ego brakes as hard after its reaction time: v t + (v² - u²) / 2a, as in RSS (Shalev-Shwartz,
-    Shammah, Shashua 2017). An oncoming participant counts as standing. Cells are rows and states.
+    Shammah, Shashua 2017). An oncoming participant counts as standing, and what runs on rails does
+    not brake as hard. Cells are rows and states.
     """
     limits = context.thresholds
     own, other = _ahead(context, cells)
-    distance: Floats = limits.reaction_s * own + (own**2 - other**2) / (2 * limits.braking_mps2)
+    stops = own**2 / (2 * limits.braking_mps2) - other**2 / (2 * _braking(context, cells))
+    distance: Floats = limits.reaction_s * own + stops
     return distance
 
 
@@ -126,10 +128,19 @@ def safe_distance_error(context: DriveContext, cells: Any = ...) -> Floats:
     own, other = _ahead(context, cells)
     error = _of_ego(context.ego.speed_error, cells)
     of_own = (limits.reaction_s + own / limits.braking_mps2) * error
-    found: Floats = np.hypot(
-        of_own, other / limits.braking_mps2 * context.tracks.speed_error[cells]
-    )
+    of_other = other / _braking(context, cells) * context.tracks.speed_error[cells]
+    found: Floats = np.hypot(of_own, of_other)
     return found
+
+
+def _braking(context: DriveContext, cells: Any) -> Floats:
+    """As hard (m/s²) as others brake at these cells."""
+    limits = context.thresholds
+    on_rails = context.tracks.of_type("rail_vehicle")[:, None]
+    shape = context.tracks.speed.shape
+    hard = np.broadcast_to(np.where(on_rails, limits.rail_braking_mps2, limits.braking_mps2), shape)
+    of_cells: Floats = hard[cells]
+    return of_cells
 
 
 def _ahead(context: DriveContext, cells: Any) -> tuple[Floats, Floats]:

@@ -10,7 +10,7 @@ from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import SHOULDER, lanes_of_type
-from rulec.extraction.signals.following_signals import keeps_safe_gap
+from rulec.extraction.signals.following_signals import keeps_safe_gap, may_part
 from rulec.extraction.signals.intention_signals import may_have_broken_down
 from rulec.extraction.signals.map.lanes_ahead import leads_elsewhere
 from rulec.extraction.signals.measured_numbers import (
@@ -327,6 +327,7 @@ _PASSES: Passes = {
     ("speed_difference",): _speed_difference,
     ("time_to_collision",): _time_to_collision,
     ("safe_gap",): keeps_safe_gap,
+    ("parts_soon",): may_part,
     ("precedes",): _precedes,
     ("one_between",): _one_between,
     ("oncoming",): _oncoming,

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.clearance_signals import OBSTACLE_M
 from rulec.extraction.signals.conduct.manoeuvre_signals import on_both_halves, oncoming_side
 from rulec.extraction.signals.ego_lanelets import (
     CYCLE_LANE,
@@ -46,15 +47,27 @@ def overtaking_signals(context: DriveContext, names: SignalNames = None) -> Sign
 def _overtaking(context: DriveContext) -> SignalColumns:
     """Whether ego overtakes, beyond the middle of the road from going there until it is back.
 
-    Unknown of who goes there behind another and back: it may have given up.
+    Unknown of who goes there behind another and back: it may have given up. Past one that stands
+    nobody is there for longer than it takes to go round it.
     """
-    overtakes, unsure = _overtakes(context)
     there, perhaps = oncoming_side(context)
-    if (side := there | perhaps).any():
+    side = there | perhaps
+    stands = (context.tracks.speed * KMH < context.thresholds.standing_kmh) & side
+    overtakes, unsure = _overtakes(context, ~stands)
+    if side.any():
+        goes_round, may_go_round = _overtakes(context, stands & _near_enough_to_go_round(context))
         side |= on_both_halves(context)
-        overtakes = overtakes | _meanwhile(context, overtakes, side)
-        unsure = unsure | _meanwhile(context, unsure | _close_behind(context), side)
+        overtakes = overtakes | goes_round | _meanwhile(context, overtakes, side)
+        perhaps = _meanwhile(context, unsure | _close_behind(context), side)
+        unsure = unsure | may_go_round | perhaps
     return SignalColumns({"overtaking": overtakes}, unknown={"overtaking": unsure & ~overtakes})
+
+
+def _near_enough_to_go_round(context: DriveContext) -> Flags:
+    """Flags of participants that are no farther than an obstacle that ego goes out for now."""
+    reach = context.ego_extents.along[0] * context.thresholds.parting_s
+    near: Flags = relations.gap(context) <= np.maximum(reach, OBSTACLE_M)
+    return near
 
 
 def _meanwhile(context: DriveContext, flags: Flags, during: Flags) -> Flags:
@@ -89,7 +102,7 @@ def _begins_to_overtake(context: DriveContext) -> SignalColumns:
 
     Unknown where the drive ends before.
     """
-    overtakes, unsure = _overtakes(context)
+    overtakes, unsure = _overtakes(context, True)
     horizon = round(context.thresholds.parting_s / context.recording.step_s)
     spans = context.spans
     begins, perhaps = (spans.within(flags, horizon) for flags in (overtakes, overtakes | unsure))
@@ -197,14 +210,14 @@ def _sets_off(context: DriveContext) -> Flags:
     return sets_off
 
 
-def _overtakes(context: DriveContext) -> tuple[Flags, Flags]:
+def _overtakes(context: DriveContext, whom: Flags | bool) -> tuple[Flags, Flags]:
     """Flags of ego overtaking a slower vehicle or cycle, and of it perhaps doing so.
 
     Who overtakes is at the far side, from shortly before it is beside the other until it is just
-    past.
+    past. ``whom``: flags of the others by state.
     """
     far, _ = _sides(context)
-    slower: Flags = context.extents.along < context.ego_extents.along
+    slower: Flags = (context.extents.along < context.ego_extents.along) & whom
     slower &= (relations.lateral(context) == far) & (context.driving_along | _ride_along(context))
     cells = slower.nonzero()
     beside = relations.station(context)[cells] == relations.BESIDE
