@@ -7,7 +7,7 @@ import pytest
 
 from rulec.extraction.signals.conduct.lane_change_signals import lane_change_signals
 from support.builders.drive_contexts import context_of, steady
-from support.builders.recordings import recording, straight, vehicle
+from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
 
 # From the right lane to the left one, at 10 m/s; the middle crosses the mark before state 2
@@ -38,6 +38,40 @@ def test_who_follows_a_way_of_a_lane_that_forks_may_have_changed_to_none(x, know
     found = lane_change_signals(context_of(recording(road, [ego]), ("1", "2")))
     (change,) = np.flatnonzero(found.world["lane_change"])
     assert found.unknown["lane_change"][change] == (not known)
+
+
+@pytest.mark.parametrize("to_left", [True, False])
+@pytest.mark.parametrize(
+    ("goes", "steps", "clear"),
+    [("left", 20, "left"), ("right", 20, "right"), ("left", 5, "?"), ("off", 20, "off")],
+)
+def test_who_comes_from_behind_on_a_lane_that_forks_goes_where_its_track_goes(
+    to_left, goes, steps, clear
+):
+    """The lane forks at 100 m. Ego changes at 140 m at 10 m/s; the other one is at 84 m at 25."""
+    road = [
+        straight(1, 0, 100, successors=(2, 3, 4)),
+        straight(2, 100, 400, left_of=3, predecessors=(1,)),
+        straight(3, 100, 400, 4, right_of=2, predecessors=(1,)),
+        lanelet(4, [(100, 0), (140, -20), (180, -90)], predecessors=(1,)),
+    ]
+    start, end = (0.0, 4.0) if to_left else (4.0, 0.0)
+    ego = vehicle(7, {k: (120 + 5 * k, start if k < 4 else end) for k in range(20)})
+    ways = {
+        "left": lambda x: (x, min(max(x - 100, 0) / 4, 4.0)),
+        "right": lambda x: (x, 0.0),
+        "off": lambda x: (x, 0.0) if x < 100 else (100 + (x - 100) * 0.4, -(x - 100) * 0.9),
+    }
+    other = vehicle(8, {k: ways[goes](34 + 12.5 * k) for k in range(steps)}, speed=25.0)
+    found = recording(road, [ego, other])
+    elsewhere = np.zeros((2, 20), dtype=bool)
+    elsewhere[1, 6:] = goes == "off"
+    signals = lane_change_signals(context_of(found, ("1", "2"), elsewhere=elsewhere))
+    (change,) = np.flatnonzero(signals.world["lane_change"])
+    told = (
+        "?" if signals.unknown["lane_is_clear"][change] else signals.world["lane_is_clear"][change]
+    )
+    assert told == ("?" if clear == "?" else clear != ("left" if to_left else "right"))
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
+from rulec.extraction.signals.conduct.lanes_from_behind import comes_into_lane
 from rulec.extraction.signals.conduct.manoeuvre_signals import swings_round
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, ids_by_state
 from rulec.extraction.signals.signal_passes import Passes, signals_by
@@ -62,20 +63,24 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
     """Whether nobody has to brake for ego, in states of its lane changes.
 
     Unknown where the only ones are about to be past, as ego comes in behind them, or only reach
-    into its lane from the one beyond. And if ego stands by its speed, whose places drift across the
+    into its lane from the one beyond. Also where one comes from behind on a lane that forks, and
+    nobody knows whether into ego's. And if ego stands by its speed, whose places drift across the
     mark: nothing stands and changes lanes.
     """
     disturbed = np.zeros(context.relevant.shape, dtype=bool)
-    moot = np.zeros(context.states, dtype=bool)
+    moot, unsure = np.zeros((2, context.states), dtype=bool)
     changes = np.flatnonzero(_changes(context))
-    disturbed[:, changes] = found = _disturbed(context, changes)
+    found, perhaps = _disturbed(context, changes)
+    disturbed[:, changes] = found
+    unsure[changes] = perhaps.any(axis=0)
     in_lane = context.extents.lane[:, changes] == context.ego_lane[changes]
+    in_lane |= found & ~context.in_ego_lane[:, changes]
     moot[changes] = ~np.any(found & in_lane & ~_pulls_away(context, changes), axis=0)
     clear: Flags = ~np.any(disturbed, axis=0)
     stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
     return SignalColumns(
         {"lane_is_clear": clear},
-        unknown={"lane_is_clear": ~clear & (moot | stands)},
+        unknown={"lane_is_clear": np.where(clear, unsure, moot | stands)},
         whom={"lane_is_clear": ids_by_state(disturbed, context.ids)},
     )
 
@@ -165,22 +170,26 @@ def _jumps_across(context: DriveContext) -> Flags:
     return jumps
 
 
-def _disturbed(context: DriveContext, states: NDArray[intp]) -> Flags:
-    """Flags of the vehicles in ego's lane that must brake for ego, in these states.
+def _disturbed(context: DriveContext, states: NDArray[intp]) -> tuple[Flags, Flags]:
+    """Flags of the vehicles in ego's lane that must brake for ego, in these states, and perhaps so.
 
     One beside ego has to, and one behind it that would have to brake harder than
-    ``disturbing_mps2`` after its reaction time not to run into it.
+    ``disturbing_mps2`` after its reaction time not to run into it. Perhaps those whose lane forks
+    in between, of whom nobody knows whether they come into ego's.
     """
     limits = context.thresholds
     station, gap = relations.station(context)[:, states], relations.gap(context)[:, states]
-    same = context.in_ego_lane[:, states] & context.going_along[:, states]
     along, own = context.extents.along[:, states], context.ego_extents.along[:, states]
     faster = np.maximum(along - own, 0.0)
     braking_distance = gap - faster * limits.reaction_s
-    brakes = faster**2 > 2 * limits.disturbing_mps2 * np.maximum(braking_distance, 0.0)
-    behind = (station == relations.IN_FRONT_OF) & brakes
-    disturbed: Flags = same & (behind | (station == relations.BESIDE))
-    return disturbed
+    too_near = faster**2 > 2 * limits.disturbing_mps2 * np.maximum(braking_distance, 0.0)
+    behind = (station == relations.IN_FRONT_OF) & too_near
+    brakes = context.going_along[:, states] & (behind | (station == relations.BESIDE))
+    disturbed, perhaps = np.zeros((2, *brakes.shape), dtype=bool)
+    for row, number in zip(*(places.tolist() for places in brakes.nonzero()), strict=True):
+        comes = comes_into_lane(context, row, int(states[number]))
+        disturbed[row, number], perhaps[row, number] = comes is True, comes is None
+    return disturbed, perhaps
 
 
 def _pulls_away(context: DriveContext, states: NDArray[intp]) -> Flags:
