@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rulec.extraction.signals.map.junction_signals import junction_signals
 from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.tracks.junctions import approaches, junctions_of
 from rulec.recordings.recording import Recording
@@ -62,6 +63,39 @@ def test_who_is_in_conflict(road, side, sign, comes_s, conflict):
     assert found.whom[side][3] == (("8",) if conflict else ())
     assert not found.world[other].any()
     assert not found.unknown[side].any()
+
+
+LINK = [
+    straight(1, -90, -10, successors=(2,)),
+    straight(2, -10, 10, predecessors=(1,), successors=(9,), types=INSIDE, junction="x"),
+    straight(9, 10, 25, predecessors=(2,), successors=(10,), signs=frozenset({"YIELD"})),
+    straight(10, 25, 33, predecessors=(9,), successors=(11,), types=INSIDE, junction="y"),
+    straight(11, 33, 150, predecessors=(10,)),
+    lanelet(4, [(7, -90), (7, -10)], successors=(5,)),
+    lanelet(5, [(7, -10), (7, 10)], predecessors=(4,), successors=(6,), types=INSIDE, junction="x"),
+    lanelet(6, [(7, 10), (7, 90)], predecessors=(5,)),
+    lanelet(14, [(29, -90), (29, -4)], successors=(15,)),
+    lanelet(
+        15, [(29, -4), (29, 4)], predecessors=(14,), successors=(16,), types=INSIDE, junction="y"
+    ),
+    lanelet(16, [(29, 4), (29, 90)], predecessors=(15,)),
+]
+"""Two junctions 15 m apart, at the first of which a way crosses ego's just before the link."""
+
+
+@pytest.mark.parametrize("length", [4.5, 12.0, 18.0, 24.0])
+def test_nobody_is_in_the_way_at_the_next_junction_who_was_at_the_last_one(length):
+    """The rear of a long one is still on that way when its front is at the next line."""
+    ego = vehicle(7, {k: (-50 + 2 * k, 0) for k in range(60)}, speed=10, length=length)
+    # The other one's front is where the ways cross half a second after ego's rear has left it
+    leaves_s = (58.6 + length / 2) / 10
+    places = {k: (7, -3.6 + 10 * (k / 5 - leaves_s - 0.5)) for k in range(60)}
+    other = vehicle(8, places, speed=10, heading=np.pi / 2)
+    found = replace(recording(LINK, [ego, other], step_s=0.2), complete=frozenset({"YIELD"}))
+    context = context_of(found, route=("1", "2", "9", "10", "11"))
+    enters = np.flatnonzero(junction_signals(context).world["enters_junction"])
+    conflict = priority_signals(context).world["conflict_from_right"]
+    assert conflict[enters].tolist() == [True, False]
 
 
 @pytest.mark.parametrize(("length", "sure"), [(4.5, True), (20.0, True), (60.0, False)])

@@ -138,14 +138,25 @@ def passages_of(context: DriveContext, number: int) -> tuple[Passage, ...]:
 def approach(context: DriveContext, passage: Passage) -> slice:
     """The states from which on ego nears the junction until it is through it.
 
-    It does so after it has entered the one before: who is in its way is so at one of them.
+    It does so after it has entered the one before, and before it enters the next one, where a long
+    body is still in this one then: who is in its way is so at one of them.
     """
     shift, passages = first_column(context), context.surroundings.passages
     ways = passages.travelled[passage.row]
     near = ways[passage.first] - ways[shift : passage.first + 1] <= context.thresholds.approach_m
     first = passage.first - shift - int(near.sum()) + 1 if len(near) else 0
-    entered = [x.first - shift + 1 for x in passages.of_row[passage.row] if x.first < passage.first]
-    return slice(max(first, 0, *entered), passage.last - shift + 1)
+    enters = passages.front_enters(passage)
+    before = [x.first for x in passages.of_row[passage.row] if x.first < passage.first]
+    entered = [min(column + 1, enters) - shift for column in before]
+    return slice(max(first, 0, *entered), min(passage.last - shift + 1, _next(context, passage)))
+
+
+def _next(context: DriveContext, passage: Passage) -> int:
+    """The last state before ego's front is in the junction after one, or one past all states."""
+    passages = context.surroundings.passages
+    later = [x for x in passages.of_row[passage.row] if x.first > passage.first]
+    enters = [passages.front_enters(x) - first_column(context) for x in later[:1]]
+    return min(enters, default=context.states)
 
 
 @drive_by_drive
@@ -226,7 +237,7 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
             kinds=kinds,
             first=first,
             enters=max((enters or 0) - shift, 0),
-            last=min(last, context.states - 1),
+            last=min(last, context.states - 1, _next(context, own) - 1),
             known=known
             and own.sure
             and other.sure
