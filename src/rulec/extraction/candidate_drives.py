@@ -25,7 +25,7 @@ from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Participant, Recording, Side
 from rulec.trace.end_to_end import UnlikeDrivesError
 
-MOST_CELLS = 1 << 17
+MOST_CELLS = 1 << 18
 """Drives are laid end to end up to so many cells; fewer at a time take more calls, more memory."""
 
 Block: TypeAlias = list[tuple[int, tuple[Drive | NoDrive, ...]]]
