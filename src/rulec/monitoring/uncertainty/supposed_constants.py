@@ -9,6 +9,7 @@ from math import prod
 from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
@@ -34,26 +35,30 @@ class ConstantsReader:
         self, rulebook: CompiledRulebook, vocabulary: Vocabulary, objects: Mapping[str, str]
     ) -> None:
         self._vocabulary = vocabulary
+        self._constants = frozenset(vocabulary.constants)
         self._everybody = StateView({}, objects, vocabulary)
         self._facts = [axiom.formula for axiom in rulebook.axioms]
         self._in_facts = {name for formula in self._facts for name in names_in(formula)}
-        self.of_facts = {
+        self.of_facts = frozenset(
             (name, items)
-            for name in self._in_facts.intersection(vocabulary.constants)
+            for name in self._in_facts.intersection(self._constants)
             for items in choices(vocabulary.declarations[name].parameters, objects, vocabulary)
-        }
+        )
+        self._reads: dict[str, tuple[Read | NumberRead, ...]] = {}
+        """Those of constants, by the name of the rule."""
 
-    def read_by(self, rule: CompiledRule, objects: Mapping[str, str]) -> set[Subject]:
+    def read_by(self, rule: CompiledRule, objects: Mapping[str, str]) -> frozenset[Subject]:
         """The constants that a rule reads of its objects, and the facts of anybody."""
-        if not self._vocabulary.constants:
-            return set()
-        declarations = self._vocabulary.declarations
+        if rule.name not in self._reads:
+            reads = rule.machine.reads
+            self._reads[rule.name] = tuple(
+                [read for read in reads if not self._constants.isdisjoint(names_of_read(read))]
+            )
         return self.of_facts.union(
             subject
-            for read in rule.machine.reads
-            if any(declarations[name].constant for name in names_of_read(read))
+            for read in self._reads[rule.name]
             for subject in subjects_of_read(read, objects, self._everybody)
-            if declarations[subject[0]].constant
+            if subject[0] in self._constants
         )
 
     def suppositions(

@@ -17,7 +17,7 @@ from rulec.monitoring.uncertainty.lazy_bindings import known_bits
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import NO_PAST, CarriedState, Violation
 from rulec.monitoring.verify import run
-from rulec.planning.product.graph_bindings import graph_bindings
+from rulec.planning.product.graph_bindings import graph_bindings, layer_by_layer
 from rulec.planning.product.graph_instance import GraphInstance
 from rulec.rulebook.rulebook_model import Strength
 from rulec.trace import TraceGraph
@@ -70,17 +70,16 @@ def instances(
         )
         for layer, states in enumerate(graph.states)
     ]
-    for states, read, where in zip(graph.states, columns, places, strict=True):
-        check_counting_axioms(rulebook, len(states), read.view, where, None)
+    for states, column, where in zip(graph.states, columns, places, strict=True):
+        check_counting_axioms(rulebook, len(states), column.view, where, None)
     result: list[GraphInstance] = []
     for rule in rules:
         if possible is not None and (rule.name in doubtful or possible.concern(rule)):
             result += possible.instances(rule, past)
             continue
         alike: dict[tuple[int, int, tuple[tuple[int, ...], ...]], list[Binding]] = {}
-        for binding in graph_bindings(
-            rule, graph, vocabulary, [known_bits(column, rule) for column in columns], past
-        ):
+        read = layer_by_layer(graph, [known_bits(column, rule) for column in columns])
+        for binding in graph_bindings(rule, graph, vocabulary, read, past):
             letters = tuple(
                 columns[layer].word(rule, binding.objects, 0, len(graph.states[layer]) - 1)
                 for layer in range(binding.first, binding.last + 1)

@@ -15,7 +15,6 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.outcome_machine import KEPT, VIOLATED, SetMonitor
 from rulec.logic.free_names import names_in
 from rulec.monitoring.bindings import Binding
-from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.state_validation import partial_names
 from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleLetters
 from rulec.monitoring.uncertainty.suppositions import (
@@ -27,6 +26,7 @@ from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import NO_PAST, CarriedState, RuleNotJudged
 from rulec.planning.product.graph_bindings import graph_bindings
 from rulec.planning.product.graph_instance import GraphInstance, Readings, SetMachine
+from rulec.planning.product.nodes_in_turn import NodesInTurn
 from rulec.trace import Trace, TraceGraph
 
 MOST_SETS = 1 << 10
@@ -35,8 +35,8 @@ MOST_SETS = 1 << 10
 _NOBODY = -1
 """In place of a set of states: facts exclude this choice of constants."""
 
-_Word: TypeAlias = tuple[tuple[int, ...], ...]
-"""For each node of each layer the classes of its possible letters, as bits."""
+_Word: TypeAlias = tuple[int, ...]
+"""For each node, layer by layer, the classes of its possible letters, as bits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,23 +70,22 @@ class PossibleNodes:
         self._rulebook = rulebook
         self._untold = untold_names(rulebook.vocabulary, graph.told)
         self._vocabulary = with_untold(rulebook.vocabulary, self._untold)
-        layers = [
-            spelled_out(
-                Trace(
-                    "", graph.step_s, present_in(layer, graph.objects, graph.present), tuple(states)
-                ),
-                rulebook.vocabulary,
-            )
-            for layer, states in enumerate(graph.states)
-        ]
-        self._partial = self._untold.union(*(partial_names(layer.states) for layer in layers))
-        some = tuple(layer.states[0] if layer.states else {} for layer in layers)
+        self._nodes = NodesInTurn(graph)
+        nodes = spelled_out(
+            Trace("", graph.step_s, graph.objects, self._nodes.states, self._nodes.present),
+            rulebook.vocabulary,
+        )
+        self._partial = self._untold | partial_names(nodes.states)
+        some = tuple([layer[0] if layer else {} for layer in graph.states])
         path = Trace("", graph.step_s, graph.objects, some, graph.present)
-        self._suppositions = Suppositions(path, rulebook, self._vocabulary)
-        self._letters = [
-            PossibleLetters(layer, rulebook, self._vocabulary, where)
-            for layer, where in zip(layers, places, strict=True)
-        ]
+        self._suppositions = Suppositions(
+            spelled_out(path, rulebook.vocabulary), rulebook, self._vocabulary
+        )
+
+        def where(number: int) -> str:
+            return places[self._nodes.layer_of(number)](number)
+
+        self._letters = PossibleLetters(nodes, rulebook, self._vocabulary, where)
         self._machines: dict[object, tuple[Sequence[tuple[int, ...]], Readings]] = {}
 
     def concern(self, rule: CompiledRule) -> bool:
@@ -108,7 +107,7 @@ class PossibleNodes:
         if self.untold(rule, past):
             return []
         graph, machine = self._graph, uncertain_machine(rule, None)
-        read = [letters.bits_of(rule) for letters in self._letters]
+        read = self._letters.bits_of(rule)
         alike: dict[_Alike, list[Binding]] = {}
         for binding in graph_bindings(rule, graph, self._vocabulary, read, past):
             about = (rule.name, tuple(binding.objects.values()))
@@ -127,22 +126,19 @@ class PossibleNodes:
     ) -> tuple[tuple[_Word, ...], bool]:
         """The letters of every node, one word for each choice of constants that differs."""
         supposed, is_exact = self._suppositions.of(rule, binding)
+        nodes = Binding(binding.objects, *self._nodes.stretch(binding.first, binding.last))
         words: dict[_Word, None] = {}
-        layers = range(binding.first, binding.last + 1)
         for values in supposed:
-            word = []
-            for layer in layers:
-                last = len(self._graph.states[layer]) - 1
-                nodes = Binding(binding.objects, 0, last)
-                possible = self._letters[layer].word(rule, machine.classes, nodes, values)
-                is_exact = is_exact and possible.exact
-                word.append(possible.classes)
-            words[tuple(word)] = None
-        for layer, columns in zip(layers, zip(*words, strict=True), strict=True):
-            for node, classes in enumerate(zip(*columns, strict=True)):
-                if not any(classes):
-                    raise self._letters[layer].impossible(rule, binding.objects, node)
+            possible = self._letters.word(rule, machine.classes, nodes, values)
+            is_exact = is_exact and possible.exact
+            words[possible.classes] = None
+        for number, classes in enumerate(zip(*words, strict=True), nodes.first):
+            if not any(classes):
+                raise self._letters.impossible(rule, binding.objects, number)
         return tuple(words), is_exact
+
+    def _by_layer(self, letters: Sequence[int], binding: Binding) -> tuple[tuple[int, ...], ...]:
+        return self._nodes.by_layer(letters, binding.first, binding.last)
 
     def _instance(
         self,
@@ -152,13 +148,12 @@ class PossibleNodes:
         bound: tuple[Binding, ...],
     ) -> GraphInstance:
         words, start = alike.words, alike.start
-        symbols = [
-            list(zip(*columns, strict=True)) for columns in zip(*words, strict=True)
-        ]  # by layer and node: the classes for each choice of constants
-        every = {symbol for layer in symbols for symbol in layer}
+        # By node: the classes for each choice of constants
+        symbols = list(zip(*words, strict=True))
+        every = set(symbols)
         known = all(len(symbol) == 1 and not symbol[0] & (symbol[0] - 1) for symbol in every)
         if known and len(start.states) == 1 and not start.perhaps_settled:
-            letters = tuple([tuple([x.bit_length() - 1 for (x,) in layer]) for layer in symbols])
+            letters = self._by_layer([x.bit_length() - 1 for (x,) in symbols], bound[0])
             return GraphInstance(rule, bound, letters, min(start.states))
         order = tuple(sorted(every))
         key = rule.name, start, order
@@ -170,7 +165,7 @@ class PossibleNodes:
                 made = replace(made, perhaps=replace(made.perhaps, outputs=kept))
             self._machines[key] = order, made
         place = {symbol: number for number, symbol in enumerate(order)}
-        letters = tuple([tuple([place[symbol] for symbol in layer]) for layer in symbols])
+        letters = self._by_layer([place[symbol] for symbol in symbols], bound[0])
         own = self._machines[key][1]
         # That it was violated before and that it was just lost are not told apart.
         vague = start.perhaps_settled and rule.machine.rejecting_sink in start.states
@@ -182,7 +177,7 @@ def not_judged(
     graph: TraceGraph, rulebook: CompiledRulebook, past: CarriedState
 ) -> Iterator[RuleNotJudged]:
     """Rules that no path can be known to violate, for want of what the graph does not tell."""
-    possible = PossibleNodes(replace(graph, states=()), rulebook, [])
+    possible = PossibleNodes(replace(graph, states=(), present={}), rulebook, [])
     for rule in rulebook.rules:
         if untold := possible.untold(rule, past):
             yield RuleNotJudged(rule.name, rule.strength, untold)
