@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from itertools import product
 from math import prod
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -19,16 +18,18 @@ from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import (
     Between,
-    Evaluator,
     Unknown,
-    evaluator_of,
     holds,
     number_of,
     weighted_sum,
 )
+from rulec.monitoring.uncertainty.state_letters.completion_search import (
+    CompletionSearch,
+    Link,
+    Possible,
+    digit_of,
+)
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
-    CompletedView,
-    MissingValueError,
     PartialView,
     Subject,
     candidates,
@@ -60,31 +61,9 @@ class PossibleDigits:
 
 
 @dataclass(slots=True)
-class _Link:
-    """Something that speaks of unknown subjects: a read, a counted object, or an axiom.
-
-    ``read`` is the number of the read, None for an axiom. ``counted`` is the object that may count.
-    """
-
-    subjects: frozenset[Subject]
-    read: int | None
-    environment: Mapping[str, str]
-    formula: ltl.Formula | None = None
-    counted: bool = False
-
-
-@dataclass(slots=True)
 class _Cluster:
     subjects: set[Subject] = field(default_factory=set)
-    links: list[_Link] = field(default_factory=list)
-
-
-@dataclass(frozen=True, slots=True)
-class _Possible:
-    """Digits of single reads, and how many more objects count for reads that count."""
-
-    digits: tuple[tuple[int, int], ...]
-    more: tuple[tuple[int, int], ...]
+    links: list[Link] = field(default_factory=list)
 
 
 def joint_digits(
@@ -103,8 +82,8 @@ def joint_digits(
     touched = {link.read for link in links}
     for number, read in enumerate(reads):
         if number not in touched and number not in counted:
-            fixed[number] = _digit(read, binding, view)
-    found = {_Possible((), ())}
+            fixed[number] = digit_of(read, binding, view)
+    found = {Possible((), ())}
     is_exact = True
     for cluster in _clusters(links, axioms, view):
         possible = _completed(cluster, reads, view)
@@ -135,7 +114,7 @@ def _links_of_reads(
     binding: Mapping[str, str],
     view: PartialView,
     counted: dict[int, int],
-) -> Iterator[_Link]:
+) -> Iterator[Link]:
     """Links of reads with unknown subjects; ``counted`` gets what counts for sure."""
     for number, read in enumerate(reads):
         match read:
@@ -146,13 +125,13 @@ def _links_of_reads(
                     value = holds(count.body, inner, view)
                     if isinstance(value, Unknown):
                         about = unknown_subjects(count.body, inner, view)
-                        yield _Link(about, number, inner, count.body, counted=True)
+                        yield Link(about, number, inner, count.body, counted=True)
                     else:
                         counted[number] += value
             case _:
                 about = unknown_in_read(read, binding, view)
                 if about and not _is_sure(read, binding, view):
-                    yield _Link(about, number, binding)
+                    yield Link(about, number, binding)
 
 
 def _is_sure(read: Read | NumberRead, binding: Mapping[str, str], view: PartialView) -> bool:
@@ -164,7 +143,7 @@ def _is_sure(read: Read | NumberRead, binding: Mapping[str, str], view: PartialV
 
 
 def _clusters(
-    links: Sequence[_Link], axioms: Sequence[CompiledAxiom], view: PartialView
+    links: Sequence[Link], axioms: Sequence[CompiledAxiom], view: PartialView
 ) -> Iterator[_Cluster]:
     """The links in groups that share no subjects, with the axioms that bind these."""
     clusters = _joined_links([*links, *_links_of_axioms(axioms, view)])
@@ -172,7 +151,7 @@ def _clusters(
     return (cluster for cluster in clusters if any(x.read is not None for x in cluster.links))
 
 
-def _joined_links(links: Iterable[_Link]) -> list[_Cluster]:
+def _joined_links(links: Iterable[Link]) -> list[_Cluster]:
     clusters: list[_Cluster] = []
     for link in links:
         joined = _Cluster(set(link.subjects), [link])
@@ -184,7 +163,7 @@ def _joined_links(links: Iterable[_Link]) -> list[_Cluster]:
     return clusters
 
 
-def _links_of_axioms(axioms: Sequence[CompiledAxiom], view: PartialView) -> Iterator[_Link]:
+def _links_of_axioms(axioms: Sequence[CompiledAxiom], view: PartialView) -> Iterator[Link]:
     for axiom in axioms:
         names = [variable.name for variable in axiom.variables]
         types = [variable.type for variable in axiom.variables]
@@ -193,12 +172,12 @@ def _links_of_axioms(axioms: Sequence[CompiledAxiom], view: PartialView) -> Iter
             truth = holds(axiom.formula, environment, view)
             if truth is not True:
                 about = unknown_subjects(axiom.formula, environment, view)
-                yield _Link(about, None, environment, axiom.formula)
+                yield Link(about, None, environment, axiom.formula)
 
 
 def _completed(
     cluster: _Cluster, reads: Sequence[Read | NumberRead], view: PartialView
-) -> set[_Possible] | None:
+) -> set[Possible] | None:
     """What a cluster's completions come to; None if there are too many."""
     values: dict[Subject, Sequence[Value]] = {}
     bounds: dict[ltl.Term, tuple[Fraction, Fraction] | None] = {}
@@ -226,87 +205,40 @@ def _completed(
     points = sample_points(bounds, planes)
     if points is None or n_discrete * len(points) > MOST_COMPLETIONS:
         return None
-    possible = set()
-    # To look them up is to hash whole formulas
-    links = [
-        (link, None if link.formula is None else evaluator_of(link.formula))
-        for link in cluster.links
-    ]
-    for chosen in product(*values.values()):
-        for point in points:
-            supposed: dict[Subject, Value | Fraction] = dict(zip(values, chosen, strict=True))
-            for term, value in point.items():
-                assert isinstance(term, ltl.QuantityTerm)
-                supposed[term.name, term.arguments] = value
-            completed = CompletedView(view, supposed)
-            result = _result(links, reads, completed)
-            if result is not None:
-                possible.add(result)
-    return possible
+    numbers: list[dict[Subject, Value | Fraction]] = []
+    for point in points:
+        supposed: dict[Subject, Value | Fraction] = {}
+        for term, value in point.items():
+            assert isinstance(term, ltl.QuantityTerm)
+            supposed[term.name, term.arguments] = value
+        numbers.append(supposed)
+    return CompletionSearch(cluster.links, reads, view, values, numbers).found()
 
 
-def _result(
-    links: Sequence[tuple[_Link, Evaluator | None]],
-    reads: Sequence[Read | NumberRead],
-    view: CompletedView,
-) -> _Possible | None:
-    """What a completion comes to; None if it contradicts an axiom."""
-    digits: dict[int, int] = {}
-    more: dict[int, int] = {}
-    for link, evaluate in links:
-        if evaluate is None:
-            assert link.read is not None
-            digits[link.read] = _digit(reads[link.read], link.environment, view)
-            continue
-        truth = evaluate(link.environment, view)
-        if link.read is None:
-            if truth is False:
-                return None
-        elif isinstance(truth, Unknown):
-            raise MissingValueError(truth.name, truth.objects)
-        else:
-            more[link.read] = more.get(link.read, 0) + truth
-    return _Possible(tuple(sorted(digits.items())), tuple(sorted(more.items())))
-
-
-def _joined(first: _Possible, second: _Possible) -> _Possible:
+def _joined(first: Possible, second: Possible) -> Possible:
     more = dict(first.more)
     for number, count in second.more:
         more[number] = more.get(number, 0) + count
     digits = tuple(sorted((*first.digits, *second.digits)))
-    return _Possible(digits, tuple(sorted(more.items())))
+    return Possible(digits, tuple(sorted(more.items())))
 
 
-def _independent(cluster: _Cluster, reads: Sequence[Read | NumberRead]) -> set[_Possible]:
+def _independent(cluster: _Cluster, reads: Sequence[Read | NumberRead]) -> set[Possible]:
     """More than a cluster can come to: all of its links by themselves, and no axioms."""
-    found = {_Possible((), ())}
+    found = {Possible((), ())}
     for link in cluster.links:
         if link.read is None:
             continue
         if link.counted:
-            alone = [_Possible((), ((link.read, n),)) for n in (0, 1)]
+            alone = [Possible((), ((link.read, n),)) for n in (0, 1)]
         else:
-            alone = [_Possible(((link.read, n),), ()) for n in range(reads[link.read].size)]
+            alone = [Possible(((link.read, n),), ()) for n in range(reads[link.read].size)]
         found = {_joined(before, after) for before in found for after in alone}
     return found
 
 
-def _digit(
-    read: Read | NumberRead, binding: Mapping[str, str], view: PartialView | CompletedView
-) -> int:
-    if isinstance(read, Read):
-        value = view.value(read.name, tuple([binding[variable] for variable in read.variables]))
-        assert not isinstance(value, Unknown), "it has been supposed, or is known"
-        return read.digit(value)
-    total = weighted_sum(read.terms, binding, view)
-    total = total.low if isinstance(total, Between) else total
-    if isinstance(total, Unknown):
-        raise MissingValueError(total.name, total.objects)  # all else has been supposed
-    return read.digit(total)
-
-
 def _planes(
-    link: _Link, reads: Sequence[Read | NumberRead], view: PartialView
+    link: Link, reads: Sequence[Read | NumberRead], view: PartialView
 ) -> Iterator[LinearPlane]:
     if link.formula is None:
         assert link.read is not None

@@ -1,0 +1,138 @@
+"""A search through what unknown values may be together, as far as it decides something."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.logic import formula as ltl
+from rulec.logic.kleene import Between, Unknown, evaluator_of, weighted_sum
+from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
+    CompletedView,
+    MissingValueError,
+    PartialView,
+    Subject,
+)
+from rulec.trace import Value
+
+
+@dataclass(slots=True)
+class Link:
+    """Something that speaks of unknown subjects: a read, a counted object, or an axiom.
+
+    ``read`` is the number of the read, None for an axiom. ``counted`` is the object that may count.
+    """
+
+    subjects: frozenset[Subject]
+    read: int | None
+    environment: Mapping[str, str]
+    formula: ltl.Formula | None = None
+    counted: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Possible:
+    """Digits of single reads, and how many more objects count for reads that count."""
+
+    digits: tuple[tuple[int, int], ...]
+    more: tuple[tuple[int, int], ...]
+
+
+class CompletionSearch:
+    """A search through the completions of a cluster, of which only what decides is supposed.
+
+    ``values`` are those of what is no number, by subject; ``points`` values of all numbers.
+    """
+
+    def __init__(
+        self,
+        links: Sequence[Link],
+        reads: Sequence[Read | NumberRead],
+        view: PartialView,
+        values: Mapping[Subject, Sequence[Value]],
+        points: Sequence[Mapping[Subject, Value | Fraction]],
+    ) -> None:
+        # To look them up is to hash whole formulas
+        self._links = [
+            (link, None if link.formula is None else evaluator_of(link.formula)) for link in links
+        ]
+        self._reads, self._view = reads, view
+        self._values, self._points = values, points
+        self._found: set[Possible] = set()
+
+    def found(self) -> set[Possible]:
+        """What the completions come to. Raises MissingValueError."""
+        self._go_on(0, {}, {}, {})
+        return self._found
+
+    def _go_on(
+        self,
+        number: int,
+        supposed: Mapping[Subject, Value | Fraction],
+        digits: Mapping[int, int],
+        more: Mapping[int, int],
+    ) -> None:
+        """Look at the links from a number on, where so much is supposed and the others came to."""
+        digits, more = dict(digits), dict(more)
+        view = CompletedView(self._view, supposed)
+        for link, evaluate in self._links[number:]:
+            deciding = None
+            if evaluate is None:
+                assert link.read is not None
+                deciding = self._unsupposed(link, supposed)
+                if deciding is None:
+                    digits[link.read] = digit_of(self._reads[link.read], link.environment, view)
+            else:
+                truth = evaluate(link.environment, view)
+                if isinstance(truth, Unknown):
+                    deciding = self._deciding(truth, link, supposed)
+                elif link.read is not None:
+                    more[link.read] = more.get(link.read, 0) + truth
+                elif not truth:
+                    return  # no state is so
+            if deciding is not None:
+                for values in self._alternatives(deciding):
+                    self._go_on(number, {**supposed, **values}, digits, more)
+                return
+            number += 1
+        self._found.add(Possible(tuple(sorted(digits.items())), tuple(sorted(more.items()))))
+
+    def _deciding(
+        self, truth: Unknown, link: Link, supposed: Mapping[Subject, Value | Fraction]
+    ) -> Subject | None:
+        """The subject on which a truth depends; None of an axiom that lacks a value."""
+        subject = truth.name, truth.objects
+        if subject in link.subjects and subject not in supposed:
+            return subject
+        # Another one may show that the value that is missing is not needed
+        other = self._unsupposed(link, supposed)
+        if other is None and link.read is not None:
+            raise MissingValueError(*subject)
+        return other
+
+    def _unsupposed(
+        self, link: Link, supposed: Mapping[Subject, Value | Fraction]
+    ) -> Subject | None:
+        return min(link.subjects - supposed.keys(), default=None)
+
+    def _alternatives(self, subject: Subject) -> Iterable[Mapping[Subject, Value | Fraction]]:
+        if subject in self._values:
+            return ({subject: value} for value in self._values[subject])
+        return self._points
+
+
+def digit_of(
+    read: Read | NumberRead, binding: Mapping[str, str], view: PartialView | CompletedView
+) -> int:
+    """The digit of a read of which nothing is unknown any more. Raises MissingValueError."""
+    if isinstance(read, Read):
+        value = view.value(read.name, tuple([binding[variable] for variable in read.variables]))
+        assert not isinstance(value, Unknown), "it has been supposed, or is known"
+        return read.digit(value)
+    total = weighted_sum(read.terms, binding, view)
+    total = total.low if isinstance(total, Between) else total
+    if isinstance(total, Unknown):
+        raise MissingValueError(total.name, total.objects)  # all else has been supposed
+    return read.digit(total)
