@@ -80,19 +80,24 @@ class ReadDigits:
     def of_values(self, values: Sequence[PartialValue | None]) -> list[int]:
         """The digits for each value of the ``subject``; none for what is missing."""
         if isinstance(self.read, NumberRead):
-            floors, read = self._floors, self.read
-            return [
-                1 << bisect_right(floors, value)
-                if type(value) is float
-                else possible_digits(read, value)
-                for value in values
-            ]
+            return [self._of_number(value, self.read) for value in values]
         known = self._known
         try:
             return [known[value] for value in values]
         except KeyError:
             known.update((value, possible_digits(self.read, value)) for value in set(values))
             return [known[value] for value in values]
+
+    def _of_number(self, value: PartialValue | None, read: NumberRead) -> int:
+        if type(value) is float:
+            return 1 << bisect_right(self._floors, value)
+        if type(value) is Interval and type(value.low) is float and type(value.high) is float:
+            low, high = (
+                bisect_right(self._floors, value.low),
+                bisect_right(self._floors, value.high),
+            )
+            return _digits_between(low, high)
+        return possible_digits(read, value)
 
     def in_state(self, binding: Mapping[str, str], view: PartialView) -> int:
         """The digits in a state. Raises MissingValueError."""
