@@ -6,7 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.logic.formula import QuantityTerm
-from rulec.monitoring.uncertainty.state_letters.linear_arrangement import LinearPlane, sample_points
+from rulec.monitoring.uncertainty.state_letters.completing.linear_arrangement import (
+    LinearPlane,
+    sample_points,
+)
 
 NUMBERS = [QuantityTerm("x", ()), QuantityTerm("y", ())]
 small = st.integers(-4, 4).map(Fraction)

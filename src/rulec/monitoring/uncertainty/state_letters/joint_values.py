@@ -17,7 +17,10 @@ from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import holds
 from rulec.monitoring.state_view import StateView, with_values
-from rulec.monitoring.uncertainty.state_letters.completions import MOST_COMPLETIONS, Digits
+from rulec.monitoring.uncertainty.state_letters.completing.completions import (
+    MOST_COMPLETIONS,
+    Digits,
+)
 from rulec.monitoring.uncertainty.state_letters.read_digits import ReadDigits
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     MissingValueError,

@@ -13,7 +13,10 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from rulec.logic.formula import Term
-from rulec.monitoring.uncertainty.state_letters.planar_cells import PlanarLine, points_of_cells
+from rulec.monitoring.uncertainty.state_letters.completing.planar_cells import (
+    PlanarLine,
+    points_of_cells,
+)
 from rulec.witnesses.fourier_motzkin import LinearBound, TooManyBoundsError, solve
 
 MOST_POINTS = 1 << 12

@@ -1,0 +1,1 @@
+"""What unknown values may be together."""
