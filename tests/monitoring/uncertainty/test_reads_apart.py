@@ -168,4 +168,4 @@ def test_of_law_who_may_count_by_himself_as_all_together():
     compiled = rulec.compile_rulebook("de").fitted_to(1)
     cars = {"a": "car", "b": "car"}
     own = [rule for rule in compiled.rules if agree_on_who_counts(chance, compiled, rule, cars)]
-    assert [rule.name for rule in own] == ["keep_near_side", "speed_limit_by_class", "wrong_way"]
+    assert [rule.name for rule in own] == ["keep_near_side", "speed_limit_by_class"]
