@@ -14,7 +14,7 @@ from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.map.crossing_signals import crossing_signals
 from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
-from rulec.recordings.recording import Weather
+from rulec.recordings.recording import HEADINGS, Weather
 from support.builders.drive_contexts import along, context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
@@ -58,6 +58,32 @@ def test_who_moves_against_its_heading_drives_backwards():
     # What counts is the mean over a second, which is 2 m/s backwards before it has begun
     to_and_fro = car((100, 0), (102, 0), (104, 0), (104, 0), (102, 0), (100, 0), (98, 0), speed=4)
     assert told(manoeuvre_signals, "reversing", two_way(), to_and_fro) == "FFFTTTT"
+
+
+@pytest.mark.parametrize(
+    ("xs", "expected"),
+    [
+        # Places of video are good to 0.3 m, and speeds to 0.3 m/s: who stands may be slow as well
+        ((100.0, 100.0, 100.01, 100.0, 100.0, 99.99, 100.0), "FFFFFFF"),
+        # 0.4 m in all, which two places may be wrong, at 1.4 km/h for a second
+        ((100.0, 100.0, 99.8, 99.6, 99.6, 99.6, 99.6), "FFFFFFF"),
+        # It creeps, and the track begins and ends with speeds that are known badly
+        ((100.0, 100.1, 100.3, 100.6, 101.0, 101.5, 102.1), "FFFFFFF"),
+        ((100.0, 99.4, 98.8, 98.2, 97.6, 97.0, 96.4), "TTTTTTT"),
+        ((100.0, 99.8, 99.5, 99.2, 98.9, 98.6, 98.4), "???????"),
+    ],
+    ids=["stands", "within tolerance", "creeps on", "drives backwards", "a little"],
+)
+def test_who_comes_back_nowhere_does_not_drive_backwards(xs, expected):
+    mps = np.gradient(xs, 0.5)
+    body = car(*((x, 0.0) for x in xs))
+    states = {k: replace(state, speed=float(mps[k])) for k, state in body.states.items()}
+    found = recording(two_way(), [replace(body, states=states)])
+    found = replace(found, name="USA_Lanker-1", complete=frozenset({HEADINGS}))
+    signals = manoeuvre_signals(context_of(found))
+    values = np.where(signals.values("reversing"), "T", "F")
+    unknown = signals.unknown["reversing"]
+    assert "".join(np.where(unknown, "?", values).ravel().tolist()) == expected
 
 
 def test_who_moves_along_its_lane_by_headings_that_are_made_of_places_drives_forwards():

@@ -52,6 +52,8 @@ def _reversing(context: DriveContext) -> SignalColumns:
     error, least = context.ego.speed_error[0], context.thresholds.standing_kmh / KMH
     backs = forward < -least
     unknown = np.abs(forward + least) < error
+    stays = _comes_back_nowhere(context, unknown | backs, backs)
+    backs, unknown = backs & ~stays, unknown & ~stays
     unknown |= backs & ~_for_long(context, backs)
     spans, jumps = context.spans, _jumps(context)
     unknown |= jumps
@@ -60,6 +62,29 @@ def _reversing(context: DriveContext) -> SignalColumns:
         for _, columns in spans.those(spans.any(against) & ~jumps & ~spans.any(backs)):
             unknown[columns] |= against[columns] & (not _tells_headings(context, columns))
     return SignalColumns({"reversing": backs}, unknown={"reversing": unknown})
+
+
+def _comes_back_nowhere(context: DriveContext, perhaps: Flags, backs: Flags) -> Flags:
+    """Flags in runs of ``perhaps`` over which ego moves against its heading by too little.
+
+    That is by no more than places may be wrong; or, where it is never measured to go backwards, by
+    less than boxes of those who stand drift, however badly its speed is known.
+    """
+    found, own = np.zeros_like(perhaps), context.ego
+    if not perhaps.any():
+        return found
+    spans, heading = context.spans, own.heading[0]
+    x, y = (own.x[0], own.y[0])
+    moved = [np.where(spans.begins_here, 0.0, at - spans.before(at)) for at in (x, y)]
+    ahead = np.cumsum(moved[0] * np.cos(heading) + moved[1] * np.sin(heading))
+    firsts = np.flatnonzero(perhaps & (spans.begins_here | ~spans.before(perhaps)))
+    behind = np.minimum(spans.next_state(~perhaps), spans.end)
+    for first, end in zip(firsts.tolist(), behind[firsts].tolist(), strict=True):
+        way = ahead[max(first - 1, int(spans.first[first])) : end]
+        back = float((np.maximum.accumulate(way) - way).max())
+        wrong = np.sqrt(2.0) * context.tolerances.place_m
+        found[first:end] = back <= wrong or (back < _DRIFT_M and not backs[first:end].any())
+    return found
 
 
 def _for_long(context: DriveContext, flags: Flags) -> Flags:
