@@ -23,7 +23,7 @@ _MOST_ITEMS = 3
 def short_repr(value: Any) -> str:
     """A dataclass's ``repr`` in one line, with long values shortened."""
     name = type(value).__name__
-    pairs = [f"{field}={_brief(item)}" for field, item in _items(value)]
+    pairs = [f"{field}={brief(item)}" for field, item in _items(value)]
     text = ", ".join(pairs)
     if len(name) + len(text) + 2 > LONGEST_REPR:
         text = text[: LONGEST_REPR - len(name) - 3] + "…"
@@ -34,6 +34,14 @@ def _items(value: Any) -> list[tuple[str, Any]]:
     if is_dataclass(value):
         return [(field.name, getattr(value, field.name)) for field in fields(value) if field.repr]
     return [(name, getattr(value, name)) for name in value.__struct_fields__]
+
+
+def brief(value: object) -> str:
+    """A value in a few words, however long, and however deep its lists are."""
+    try:
+        return _brief(value)
+    except (RecursionError, ValueError):  # or a whole number of thousands of digits
+        return f"({type(value).__name__})"
 
 
 def _brief(value: object) -> str:

@@ -1,5 +1,9 @@
 """What is given of the wrong kind is said at the door, with what to give instead."""
 
+from functools import reduce
+from pathlib import Path
+
+import numpy as np
 import pytest
 
 import rulec
@@ -36,7 +40,7 @@ FOLLOWING = "docs/samples/following.xml"
         (lambda: rulec.draw_drive(FOLLOWING, "de", wanted="1"), TypeError, "RequestedDrives, not"),
         (lambda: rulec.draw("x"), TypeError, "Maneuvers or a Trace, not str: rulec.nav"),
         (lambda: rulec.Assumptions(ends="maybe"), ValueError, "not 'maybe'"),
-        (lambda: rulec.Assumptions(values="built_up"), TypeError, "a mapping of names, not str"),
+        (lambda: rulec.Assumptions(values="built_up"), TypeError, "`values` is a dict, not str"),
         (lambda: rulec.Thresholds(near_m=-1), ValueError, "`near_m` is a number from 0 .*not -1"),
         (lambda: rulec.Thresholds(near_m="1"), ValueError, "not '1'"),
         (lambda: rulec.Thresholds(near_m=float("nan")), ValueError, "not nan"),
@@ -63,6 +67,10 @@ RULES = rulec.compile_rulebook("esterle2019")
 MONITOR = rulec.Monitor(RULES)
 DRIVEN = rulec.read_recording(FOLLOWING)
 VIOLATED = rulec.Violation("R9", "hard", {}, 0)
+LINE = [(0, 0), (9, 0)]
+TRACKS = {"track": [1, 1], "t": [0, 1], "x": [0, 1], "y": [0, 0]}
+DEEP = reduce(lambda inner, _: [inner], range(3000), [])
+NOTHING_SAID = rulec.TraceColumns(rulec.layout_of([1]), {}, {"v": "vehicle"})
 PASSING = next(rulec.read_traces("docs/samples/traces.jsonl"))
 
 
@@ -84,6 +92,10 @@ def traced(**changes):
         ({"step_s": NAN}, "`step_s` is nan"),
         ({"present": 3}, "`present` is a dict by names of objects, not int"),
         ({"objects": {"v": "vehicle"}, "present": {"v": 3}}, "two states for `v`.* not 3"),
+        ({"step_s": 10**400}, "`step_s` is 1000.*; it has to be a number of seconds"),
+        ({"id": 3}, "`id` is a str, not int"),
+        ({"ends": np.array([])}, "`ends` is complete or cut"),
+        ({"told": ["CONGESTED"]}, "`told` is a frozenset of names, not list"),
     ],
 )
 def test_what_is_no_trace_is_said(changes, said):
@@ -136,6 +148,55 @@ def test_what_is_no_trace_is_said(changes, said):
         (lambda: rulec.build_lanelet("a", [(0, 0), (9, 0)], [[1], []]), rulec.RulecError, "width"),
         (lambda: rulec.verify_recording("a" * 5000, "de"), rulec.RulecError, "too long"),
         (lambda: rulec.write_traces([traced(id="\ud800")], "a"), rulec.RulecError, "surrogate"),
+        (lambda: rulec.write_traces([traced(id="\ud800")], "a.csv"), rulec.RulecError, "surrogate"),
+        (
+            lambda: rulec.write_traces([traced(states=({"CONGESTED": Path("a")},))], "a"),
+            rulec.RulecError,
+            "state 0: `CONGESTED` is .* no file can hold",
+        ),
+        (lambda: rulec.analyze("esterle2019", spread=3), TypeError, "`spread` is a function"),
+        (lambda: rulec.compile_rulebook("de", step_s=10**400), ValueError, "beyond all floats"),
+        (lambda: rulec.compile_rulebook("de", step_s=[]), ValueError, "`step_s` has no step"),
+        (lambda: rulec.compile_rulebook("/".join("a" * 2500)), rulec.RulecError, "too long"),
+        (lambda: next(rulec.find("speed > 1 m/s", "a" * 5000, "de")), rulec.RulecError, "too long"),
+        (lambda: rulec.read_map("a" * 5000, 0.1), rulec.RulecError, "too long"),
+        (lambda: rulec.recording_from_columns(TRACKS, "a" * 5000), rulec.RulecError, "too long"),
+        (lambda: next(rulec.verify_many(range(2), RULES)), TypeError, r"`traces\[0\]` is a Trace"),
+        (lambda: rulec.diff("de", "de", paired={"a": {}}), TypeError, r"`paired.values\(\)\[0\]`"),
+        (
+            lambda: rulec.write_monitor(RULES, "a", {1: 2}),
+            TypeError,
+            r"`objects.keys\(\)\[0\]` is a str, not int",
+        ),
+        (lambda: rulec.navigation_graph("s2", step_s=10**400), rulec.RulecError, "the step is"),
+        (lambda: rulec.find_maneuvers("s2", RULES, partition=[]), TypeError, "`partition` is a st"),
+        (lambda: rulec.build_lanelet("a", LINE, successors=3), TypeError, "`successors` is an it"),
+        (lambda: rulec.build_lanelet("a", [(0, 0), (10**400, 0)]), rulec.RulecError, "no number"),
+        (
+            lambda: rulec.build_participant("a", "car", [0], [0], [0], step_s=1, lamps=3),
+            TypeError,
+            "`lamps` is a dict, not int",
+        ),
+        (lambda: rulec.Choice(at_s="3"), TypeError, "`at_s` is a number, not str"),
+        (lambda: rulec.Choice(at_s=NAN), ValueError, "`at_s` is a finite number, not nan"),
+        (lambda: rulec.Choice(scenario_id=3), TypeError, "`scenario_id` is a str, not int"),
+        (lambda: rulec.RecordingSource("a.xml"), TypeError, "`path` is a path, not str"),
+        (lambda: rulec.layout_of(np.array(["2020"], "M8[s]")), ValueError, "whole numbers, such"),
+        (
+            lambda: rulec.verify_columns(rulec.TraceColumns(rulec.layout_of([1]), 3), RULES),
+            TypeError,
+            "`values` is a dict, not int",
+        ),
+        (
+            lambda: rulec.verify_columns(NOTHING_SAID, RULES),
+            rulec.RulecError,
+            "no array for the `position` of `v`, and no default",
+        ),
+        (
+            lambda: rulec.recording_from_columns(dict.fromkeys(("track", *"txy"), DEEP), {}),
+            rulec.RulecError,
+            "`t` is no row of values",
+        ),
     ],
 )
 def test_it_is_said_which_argument_is_wrong(call, error, said, tmp_path, monkeypatch):
@@ -143,3 +204,32 @@ def test_it_is_said_which_argument_is_wrong(call, error, said, tmp_path, monkeyp
     with pytest.raises(error, match=said):
         call()
     assert not [*tmp_path.iterdir()]
+
+
+def test_sequences_may_be_iterators_and_arrays():
+    for folders in (iter(["docs/samples"]), np.array(["docs/samples"])):
+        session = rulec.Session(search_path=folders)
+        assert session.search_path == ("docs/samples",)
+    both = rulec.diff("esterle2019", "esterle2019", patterns=np.array([], dtype=str))
+    assert len(both.pairs) == 3
+
+
+def test_what_an_error_says_can_be_printed():
+    with pytest.raises(rulec.RulecError) as error:
+        rulec.load_rulebook("\ud800.rules")
+    assert str(error.value).encode()
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: rulec.Thresholds(near_m=DEEP),
+        lambda: rulec.verify(traced(objects={"v": DEEP}), RULES),
+        lambda: rulec.verify(traced(present={"v": DEEP}), RULES),
+        lambda: rulec.build_lanelet("a", LINE, left_mark=DEEP),
+    ],
+)
+def test_what_is_deep_is_named_in_short(call):
+    with pytest.raises((TypeError, ValueError, rulec.RulecError)) as error:
+        call()
+    assert len(str(error.value)) < 300

@@ -11,7 +11,9 @@ import pytest
 import rulec
 from rulec.automata.bundle.bundle_file import to_json
 from rulec.automata.bundle.stored_prefixes import stored
+from rulec.validation.comparison_words import KNOWN_UNITS
 from rulec.validation.file_proof import UnreadableError, proof_of, proofs_of
+from rulec.vocabulary.dimensions import UNITS
 from support.builders.compiled_files import sealed
 from support.builders.national_books import NATIONAL
 from support.builders.worded_books import compiled_at_random, meaning, some_words, verdict
@@ -32,6 +34,11 @@ def test_rules_that_ship_are_proved(name):
     data = file_of(name, 1)
     assert len(proofs_of(data)) == len(json.loads(data)["rules"]) > 0
     assert reasons(data) == {}
+
+
+@pytest.mark.parametrize("name", sorted(UNITS.keys() - {"in"}))
+def test_the_checker_has_every_unit_of_the_language(name):
+    assert KNOWN_UNITS[name][0] == UNITS[name].factor
 
 
 @pytest.mark.long

@@ -129,6 +129,6 @@ def _for_steps(
     from rulec.automata.bundle.stored_steps import for_steps
 
     if not steps:
-        raise ValueError("there has to be a step, or None")
+        raise ValueError("`step_s` has no step: give one, or None")
     compiled = compile_rulebook(reference, search_path, warn, at=at, any_step=True)
     return for_steps([compiled.at_step(step) for step in steps], steps)

@@ -272,7 +272,7 @@ class RulebookQuestions(RulebookVerbs):
         from rulec.report.text.listing import Listed
 
         if kind not in (kinds := get_args(Kind)):
-            raise ValueError(f"what is listed is one of {', '.join(kinds)}, not {kind!r}")
+            raise ValueError(f"`kind` is one of {', '.join(kinds)}, not {kind!r}")
         if kind == "codes":
             from rulec.report.findings.code_registry import all_codes
 

@@ -45,14 +45,16 @@ class SessionSettings:
                 setattr(cls, name, checked[verb])
 
     def __post_init__(self) -> None:
-        expected("search_path", "Sequence[str | Path]", self.search_path)
+        folders = expected("search_path", "Sequence[str | Path]", self.search_path)
+        object.__setattr__(self, "search_path", folders)
         expected("at", "str", self.at)
         expected("on_warning", "Callable[[object], object]", self.on_warning)
         if self.at:
             try:
                 date.fromisoformat(self.at)
             except ValueError:
-                raise ValueError(f"`{self.at}` is no day such as 2026-01-31") from None
+                message = f"`at` is `{self.at:.40}`, which is no day such as 2026-01-31"
+                raise ValueError(message) from None
 
     def _warn(self, diagnostics: Sequence[Diagnostic]) -> None:
         if diagnostics:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal, get_args
 
 from rulec.api.session_settings import SessionSettings
-from rulec.diagnostics.argument_kinds import finite
+from rulec.diagnostics.argument_kinds import expected_fields, finite
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -49,12 +49,19 @@ class TraceVerbs(SessionSettings):
     def write_traces(self, traces: Iterable[Trace], path: str | Path) -> None:
         """Write traces in the format of the file's name. Raises RulecError."""
         from rulec.files import written_whole
-        from rulec.trace.formats.trace_files import format_of, is_partial, kinds_in, write_traces
+        from rulec.trace.formats.trace_files import (
+            check_writable,
+            format_of,
+            is_partial,
+            kinds_in,
+            write_traces,
+        )
         from rulec.trace.trace_model import check_trace
 
         listed = list(traces)
         for trace in listed:
             check_trace(trace)
+            check_writable(trace)
         kinds = kinds_in(state for trace in listed for state in trace.states)
         partial = any(map(is_partial, listed))
         form = format_of(str(path))
@@ -103,10 +110,19 @@ class TraceVerbs(SessionSettings):
         return verify_many(traces, self._compiled(rules))
 
     def verify_columns(self, columns: TraceColumns, rules: Rules) -> list[VerdictColumns]:
-        """Judge traces given as arrays, with one answer per rule and binding."""
+        """Judge traces given as arrays, with one answer per rule and binding. Raises RulecError."""
+        from rulec.monitoring.batch.columns.column_reader import NotGivenError
         from rulec.monitoring.batch.engine import verify_columns
+        from rulec.monitoring.monitoring_messages import MISSING_VALUE
 
-        return list(verify_columns(columns, self._compiled(rules).fitted_to(columns.step_s)))
+        expected_fields(columns)
+        compiled = self._compiled(rules).fitted_to(columns.step_s)
+        try:
+            return list(verify_columns(columns, compiled))
+        except NotGivenError as missing:
+            of = f" of `{', '.join(missing.objects)}`" if missing.objects else ""
+            message = f"there is no array for the `{missing.name}`{of}, and no default"
+            raise MISSING_VALUE.error(None, message) from None
 
     def verify_cells(self, cells: TraceCells, rules: Rules) -> list[VerdictColumns]:
         """Judge traces each of whose states is one of a few."""
@@ -259,9 +275,9 @@ class TraceVerbs(SessionSettings):
         if unknown := [name for name in by if name not in known]:
             raise ValueError(f"drives are told apart by {', '.join(known)}, not by {unknown[0]!r}")
         if not 0 < confidence < 1:
-            raise ValueError(f"the confidence is between 0 and 1, such as 0.95, not {confidence}")
+            raise ValueError(f"`confidence` is between 0 and 1, such as 0.95, not {confidence}")
         paths = [findings] if isinstance(findings, str | Path) else findings
-        return rates_of_findings([*map(str, paths)], by, confidence=confidence, seed=seed)
+        return rates_of_findings([*map(str, paths)], by, confidence=float(confidence), seed=seed)
 
     def draw_drive(
         self,

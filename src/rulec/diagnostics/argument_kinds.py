@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass, fields
 from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache, wraps
@@ -42,16 +42,21 @@ _ALIASES = {
     "ExtentName": "str",
     "GroupKey": "str",
     "Kind": "str",
+    "Ending": "str",
+    "LaneMark": "str",
     "LanguageCode": "str",
     "PartitionName": "str",
     "PictureFormat": "str",
+    "Prediction": "str",
     "Rules": "str | Path | CompiledRulebook | Rulebook",
+    "Side": "str",
+    "Spread": "Callable",
     "Theme": "str",
 }
 _UNSAID = {"None", "SavedPast"}
 """Kinds that errors do not name: no argument at all, and what only commands give."""
 
-_ANYTHING = {"Any", "ArrayLike", "Spread", "object"}
+_ANYTHING = {"Any", "ArrayLike", "object"}
 
 
 def checked_kinds(function: AnyFunction) -> AnyFunction:
@@ -81,26 +86,56 @@ def checked_kinds(function: AnyFunction) -> AnyFunction:
 
 
 def expected(name: str, annotation: str, value: Any) -> Any:
-    """A value that is of one of the kinds of an annotation, else TypeError with the way out."""
-    if not annotation:
+    """A value that is of one of the kinds of an annotation, else TypeError with the way out.
+
+    What has to be a sequence and is an iterator or an array comes as a tuple.
+    """
+    if not annotation or not _kinds(annotation):
         return value
-    items = _items(annotation, cast("Hashable", type(value)))
-    if items is None:
+    kind = _fitting(annotation, cast("Hashable", type(value)))
+    if kind is None:
         raise _unexpected(name, annotation, value)
-    if not items:
+    if not kind.items:
         return value
-    if isinstance(value, Iterator):
-        return _checked_items(name, items, value)
-    if isinstance(value, list | tuple | set) or type(value).__name__ == "ndarray":
-        for _ in _checked_items(name, items, iter(value)):
+    if isinstance(value, Mapping):
+        for part, own in zip(("keys", "values"), kind.items, strict=True):
+            for _ in _checked_items(f"{name}.{part}()", own, iter(getattr(value, part)())):
+                pass
+        return value
+    is_array = type(value).__name__ == "ndarray"
+    if is_array and not value.ndim:
+        raise _unexpected(name, annotation, value)
+    if isinstance(value, Iterator) or is_array:
+        items = _checked_items(name, kind.items[0], iter(value))
+        return items if kind.name == "Iterable" and not is_array else tuple(items)
+    if isinstance(value, Sequence | Set):
+        for _ in _checked_items(name, kind.items[0], iter(value)):
             pass
     return value
 
 
+def expected_fields(record: Any) -> None:
+    """Raise TypeError for a dataclass's field of another kind than is declared."""
+    for field in fields(record):
+        expected(field.name, str(field.type), getattr(record, field.name))
+
+
 def finite(name: str, value: Fraction | float | None) -> None:
     """Raise TypeError for what is no number, ValueError for one that is infinite or NaN."""
-    if expected(name, "float | None", value) is not None and not isfinite(value or 0):
-        raise ValueError(f"`{name}` is a finite number, not {value}")
+    if expected(name, "float | None", value) is not None and not is_finite(value or 0):
+        raise ValueError(f"`{name}` is a finite number, not {_short_number(value or 0)}")
+
+
+def is_finite(value: Fraction | float) -> bool:
+    """Tell whether a number is one that a float comes near to."""
+    try:
+        return isfinite(value)
+    except (OverflowError, ValueError):
+        return False
+
+
+def _short_number(value: Fraction | float) -> str:
+    return str(value) if isinstance(value, float) else "one beyond all floats"
 
 
 def _checked_items(name: str, annotation: str, items: Iterator[Any]) -> Iterator[Any]:
@@ -110,7 +145,8 @@ def _checked_items(name: str, annotation: str, items: Iterator[Any]) -> Iterator
 
 def _unexpected(name: str, annotation: str, value: object) -> TypeError:
     kinds = _kinds(annotation)
-    names = [one.name for kind in kinds for one in (kind, *_kinds(kind.items))]
+    items = [one for kind in kinds for own in kind.items for one in _kinds(own)]
+    names = [one.name for one in (*kinds, *items)]
     ways = [WAYS_OUT[name] for name in names if name in WAYS_OUT]
     said = [kind.said for kind in kinds if kind.name not in _UNSAID]
     listed = " or ".join(filter(None, (", ".join(said[:-1]), said[-1])))
@@ -120,22 +156,22 @@ def _unexpected(name: str, annotation: str, value: object) -> TypeError:
 
 @dataclass(frozen=True, slots=True)
 class _Kind:
-    """One of an annotation's alternatives: which types are of it, and what its items are."""
+    """One of an annotation's alternatives: which types are of it, and what its items are.
+
+    ``items`` has one annotation, of a mapping those of its keys and its values.
+    """
 
     name: str
     said: str
     holds: Callable[[type], bool]
-    items: str = ""
+    items: tuple[str, ...] = ()
 
 
 @lru_cache(maxsize=1 << 12)
-def _items(annotation: str, given: Hashable) -> str | None:
-    """The annotation of the items of what has a type, None if that is not expected."""
-    kinds = _kinds(annotation)
-    fitting = [kind.items for kind in kinds if kind.holds(cast("type", given))]
-    if kinds and not fitting:
-        return None
-    return min(fitting, default="")
+def _fitting(annotation: str, given: Hashable) -> _Kind | None:
+    """The alternative that a type is of, the one that asks least of items; None if of none."""
+    fitting = [kind for kind in _kinds(annotation) if kind.holds(cast("type", given))]
+    return min(fitting, key=lambda kind: kind.items, default=None)
 
 
 def _annotation(parameter: Parameter) -> tuple[str, str]:
@@ -158,7 +194,8 @@ def _alternatives(node: ast.expr) -> Iterator[_Kind]:
         yield from _alternatives(node.left)
         yield from _alternatives(node.right)
     elif isinstance(node, ast.Subscript):
-        yield _parametrized(ast.unparse(node.value), ast.unparse(node.slice))
+        own = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
+        yield _parametrized(ast.unparse(node.value), [ast.unparse(one) for one in own])
     elif (name := ast.unparse(node).rpartition(".")[2]) in _ALIASES:
         yield from _kinds(_ALIASES[name])
     elif name in _PLAIN:
@@ -178,13 +215,14 @@ def _with_article(name: str) -> str:
     return f"an {name}" if name[0] in "AEIOU" else f"a {name}"
 
 
-def _parametrized(name: str, items: str) -> _Kind:
+def _parametrized(name: str, items: Sequence[str]) -> _Kind:
     if name == "Literal":
-        return _Kind(name, f"one of {items.strip('()')}", lambda given: issubclass(given, str))
+        return _Kind(name, f"one of {', '.join(items)}", lambda given: issubclass(given, str))
     if name in _PLAIN:
-        return _Kind(name, *_PLAIN[name])
-    if name in ("Iterable", "Sequence"):
-        return _Kind(name, f"an iterable of {items.partition(' ')[0]}", _is_listed, items)
+        is_plain = name == "Mapping" and {*items} <= _PLAIN.keys() | _ALIASES.keys() | _ANYTHING
+        return _Kind(name, *_PLAIN[name], tuple(items) if is_plain else ())
+    if name in ("Collection", "Iterable", "Sequence"):
+        return _Kind(name, f"an iterable of {items[0].partition(' ')[0]}", _is_listed, tuple(items))
     return _Kind("Any", "", lambda _: True)
 
 

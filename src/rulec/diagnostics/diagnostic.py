@@ -86,7 +86,9 @@ class RulecError(Rows, Exception):
         if isinstance(diagnostics, Diagnostic):
             diagnostics = (diagnostics,)
         self.diagnostics = tuple(diagnostics)
-        super().__init__("; ".join(_one_line(d) for d in self.diagnostics))
+        # Whoever prints it has no trouble with what is no character, as in a file's name
+        text = "; ".join(_one_line(d) for d in self.diagnostics)
+        super().__init__(text.encode(errors="backslashreplace").decode())
 
     def __repr__(self) -> str:
         return f"RulecError({'; '.join(d.code for d in self.diagnostics[:20])}: {self.args[0]:.80})"

@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 from rulec.diagnostics import did_you_mean, named
 from rulec.scenario.recorded.lane_coordinates import TOUCHING_M
-from rulec.value_display import short_repr
+from rulec.value_display import brief, short_repr
 
 LARGEST = 1_000_000.0
 """A threshold in m, s or km/h that is larger means nothing on a road, and overflows."""
@@ -110,7 +110,7 @@ class Thresholds:
             given: object = getattr(self, own.name)
             is_number = isinstance(given, int | float) and not isinstance(given, bool)
             if not (is_number and 0 <= given <= LARGEST):  # type: ignore[operator]
-                message = f"`{own.name}` is a number from 0 to {LARGEST:,.0f}, not {given!r}"
+                message = f"`{own.name}` is a number from 0 to {LARGEST:,.0f}, not {brief(given)}"
                 raise ValueError(message)
 
 

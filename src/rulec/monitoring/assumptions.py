@@ -7,9 +7,11 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from rulec.diagnostics import RulecError
+from rulec.diagnostics.argument_kinds import expected_fields
 from rulec.monitoring.monitoring_messages import STEP_TOO_FAR_OFF
 from rulec.trace import Trace, Value
 from rulec.trace.trace_model import Ending
+from rulec.value_display import brief
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
 
 _NOT_TOLD = UNKNOWN_TYPES - {Interval}
@@ -34,13 +36,9 @@ class Assumptions:
     step_s: float | None = None
 
     def __post_init__(self) -> None:
+        expected_fields(self)
         if self.ends not in (None, "complete", "cut"):
-            raise ValueError(f'a trace ends "complete" or "cut", not {self.ends!r}')
-        if not isinstance(self.values, Mapping):
-            raise TypeError(
-                f"values are a mapping of names, not {type(self.values).__name__}: "
-                '{"built_up": True}'
-            )
+            raise ValueError(f"`ends` is complete or cut, not {brief(self.ends)}")
 
     def __bool__(self) -> bool:
         given = self.ends is not None or self.step_s is not None

@@ -16,6 +16,7 @@ from rulec.monitoring.monitoring_messages import UNDECLARED_NAME, UNFITTING_VALU
 from rulec.resource_limits import OBJECTS
 from rulec.trace import State
 from rulec.trace.trace_messages import UNKNOWN_OBJECT
+from rulec.value_display import brief
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval, OneOf
 
@@ -104,10 +105,11 @@ def check_objects(
     OBJECTS.within(len(objects), place)
     for name, kind in objects.items():
         if not isinstance(kind, str) or kind not in vocabulary.types:
+            said = kind if isinstance(kind, str) else brief(kind)
             raise UNKNOWN_OBJECT.error(
                 place,
-                f"object `{name}` is of type `{kind}`, which `{vocabulary.name}` does not know",
-                help=_type_meant(kind, vocabulary.types) or _suggest(kind, vocabulary.types),
+                f"object `{name}` is of type `{said}`, which `{vocabulary.name}` does not know",
+                help=_type_meant(said, vocabulary.types) or _suggest(said, vocabulary.types),
             )
 
 
@@ -324,7 +326,7 @@ def _shown(value: Any) -> str:
     else:
         kind = type(value)
         of = "" if kind.__module__ == "builtins" else f"{kind.__module__}."
-        text = f"{value} ({of}{kind.__name__})"
+        text = f"{brief(value)} ({of}{kind.__name__})"
     return f"`{text[:60]}…`" if len(text) > 60 else f"`{text}`"
 
 
@@ -339,7 +341,7 @@ def _type_meant(kind: str, types: Iterable[str]) -> str:
     from rulec.rulebook.vocabulary_phrases import synonyms_of_the_field
 
     others = synonyms_of_the_field()
-    said = str(kind).casefold()
+    said = kind.casefold()
     meant = (name for name in types if said in others.get(name, ()))
     return next((f"did you mean `{name}`?" for name in meant), "")
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import RulecError, SourceLocation, named
+from rulec.diagnostics.argument_kinds import checked_kinds
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.free_names import names_in
 from rulec.monitoring.assumptions import Assumptions
@@ -38,8 +39,9 @@ SUPPLIED = frozenset({"surface", *RELATIONS_OF["paper"], *RELATIONS_OF["fine"]})
 """The names that partitions supply."""
 
 
+@checked_kinds
 def partition_for(
-    rules: Rulebook | CompiledRulebook, requested: PartitionName | None
+    rules: Rulebook | CompiledRulebook, partition: PartitionName | None
 ) -> PartitionName:
     """The wanted partition, or the one that the rules need.
 
@@ -60,16 +62,16 @@ def partition_for(
             "does",
         )
     for name, relations in needed.items():
-        if requested not in (None, name):
+        if partition not in (None, name):
             raise TWO_PARTITIONS.error(
                 _place_of(RELATIONS_OF[name], rules),
                 f"rulebook `{rules.name}` reads {relations}, which the partition "
-                f"`{requested}` does not supply",
+                f"`{partition}` does not supply",
                 help=f"use the partition `{name}`, or leave the choice to the rulebook",
             )
         return name
     declares_fine = not rules.vocabulary.declarations.keys().isdisjoint(RELATIONS_OF["fine"])
-    return requested or ("fine" if declares_fine else "paper")
+    return partition or ("fine" if declares_fine else "paper")
 
 
 def _place_of(

@@ -13,7 +13,7 @@ from numpy import float64
 from numpy.typing import ArrayLike, NDArray
 
 from rulec.diagnostics import did_you_mean, named
-from rulec.diagnostics.argument_kinds import expected
+from rulec.diagnostics.argument_kinds import checked_kinds
 from rulec.recordings.building_checks import BuildingChecks
 from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.lanes.lanes_along import (
@@ -48,6 +48,7 @@ COMPLETE = frozenset(
 """Kinds of things that a recording can be said to have all of."""
 
 
+@checked_kinds
 def build_lanelet(
     identifier: str | int,
     centre: ArrayLike,
@@ -134,6 +135,7 @@ def _widths(
     return found
 
 
+@checked_kinds
 def build_participant(
     identifier: str | int,
     kind: str,
@@ -162,7 +164,6 @@ def build_participant(
     checks = BuildingChecks(f"participant `{name:.40}`")
     if not name:
         checks.wrong("its id is empty")
-    expected("kind", "str", kind)
     checks.one_of("kind", kind, OBSTACLE_TYPES)
     step_s = checks.positive("step_s", step_s)
     times = checks.numbers("t", t)
@@ -231,6 +232,7 @@ def _lit(
     }
 
 
+@checked_kinds
 def build_recording(
     lanelets: Iterable[Lanelet],
     participants: Iterable[Participant],
@@ -249,8 +251,7 @@ def build_recording(
     lanelets have all of, such as ``STOP`` for signs. Raises RulecError R0617, with all that is
     wrong: shapes of arrays, numbers that are none, ids that are double or lead nowhere.
     """
-    lanes = tuple(expected("lanelets", "Iterable[Lanelet]", lanelets))
-    bodies = tuple(expected("participants", "Iterable[Participant]", participants))
+    lanes, bodies = tuple(lanelets), tuple(participants)
     checks = BuildingChecks("the recording")
     step_s = checks.positive("step_s", step_s)
     if side is not None:

@@ -14,6 +14,7 @@ from rulec.recordings.lanes.lanes_along import CLOSEST_M
 from rulec.recordings.polylines import without_repeats
 from rulec.recordings.recording import LONGEST_M, Points
 from rulec.recordings.recording_messages import NOT_BUILT
+from rulec.value_display import brief
 
 _MOST_SHOWN = 20
 
@@ -39,7 +40,7 @@ class BuildingChecks:
         """Finite numbers in a row, as many as there have to be; zeros where that is not so."""
         try:
             found = np.array(values, dtype=float)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             found = np.full(0, np.nan)
             self.wrong(f"`{name}` holds something that is no number", "expected a row of numbers")
             return np.zeros(count or 1)
@@ -58,7 +59,7 @@ class BuildingChecks:
         line = np.array([[0.0, 0.0], [1.0, 0.0]])
         try:
             found = np.array(values, dtype=float)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             self.wrong(f"`{name}` holds something that is no number", "expected points (x, y)")
             return line
         if found.ndim != 2 or found.shape[1] != 2 or len(found) < 2:
@@ -88,14 +89,13 @@ class BuildingChecks:
     def positive(self, name: str, value: float) -> float:
         """A number above 0; 1 where it is none."""
         if not isinstance(value, int | float | np.number) or not 0 < value < LARGEST:
-            self.wrong(f"`{name}` is {value!r:.40}", "expected a number above 0")
+            self.wrong(f"`{name}` is {brief(value):.40}", "expected a number above 0")
             return 1.0
         return float(value)
 
     def one_of(self, name: str, value: str, known: Collection[str]) -> None:
         """Note a word that is not known."""
         if not isinstance(value, str) or value not in known:
+            shown = value if isinstance(value, str) else brief(value)
             some = named(sorted(known))
-            self.wrong(
-                f"`{name}` is `{value!s:.40}`", f"expected {some}", did_you_mean(str(value), known)
-            )
+            self.wrong(f"`{name}` is `{shown:.40}`", f"expected {some}", did_you_mean(shown, known))

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rulec.diagnostics import RulecError, SourceLocation, did_you_mean, named
-from rulec.files import opened
+from rulec.files import is_folder, opened
 from rulec.recordings.encodings.csv_head import PARQUET
 from rulec.recordings.encodings.safe_xml import is_xml
 from rulec.recordings.encodings.xml_element import short
@@ -150,7 +150,7 @@ def check_readable(path: Path) -> None:
 
     Raises RulecError R0610, R0701, R0706.
     """
-    if path.is_dir():
+    if is_folder(path):
         return
     with opened(path):
         pass

@@ -8,9 +8,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from rulec.diagnostics.argument_kinds import expected_fields
 from rulec.files import opened
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.safe_xml import is_xml, root_of
+from rulec.work_trees import is_ordinary
 
 if TYPE_CHECKING:
     from rulec.recordings.recording import Recording
@@ -35,6 +37,9 @@ class RecordingSource:
     form: str | None = None
     scenario_id: str | None = None
 
+    def __post_init__(self) -> None:
+        expected_fields(self)
+
 
 @dataclass(frozen=True)
 class Glance:
@@ -50,7 +55,7 @@ class Glance:
     @cached_property
     def head(self) -> bytes:
         """Its first bytes, unpacked if need be; none if it is no file."""
-        if not self.path.is_file():
+        if not is_ordinary(self.path):
             return b""
         with opened(self.path) as stream:
             return stream.read(_HEAD_BYTES)

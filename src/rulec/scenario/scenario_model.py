@@ -12,6 +12,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Literal, get_args
 
+from rulec.diagnostics.argument_kinds import expected_fields, finite
 from rulec.scenario.geometry import Box, centred
 from rulec.scenario.motion_bounds import MotionBounds
 from rulec.value_display import short_repr
@@ -241,6 +242,11 @@ class Choice:
     input_format: str | None = None
     scenario_id: str | None = None
     ego_width_m: float | None = None
+
+    def __post_init__(self) -> None:
+        expected_fields(self)
+        for name in ("at_s", "congested_below_kmh", "ego_width_m"):
+            finite(name, getattr(self, name))
 
 
 _ROUNDING = Fraction(1, 1000)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from math import isfinite
 
+from rulec.diagnostics.argument_kinds import is_finite
 from rulec.scenario.scenario_messages import UNFITTING_HORIZON
 
 MAX_LAYERS = 10_000
@@ -34,7 +34,7 @@ def timing(horizon_s: float, step_s: float) -> Timing:
     """
     for name, value in (("horizon", horizon_s), ("step", step_s)):
         number = not isinstance(value, bool) and isinstance(value, (int, float))
-        if not number or not isfinite(value) or value <= 0:
+        if not number or not is_finite(value) or value <= 0:
             raise UNFITTING_HORIZON.error(
                 None,
                 f"the {name} is `{value}`",

@@ -192,7 +192,7 @@ class TrafficWorld:
 def _numbers(what: str, values: ArrayLike, n_axes: int) -> NDArray[float64]:
     try:
         found = np.array(values, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise BAD_CANDIDATES.error(None, f"{what}: that is no array of numbers") from None
     shape = "(candidates, states, 4)" if n_axes == 3 else "(states, 4)"
     if found.ndim != n_axes or found.shape[-1] != len(_COLUMNS) or not found.size:

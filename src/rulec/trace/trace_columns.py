@@ -70,7 +70,9 @@ class Layout:
 def layout_of(lengths: Sequence[int] | NDArray[Any]) -> Layout:
     """Layout of traces of these lengths, descending; ValueError for others."""
     try:
-        result = np.asarray(lengths, dtype=np.int64)
+        given = np.asarray(lengths)
+        # Not dates, nor fractions; nothing at all is an array of floats
+        result = given.astype(np.int64, casting="same_kind" if given.size else "unsafe")
     except (TypeError, ValueError, OverflowError):
         raise ValueError("lengths of traces are whole numbers, such as [4, 4, 3]") from None
     if result.ndim != 1 or (len(result) and result[-1] < 1) or (np.diff(result) > 0).any():

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import islice
 from numbers import Integral, Real
-from typing import Literal
+from typing import Literal, get_args
 
 from rulec.diagnostics import SourceLocation
+from rulec.diagnostics.argument_kinds import is_finite
 from rulec.trace.trace_messages import NO_STATES, NOT_A_TRACE, UNKNOWN_OBJECT
-from rulec.value_display import short_repr
+from rulec.value_display import brief, short_repr
 from rulec.vocabulary.partial_values import PartialValue
 
 Value = bool | float | str
@@ -142,8 +142,9 @@ def check_frame(trace: Trace) -> None:
         raise NO_STATES.error(
             trace.place, "the trace has no states; it needs at least one to judge"
         )
-    if not 0 < trace.step_s < math.inf:
-        message = f"`step_s` is {float(trace.step_s):g}; it has to be a number of seconds above 0"
+    if not is_finite(trace.step_s) or not trace.step_s > 0:
+        shown = brief(trace.step_s)
+        message = f"`step_s` is {shown}; it has to be a number of seconds above 0"
         raise NOT_A_TRACE.error(trace.place, message)
 
 
@@ -151,6 +152,9 @@ def _check_kinds(trace: Trace) -> None:
     # Whoever writes one in Python may have put in anything
     states: object = trace.states
     step: object = trace.step_s
+    name: object = trace.id
+    ends: object = trace.ends
+    told: object = trace.told
     pairs: tuple[tuple[str, object], ...] = (
         ("objects", trace.objects),
         ("present", trace.present),
@@ -160,12 +164,24 @@ def _check_kinds(trace: Trace) -> None:
         wrong = f"`states` is a tuple of states, not {type(states).__name__}"
     elif isinstance(step, bool) or not isinstance(step, Real):
         wrong = f"`step_s` is a number of seconds, not {type(step).__name__}"
-    for name, given in pairs:
+    elif not isinstance(name, str):
+        wrong = f"`id` is a str, not {type(name).__name__}"
+    elif not isinstance(ends, str) or ends not in get_args(Ending):
+        wrong = f"`ends` is complete or cut, not {brief(ends)}"
+    elif told is not None and not isinstance(told, frozenset):
+        wrong = f"`told` is a frozenset of names, not {type(told).__name__}"
+    for what, given in pairs:
         # Asking for a mapping takes far longer than asking for a dictionary.
         if type(given) is not dict and not isinstance(given, Mapping):
-            wrong = f"`{name}` is a dict by names of objects, not {type(given).__name__}"
+            wrong = f"`{what}` is a dict by names of objects, not {type(given).__name__}"
     if wrong:
         raise NOT_A_TRACE.error(trace.place, wrong)
+
+
+def plain_step_s(trace: Trace) -> float:
+    """The step (s) as files have it, though a program may have given a fraction."""
+    step_s: object = trace.step_s
+    return step_s if isinstance(step_s, int | float) else float(trace.step_s)
 
 
 def _is_span(given: object) -> bool:
@@ -178,7 +194,9 @@ def check_presence(trace: Trace) -> None:
     """Check the presence of a trace's objects."""
     for name, span in trace.present.items():
         if not _is_span(span):
-            message = f"`present` has two states for `{name}`, the first and the last, not {span!r}"
+            message = (
+                f"`present` has two states for `{name}`, the first and the last, not {brief(span)}"
+            )
             raise NOT_A_TRACE.error(trace.place, message)
         first, last = span
         if name not in trace.objects:

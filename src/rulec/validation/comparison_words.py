@@ -19,12 +19,14 @@ from rulec.validation.unprovable import UnprovableError, exact, require
 _MIRRORED = {"<": ">", ">": "<", "<=": ">=", ">=": "<=", "=": "=", "!=": "!="}
 
 # Sizes in metres, seconds, kilograms and degrees.
-_UNITS: Mapping[str, tuple[Fraction, str]] = {
+KNOWN_UNITS: Mapping[str, tuple[Fraction, str]] = {
     name: (Fraction(size), kind)
     for kind, units in {
-        "m": "1 m meter metre; 1000 km kilometer kilometre; 1/100 cm; 1/1000 mm; 1/10 dm; "
-        "381/1250 ft foot feet; 1143/1250 yd yard; 201168/125 mi mile; 1852 nmi",
-        "s": "1 s second; 1/1000 ms; 60 min minute; 3600 h hr hour; 86400 d day",
+        "m": "1 m meter metre; 1000 km kilometer kilometre; 1/100 cm centimeter centimetre; "
+        "1/1000 mm millimeter millimetre; 1/10 dm; 127/5000 inch inches; 381/1250 ft foot feet; "
+        "1143/1250 yd yard; 201168/125 mi mile; 1852 nmi",
+        "s": "1 s sec second; 1/1000 ms millisecond; 60 min minute; 3600 h hr hour; 86400 d day; "
+        "604800 week",
         "m/s": "1397/3125 mph; 5/18 kph; 463/900 kt knot; 1 mps; 381/1250 fps",
         "kg": "1 kg kilogram; 1000 t tonne; 1/1000 g gram; 45359237/100000000 lb pound",
         "deg": "1 ° deg degree",
@@ -102,7 +104,7 @@ def _unit(text: str) -> tuple[Fraction, _Kind]:
     size, kind = Fraction(1), Counter[str]()
     for place, part in enumerate(text.split("/")):
         name, _, power = part.partition("^")
-        known = _UNITS.get(name)
+        known = KNOWN_UNITS.get(name)
         require(known is not None, f"this checker does not know the unit `{text}`")
         assert known is not None
         times = int(power or 1) * (-1 if place else 1)

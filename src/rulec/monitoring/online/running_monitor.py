@@ -162,7 +162,7 @@ class Monitor:
         """
         current, number, _, cache = self._now
         same_objects = objects == current.bound_rules.objects
-        if same_objects:
+        if same_objects is True:  # and no array of such answers
             # A method that is looked up and called at once would be looked up in the class first.
             key = cache.key
             try:
@@ -187,7 +187,7 @@ class Monitor:
         current, number, _, cache = self._now
         number += 1
         bound_rules = current.bound_rules
-        if same_objects:
+        if same_objects is True:  # and no array of such answers
             # They may be given in another order.
             objects = bound_rules.objects
         else:

@@ -6,6 +6,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from rulec.diagnostics import named
+from rulec.files import is_folder
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.xml_element import short
 
@@ -19,17 +20,17 @@ _MOST_NAMED = 3
 
 def is_named(path: Path, pattern: str) -> bool:
     """True for a file with such a name, and for a folder with such a file."""
-    return has(path, pattern) or (not path.is_dir() and fnmatchcase(path.name, pattern))
+    return has(path, pattern) or (not is_folder(path) and fnmatchcase(path.name, pattern))
 
 
 def has(folder: Path, pattern: str) -> bool:
     """True for a folder with such a file."""
-    return folder.is_dir() and next(folder.glob(pattern), None) is not None
+    return is_folder(folder) and next(folder.glob(pattern), None) is not None
 
 
 def only_in(path: Path, pattern: str, form: FileFormat) -> Path:
     """The file itself, or the only one with such a name in a folder. Raises RulecError R0610."""
-    return _only(path, path, pattern, form, "name one of them") if path.is_dir() else path
+    return _only(path, path, pattern, form, "name one of them") if is_folder(path) else path
 
 
 def map_beside(path: Path, form: FileFormat) -> Path:
@@ -39,7 +40,7 @@ def map_beside(path: Path, form: FileFormat) -> Path:
 
 
 def _only(path: Path, folder: Path, pattern: str, form: FileFormat, way_out: str) -> Path:
-    found = sorted(folder.glob(pattern)) if folder.is_dir() else []
+    found = sorted(folder.glob(pattern)) if is_folder(folder) else []
     if len(found) == 1:
         return found[0]
     if not found:

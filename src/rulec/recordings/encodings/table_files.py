@@ -275,10 +275,17 @@ def table_of(columns: Mapping[str, Any], words: str) -> ColumnTable:
         raise refused(f"they are of type `{type(given).__name__}`", expected=_EXPECTED) from None
 
     def read(numbers: Sequence[str], texts: Sequence[str]) -> Columns:
-        wanted = {name: np.asarray(columns[name]) for name in (*numbers, *texts)}
+        wanted = {name: _array(name, columns[name], refused) for name in (*numbers, *texts)}
         return columns_of(wanted, numbers, texts, refused)
 
     return ColumnTable(names, refused, read)
+
+
+def _array(name: str, values: Any, refused: Any) -> NDArray[Any]:
+    try:
+        return np.asarray(values)
+    except ValueError:  # lists in lists, of many depths or different lengths
+        raise refused(f"its column `{short(name)}` is no row of values") from None
 
 
 def columns_of(

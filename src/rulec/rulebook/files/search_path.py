@@ -226,7 +226,7 @@ def read_bytes(path: Path, use: Span | None = None) -> bytes:
 
 def _instead_of(path: Path) -> str:
     """The way out where a file cannot be read: the rulebook that ships under its name."""
-    if not path.exists() and _by_name(path.stem, ()) is not None:
+    if not os.path.lexists(path) and _by_name(path.stem, ()) is not None:
         return f"`{path.stem}` ships with rulec: leave out `{SUFFIX}`"
     return "check its name and its permissions"
 

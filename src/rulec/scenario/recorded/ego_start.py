@@ -149,6 +149,7 @@ def reference_lanelet(
 
 
 def _step(recording: recorded.Recording, at_s: float, file: str) -> int:
+    at_s = float(at_s)
     step = round(at_s / recording.step_s)
     if abs(step * recording.step_s - at_s) > 1e-6:
         message = f"the file has no states at {at_s:g} s"

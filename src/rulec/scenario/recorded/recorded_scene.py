@@ -186,7 +186,7 @@ def congested(obstacles: Iterable[Obstacle], road: Box, below_kmh: float) -> tup
         return False, few
     middle = median(speeds)
     relation = "below" if middle < below_kmh else "not below"
-    compared = f"{middle:.1f} km/h, {relation} {below_kmh:g} km/h"
+    compared = f"{middle:.1f} km/h, {relation} {float(below_kmh):g} km/h"
     return middle < below_kmh, f"the median speed of {len(speeds)} vehicles is {compared}"
 
 

@@ -20,7 +20,7 @@ from rulec.trace.formats.json_numbers import as_written, exactly, may_be_no_floa
 from rulec.trace.formats.partial_json import BOUNDS, from_json, to_json
 from rulec.trace.formats.stream_lines import foreign, lines_as_they_come, placed
 from rulec.trace.trace_messages import NOT_A_TRACE
-from rulec.trace.trace_model import Ending, State, Trace
+from rulec.trace.trace_model import Ending, State, Trace, plain_step_s
 
 if TYPE_CHECKING:
     from rulec.trace.formats.alike_lines import AlikeLines, LineBlock
@@ -303,7 +303,7 @@ def write_traces(traces: Iterable[Trace], stream: IO[bytes]) -> int:
     encoder = msgspec.json.Encoder(enc_hook=as_written)
     count = 0
     for count, trace in enumerate(traces, 1):  # noqa: B007 - the count is the result
-        fields: dict[str, object] = {"id": trace.id, "step_s": trace.step_s}
+        fields: dict[str, object] = {"id": trace.id, "step_s": plain_step_s(trace)}
         fields |= {"objects": trace.objects, "states": [to_json(state) for state in trace.states]}
         if trace.present:
             fields["present"] = trace.present

@@ -7,14 +7,16 @@ from itertools import chain
 from pathlib import Path, PurePath
 from typing import IO, Any, Literal, get_args
 
-from rulec.diagnostics import RulecError
+from rulec.diagnostics import RulecError, SourceLocation
 from rulec.files import opened
 from rulec.trace.formats import json_lines
 from rulec.trace.formats.arrow.parquet import read_parquet, write_parquet
 from rulec.trace.formats.csv_table import read_csv, write_csv
 from rulec.trace.formats.table_reader import ENDS, FROM, OWN, PARTIAL, TO, TOLD, UNKNOWN_NAMES
-from rulec.trace.trace_model import State, Trace
-from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
+from rulec.trace.trace_messages import NOT_A_TRACE
+from rulec.trace.trace_model import State, Trace, plain_step_s
+from rulec.value_display import brief
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue, UnknownValue
 
 Format = Literal["jsonl", "csv", "parquet"]
 FORMATS: tuple[Format, ...] = get_args(Format)
@@ -84,12 +86,32 @@ def write_traces(
     elif form == "csv":
         columns.remove(UNKNOWN_NAMES)  # `?` says it
     rows = chain.from_iterable(rows_of(trace, columns) for trace in traces)
-    if form == "csv":
-        write_csv(rows, columns, stream)
-        return
     own = {"step": int, "step_s": float, TOLD: list, UNKNOWN_NAMES: list}
     types = [(name, kinds.get(name) or own.get(name, str)) for name in columns]
-    write_parquet(rows, types, stream, file)
+    try:
+        if form == "csv":
+            write_csv(rows, columns, stream)
+        else:
+            write_parquet(rows, types, stream, file)
+    except UnicodeEncodeError:
+        why = "a trace has half a character (a surrogate), which no file holds"
+        raise NOT_A_TRACE.error(SourceLocation(file), why) from None
+
+
+_WRITABLE = (bool, int, float, str, Interval, UnknownValue)
+
+
+def check_writable(trace: Trace) -> None:
+    """Refuse values that no format of traces has. Raises RulecError R0501."""
+    for number, state in enumerate(trace.states):
+        for name, value in state.items():
+            odd = [one for one in _leaves(value) if not isinstance(one, _WRITABLE)]
+            if odd or not isinstance(name, str):
+                what = (
+                    f"`{name}` is {brief(odd[0])}" if odd else f"the name {brief(name)} is no str"
+                )
+                message = f"state {number}: {what}, which no file can hold"
+                raise NOT_A_TRACE.error(trace.place, message)
 
 
 def kinds_in(states: Iterable[State]) -> dict[str, type]:
@@ -128,10 +150,10 @@ def is_partial(trace: Trace) -> bool:
     )
 
 
-def _leaves(value: Any) -> Iterator[PartialValue]:
-    if isinstance(value, Mapping):
+def _leaves(value: Any, most_objects: int = 2) -> Iterator[PartialValue]:
+    if isinstance(value, Mapping) and most_objects:
         for inner in value.values():
-            yield from _leaves(inner)
+            yield from _leaves(inner, most_objects - 1)
     else:
         yield value
 
@@ -156,7 +178,7 @@ def rows_of(trace: Trace, columns: Sequence[str]) -> Iterator[list[Any]]:
     nothing = [None] * len(own)
     first = [of_trace.get(name) for name in own]
     for step, state in enumerate(trace.states):
-        start = [trace.id, step, trace.step_s]
+        start = [trace.id, step, plain_step_s(trace)]
 
         def row(
             *items: str, start: Sequence[Any] = start, state: State = state, step: int = step

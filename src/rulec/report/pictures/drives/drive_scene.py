@@ -163,4 +163,4 @@ class DriveScene:
 
     def nearest_state(self, time_s: float) -> int:
         """The state whose time is nearest."""
-        return min(max(round((time_s - self.start_s) / self.step_s), 0), self.states - 1)
+        return round(min(max((time_s - self.start_s) / self.step_s, 0), self.states - 1))
