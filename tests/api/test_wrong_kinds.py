@@ -64,7 +64,6 @@ def test_a_rulebook_in_memory_is_written_in_ltl(tmp_path):
 
 NAN = float("nan")
 RULES = rulec.compile_rulebook("esterle2019")
-MONITOR = rulec.Monitor(RULES)
 DRIVEN = rulec.read_recording(FOLLOWING)
 VIOLATED = rulec.Violation("R9", "hard", {}, 0)
 LINE = [(0, 0), (9, 0)]

@@ -326,8 +326,15 @@ def _shown(value: Any) -> str:
     else:
         kind = type(value)
         of = "" if kind.__module__ == "builtins" else f"{kind.__module__}."
-        text = f"{brief(value)} ({of}{kind.__name__})"
+        text = f"{_written(value)} ({of}{kind.__name__})"
     return f"`{text[:60]}…`" if len(text) > 60 else f"`{text}`"
+
+
+def _written(value: object) -> str:
+    try:
+        return str(value)
+    except RecursionError:  # lists in lists in lists
+        return "…"
 
 
 def _suggest(name: str, known: Iterable[str]) -> str:

@@ -143,8 +143,7 @@ def check_frame(trace: Trace) -> None:
             trace.place, "the trace has no states; it needs at least one to judge"
         )
     if not is_finite(trace.step_s) or not trace.step_s > 0:
-        shown = brief(trace.step_s)
-        message = f"`step_s` is {shown}; it has to be a number of seconds above 0"
+        message = f"`step_s` is {brief(trace.step_s)}; it has to be a number of seconds above 0"
         raise NOT_A_TRACE.error(trace.place, message)
 
 
@@ -168,7 +167,7 @@ def _check_kinds(trace: Trace) -> None:
         wrong = f"`id` is a str, not {type(name).__name__}"
     elif not isinstance(ends, str) or ends not in get_args(Ending):
         wrong = f"`ends` is complete or cut, not {brief(ends)}"
-    elif told is not None and not isinstance(told, frozenset):
+    elif told is not None and not isinstance(told, frozenset | tuple):
         wrong = f"`told` is a frozenset of names, not {type(told).__name__}"
     for what, given in pairs:
         # Asking for a mapping takes far longer than asking for a dictionary.

@@ -16,7 +16,7 @@ from rulec.extraction.tracks.junctions import junctions_of
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
-CENTRE, RADIUS = (100.0, 15.0), 15.0
+RADIUS = 15.0
 ROUTE = ("1", "2", "3", "4", "5")
 
 

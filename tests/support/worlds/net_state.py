@@ -33,7 +33,6 @@ class Lane:
     length: float
     width: float
     shape: np.ndarray
-    walkers_only: bool
 
     def heading_at(self, pos):
         """Its direction (degrees clockwise from north) at a place along it."""
@@ -96,7 +95,6 @@ class NetState:
                 length=float(one.get("length")),
                 width=float(one.get("width", 3.2)),
                 shape=np.array(shape),
-                walkers_only=one.get("allow") == "pedestrian",
             )
             edge.lanes[lane.id] = self.lanes[lane.id] = lane
 

@@ -14,14 +14,12 @@ _MOTORWAYS = "US101", "DEU_A9"
 
 @dataclass
 class RawLanelet:
-    """A lanelet: bounds, neighbours by id, limits (m/s) by its signs, ids of its lights."""
+    """A lanelet: bounds, limits (m/s) by its signs, ids of its lights."""
 
     id: str
     left: np.ndarray
     right: np.ndarray
     after: tuple
-    beside_left: str | None
-    beside_right: str | None
     types: frozenset
     limits: list
     lights: tuple
@@ -147,18 +145,11 @@ def _lanelet(one, signs):
     limits = [limit for ref in one.findall("trafficSignRef") for limit in signs[ref.get("ref")]]
     old = one.find("speedLimit")
     limits += [float(old.text)] if old is not None else []
-    beside = {}
-    for name in ("adjacentLeft", "adjacentRight"):
-        other = one.find(name)
-        same = other is not None and other.get("drivingDir") == "same"
-        beside[name] = other.get("ref") if same else None
     return RawLanelet(
         one.get("id"),
         left,
         right,
         tuple(ref.get("ref") for ref in one.findall("successor")),
-        beside["adjacentLeft"],
-        beside["adjacentRight"],
         frozenset(kind.text for kind in one.findall("laneletType")),
         limits,
         tuple(ref.get("ref") for ref in one.findall("trafficLightRef")),

@@ -16,8 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from rulec.files import opened
 from rulec.recordings.encodings.file_format import BinaryFormat
+from rulec.recordings.encodings.wire_format import wire_file
 from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.scenarionet.pickle_machine import (
     MOST_OPCODES,
@@ -65,12 +65,7 @@ def read_pickle(path: Path, form: BinaryFormat) -> Any:
     R0610 for anything else, and for what is broken, with its byte, R0701 for a file that cannot be
     read.
     """
-    with opened(path) as stream:
-        data = stream.read(form.largest_bytes + 1)
-    if not data:
-        raise form.refused(path, "it is empty")
-    if len(data) > form.largest_bytes:
-        raise form.refused(path, f"it is too large: at most {form.largest_bytes:,} bytes are read")
+    data = wire_file(path, form).data
     machine = PickleMachine(data, path, form)
     if data[0] != 0x80:
         raise machine.wrong("it does not begin with a protocol, as pickles since protocol 2 do")
