@@ -29,6 +29,8 @@ from rulec.value_display import Rows, short_repr
 class AuditFinding:
     """A finding about a rule, article, topic, parameter or word, by name."""
 
+    __repr__ = short_repr
+
     kind: str
     name: str
     note: str = ""
