@@ -82,6 +82,26 @@ def test_a_hostile_rulebook_compiles_to_the_same_code(esterle, tmp_path):
     assert codes[0] == codes[1]
 
 
+@pytest.mark.parametrize(
+    "name", ["int", "NULL", "Self", "size_t", "uint8_t", "uint_fast16_t", "INT64_C", "UINT8_MAX"]
+)
+def test_no_name_of_a_language_or_its_headers_is_taken(name):
+    assert Identifiers().of(name) == f"{name}_of_rule"
+
+
+@needs_a_compiler
+def test_names_of_headers_make_a_monitor(tmp_path):
+    names = ("NULL", "size_t", "uint8_t", "Self", "int", "a" * 60, "straße")
+    signals = "".join(f"signal {name} default false\n" for name in names)
+    rules = "".join(f"hard rule r_{name} {{ require always {name} }}\n" for name in names)
+    book = rulec.parse_rulebook(f"rulebook main\n{signals}{rules}")
+    rulec.write_monitor(book, tmp_path)
+    for compiler in (["cc", "-std=c99"], ["c++", "-x", "c++"]):
+        strict = ["-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only"]
+        (source,) = tmp_path.glob("*.h") if compiler[0] == "c++" else tmp_path.glob("*.c")
+        subprocess.run([*compiler, *strict, source], check=True)
+
+
 def test_identifiers_are_apart_and_none_of_a_language():
     identifiers = Identifiers()
     names = ["int", "class", "fn", "a-b", "a b", "a__b", "_a", "9", "é", "É", "rulec_x", "int_"]

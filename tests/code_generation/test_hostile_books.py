@@ -46,13 +46,22 @@ def in_plain_names(text, book):
     return text.replace(prefix, "watched").replace(prefix.upper(), "WATCHED")
 
 
+def anonymous(code):
+    """What is no name, text, comment or layout in code of Rust."""
+    code = re.sub(r"//[^\n]*", "", code)
+    return re.sub(r",?\s+", " ", re.sub(r'"[^"]*"|\w+', "x", code)).replace(" ", "")
+
+
 @pytest.mark.parametrize("language", WRITTEN)
 def test_no_text_ends_a_line_or_turns_one_round(books, language):
     plain, *evil = [WRITTEN[language](layout_of(book, language)) for book in books]
     for book, texts in zip(books[1:], evil, strict=True):
         assert [in_plain_names(path, book) for path in texts] == list(plain)
         for text, own in zip(texts.values(), plain.values(), strict=True):
-            assert len(text.splitlines()) == len(own.splitlines())
+            if language == "rust":  # Lines end where rustfmt ends them, by the lengths of names
+                assert anonymous(text) == anonymous(own)
+            else:
+                assert len(text.splitlines()) == len(own.splitlines())
             shown = text.replace("\n", "").replace("\t", "")
             assert shown.isprintable()
             assert not {"R", "AL", "AN"} & {unicodedata.bidirectional(one) for one in shown}

@@ -16,14 +16,17 @@ from rulec.code_generation.compiled_c.rust_library import RustLibrary
 from rulec.code_generation.monitor_layout import monitor_layout
 from rulec.code_generation.proof.monitor_proof import proof_of
 from rulec.code_generation.rust_files import crate_texts, rust_source
+from rulec.code_generation.rust_form import formed
 from rulec.code_generation.rust_reading_code import RustReadingCode
 from rulec.code_generation.written_names import rust_string
 from rulec.rulebook.rulebook_model import SourceFile
+from support.builders.national_books import NATIONAL
 from support.builders.rulebooks import compile_here
 from support.generators.random_rulebooks import rulebook
 from support.generators.seeds import seeds
 
 needs_rust = pytest.mark.skipif(shutil.which("rustc") is None, reason="there is no Rust compiler")
+needs_rustfmt = pytest.mark.skipif(shutil.which("rustfmt") is None, reason="there is no rustfmt")
 needs_cargo = pytest.mark.skipif(shutil.which("cargo") is None, reason="there is no cargo")
 PAGE = Path(__file__).parents[2] / "docs" / "onboard.md"
 HOSTILE = [
@@ -94,7 +97,7 @@ def test_a_hostile_rulebook_has_the_same_code(esterle):
     codes = []
     for one in (esterle, book):
         source = re.sub(r"//[^\n]*", "", rust_source(layout_of(one)))
-        codes.append(re.sub(r"\s+", " ", re.sub(r'"[^"]*"', '""', source)))
+        codes.append(re.sub(r",?\s+", "", re.sub(r'"[^"]*"', '""', source)))
     assert codes[0] == codes[1]
 
 
@@ -138,3 +141,81 @@ def test_a_crate_needs_nothing(esterle):
     texts = crate_texts(layout_of(esterle))
     assert "dependencies" not in texts["Cargo.toml"]
     assert "#![no_std]\n#![forbid(unsafe_code)]\n" in texts["src/lib.rs"]
+
+
+def in_rustfmts_form(*files):
+    check = ["rustfmt", "--edition", "2021", "--check", "--color", "never", *files]
+    done = subprocess.run(check, capture_output=True, text=True)
+    return done.stdout + done.stderr
+
+
+@needs_rustfmt
+@pytest.mark.parametrize("book", ["esterle2019", "gb"])
+def test_a_crate_is_in_rustfmts_form(book, tmp_path):
+    rulec.write_monitor(book, tmp_path, language="rust")
+    assert in_rustfmts_form(*tmp_path.rglob("*.rs")) == ""
+
+
+@needs_rustfmt
+@pytest.mark.long
+@pytest.mark.parametrize("book", NATIONAL)
+def test_all_that_ships_is_in_rustfmts_form(book, tmp_path):
+    rulec.write_monitor(book, tmp_path, language="rust")
+    assert in_rustfmts_form(*tmp_path.rglob("*.rs")) == ""
+
+
+@needs_rustfmt
+def test_long_names_are_in_rustfmts_form(tmp_path):
+    name = "a" * 60
+    book = rulec.parse_rulebook(
+        f"rulebook {name}\ntype thing\nquantity {name}(a: thing, b: thing) in m default 1\n"
+        "hard rule r (v: thing, w: thing) {\n"
+        f"  require always ({name}(v, w) > {name}(w, v) or count x: thing ({name}(x, v) > 3 m) < 2)"
+        "\n}\n"
+    )
+    rulec.write_monitor(book, tmp_path, language="rust")
+    assert in_rustfmts_form(*tmp_path.rglob("*.rs")) == ""
+
+
+TWENTY = ", ".join(map(str, range(20)))
+TERM = "is(input.objects[who0].oncoming)"
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("    // a[0, 1]", ["    // a[0, 1]"]),
+        ("static A: [u8; 20] = [1, 2];", ["static A: [u8; 20] = [1, 2];"]),
+        (
+            f"static A: [u8; 20] = [{TWENTY}];",  # 70 columns of numbers, of which 60 may be
+            ["static A: [u8; 20] = [", f"    {TWENTY},", "];"],
+        ),
+        ("    Self { id, kind: 12 }", ["    Self { id, kind: 12 }"]),  # 16 columns, of which 18 may be
+        (
+            "    Self { id, kind: 12, x: 34 }",
+            ["    Self {", "        id,", "        kind: 12,", "        x: 34,", "    }"],
+        ),
+        (
+            f"    digits[1] = or({TERM}, {TERM});",
+            ["    digits[1] = or(", f"        {TERM},", f"        {TERM},", "    );"],
+        ),
+        (
+            f"    not(or({TERM}, {TERM}))",
+            ["    not(or(", f"        {TERM},", f"        {TERM},", "    ))"],
+        ),
+        (
+            "        0 => if who0 == each { YES } else { NO },",
+            [
+                "        0 => {",
+                "            if who0 == each {",
+                "                YES",
+                "            } else {",
+                "                NO",
+                "            }",
+                "        }",
+            ],
+        ),
+    ],
+)
+def test_a_line_is_in_rustfmts_form(line, expected):
+    assert list(formed([line])) == expected

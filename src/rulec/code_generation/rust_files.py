@@ -10,6 +10,7 @@ from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.code_generation.c_files import default_of, head_lines
 from rulec.code_generation.input_fields import RULE, TYPE
 from rulec.code_generation.monitor_layout import MonitorLayout, RuleLayout
+from rulec.code_generation.rust_form import formed
 from rulec.code_generation.written_names import in_comment, prefix_of, rust_string
 from rulec.vocabulary import Declaration, Enumeration, Quantity
 
@@ -31,18 +32,19 @@ name = "{name}"
 _TEST = """\
 //! The monitor takes a state of which nothing is known, and refuses what is no state.
 
-use {name}::{{Input, Monitor, Object, Refusal, Verdict}};
+use {name}::*;
 
 #[test]
 fn nothing_known_violates_nothing_for_sure() {{
-    let said = Monitor::new().step(&Input::unknown(&[])).map(|said| said.book.best);
-    assert!(matches!(said, Ok(best) if best < Verdict::Violated));
+    let said = Monitor::new().step(&Input::unknown(&[]));
+    assert!(matches!(said, Ok(said) if said.book.best < Verdict::Violated));
 }}
 
 #[test]
 fn what_is_no_object_is_refused() {{
     let objects = [Object::unknown(1, u8::MAX)];
-    assert_eq!(Monitor::new().step(&Input::unknown(&objects)), Err(Refusal::BadType));
+    let said = Monitor::new().step(&Input::unknown(&objects));
+    assert_eq!(said, Err(Refusal::BadType));
 }}
 """
 
@@ -59,6 +61,9 @@ def crate_texts(layout: MonitorLayout) -> dict[str, str]:
 
 def rust_source(layout: MonitorLayout) -> str:
     """All of the crate's code."""
+    data = [*_constants(layout), "", *_input(layout), "", *_tables(layout), ""]
+    defined = [*layout.definitions, ""] if layout.definitions else []
+    reading = [*defined, *_reading_functions(layout)]
     return "\n".join(
         [
             *[f"// {line}".rstrip() for line in head_lines(layout)],
@@ -67,16 +72,9 @@ def rust_source(layout: MonitorLayout) -> str:
             "// Not every rulebook needs all of it, and fields have its vocabulary's names.",
             "#![allow(dead_code, non_snake_case)]",
             "",
-            *_constants(layout),
-            "",
-            *_input(layout),
-            "",
-            *_tables(layout),
-            "",
+            *formed(data),
             (_TEXTS / "readings.rs").read_text(encoding="utf-8"),
-            *layout.definitions,
-            "",
-            *_reading_functions(layout),
+            *formed("\n".join(reading).split("\n")),
             (_TEXTS / "engine.rs").read_text(encoding="utf-8"),
         ]
     )
@@ -156,9 +154,7 @@ def _constants(layout: MonitorLayout) -> Iterator[str]:
         ("RULE_ARTICLES", [own.rule.cite for own in rules]),
         ("SOURCE_DIGESTS", digests),
     ):
-        yield f"pub static {name}: [&str; {len(texts)}] = ["
-        yield from (f"    {rust_string(text)}," for text in texts)
-        yield "];"
+        yield f"pub static {name}: [&str; {len(texts)}] = {_listed(map(rust_string, texts))};"
 
 
 def _kind(item: Declaration) -> str:
@@ -211,13 +207,15 @@ def _input(layout: MonitorLayout) -> Iterator[str]:
     yield "}"
     yield ""
     yield "fn has_all_pairs(input: &Input) -> bool {"
-    checks = ["true"]
-    for item in several:
-        field, n = fields.identifiers[item.name], len(item.parameters)
-        checks.append(f"input.{field}.is_none_or(|all| all.len() == input.objects.len().pow({n}))")
     if not several:
         yield "    let _ = input;"
-    yield f"    {' && '.join(checks)}"
+    for item in several:
+        n = len(item.parameters)
+        yield f"    let (given, n) = (input.{fields.identifiers[item.name]}, {n});"
+        yield "    if given.is_some_and(|all| all.len() != input.objects.len().pow(n)) {"
+        yield "        return false;"
+        yield "    }"
+    yield "    true"
     yield "}"
     for item in several:
         yield from _matrix(item, layout)
@@ -250,21 +248,25 @@ def _matrix(item: Declaration, layout: MonitorLayout) -> Iterator[str]:
     names = [f"who{number}" for number in range(len(item.parameters))]
     place = names[0]
     for name in names[1:]:
-        place = f"({place}) * input.objects.len() + {name}"
+        place = f"({place})" if " " in place else place
+        place = f"{place} * input.objects.len() + {name}"
     parameters = ", ".join(f"{name}: usize" for name in names)
     yield f"fn of_{field}(input: &Input, {parameters}) -> {_kind(item)} {{"
-    yield f"    input.{field}.map_or({_said(item, defaults=True)}, |all| all[{place}])"
+    yield f"    match input.{field} {{"
+    yield f"        None => {_said(item, defaults=True)},"
+    yield f"        Some(all) => all[{place}],"
+    yield "    }"
     yield "}"
 
 
 def _tables(layout: MonitorLayout) -> Iterator[str]:
     kinds, vocabulary = layout.fields.types, layout.fields.vocabulary
     yield "/// By type, and the type of an object."
-    yield "static FITS: [[bool; TYPES]; TYPES] = ["
-    for of in kinds:
-        fits = [str(own == of or vocabulary.is_subtype(own, of)).lower() for own in kinds]
-        yield f"    [{', '.join(fits)}],"
-    yield "];"
+    fits = [
+        _listed(str(own == of or vocabulary.is_subtype(own, of)).lower() for own in kinds)
+        for of in kinds
+    ]
+    yield f"static FITS: [[bool; TYPES]; TYPES] = {_listed(fits)};"
     for name, place in (("FIRST", 0), ("END", 1)):
         seats = _listed(layout.seats[one][place] for one in kinds)
         yield f"static {name}: [usize; TYPES] = {seats};"

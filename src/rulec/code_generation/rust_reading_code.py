@@ -53,7 +53,8 @@ class RustReadingCode(ReadingCode):
         return [value]
 
     def _counting(self, counts: str) -> list[str]:
-        return [f"(0..input.objects.len()).map(|each| {counts}).sum()"]
+        start = "let mut found = 0;\n    for each in 0..input.objects.len() {"
+        return [start, f"    found += {counts};", "}", "found"]
 
     def _weighing(self, values: Sequence[str], counted: Sequence[bool], shape: str) -> list[str]:
         lines = []

@@ -23,11 +23,14 @@ _KEYWORDS = """
     abstract as async await become box crate dyn extern final fn gen impl in let loop macro match
     mod move mut override priv pub ref self static super trait type unsafe unsized use where yield
     linux unix i386 arm mips sun near far errno assert stdin stdout stderr environ main
-    id objects n_objects
+    id objects n_objects Self NULL size_t ptrdiff_t max_align_t offsetof nullptr_t NAN INFINITY
 """
 _RESERVED = frozenset(_KEYWORDS.split())
-"""Keywords of C, C++ and Rust, macros of compilers that are no words of the standard, and the
-monitor's own fields."""
+"""Keywords of C, C++ and Rust, macros of compilers that are no words of the standard, the monitor's
+own fields, and names of ``stddef.h``."""
+
+_OF_STDINT = re.compile(r"u?int(_least|_fast|ptr|max)?[0-9]*_t|[A-Z0-9_]+_(MIN|MAX|C)")
+"""Names of ``stdint.h``."""
 
 _SHOWN = frozenset({"Lu", "Ll", "Lt", "Lm", "Lo", "Nd", "Nl", "No", "Pd", "Po", "Ps", "Pe", "Sc"})
 """Categories of characters beyond ASCII that a comment may have as they are."""
@@ -45,7 +48,7 @@ class Identifiers:
         """An identifier of C, C++ and Rust; the same parts again have another one."""
         text = _letters("_".join(part.strip() for part in parts))
         text = text.upper() if upper else text
-        if text in _RESERVED or not text:
+        if text in _RESERVED or not text or _OF_STDINT.fullmatch(text):
             text = f"{text}_of_rule"
         elif text[0] in "_0123456789" or text.lower().startswith("rulec_"):
             text = f"{'X' if upper else 'x'}{text}"

@@ -11,8 +11,12 @@ pub enum Verdict {
     Violated,
 }
 
-const VERDICTS: [Verdict; 4] =
-    [Verdict::Satisfied, Verdict::HoldsSoFar, Verdict::Pending, Verdict::Violated];
+const VERDICTS: [Verdict; 4] = [
+    Verdict::Satisfied,
+    Verdict::HoldsSoFar,
+    Verdict::Pending,
+    Verdict::Violated,
+];
 
 /// The best and the worst that a verdict comes to, whatever is not known may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,7 +89,10 @@ fn exactly(verdict: u8) -> u8 {
 }
 
 fn range(best: u8, worst: u8) -> Range {
-    Range { best: VERDICTS[usize::from(best)], worst: VERDICTS[usize::from(worst)] }
+    Range {
+        best: VERDICTS[usize::from(best)],
+        worst: VERDICTS[usize::from(worst)],
+    }
 }
 
 /// What lasts from one step to the next.
@@ -224,7 +231,12 @@ impl Work {
 
     fn classes(&mut self, rule: &Rule, one: &Instance) -> bool {
         let (mut reached, mut found) = (self.reached, self.classes);
-        let any = classes(rule.cells, |read| self.digit(one, read), &mut reached, &mut found);
+        let any = classes(
+            rule.cells,
+            |read| self.digit(one, read),
+            &mut reached,
+            &mut found,
+        );
         (self.reached, self.classes) = (reached, found);
         any
     }
@@ -287,7 +299,11 @@ impl Kept {
         }
         states.copy_from_slice(&following[..n_words]);
         let exact = found == 1 && best == worst;
-        self.at[instance] = if exact { last << 2 | u16::from(best) } else { SEVERAL };
+        self.at[instance] = if exact {
+            last << 2 | u16::from(best)
+        } else {
+            SEVERAL
+        };
         self.verdict[instance] = best | worst << 2;
     }
 }
@@ -337,7 +353,9 @@ impl Monitor {
     #[must_use]
     pub fn about(&self, rule: usize, variable: usize) -> Option<u32> {
         let about = self.kept.about.get(rule)?;
-        about[..RULE_TABLE[rule].variables.len()].get(variable).copied()
+        about[..RULE_TABLE[rule].variables.len()]
+            .get(variable)
+            .copied()
     }
 
     /// Takes the next state. An object that is no longer there has left; if it comes back, or under
@@ -399,7 +417,11 @@ impl Monitor {
         for seat in 0..SEATS {
             work.stays[seat] = work.seated[seat] != EMPTY;
             work.next_id[seat] = kept.id[seat];
-            work.next_kind[seat] = if work.stays[seat] { kept.kind[seat] } else { NOBODY };
+            work.next_kind[seat] = if work.stays[seat] {
+                kept.kind[seat]
+            } else {
+                NOBODY
+            };
         }
         let mut left_out = 0;
         for (one, object) in input.objects.iter().enumerate() {
@@ -452,7 +474,11 @@ impl Monitor {
     /// variable alone.
     fn there(&self, rule: &Rule, one: &mut Instance) -> Option<Presence> {
         let (kept, work) = (&self.kept, &self.work);
-        let mut found = Presence { was: true, stays: true, is: true };
+        let mut found = Presence {
+            was: true,
+            stays: true,
+            is: true,
+        };
         let mut number = 0;
         for (variable, &(kind, first, end)) in rule.variables.iter().enumerate() {
             let seat = work.taken[one.turns[variable]];
@@ -483,8 +509,11 @@ impl Monitor {
 
     /// Does something for every choice of objects that are or were there.
     fn each(&mut self, rule: &Rule, mut take: impl FnMut(&mut Self, &Instance, Presence)) {
-        let mut one =
-            Instance { number: 0, turns: [0; VARIABLES], seats: [0; VARIABLES] };
+        let mut one = Instance {
+            number: 0,
+            turns: [0; VARIABLES],
+            seats: [0; VARIABLES],
+        };
         let mut more = rule.variables.is_empty() || self.work.n_taken > 0;
         while more {
             if let Some(presence) = self.there(rule, &mut one) {
@@ -558,15 +587,17 @@ impl Monitor {
         if !rule.variables.is_empty() && rule.start != 0 {
             best = best.max(1);
             worst = worst.max(1);
-            let absent = |kind: usize| {
-                (0..TYPES).any(|own| self.work.absent[own] && fits(kind, own as u8))
-            };
+            let absent =
+                |kind: usize| (0..TYPES).any(|own| self.work.absent[own] && fits(kind, own as u8));
             if self.work.crowded && rule.variables.iter().any(|&(kind, _, _)| absent(kind)) {
                 self.kept.flags[number] |= DOUBTED;
             }
         }
         let flags = self.kept.flags[number];
-        range(if flags & LOST != 0 { 3 } else { best }, if flags != 0 { 3 } else { worst })
+        range(
+            if flags & LOST != 0 { 3 } else { best },
+            if flags != 0 { 3 } else { worst },
+        )
     }
 }
 

@@ -46,7 +46,11 @@ unsafe extern "C" fn rulec_step(
                     *to = both(from);
                 }
                 let (violations, left_out) = (found.violations, found.left_out);
-                said.write_unaligned(CSaid { ranges, violations, left_out });
+                said.write_unaligned(CSaid {
+                    ranges,
+                    violations,
+                    left_out,
+                });
                 0
             }
             Err(Refusal::BadType) => 2,

@@ -29,7 +29,11 @@ fn is_number(value: f64) -> bool {
 }
 
 fn truth(value: u8) -> u16 {
-    if value <= 1 { u16::from(value) } else { from_to(0, 1) }
+    if value <= 1 {
+        u16::from(value)
+    } else {
+        from_to(0, 1)
+    }
 }
 
 fn value(value: u8, digits: &[u8], _n: u8, size: u16) -> u16 {
@@ -134,7 +138,11 @@ fn eighths(value: f64) -> Option<i64> {
 }
 
 fn size_of(number: f64) -> f64 {
-    if number < 0.0 { -number } else { number }
+    if number < 0.0 {
+        -number
+    } else {
+        number
+    }
 }
 
 /// A sum of factors times numbers, each between two bounds. Whole numbers of eighths are weighed
@@ -148,7 +156,11 @@ fn weigh(values: &[(f64, f64)], shape: &Shape) -> u16 {
         if !is_number(low) || !is_number(high) {
             return from_to(0, shape.limits.len() as u16);
         }
-        let (first, last) = if factor > 0.0 { (low, high) } else { (high, low) };
+        let (first, last) = if factor > 0.0 {
+            (low, high)
+        } else {
+            (high, low)
+        };
         least += factor * first;
         most += factor * last;
         size += size_of(factor * first) + size_of(factor * last);
