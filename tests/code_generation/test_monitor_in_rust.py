@@ -190,7 +190,7 @@ TERM = "is(input.objects[who0].oncoming)"
             f"static A: [u8; 20] = [{TWENTY}];",  # 70 columns of numbers, of which 60 may be
             ["static A: [u8; 20] = [", f"    {TWENTY},", "];"],
         ),
-        ("    Self { id, kind: 12 }", ["    Self { id, kind: 12 }"]),  # 16 columns, of which 18 may be
+        ("    Self { id, kind: 12 }", ["    Self { id, kind: 12 }"]),  # 16 columns of 18
         (
             "    Self { id, kind: 12, x: 34 }",
             ["    Self {", "        id,", "        kind: 12,", "        x: 34,", "    }"],
