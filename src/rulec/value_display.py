@@ -39,8 +39,6 @@ def _items(value: Any) -> list[tuple[str, Any]]:
 def brief(value: object) -> str:
     """A value in a few words, however long, and however deep its lists are."""
     try:
-        if isinstance(value, float):
-            return f"{value:g}"
         return _brief(value)
     except (RecursionError, ValueError):  # or a whole number of thousands of digits
         return f"({type(value).__name__})"

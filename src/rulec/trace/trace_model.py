@@ -143,7 +143,8 @@ def check_frame(trace: Trace) -> None:
             trace.place, "the trace has no states; it needs at least one to judge"
         )
     if not is_finite(trace.step_s) or not trace.step_s > 0:
-        message = f"`step_s` is {brief(trace.step_s)}; it has to be a number of seconds above 0"
+        shown = f"{trace.step_s:g}" if isinstance(trace.step_s, float) else brief(trace.step_s)
+        message = f"`step_s` is {shown}; it has to be a number of seconds above 0"
         raise NOT_A_TRACE.error(trace.place, message)
 
 
