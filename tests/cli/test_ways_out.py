@@ -150,6 +150,11 @@ def test_a_name_is_a_rulebook_although_a_folder_is_called_so(tmp_path, monkeypat
     assert said(capsys, "find", "CONGESTED", "t.jsonl", "-r", "esterle2019")[0] == 0
 
 
+def test_an_argument_of_bytes_that_are_no_text(capsys):
+    assert main(["show", "\udcff"]) == 2
+    assert "is a rule" not in capsys.readouterr().err
+
+
 def test_a_trace_in_the_words_of_another_vocabulary(tmp_path, capsys):
     trace = tmp_path / "t.jsonl"
     trace.write_text(

@@ -1,14 +1,18 @@
 """How well a source knows places and speeds, and what is unknown therefore."""
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from rulec import recordings
 from rulec.extraction.signals.conduct.overtaking_signals import overtaking_signals
 from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.tracks.source_tolerances import (
+    BY_FORM,
     DRONES,
     NGSIM,
     OTHERS,
@@ -39,6 +43,15 @@ def of_source(name, *bodies, form="CommonRoad scenario", count=2):
 )
 def test_a_source_is_known_by_its_form_and_where_it_was_made(name, form, tolerances):
     assert tolerances_of(of_source(name, form=form)) == tolerances
+
+
+@pytest.mark.parametrize("form", sorted(BY_FORM))
+def test_a_form_with_tolerances_is_one_that_is_read(form):
+    # One that is misspelt would leave its files as exact as those made by hand
+    texts = [file.read_text() for file in Path(recordings.__file__).parent.rglob("*.py")]
+    named, _, data_set = form.partition(" of ")
+    assert any(re.search(rf'"{named}["{{]|"{named} of ', text) for text in texts)
+    assert not data_set or any(f'"{data_set}"' in text for text in texts)
 
 
 def test_what_a_file_says_of_its_errors_counts_if_it_is_more():

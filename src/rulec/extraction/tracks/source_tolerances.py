@@ -80,7 +80,7 @@ Places differ from that curve by less than 0.2 m in 99 of 100 states, and means 
 its slope by less than 0.2 m/s in 95 of 100 (228 means).
 """
 
-_BY_FORM: Mapping[str, Tolerances] = MappingProxyType(
+BY_FORM: Mapping[str, Tolerances] = MappingProxyType(
     {
         "NGSIM tracks": NGSIM,
         **dict.fromkeys(("highD tracks", "levelX tracks", "INTERACTION tracks"), DRONES),
@@ -110,7 +110,7 @@ def tolerances_of(recording: Recording) -> Tolerances:
     if recording.form == "SUMO data":
         known = rounded_to(recording.rounding or USUAL_ROUNDING)
     else:
-        known = NGSIM if _NGSIM.match(recording.name) else _BY_FORM.get(recording.form, OTHERS)
+        known = NGSIM if _NGSIM.match(recording.name) else BY_FORM.get(recording.form, OTHERS)
     # Of two places, which distances have, and both ends of a mean over a second
     noise = _MOST_SIGMAS * _DIAGONAL * whole.noise_m
     known = replace(known, place_m=max(known.place_m, noise), speed_mps=max(known.speed_mps, noise))

@@ -40,7 +40,7 @@ def rulebook_heads(search_path: Sequence[Path] = ()) -> list[tree.File]:
 
 def rulebooks_with_rule(name: str, search_path: Sequence[Path] = ()) -> list[str]:
     """The rulebooks in whose text a rule of this name stands; what they inherit does not."""
-    rule = re.compile(rf"\brule\s+{re.escape(name)}\b".encode())
+    rule = re.compile(rb"\brule\s+%b\b" % re.escape(name.encode(errors="replace")))
     found = []
     for path in _rulebooks(search_path):
         with suppress(RulecError):
