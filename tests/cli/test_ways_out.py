@@ -155,6 +155,21 @@ def test_an_argument_of_bytes_that_are_no_text(capsys):
     assert "is a rule" not in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("number", ["nan", "inf", "1e400"])
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("maneuvers", "s2", "-r", "esterle2019", "--at-time"),
+        ("maneuvers", "s2", "-r", "esterle2019", "--ego-width"),
+        ("maneuvers", "s2", "-r", "esterle2019", "--congested-below"),
+        ("draw", "drive", "a.xml", "-r", "esterle2019", "--at-time"),
+    ],
+)
+def test_a_number_that_is_none(arguments, number, capsys):
+    assert main([*arguments, number]) == 2
+    assert capsys.readouterr().err.startswith(f"error: {arguments[-1]}: ")
+
+
 def test_a_trace_in_the_words_of_another_vocabulary(tmp_path, capsys):
     trace = tmp_path / "t.jsonl"
     trace.write_text(

@@ -152,6 +152,7 @@ def trace(
     "--at-time",
     "at_s",
     type=float,
+    callback=shared.finite,
     metavar="S",
     help="The moment to draw, in s of the recording.  [default: the first violation]",
 )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -28,15 +27,6 @@ if TYPE_CHECKING:
     from rulec.book_tests.example_runs import ExampleRun
 
 
-def _number(
-    context: click.Context, parameter: click.Parameter, value: float | None
-) -> float | None:
-    """Not a number is in no range, and click lets it pass."""
-    if value is not None and math.isnan(value):
-        raise click.BadParameter("it has to be a number from 0 to 100")
-    return value
-
-
 @click.command(cls=Verb)
 @shared.rulebooks_argument("[RULEBOOK]...", required=False)
 @shared.rules_option(
@@ -58,7 +48,7 @@ def _number(
     cls=RenamedOption,
     former=["--threshold"],
     type=click.FloatRange(0, 100),
-    callback=_number,
+    callback=shared.finite,
     metavar="PERCENT",
     help="Fail if the examples cover less of own rules; implies --coverage.",
 )

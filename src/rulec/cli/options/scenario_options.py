@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rulec.cli.options.output_options import RenamedOption, input_format_option
-from rulec.cli.options.shared_options import choice_option, combined
+from rulec.cli.options.shared_options import choice_option, combined, finite
 from rulec.cli.options.shell_completion import complete_scenarios
 from rulec.cli.standard_input import file_named
 from rulec.recordings.format_table import FORMATS
@@ -170,6 +170,7 @@ cell_options = combined(
             "--at-time",
             "at_s",
             type=float,
+            callback=finite,
             metavar="S",
             help="In a recorded scene: the moment to start from, in s.  [default: that of the "
             "planning problem, or the vehicle's first]",
@@ -193,6 +194,7 @@ cell_options = combined(
             "--ego-width",
             "ego_width_m",
             type=click.FloatRange(min=0, max=100),
+            callback=finite,
             metavar="M",
             help="In a recorded scene: how wide ego is, in m, which counts with `--extent body`.  "
             "[default: as wide as the vehicle that it is, if any; else a point]",
@@ -201,6 +203,7 @@ cell_options = combined(
             "--congested-below",
             "congested_below_kmh",
             type=click.FloatRange(min=0),
+            callback=finite,
             default=30.0,
             show_default=True,
             metavar="KMH",

@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from glob import has_magic
+from math import isfinite
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -74,6 +75,13 @@ def file_option(name: str, help_text: str) -> Callable[[Decorated], Decorated]:
 
 def _beside(context: click.Context, parameter: click.Parameter, value: str | None) -> Path | None:
     return None if value is None else Path(read_as_file(context, parameter, value, ending=""))
+
+
+def finite(_: click.Context, parameter: click.Parameter, value: float | None) -> float | None:
+    """A number of an option, if it is given: click lets NaN pass every range."""
+    if value is not None and not isfinite(value):
+        raise click.BadParameter(f"it has to be a number, not `{value}`", param=parameter)
+    return value
 
 
 def _seconds(
