@@ -11,7 +11,7 @@ from rulec.extraction.signals.following_signals import following_signals
 from rulec.extraction.signals.map.line_signals import line_signals
 from rulec.extraction.signals.map.map_signals import map_signals
 from rulec.extraction.signals.participant_signals import participant_signals
-from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
+from rulec.extraction.tellable_words import TELLABLE_WORDS, UNTOLD_VALUES, told_words
 from rulec.extraction.traffic_thresholds import LEAST_S, USUAL
 from rulec.rulebook.loader import load_rulebook
 from rulec.trace.vocabulary_projection import RECORDED_UNITS
@@ -20,6 +20,8 @@ from support.builders.drive_contexts import context_of
 from support.builders.recordings import recording, straight, vehicle
 
 DOCS = Path(__file__).parents[2] / "docs"
+EXTRACTION = Path(__file__).parents[2] / "src" / "rulec" / "extraction"
+TELLABLE = EXTRACTION / "tellable_words.py"
 PAGE = (DOCS / "recordings.md").read_text()
 DEFINITIONS, WRONG = (
     (DOCS / "recorded_words.md").read_text().split("## What each word may get wrong")
@@ -53,6 +55,18 @@ def test_every_word():
     found = recording([lane], [vehicle(1, {0: (9, 0), 1: (19, 0)})])
     (drive,) = Drives(found, "right").of("1")
     assert drive.words | NOT_IN_THAT == documented
+
+
+def test_every_value_that_no_format_has():
+    (line,) = re.findall(r"^No source tells .*?judged\.", DEFINITIONS, re.MULTILINE | re.DOTALL)
+    documented = re.findall(r"`(\w+)`", line.partition("; nor of ")[2])
+    names = UNTOLD_VALUES.keys()
+    values = [word for word in documented if word not in names]
+    assert sorted(values) == sorted(x for own in UNTOLD_VALUES.values() for x in own)
+    declarations = load_rulebook("de").vocabulary.declarations
+    assert all(own < {*declarations[name].values} for name, own in UNTOLD_VALUES.items())
+    code = "".join(file.read_text() for file in EXTRACTION.rglob("*.py") if file != TELLABLE)
+    assert [value for value in values if f'"{value}"' in code] == []
 
 
 def test_every_word_is_told_by_the_formats_that_the_page_says():

@@ -15,6 +15,7 @@ from rulec.monitoring.uncertainty import untold_names
 from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
+from rulec.trace import Trace
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.rulebooks import (
     P,
@@ -193,6 +194,39 @@ def test_rules_that_a_source_says_too_little_for_are_not_judged(told, judged):
     for one in (judge, again):
         assert list(one.so_far.rules) == judged
         assert {*judged, *one.not_judged} == {"no_p", "answered"}
+
+
+LAMPS = """rulebook lamps signal moves default false
+light is one of dark, green, red, cross default dark
+hard rule closed { require never (cross and moves) }
+hard rule stop { require never ((red or cross) and moves) }
+hard rule go { require never (dark and moves) }
+"""
+
+
+@pytest.mark.parametrize(
+    ("told", "judged"),
+    [
+        (["light", "moves"], ["closed", "stop", "go"]),
+        (["light", "moves", "dark", "green", "red"], ["stop", "go"]),
+        (["light", "moves", "cross"], ["closed", "stop"]),
+        (["light", "moves", "green"], []),
+        # Of a name that is not told no value is
+        (["moves", "red"], []),
+    ],
+)
+def test_no_rule_is_kept_because_of_a_value_that_a_source_never_says(told, judged):
+    compiled = rulec.compile_rulebook(parse_rulebook(LAMPS))
+    found = judged_rules(compiled, frozenset(told), cut=True)
+    assert [rule.name for rule, _ in found.machines] == judged
+    lacking = {one.rule: one.untold for one in found.not_judged}
+    assert "stop" in judged or lacking["stop"] in {("red", "cross"), ("light",)}
+    assert "closed" in judged or lacking["closed"] in {("cross",), ("light",)}
+    state = {"light": "green", "moves": True}
+    trace = Trace("t", 1.0, {}, (state, state), told=frozenset(told))
+    verdict = verify(trace, compiled)
+    assert {one.rule for one in verdict.not_judged} == {"closed", "stop", "go"} - {*judged}
+    assert not verdict.violations
 
 
 @pytest.mark.parametrize(

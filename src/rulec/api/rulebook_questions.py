@@ -183,7 +183,11 @@ class RulebookQuestions(RulebookVerbs):
         """
         from rulec.analysis.audit.source_audit import audit_source
         from rulec.extraction.selection import RequestedDrives, selected_drives
-        from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
+        from rulec.extraction.tellable_words import (
+            TELLABLE_WORDS,
+            told_words,
+            with_told_values,
+        )
         from rulec.recordings.recording_files import read_recording
         from rulec.recordings.recording_format import RecordingSource
 
@@ -193,7 +197,7 @@ class RulebookQuestions(RulebookVerbs):
             recording = read_recording(where or RecordingSource(Path(source)))
             drives = selected_drives(recording, RequestedDrives(), str(source), rulebook.traffic)
             told = told_words(drives)
-        return audit_source(rulebook, str(source), told)
+        return audit_source(rulebook, str(source), with_told_values(told, rulebook.vocabulary))
 
     def tree(self, reference: str | Path) -> BookLineage:
         """Trace everything in a rulebook to its origin and through its changes."""

@@ -153,7 +153,7 @@ def probe_drives(
     for number, drives in enumerate(found):
         own = [drive for drive in drives if isinstance(drive, Drive)]
         for drive in own:
-            told |= drive.words
+            told |= drive.arrays.told or drive.words
             begins = drive.first_step - origin.start.step
             if number < len(lanes):
                 s = rows[number][1][0][begins : begins + drive.arrays.n_states]

@@ -53,6 +53,7 @@ from rulec.extraction.signals.signal_columns import (
     known_only,
     together,
 )
+from rulec.extraction.tellable_words import with_told_values
 from rulec.extraction.tracks.tracks import Floats
 from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.logic.formula import Relation
@@ -271,6 +272,11 @@ def to_traces(
     kinds = chosen.kinds()
     traces, present = [], []
     vocabulary = writer.vocabulary
+    told: frozenset[str] | None = None
+    if not writer.defaults:
+        told = frozenset(kinds)
+        if vocabulary is not None:
+            told |= with_told_values(told - writer.assumed.keys(), vocabulary)
     kind_of = [kind[0] if vocabulary is None else known_type(kind, vocabulary) for kind in types]
     for name, columns, own in zip(names, spans.slices, presences(context), strict=True):
         known = [(x, kind) for x in own if (kind := kind_of[x.row]) is not None]
@@ -282,7 +288,7 @@ def to_traces(
             columns.stop - columns.start,
             objects,
             ends="complete" if writer.defaults else "cut",
-            told=None if writer.defaults else frozenset(kinds),
+            told=told,
         )
         traces.append(empty)
     cells = presence_cells(context)

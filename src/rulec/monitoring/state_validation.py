@@ -116,9 +116,11 @@ def check_objects(
 def check_told(
     told: Iterable[str] | None, vocabulary: Vocabulary, place: SourceLocation | None = None
 ) -> None:
-    """Check that the vocabulary declares all names that are told. Raises RulecError R0502."""
+    """Check that the vocabulary declares all names, or values, told. Raises RulecError R0502."""
+    enumerations = [x for x in vocabulary.declarations.values() if isinstance(x, Enumeration)]
+    values = frozenset().union(*(item.values for item in enumerations))
     for name in told or ():
-        if name not in vocabulary.declarations:
+        if name not in vocabulary.declarations and name not in values:
             raise UNDECLARED_NAME.error(
                 place,
                 f"`told` has `{name}`, which `{vocabulary.name}` does not know",

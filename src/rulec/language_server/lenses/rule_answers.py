@@ -60,13 +60,14 @@ def example_answer(book: Rulebook, rule: Rule) -> ExampleAnswer:
     from rulec.analysis.audit.source_audit import audit_source
     from rulec.book_tests.example_coverage import coverage
     from rulec.book_tests.example_runs import run_rulebook_examples
-    from rulec.extraction.tellable_words import TELLABLE_WORDS
+    from rulec.extraction.tellable_words import TELLABLE_WORDS, with_told_values
     from rulec.report.tests.example_text import missing_examples
 
     compiled = _compiled(book, rule)
     run = run_rulebook_examples(replace(book, rules=(rule,)), compiled)
     seen = coverage(run) if rule.examples else ()
-    audited = audit_source(compiled, COMMONROAD, TELLABLE_WORDS[COMMONROAD])
+    told = with_told_values(TELLABLE_WORDS[COMMONROAD], compiled.vocabulary)
+    audited = audit_source(compiled, COMMONROAD, told)
     return ExampleAnswer(
         sum(outcome.passed for outcome in run.outcomes),
         tuple(outcome.name for outcome in run.outcomes if not outcome.passed),

@@ -1,4 +1,8 @@
-"""Names that a source of traces does not tell, and rules that cannot be judged for want of them."""
+"""Names that a source of traces does not tell, and rules that cannot be judged for want of them.
+
+Values are names, too: of an enumeration some of whose values are told by name a source never says
+the others. No rule is kept because of a value that nobody could have told.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +11,11 @@ from dataclasses import replace
 from itertools import chain
 from typing import Any
 
+from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.outcome_machine import VIOLATED, OutcomeMachine, bits_of
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
 from rulec.monitoring.uncertainty.state_letters.read_digits import names_of_read
-from rulec.vocabulary import Vocabulary
+from rulec.vocabulary import Enumeration, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
 
 MOST_LOOKED_AT = 1 << 21
@@ -26,8 +31,13 @@ def untold_names(vocabulary: Vocabulary, told: frozenset[str] | None) -> frozens
     """The names that a source which tells these cannot tell, and that are not presumed."""
     if told is None:
         return frozenset()
-    names = vocabulary.declarations.items()
-    return frozenset(name for name, item in names if name not in told and not item.presumed)
+    untold = []
+    for name, item in vocabulary.declarations.items():
+        if name not in told:
+            untold += [] if item.presumed else [name]
+        elif isinstance(item, Enumeration) and not told.isdisjoint(item.values):
+            untold += [value for value in item.values if value not in told]
+    return frozenset(untold)
 
 
 def with_untold(vocabulary: Vocabulary, untold: frozenset[str]) -> Vocabulary:
@@ -52,7 +62,9 @@ class RequiredNames:
         self._machine = machine
         self._classes = classes
         self._reads = machine.reads
-        self._names = [names_of_read(read) for read in machine.reads]
+        self._values = [_values_of(read) for read in machine.reads]
+        names = map(names_of_read, machine.reads)
+        self._names = [(*own, *values) for own, values in zip(names, self._values, strict=True)]
         self._untold: dict[frozenset[str], tuple[str, ...]] = {}
         self._steps: dict[tuple[int, int], int | None] = {}
 
@@ -160,9 +172,16 @@ class RequiredNames:
         diagram = self._classes.diagram
         reached = frozenset({diagram.start})
         for n in range(len(self._reads) - 1, -1, -1):
-            digits = [1 << digit for digit in range(self._reads[n].size)]
-            if not untold.isdisjoint(self._names[n]):
-                digits = [sum(digits)]
+            never = {digit for value, digit in self._values[n].items() if value in untold}
+            size = self._reads[n].size
+            digits = [1 << digit for digit in range(size) if digit not in never]
+            if not untold.isdisjoint(names_of_read(self._reads[n])):
+                digits = [(1 << size) - 1]
             reached = frozenset(diagram.step(n, here, mask) for here in reached for mask in digits)
         every = frozenset(nodes >> 1 for nodes in reached) - {0}
         return frozenset(x for x in every if not any(y & x == y != x for y in every))
+
+
+def _values_of(read: Read | NumberRead) -> dict[str, int]:
+    """The digits of an enumeration's values that a read tells apart."""
+    return {value: read.digit(value) for value in read.values} if isinstance(read, Read) else {}

@@ -89,8 +89,9 @@ class PossibleNodes:
         self._machines: dict[object, tuple[Sequence[tuple[int, ...]], Readings]] = {}
 
     def concern(self, rule: CompiledRule) -> bool:
-        """Whether a rule reads something of which not all is known."""
-        return not self._partial.isdisjoint(names_in(rule.formula))
+        """Whether a rule reads something of which not all is known, or cannot be judged."""
+        reads_partial = not self._partial.isdisjoint(names_in(rule.formula))
+        return reads_partial or bool(self.untold(rule, NO_PAST))
 
     def untold(self, rule: CompiledRule, past: CarriedState) -> tuple[str, ...]:
         """Untold names for want of which no path can be known to violate a rule."""
