@@ -183,13 +183,10 @@ class RulebookQuestions(RulebookVerbs):
         """
         from rulec.analysis.audit.source_audit import audit_source
         from rulec.extraction.selection import RequestedDrives, selected_drives
-        from rulec.extraction.tellable_words import (
-            TELLABLE_WORDS,
-            told_words,
-            with_told_values,
-        )
+        from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
         from rulec.recordings.recording_files import read_recording
         from rulec.recordings.recording_format import RecordingSource
+        from rulec.trace.vocabulary_projection import with_told_values
 
         rulebook = self.compile(reference)
         told = TELLABLE_WORDS.get(str(source))

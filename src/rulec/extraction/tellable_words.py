@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from rulec.vocabulary import Enumeration, Vocabulary
-
 if TYPE_CHECKING:
     from rulec.extraction.selection import SelectedDrives
 
@@ -121,25 +119,6 @@ TELLABLE_WORDS: Mapping[str, frozenset[str]] = {
     "123d": _ARGOVERSE | (_SIGNED - {"on_priority_road", "turn_on_red_sign"}) | _ROAD_KINDS_OF_123D,
 }
 """Format -> what some file of it can tell: a particular one may lack signs, lamps, or weather."""
-
-
-UNTOLD_VALUES: Mapping[str, frozenset[str]] = {
-    "light": frozenset(("flashing_amber", "flashing_red", "red_cross")),
-    "lane_kind": frozenset(("branching_lane", "signposted_lane")),
-    "surface": frozenset(("cycle_lane", "tram_track")),
-    "crossing_kind": frozenset(("unmarked_crossing",)),
-}
-"""Enumeration -> values that no format has: where another one is told, it may be one of these."""
-
-
-def with_told_values(names: frozenset[str], vocabulary: Vocabulary) -> frozenset[str]:
-    """The names, and the values that can be told of those of which not all can be."""
-    told = set(names)
-    for name in UNTOLD_VALUES.keys() & names:
-        item = vocabulary.declarations.get(name)
-        if isinstance(item, Enumeration):
-            told |= {*item.values} - UNTOLD_VALUES[name]
-    return frozenset(told)
 
 
 def told_words(drives: SelectedDrives) -> frozenset[str]:

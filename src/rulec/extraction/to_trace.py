@@ -53,14 +53,13 @@ from rulec.extraction.signals.signal_columns import (
     known_only,
     together,
 )
-from rulec.extraction.tellable_words import with_told_values
 from rulec.extraction.tracks.tracks import Floats
 from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.logic.formula import Relation
 from rulec.monitoring.explain.margins import Margin
 from rulec.trace import Trace, Value
 from rulec.trace.trace_arrays import TraceArrays
-from rulec.trace.vocabulary_projection import known_type
+from rulec.trace.vocabulary_projection import known_type, with_told_values
 from rulec.value_display import short_repr
 from rulec.vocabulary import Vocabulary
 

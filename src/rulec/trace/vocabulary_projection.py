@@ -36,6 +36,14 @@ RECORDED_UNITS = {
 MEASURED = RECORDED_UNITS.keys() - {"limit", "ego_length", "visibility"}
 """Those of them that are measured, to a tolerance."""
 
+UNTOLD_VALUES: Mapping[str, frozenset[str]] = {
+    "light": frozenset(("flashing_amber", "flashing_red", "red_cross")),
+    "lane_kind": frozenset(("branching_lane", "signposted_lane")),
+    "surface": frozenset(("cycle_lane", "tram_track")),
+    "crossing_kind": frozenset(("unmarked_crossing",)),
+}
+"""Enumeration -> values that no format has: where another one is told, it may be one of these."""
+
 _Signal = PartialValue | Mapping[str, PartialValue]
 
 
@@ -159,3 +167,13 @@ def _fits(name: str, value: _Signal, declaration: Declaration) -> bool:
     values = value.values() if isinstance(value, Mapping) else (value,)
     known = [x for x in values if isinstance(x, bool | int | float | str)]
     return fits(name, known, declaration)
+
+
+def with_told_values(names: frozenset[str], vocabulary: Vocabulary) -> frozenset[str]:
+    """The names, and the values that can be told of those of which not all can be."""
+    told = set(names)
+    for name in UNTOLD_VALUES.keys() & names:
+        item = vocabulary.declarations.get(name)
+        if isinstance(item, Enumeration):
+            told |= {*item.values} - UNTOLD_VALUES[name]
+    return frozenset(told)

@@ -60,8 +60,9 @@ def example_answer(book: Rulebook, rule: Rule) -> ExampleAnswer:
     from rulec.analysis.audit.source_audit import audit_source
     from rulec.book_tests.example_coverage import coverage
     from rulec.book_tests.example_runs import run_rulebook_examples
-    from rulec.extraction.tellable_words import TELLABLE_WORDS, with_told_values
+    from rulec.extraction.tellable_words import TELLABLE_WORDS
     from rulec.report.tests.example_text import missing_examples
+    from rulec.trace.vocabulary_projection import with_told_values
 
     compiled = _compiled(book, rule)
     run = run_rulebook_examples(replace(book, rules=(rule,)), compiled)
