@@ -294,6 +294,23 @@ def lines_come_in_order(parts, chance):
     assert found == (expected if expected[-1] else expected[:-1])
 
 
+class Endless:
+    """As ``/dev/zero``."""
+
+    blocks = 0
+
+    def read1(self, size):
+        self.blocks += 1
+        return bytes(1000)
+
+
+def test_of_a_line_without_end_there_is_a_part(monkeypatch):
+    monkeypatch.setattr(stream_lines, "_MOST_SKIPPED", 1_000_000)
+    stream = Endless()
+    ((found,),) = lines_as_they_come(stream, 5000)
+    assert (len(found), stream.blocks) == (6000, 1001)
+
+
 @pytest.mark.parametrize(
     ("value", "words"),
     [

@@ -12,6 +12,9 @@ _BLOCK_BYTES = 1 << 22
 
 _LONG_LINE = 1 << 10
 
+_MOST_SKIPPED = 1 << 32
+"""Bytes of a line that is too long anyway: one that is longer than this never ends."""
+
 _MOST_SHOWN = 1 << 20
 """A longer line is not shown, not even in part."""
 
@@ -24,12 +27,13 @@ def lines_as_they_come(stream: IO[bytes], longest: int) -> Iterator[list[bytes]]
     """The lines of a stream, without their line feeds, in lists.
 
     It waits only while no line is complete, so who writes into a pipe line by line is answered line
-    by line. Of a line of more than ``longest`` bytes there is a part that is longer than that.
+    by line. Of a line of more than ``longest`` bytes there is a part that is longer than that, and
+    behind one that does not end, as on ``/dev/zero``, nothing.
     """
     arriving = cast("_Arriving", stream)
     parts: list[bytes] = []
     size = 0
-    while block := arriving.read1(_BLOCK_BYTES):
+    while size <= _MOST_SKIPPED and (block := arriving.read1(_BLOCK_BYTES)):
         first, *more = _split(block)
         if size <= longest:
             parts.append(first)
