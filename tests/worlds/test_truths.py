@@ -189,6 +189,19 @@ def test_who_is_all_but_past_when_the_world_ends(ends_m, sure, tmp_path):
     assert {(fact.vehicle, fact.sure) for fact in facts} == {("passes", one) for one in sure}
 
 
+@pytest.mark.parametrize("book", ["us", "us-ca", "us-tx", "au", "au-nsw"])
+def test_where_lanes_let_one_pass_on_the_near_side_nobody_violates(book, tmp_path):
+    files = WorldFiles(tmp_path)
+    files.net.write_bytes((FOLDER / "motorway.net.xml").read_bytes())
+    times = np.arange(0, 6.05, 0.1)
+    other = 100 + 20 * times
+    rows = {"passes": (other - 20 + 7 * times, ("a_b_0", 0.0)), "is passed": (other, ("a_b_2", 0.0))}
+    _write(files, times, rows, heading=89.3)
+    in_germany = near_side_facts(WorldState(files, 0.1, "de"))
+    assert {one.vehicle for one in in_germany if one.sure} == {"passes"}
+    assert list(near_side_facts(WorldState(files, 0.1, book))) == []
+
+
 def test_a_recording_ends_with_its_last_state(tmp_path):
     """In every second state alone nobody finds what happens in the last one between."""
     assert last_moment_s(_zebra(tmp_path, {}).data) == 7.9

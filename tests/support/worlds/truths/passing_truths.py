@@ -17,8 +17,19 @@ _SEEN_S = 0.5
 """Who is seen behind for less has hardly come from there: recordings have every second state."""
 
 
+LETS_PASS_ON_LANES = ("us", "au")
+"""How names of books begin whose statutes let one pass on the near side in a lane of its own: UVC
+11-304(a)(2) where there is room for two lines that go one way, California's 21754(b) and (c), the
+states' copies of the former, and rule 141(1)(a) of Australia and of New South Wales."""
+
+
 def near_side_facts(world):
-    """Who came from behind, was beside on a lane nearer to the kerb, and got in front."""
+    """Who came from behind, was beside on a lane nearer to the kerb, and got in front.
+
+    Where lanes are marked, as the simulator's are, some statutes let everybody do so.
+    """
+    if world.book.startswith(LETS_PASS_ON_LANES):
+        return
     for track in world.vehicles.values():
         for other in world.vehicles.values():
             if other is not track:
