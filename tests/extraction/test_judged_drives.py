@@ -4,6 +4,7 @@ import json
 from dataclasses import replace
 from math import pi
 
+import numpy as np
 import pytest
 
 from rulec.api.rulebook_compilation import machines
@@ -181,3 +182,15 @@ def test_whom_another_one_leaves_behind_does_not_follow_it_in_britain(faster, bl
     ahead = going(8, 30, 4.0, 30.0 + faster)
     found = violated(recording(two_lanes(**MOTORWAY), [ego, ahead]), BRITISH, egos=("7",))
     assert ("following_distance" in found["7"]) is blamed
+
+
+@pytest.mark.parametrize(("back_at", "blamed"), [(24, True), (21, True), (17, False)])
+def test_who_meets_somebody_long_after_it_pulled_out_had_no_room_for_it(back_at, blamed):
+    """Ego pulls out at 2.5 s, at 20 m/s, past one at 12; another one at 20 m/s meets it at 11 s."""
+    road = [straight(1, 0, 800, y=0.0), straight(2, 800, 0, y=4.0)]
+    across = np.interp(range(34), [3, 6, back_at - 3, back_at], [0.0, 4.0, 4.0, 0.0])
+    ego = vehicle(7, {k: (10 * k, float(y)) for k, y in enumerate(across)}, speed=20.0)
+    slow = going(8, 40, 0.0, 12.0, 34)
+    other = vehicle(9, {k: (440 - 10 * k, 4.0) for k in range(34)}, speed=20.0, heading=pi)
+    found = violated(recording(road, [ego, slow, other]), GERMAN, egos=("7",))
+    assert ("pulling_out" in found["7"]) is blamed

@@ -195,7 +195,10 @@ def test_where_lanes_let_one_pass_on_the_near_side_nobody_violates(book, tmp_pat
     files.net.write_bytes((FOLDER / "motorway.net.xml").read_bytes())
     times = np.arange(0, 6.05, 0.1)
     other = 100 + 20 * times
-    rows = {"passes": (other - 20 + 7 * times, ("a_b_0", 0.0)), "is passed": (other, ("a_b_2", 0.0))}
+    rows = {
+        "passes": (other - 20 + 7 * times, ("a_b_0", 0.0)),
+        "is passed": (other, ("a_b_2", 0.0)),
+    }
     _write(files, times, rows, heading=89.3)
     in_germany = near_side_facts(WorldState(files, 0.1, "de"))
     assert {one.vehicle for one in in_germany if one.sure} == {"passes"}

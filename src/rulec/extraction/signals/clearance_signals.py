@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
+from rulec.extraction.signals.conduct.manoeuvre_signals import on_both_halves, oncoming_side
 from rulec.extraction.signals.ego_lanelets import own_lanelets, travel_lanes
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
@@ -53,8 +54,9 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
 
     It does where ego need not leave the lanes of its direction, on the far one of which it may be
     already. Else nobody that comes would meet ego within ``overtaking_s``, as fast as both are, nor
-    does meet it. Where the drive ends before, and ego is so fast that somebody may come from beyond
-    ``near_m``, it is unknown.
+    does meet it; nor, however much later, while it is still on its way over the other half, or
+    within ``yielding_s`` of that. Where the drive ends before, and ego is so fast that somebody may
+    come from beyond ``near_m``, it is unknown.
     """
     limits = context.thresholds
     own_lanes = (travel_lanes(context).sum(axis=1) > 1) & ~_beyond_own_lanes(context)
@@ -69,17 +71,32 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     cells = cells.part(np.flatnonzero(comes))
     columns, station = cells.columns, cells.of(relations.station(context))
     closing: Floats = np.maximum(own[columns] - cells.of(context.extents.along), 0.1)
-    would_meet = (station == relations.BEHIND) & (
-        cells.of(relations.gap(context)) / closing < limits.overtaking_s
+    left_s = np.where(
+        station == relations.BEHIND, cells.of(relations.gap(context)) / closing, np.inf
     )
     steps = round(limits.overtaking_s / context.recording.step_s)
-    met, meets = np.zeros((2, context.states), dtype=bool)
+    met, meets, soon = np.zeros((3, context.states), dtype=bool)
     met[columns[station == relations.BESIDE]] = True
-    meets[columns[would_meet]] = True
-    meets |= context.spans.within(met, steps)
+    meets[columns[left_s < limits.overtaking_s]] = True
+    soon[columns[left_s < limits.yielding_s]] = True
+    meets |= context.spans.within(met, steps) | _meets_beyond_middle(context, met | soon)
     ends = context.spans.columns + steps >= context.spans.end
     far_enough = 2 * own * limits.overtaking_s <= limits.near_m
     return alone | ~meets, ~alone & ~meets & ends & ~far_enough
+
+
+def _meets_beyond_middle(context: DriveContext, meets: Flags) -> Flags:
+    """Flags of states in which ego is on its way over the other half, on which it meets another.
+
+    From when it begins to be there, as it should have seen that it would not be back in time.
+    """
+    if not meets.any():
+        return meets
+    there, _ = oncoming_side(context)
+    away, spans = there | on_both_halves(context), context.spans
+    meets = meets & away & (spans.latest(there) > spans.latest(~away))
+    flags: Flags = away & (spans.next_state(meets) < spans.next_state(~away))
+    return flags
 
 
 def _beyond_own_lanes(context: DriveContext) -> Flags:
