@@ -55,6 +55,8 @@ class Thresholds:
     """Who is in another lane than ego so soon is being overtaken, or leaves: the gap is moot."""
     catching_up_s: float = 10.0
     """Ego is overtaking when it will be beside a slower vehicle so soon."""
+    obstacle_m: float = 30.0
+    """Ego goes round one that stands from so far before it on, or from ``parting_s`` before it."""
     passed_s: float = 2.0
     """And until it is so far ahead of it, by time."""
     clearly_faster_kmh: float = 5.0

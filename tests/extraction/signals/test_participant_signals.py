@@ -174,6 +174,18 @@ def test_whether_one_that_leaves_within_four_seconds_is_followed_is_unknown(leav
     assert not beside.unknown["parts_soon"].any()
 
 
+@pytest.mark.parametrize(("seconds", "expected"), [(1.0, False), (30.0, True)])
+def test_who_leaves_the_lane_of_another_one_does_so_as_measured(seconds, expected):
+    """Ego moves over by 4 m; if slowly, it is a little in the way of the other one for long."""
+    places = {k: (k, min(4.0, max(0.0, (k - 10) * 0.8 / seconds))) for k in range(170)}
+    bodies = [vehicle(7, places, speed=5.0)]
+    bodies.append(vehicle(8, {k: (30 + k, 0.0) for k in range(170)}, speed=5.0))
+    found = participant_signals(context_of(recording(lanes(2), bodies, step_s=0.2)))
+    assert found.values("lateral")[0, 0] == "same_lane"
+    assert found.values("lateral")[0, -1] == "left_of"
+    assert found.unknown["lateral"].any() == expected
+
+
 def test_only_the_next_one_ahead_precedes():
     others = [steady(8, 40, 0), steady(9, 20, 0), steady(10, 12, 4), steady(11, -20, 0)]
     signals = participant_signals(context(*others))

@@ -20,8 +20,6 @@ from rulec.trace.plain_arrays import distinct
 _BESIDE_M = 0.5
 """A vehicle needs so much more room than it is wide."""
 
-OBSTACLE_M = 30.0
-
 
 def clearance_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
     """The signals of what leaves ego room to go on, to overtake, and to pass."""
@@ -143,7 +141,7 @@ def _near_obstacle(context: DriveContext) -> Flags:
     """Flags of presences that ego goes round now: for one that never moves it goes out earlier."""
     present = presence_cells(context)
     gap, along = present.of(relations.gap(context)), context.ego_extents.along[0]
-    near: Flags = gap <= OBSTACLE_M
+    near: Flags = gap <= context.thresholds.obstacle_m
     reach = along[present.columns] * context.thresholds.parting_s
     early = ~near & (gap <= reach) & (present.of(relations.station(context)) == relations.BEHIND)
     early &= present.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh

@@ -75,10 +75,17 @@ def _station(context: DriveContext) -> SignalColumns:
 
 
 def _lateral(context: DriveContext) -> SignalColumns:
+    """The sides of others; unknown within tolerances, but where ego or the other one moves over.
+
+    There only the moment is in doubt, as it is for stations.
+    """
     found = relations.laterals(context)
+    there = context.relevant & ~np.isnan(context.extents.s_min)
+    longest = round(context.thresholds.passed_s / context.recording.step_s)
+    over = only_when(found.codes, found.doubtful, there, longest, context.spans)
     return SignalColumns(
         about={"lateral": found.codes},
-        unknown={"lateral": found.doubtful},
+        unknown={"lateral": found.doubtful & ~over},
         texts={"lateral": LATERALS},
     )
 

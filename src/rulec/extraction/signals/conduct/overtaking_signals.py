@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.clearance_signals import OBSTACLE_M
 from rulec.extraction.signals.conduct.manoeuvre_signals import on_both_halves, oncoming_side
 from rulec.extraction.signals.ego_lanelets import (
     CYCLE_LANE,
@@ -66,7 +65,7 @@ def _overtaking(context: DriveContext) -> SignalColumns:
 def _near_enough_to_go_round(context: DriveContext) -> Flags:
     """Flags of participants that are no farther than an obstacle that ego goes out for now."""
     reach = context.ego_extents.along[0] * context.thresholds.parting_s
-    near: Flags = relations.gap(context) <= np.maximum(reach, OBSTACLE_M)
+    near: Flags = relations.gap(context) <= np.maximum(reach, context.thresholds.obstacle_m)
     return near
 
 
