@@ -109,7 +109,10 @@ def test_the_same_overtaking_in_a_mirror_for_a_book_of_the_other_side():
 @pytest.mark.parametrize(("side", "slow", "fast"), [("left", 4.0, 8.0), ("right", 8.0, 4.0)])
 def test_a_finding_is_where_the_file_has_it_mirrored_or_not(side, slow, fast):
     # 8 passes 7 on the near side of its traffic: in the file that is the left one, or the right.
-    lanes = [straight(1, 0, 1000, y=4.0, left_of=2), straight(2, 0, 1000, y=8.0, right_of=1)]
+    lanes = [
+        straight(1, 0, 1000, y=4.0, left_of=2, **MOTORWAY),
+        straight(2, 0, 1000, y=8.0, right_of=1, **MOTORWAY),
+    ]
     cars = [going(7, 50, slow, 20.0), going(8, 20, fast, 30.0)]
     found = replace(recording(lanes, cars), side=side)
     judged = RecordingVerdicts(found, BRITISH, RequestedDrives(), "by hand")

@@ -146,9 +146,16 @@ class DriveContext:
 
     @cached_property
     def limit_mps(self) -> Floats:
-        """The limit of the lane of ego's middle by state, infinity if the map tells none there."""
+        """The limit of the lane of ego's middle by state, infinity if the map tells none there.
+
+        That of its front where one may be faster there: who drives past a sign speeds up by then.
+        """
+        front = self.places_at(self.ego_extents.s_max[0], self.ego_lane)
+        own, ahead = (self._limits_at(*places) for places in (self.ego_places, front))
+        return np.where(np.isfinite(ahead), np.maximum(own, ahead), own)
+
+    def _limits_at(self, places: tuple[tuple[int, int], ...], number: NDArray[intp]) -> Floats:
         turned = np.radians(self.thresholds.turned_deg)
-        places, number = self.ego_places
         limits = [self.road.limit_mps(*place, turned) for place in places]
         return np.array([np.inf if limit is None else limit for limit in limits])[number]
 

@@ -29,6 +29,17 @@ def zebra(number, x):
     return lanelet(number, [(x, -6), (x, 6)], width=4, types=frozenset({"crosswalk"}))
 
 
+@pytest.mark.parametrize(
+    ("limits", "told"),
+    # From 2 m before ego's middle is on the second lane its front is past the sign
+    [((30, 50), [30.0, 30.0, 50.0, 50.0]), ((50, 30), [50.0, 50.0, 50.0, 30.0])],
+)
+def test_one_may_be_faster_from_where_the_front_is_past_a_sign(limits, told):
+    first, second = ({"limit_mps": limit / 3.6} for limit in limits)
+    found = map_signals(context([90, 97, 99, 101], first=first, second=second)).world["limit"]
+    assert found.tolist() == told
+
+
 def test_the_limit_of_the_lanelet_under_ego():
     found = map_signals(context([90, 110], first={"limit_mps": 50 / 3.6})).world["limit"]
     assert found.tolist() == [50.0, NO_LIMIT_KMH]
