@@ -197,3 +197,22 @@ def test_who_meets_somebody_long_after_it_pulled_out_had_no_room_for_it(back_at,
     other = vehicle(9, {k: (440 - 10 * k, 4.0) for k in range(34)}, speed=20.0, heading=pi)
     found = violated(recording(road, [ego, slow, other]), GERMAN, egos=("7",))
     assert ("pulling_out" in found["7"]) is blamed
+
+
+@pytest.mark.parametrize("seconds", [0.5, 3.0])
+@pytest.mark.parametrize(("apart", "blamed"), [(40, True), (200, False)])
+def test_who_joins_a_motorway_at_a_usual_pace_gives_way(seconds, apart, blamed):
+    """Ego, at 20 m/s, moves over from 5 s on; one at 31 m/s is so far behind it at 6.5 s."""
+    through = {"types": frozenset({"interstate", "mainCarriageWay"})}
+    entry = {"types": frozenset({"interstate", "accessRamp"})}
+    road = [
+        straight(1, 0, 400, y=0.0, left_of=2, **entry),
+        straight(2, 0, 1000, y=4.0, right_of=1, left_of=3, **through),
+        straight(3, 0, 1000, y=8.0, right_of=2, **through),
+    ]
+    begins = 6.5 - seconds / 2
+    across = [float(np.interp(k / 2, [begins, begins + seconds], [0.0, 4.0])) for k in range(24)]
+    ego = vehicle(7, {k: (100 + 10 * k, y) for k, y in enumerate(across)}, speed=20.0)
+    other = going(8, 230 - apart - 31 * 6.5, 4.0, 31.0, 24)
+    found = violated(recording(road, [ego, other]), GERMAN, egos=("7",))
+    assert ("joining_motorway" in found["7"]) is blamed

@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext
-from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
+from rulec.extraction.signals.ego_lanelets import lanelets_at, map_contents, own_lanelets
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import (
     Passes,
@@ -75,9 +75,13 @@ def _ways(context: DriveContext) -> SignalColumns:
 
 
 def _lane_kind(context: DriveContext) -> SignalColumns:
+    """The kind of the lane that ego has changed to last, as `lane_change` says it.
+
+    That of its middle is another one a little earlier: nobody would change from an entry lane.
+    """
     if not _LANE_KINDS.keys() & map_contents(context).types:
         return SignalColumns()
-    kinds = own_lanelets(context).values(
+    kinds = lanelets_at(context, context.ego_extents.s[0], context.steady_lane).values(
         lambda at: next((_LANE_KINDS[x] for x in _LANE_KINDS if x in at.types), "")
     )
     return _where_told("lane_kind", kinds)
