@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from itertools import repeat
 from typing import Any, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
@@ -217,7 +218,7 @@ class PossibleLetters:
         digits = self._columns.get(key)
         if digits is None:
             if read.subject is None:
-                digits = [self._digits_of_sum(read, n, about) for n in self._numbers(about)]
+                digits = self._digits_of_sums(read, about)
             else:
                 name, variables = read.subject
                 subject = name, tuple([objects[variable] for variable in variables])
@@ -226,6 +227,20 @@ class PossibleLetters:
                     raise self._missing(subject, binding.first + digits.index(0), about.rule)
             self._columns[key] = digits
         return digits
+
+    def _digits_of_sums(self, read: ReadDigits, about: _About) -> list[int]:
+        """The digits of a sum in each state: exact numbers only where floats are near a limit."""
+        numbers, objects = self._numbers(about), about.binding.objects
+        columns = [
+            self.values(name, tuple([objects[x] for x in variables]), about.supposed)[about.stretch]
+            for name, variables in read.summands
+        ]
+        found: list[int] = []
+        rows = zip(*columns, strict=True) if columns else repeat((), len(numbers))
+        for number, row in zip(numbers, rows, strict=True):
+            digits = read.of_sum(row)
+            found.append(self._digits_of_sum(read, number, about) if digits is None else digits)
+        return found
 
     def _digits_of_sum(self, read: ReadDigits, number: int, about: _About) -> int:
         try:

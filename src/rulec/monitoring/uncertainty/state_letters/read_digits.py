@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
+from math import inf
 from typing import Any, TypeAlias
 
 from rulec.automata.mealy_monitor import NumberRead, Read
@@ -60,6 +61,40 @@ class _Count:
         return Fraction(low), Fraction(low + unknown)
 
 
+_ERROR = 1e-12
+"""Sums of floats are wrong by less than this part of what is added, and of the limits."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Sum:
+    """A sum of quantities, none of which is a count, in floats."""
+
+    factors: tuple[float, ...]
+    limits: tuple[float, ...]
+
+    def digits(self, values: Sequence[PartialValue | None]) -> int | None:
+        """The digits, as bits, of a sum of values; None if it is too near a limit to tell."""
+        low = high = size = 0.0
+        for factor, value in zip(self.factors, values, strict=True):
+            if isinstance(value, Interval):
+                ends = factor * value.low, factor * value.high
+            elif isinstance(value, float):
+                ends = factor * value, factor * value
+            else:
+                return None
+            low, high = low + min(ends), high + max(ends)
+            size += abs(ends[0]) + abs(ends[1])
+        error = _ERROR * (size + abs(self.limits[0]) + abs(self.limits[-1]))
+        if error == inf:
+            return None
+        first, last = (bisect_left(self.limits, end - error) for end in (low, high))
+        if first != bisect_right(self.limits, low + error):
+            return None
+        if last != bisect_right(self.limits, high + error):
+            return None
+        return _digits_between(first, last)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class ReadDigits:
     """A read made ready for many values; digits are bits.
@@ -76,6 +111,19 @@ class ReadDigits:
     _floors: tuple[float, ...] = ()
     _known: dict[Any, int] = field(default_factory=dict)
     _count: _Count | None = None
+    _sum: _Sum | None = None
+
+    @property
+    def summands(self) -> tuple[Subject, ...]:
+        """What is added, of variables, if the read is a sum of single values."""
+        if self._sum is None or not isinstance(self.read, NumberRead):
+            return ()
+        terms = [term for _, term in self.read.terms if isinstance(term, ltl.QuantityTerm)]
+        return tuple([(term.name, term.arguments) for term in terms])
+
+    def of_sum(self, values: Sequence[PartialValue | None]) -> int | None:
+        """The digits of a sum of ``summands``; None where that takes exact numbers."""
+        return None if self._sum is None else self._sum.digits(values)
 
     def of_values(self, values: Sequence[PartialValue | None]) -> list[int]:
         """The digits for each value of the ``subject``; none for what is missing."""
@@ -124,7 +172,10 @@ def read_digits(read: Read | NumberRead) -> ReadDigits:
     known = scale(read)
     number = known.quantity
     subject = None if number is None else (number.name, number.arguments)
-    count = None
+    count = sum_ = None
+    if number is None and all(isinstance(term, ltl.QuantityTerm) for _, term in read.terms):
+        limits = tuple([float(threshold.limit) for threshold in read.thresholds])
+        sum_ = _Sum(tuple([float(factor) for factor, _ in read.terms]), limits)
     match read.terms:
         case ((1, ltl.Count(variable, _, body) as counted),):
             # Both would be looked up by the whole formula in each state.
@@ -137,6 +188,7 @@ def read_digits(read: Read | NumberRead) -> ReadDigits:
         subject=subject,
         _floors=known.floors,
         _count=count,
+        _sum=sum_,
     )
 
 
