@@ -176,6 +176,18 @@ def test_what_is_no_trace_is_said(changes, said):
             TypeError,
             "`lamps` is a dict, not int",
         ),
+        (
+            lambda: rulec.write_traces([traced(objects={"v": 3})], "a.parquet"),
+            rulec.RulecError,
+            "`objects` has names and types, not 'v' and 3",
+        ),
+        (
+            lambda: rulec.build_participant(
+                "a", "car", [0], [0], [0], step_s=1, lamps={"brake_light": 3}
+            ),
+            TypeError,
+            r"`lamps\['brake_light'\]` is an iterable of bool, not int",
+        ),
         (lambda: rulec.Choice(at_s="3"), TypeError, "`at_s` is a number, not str"),
         (lambda: rulec.Choice(at_s=NAN), ValueError, "`at_s` is a finite number, not nan"),
         (lambda: rulec.Choice(scenario_id=3), TypeError, "`scenario_id` is a str, not int"),
@@ -217,6 +229,28 @@ def test_what_an_error_says_can_be_printed():
     with pytest.raises(rulec.RulecError) as error:
         rulec.load_rulebook("\ud800.rules")
     assert str(error.value).encode()
+
+
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda trace, _: rulec.explain(VIOLATED, trace, RULES),
+        lambda trace, _: rulec.draw(trace, RULES),
+        lambda trace, folder: rulec.write_traces([trace], folder / "a.jsonl"),
+    ],
+)
+@pytest.mark.parametrize("changes", [{"states": 3}, {"present": 3}, {"told": 3}, {"step_s": None}])
+def test_what_is_no_trace_is_neither_explained_nor_drawn_nor_written(use, changes, tmp_path):
+    with pytest.raises(rulec.RulecError, match=f"`{next(iter(changes))}` is "):
+        use(traced(**changes), tmp_path)
+
+
+def test_numbers_of_numpy_are_written(tmp_path):
+    trace = traced(step_s=np.float64(0.5), states=({"speed": np.float64(2.5)},))
+    for name in ("a.jsonl", "a.csv"):
+        rulec.write_traces([trace], tmp_path / name)
+        (read,) = rulec.read_traces(tmp_path / name)
+        assert (read.step_s, read.states[0]["speed"]) == (0.5, 2.5)
 
 
 @pytest.mark.parametrize(

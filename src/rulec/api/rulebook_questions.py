@@ -65,10 +65,12 @@ class RulebookQuestions(RulebookVerbs):
             return code
         from rulec.monitoring.explain.explanation import explain
         from rulec.trace import Trace
+        from rulec.trace.trace_model import check_trace
 
         if trace is None or rules is None:
             raise TypeError("explaining a violation takes the trace and the rules")
         if isinstance(trace, Trace):
+            check_trace(trace)
             rounded, *_ = self._compiled(rules).rounded_to(trace.step_s)
             return explain(subject, trace, rounded)
         from rulec.extraction.recording_verdicts import explain_drive

@@ -144,8 +144,10 @@ class ScenarioVerbs(SessionSettings):
         from rulec.partition import NavigationGraph
         from rulec.report.pictures.drawing.picture_formats import as_bytes
         from rulec.trace import Trace
+        from rulec.trace.trace_model import check_trace
 
         if isinstance(subject, Trace):
+            check_trace(subject)
             if rules is None:
                 raise TypeError("a trace is drawn as rules read it: give them")
             used = self._compiled(rules).fitted_to(subject.step_s)

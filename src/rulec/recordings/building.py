@@ -13,7 +13,7 @@ from numpy import float64
 from numpy.typing import ArrayLike, NDArray
 
 from rulec.diagnostics import did_you_mean, named
-from rulec.diagnostics.argument_kinds import checked_kinds
+from rulec.diagnostics.argument_kinds import checked_kinds, expected
 from rulec.recordings.building_checks import BuildingChecks
 from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.lanes.lanes_along import (
@@ -219,6 +219,7 @@ def _lit(
 ) -> dict[int, frozenset[Lamp]]:
     for name, values in lamps.items():
         checks.one_of("lamps", name, get_args(Lamp))
+        values = expected(f"lamps[{name!r}]", "Sequence[bool | float]", values)
         if len(values) != len(steps):
             checks.wrong(
                 f"`lamps[{name!r}]` has {len(values):,} values", f"expected {len(steps):,}"

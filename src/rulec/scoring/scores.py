@@ -12,6 +12,7 @@ from numpy import bool_, float64, intp
 from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.diagnostics.argument_kinds import finite
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict
 from rulec.monitoring.verdict import OpenVerdict, RuleNotJudged, Violation
@@ -138,6 +139,7 @@ class Scores(Rows):
         Each rank counts ``worth`` times the highest one below it, the lowest 1, and a state off the
         road ``worth`` times the highest of all; what is open counts as violated.
         """
+        finite("worth", worth)
         above = self._order.above
         depths = [0] * len(above)
         for rank in reversed(range(len(above))):

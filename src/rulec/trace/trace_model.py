@@ -181,7 +181,7 @@ def _check_kinds(trace: Trace) -> None:
 def plain_step_s(trace: Trace) -> float:
     """The step (s) as files have it, though a program may have given a fraction."""
     step_s: object = trace.step_s
-    return step_s if isinstance(step_s, int | float) else float(trace.step_s)
+    return step_s if isinstance(step_s, int) else float(trace.step_s)
 
 
 def _is_span(given: object) -> bool:

@@ -16,6 +16,9 @@ from rulec.scenario.motion_bounds import MotionBounds, bounds_of
 from rulec.scenario.recorded.route import lanelet_of
 from rulec.scenario.scenario_model import Choice
 
+_FARTHEST = 1e15
+"""No file has so many time steps."""
+
 _SAME_PLACE_M = 0.1
 
 
@@ -150,7 +153,7 @@ def reference_lanelet(
 
 def _step(recording: recorded.Recording, at_s: float, file: str) -> int:
     at_s = float(at_s)
-    step = round(at_s / recording.step_s)
+    step = round(min(max(at_s / recording.step_s, -_FARTHEST), _FARTHEST))
     if abs(step * recording.step_s - at_s) > 1e-6:
         message = f"the file has no states at {at_s:g} s"
         raise choice_error(

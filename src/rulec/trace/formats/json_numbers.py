@@ -55,4 +55,6 @@ def as_written(value: object) -> object:
     """What an encoder writes for a number that no float stands for."""
     if isinstance(value, WrittenNumber):
         return msgspec.Raw(str(value).encode())
+    if isinstance(value, float):  # NumPy's
+        return float(value)
     raise NotImplementedError

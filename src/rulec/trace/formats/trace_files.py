@@ -103,6 +103,10 @@ _WRITABLE = (bool, int, float, str, Interval, UnknownValue)
 
 def check_writable(trace: Trace) -> None:
     """Refuse values that no format of traces has. Raises RulecError R0501."""
+    for pair in trace.objects.items():
+        if not all(isinstance(text, str) for text in pair):
+            message = f"`objects` has names and types, not {brief(pair[0])} and {brief(pair[1])}"
+            raise NOT_A_TRACE.error(trace.place, message)
     for number, state in enumerate(trace.states):
         for name, value in state.items():
             odd = [one for one in _leaves(value) if not isinstance(one, _WRITABLE)]
