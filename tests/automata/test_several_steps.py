@@ -126,7 +126,7 @@ def test_one_step_of_one_is_as_without_others(soon):
     one, alone = (rulec.compile_rulebook(soon, step_s=step) for step in ([0.5], 0.5))
     assert to_json(one) == to_json(alone)
     assert to_json(rulec.compile_rulebook(soon, step_s=[0.5, 0.5])) == to_json(alone)
-    with pytest.raises(ValueError, match="a step"):
+    with pytest.raises(ValueError, match="has no step"):
         rulec.compile_rulebook(soon, step_s=[])
 
 
