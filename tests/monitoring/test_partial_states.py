@@ -229,6 +229,15 @@ def test_no_rule_is_kept_because_of_a_value_that_a_source_never_says(told, judge
     assert not verdict.violations
 
 
+def test_what_is_told_is_a_name_or_a_value():
+    compiled = rulec.compile_rulebook(parse_rulebook(LAMPS))
+    with pytest.raises(RulecError) as problem:
+        verify(Trace("t", 1.0, {}, ({},), told=frozenset({"light", "gren"})), compiled)
+    (diagnostic,) = problem.value.diagnostics
+    assert diagnostic.code == "R0502"
+    assert diagnostic.help == "did you mean `green`?"
+
+
 @pytest.mark.parametrize(
     ("strength", "best", "worst"),
     [("hard", "satisfied", "violated"), ("soft", "satisfied", "satisfied")],

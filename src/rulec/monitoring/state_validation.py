@@ -117,14 +117,13 @@ def check_told(
     told: Iterable[str] | None, vocabulary: Vocabulary, place: SourceLocation | None = None
 ) -> None:
     """Check that the vocabulary declares all names, or values, told. Raises RulecError R0502."""
-    enumerations = [x for x in vocabulary.declarations.values() if isinstance(x, Enumeration)]
-    values = frozenset().union(*(item.values for item in enumerations))
+    declarations, values = vocabulary.declarations, vocabulary.enumeration_of
     for name in told or ():
-        if name not in vocabulary.declarations and name not in values:
+        if name not in declarations and name not in values:
             raise UNDECLARED_NAME.error(
                 place,
                 f"`told` has `{name}`, which `{vocabulary.name}` does not know",
-                help=_unknown_name(name, vocabulary),
+                help=_unknown_name(name, vocabulary, (*declarations, *values)),
             )
 
 
@@ -172,7 +171,7 @@ def check_state(
             raise UNDECLARED_NAME.error(
                 place,
                 f"{where} speaks of `{name}`, which `{vocabulary.name}` does not know",
-                help=_unknown_name(name, vocabulary),
+                help=_unknown_name(name, vocabulary, vocabulary.declarations),
             )
         _check_value(value, declaration, declaration.parameters, about)
 
@@ -355,7 +354,7 @@ def _type_meant(kind: str, types: Iterable[str]) -> str:
     return next((f"did you mean `{name}`?" for name in meant), "")
 
 
-def _unknown_name(name: str, vocabulary: Vocabulary) -> str:
+def _unknown_name(name: str, vocabulary: Vocabulary, known: Iterable[str]) -> str:
     enumeration = vocabulary.enumeration_of.get(name)
     if name in _SIDES:
         return f"it is a word of formulas; of `lateral` {_SIDES[name]}"
@@ -366,4 +365,4 @@ def _unknown_name(name: str, vocabulary: Vocabulary) -> str:
 
     if others := vocabularies_with(str(name)):
         return f"it is a word of the vocabulary `{others[0]}`: judge by a rulebook that uses that"
-    return _suggest(name, vocabulary.declarations)
+    return _suggest(name, known)
