@@ -27,6 +27,8 @@ def as_facts_have_it(rulebook, trace):
         if isinstance(one.left, Atom) and isinstance(one.right, Atom)
         if (one.left.value, one.right.value) == (None, None)
         if one.left.arguments == one.right.arguments and one.left.name != one.right.name
+        # What one state says of a constant holds in all, so none is filled in by one state
+        if not {one.left.name, one.right.name} & {*rulebook.vocabulary.constants}
     ]
     if not links:
         return trace
