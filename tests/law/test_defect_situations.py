@@ -190,7 +190,7 @@ SITUATIONS = [
         "us-ca",
         "move_over",
         False,
-        past("v", stopped={"v": True}, hazard_lights={"v": True}),
+        past("v", hazard_lights={"v": True}),
         {"v": "car"},
     ),
     (

@@ -105,7 +105,7 @@ SHOWN = [
         ["lanes without marks"],
     ),
     (17, "us-ca", "solid_line", ["a single line"], ["straight on"]),
-    (18, "us-ca", "move_over", ["no freeway"], [""]),
+    (18, "us-ca", "move_over", ["it drives"], ["no freeway"]),
     (4, "it", "speed_limit_by_class", ["a lorry of 12 t"], ["a heavy lorry"]),
     (5, "it", "give_way_sign", ["waits"], ["from the left"]),
     (6, "it", "stop_sign", ["waits for the others"], ["stops, and goes before another one"]),
