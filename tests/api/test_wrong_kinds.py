@@ -1,9 +1,12 @@
 """What is given of the wrong kind is said at the door, with what to give instead."""
 
+from dataclasses import replace
+from fractions import Fraction
 from functools import reduce
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import rulec
@@ -78,6 +81,37 @@ def traced(**changes):
     return rulec.Trace(**given)
 
 
+class OwnPath:
+    """A path of another library's."""
+
+    def __fspath__(self):
+        return FOLLOWING
+
+
+class BytesPath(OwnPath):
+    def __fspath__(self):
+        return b"a"
+
+
+def test_paths_may_be_those_of_other_libraries():
+    found = rulec.verify_recording(OwnPath(), "esterle2019")
+    assert len(found.recording.participants) == len(DRIVEN.participants)
+
+
+def test_traces_of_any_step_are_drawn():
+    plain, fraction, huge = (
+        rulec.draw(replace(PASSING, step_s=step_s), RULES)
+        for step_s in (0.5, Fraction(1, 2), 1e308)
+    )
+    assert fraction == plain != huge
+
+
+def built(lane=None, body=None):
+    lanelet = replace(rulec.build_lanelet("a", LINE), **lane or {})
+    one = rulec.build_participant("p", "car", [0], [0], [0], step_s=1)
+    return rulec.build_recording([lanelet], [replace(one, **body or {})], step_s=1)
+
+
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
@@ -129,6 +163,18 @@ def test_what_is_no_trace_is_said(changes, said):
         ),
         (lambda: rulec.TrafficWorld(DRIVEN, 1), TypeError, "`ego` is a str, not int"),
         (lambda: rulec.RequestedDrives(None), TypeError, "`egos` is .*not NoneType"),
+        (lambda: rulec.Monitor(RULES).past("v"), TypeError, "`objects` is a dict, not str"),
+        (
+            lambda: rulec.Monitor(RULES).step({}, {}, "a.jsonl"),
+            TypeError,
+            "`place` is a SourceLocation, not str",
+        ),
+        (
+            lambda: rulec.envelope(rulec.navigation_graph("s2"), pd.Series(["a"])),
+            TypeError,
+            r"`nodes\[0\]` is a whole number, not str",
+        ),
+        (lambda: rulec.Session(search_path=pd.Series([1])), TypeError, r"`search_path\[0\]` is a"),
         (lambda: rulec.Interval("1", 2), TypeError, "`low` is a number, not str"),
         (lambda: rulec.Monitor.restore("de", {}), TypeError, "CompiledRulebook, not str"),
         (lambda: rulec.layout_of([None]), ValueError, "whole numbers, such as"),
@@ -144,6 +190,23 @@ def test_what_is_no_trace_is_said(changes, said):
         ),
         (lambda: rulec.recording_from_columns(None, {}), rulec.RulecError, "of type `NoneType`"),
         (lambda: rulec.build_recording([1], [], step_s=1), TypeError, r"`lanelets\[0\]` is a Lan"),
+        (lambda: built(lane={"successors": 3}), TypeError, "`successors` is a tuple, not int"),
+        (lambda: built(lane={"foes": "b"}), TypeError, "`foes` is a frozenset, not str"),
+        (lambda: built(body={"states": [1]}), TypeError, "`states` is a dict, not list"),
+        (lambda: built(body={"states": {0: 1}}), TypeError, r"`states\[0\]` is a TrackState, not"),
+        (
+            lambda: rulec.verify(traced(place="a.jsonl"), RULES),
+            TypeError,
+            "`place` is a SourceLocation, not str",
+        ),
+        (lambda: rulec.show("esterle2019", "R1", width=0), ValueError, "columns or more, not 0"),
+        (lambda: RULES.at_step(None), TypeError, "`step_s` is a Fraction or a number, not None"),
+        (
+            lambda: rulec.find_maneuvers("s2", RULES).ranked(np.ma.array([1, 2])),
+            TypeError,
+            "`n` is a whole number, not MaskedArray",
+        ),
+        (lambda: rulec.read_map(BytesPath(), 1), TypeError, "`path` is a str or a path, not Byt"),
         (lambda: rulec.build_lanelet("a", [(0, 0), (9, 0)], [[1], []]), rulec.RulecError, "width"),
         (lambda: rulec.verify_recording("a" * 5000, "de"), rulec.RulecError, "too long"),
         (lambda: rulec.write_traces([traced(id="\ud800")], "a"), rulec.RulecError, "surrogate"),

@@ -43,6 +43,17 @@ def test_folders_without_end_are_left_alone_and_named(tree):
     assert left == {"/".join("d" * 201): "too deep"}
 
 
+def test_what_cannot_be_asked_of_a_folder_keeps_nobody_from_the_others(tree):
+    """As where one may not enter it; root may, so its whole path is too long for the system."""
+    folder = "/".join(["d" * 250] * 8)
+    for _ in range(2):
+        write(f"{folder}/b.rules")
+        os.chdir(folder)
+    Path("d" * 60).mkdir()
+    os.chdir(tree / "tree")
+    assert found()[0][0] == "a.rules"
+
+
 def test_environments_hidden_folders_and_what_git_ignores_are_left_alone(tree):
     folders = ["venv", "node_modules", "env", ".venv", "out", "kept", "x/site-packages"]
     for folder in folders:

@@ -31,6 +31,9 @@ if TYPE_CHECKING:
     from rulec.report.text.listing import Listed
     from rulec.trace import Trace
 
+_NARROWEST = 10
+"""So many columns the text of a rule needs."""
+
 Kind = Literal["rulebooks", "vocabularies", "scenarios", "codes"]
 
 
@@ -211,6 +214,8 @@ class RulebookQuestions(RulebookVerbs):
 
         Raises KeyError for a rule that there is not, RulecError.
         """
+        if width < _NARROWEST:
+            raise ValueError(f"`width` is {_NARROWEST} columns or more, not {width}")
         from dataclasses import replace
 
         from rulec.report.rulebooks import rule_page

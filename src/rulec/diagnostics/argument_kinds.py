@@ -13,6 +13,7 @@ from itertools import chain, repeat
 from math import isfinite
 from numbers import Rational, Real
 from os import PathLike
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 AnyFunction = TypeVar("AnyFunction", bound=Callable[..., Any])
@@ -56,7 +57,7 @@ _ALIASES = {
 _UNSAID = {"None", "SavedPast"}
 """Kinds that errors do not name: no argument at all, and what only commands give."""
 
-_ANYTHING = {"Any", "ArrayLike", "object"}
+_ANYTHING = {"Any", "ArrayLike", "Points", "object"}
 
 
 def checked_kinds(function: AnyFunction) -> AnyFunction:
@@ -88,13 +89,19 @@ def checked_kinds(function: AnyFunction) -> AnyFunction:
 def expected(name: str, annotation: str, value: Any) -> Any:
     """A value that is of one of the kinds of an annotation, else TypeError with the way out.
 
-    What has to be a sequence and is an iterator or an array comes as a tuple.
+    What has to be a sequence and is an iterator, an array or a column comes as a tuple, what stands
+    for a path as one.
     """
     if not annotation or not _kinds(annotation):
         return value
     kind = _fitting(annotation, cast("Hashable", type(value)))
     if kind is None:
         raise _unexpected(name, annotation, value)
+    if kind.name == "Path" and not isinstance(value, Path):
+        try:
+            return Path(value)
+        except TypeError:  # one of bytes
+            raise _unexpected(name, annotation, value) from None
     if not kind.items:
         return value
     if isinstance(value, Mapping):
@@ -102,15 +109,16 @@ def expected(name: str, annotation: str, value: Any) -> Any:
             for _ in _checked_items(f"{name}.{part}()", own, iter(getattr(value, part)())):
                 pass
         return value
-    is_array = type(value).__name__ == "ndarray"
-    if is_array and not value.ndim:
-        raise _unexpected(name, annotation, value)
-    if isinstance(value, Iterator) or is_array:
-        items = _checked_items(name, kind.items[0], iter(value))
+    try:
+        given = iter(value)
+    except TypeError:  # an array of one number
+        raise _unexpected(name, annotation, value) from None
+    items = _checked_items(name, kind.items[0], given)
+    if not isinstance(value, Sequence | Set):
+        is_array = hasattr(type(value), "ndim")
         return items if kind.name == "Iterable" and not is_array else tuple(items)
-    if isinstance(value, Sequence | Set):
-        for _ in _checked_items(name, kind.items[0], iter(value)):
-            pass
+    for _ in items:
+        pass
     return value
 
 
@@ -232,7 +240,7 @@ def _is_listed(given: type) -> bool:
 
 def _is_whole(given: type) -> bool:
     # Arrays of one number are, too, and others are not
-    return hasattr(given, "__index__") and given.__name__ != "ndarray"
+    return hasattr(given, "__index__") and "ndarray" not in [one.__name__ for one in given.__mro__]
 
 
 _PLAIN: dict[str, tuple[str, Callable[[type], bool]]] = {
@@ -242,7 +250,9 @@ _PLAIN: dict[str, tuple[str, Callable[[type], bool]]] = {
     "None": ("None", lambda given: given is type(None)),
     "Path": ("a path", lambda given: issubclass(given, PathLike)),
     "bool": ("True or False", lambda given: given.__name__ in ("bool", "bool_")),
+    "frozenset": ("a frozenset", lambda given: issubclass(given, Set)),
     "float": ("a number", lambda given: issubclass(given, Real)),
     "int": ("a whole number", _is_whole),
     "str": ("a str", lambda given: issubclass(given, str)),
+    "tuple": ("a tuple", lambda given: _is_listed(given) and issubclass(given, Sequence)),
 }

@@ -13,7 +13,7 @@ from numpy import float64
 from numpy.typing import ArrayLike, NDArray
 
 from rulec.diagnostics import did_you_mean, named
-from rulec.diagnostics.argument_kinds import checked_kinds, expected
+from rulec.diagnostics.argument_kinds import checked_kinds, expected, expected_fields
 from rulec.recordings.building_checks import BuildingChecks
 from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.lanes.lanes_along import (
@@ -253,6 +253,8 @@ def build_recording(
     wrong: shapes of arrays, numbers that are none, ids that are double or lead nowhere.
     """
     lanes, bodies = tuple(lanelets), tuple(participants)
+    for one in (*lanes, *bodies):
+        expected_fields(one)
     checks = BuildingChecks("the recording")
     step_s = checks.positive("step_s", step_s)
     if side is not None:
@@ -322,6 +324,7 @@ def _check_participant(body: Participant, to: BuildingChecks) -> None:
     if missing := sorted(set(body.states) - set(body.outlines)):
         checks.wrong(f"it has no outline at step {missing[0]}")
     for step, state in body.states.items():
+        expected(f"states[{step!r:.40}]", "TrackState", state)
         values = (state.x, state.y, state.heading, state.speed, state.acceleration)
         if not all(abs(value) < LARGEST for value in values):
             checks.wrong(f"at step {step} it is {state}", "expected finite numbers")

@@ -10,7 +10,7 @@ from numbers import Integral, Real
 from typing import Literal, get_args
 
 from rulec.diagnostics import SourceLocation
-from rulec.diagnostics.argument_kinds import is_finite
+from rulec.diagnostics.argument_kinds import expected, is_finite
 from rulec.trace.trace_messages import NO_STATES, NOT_A_TRACE, UNKNOWN_OBJECT
 from rulec.value_display import brief, short_repr
 from rulec.vocabulary.partial_values import PartialValue
@@ -160,6 +160,8 @@ def _check_kinds(trace: Trace) -> None:
         ("present", trace.present),
     )
     wrong = ""
+    if trace.place is not None:
+        expected("place", "SourceLocation", trace.place)
     if not isinstance(states, Sequence) or isinstance(states, str | bytes):
         wrong = f"`states` is a tuple of states, not {type(states).__name__}"
     elif isinstance(step, bool) or not isinstance(step, Real):

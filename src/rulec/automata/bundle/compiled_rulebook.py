@@ -11,7 +11,7 @@ from rulec.automata.bundle.bundle_messages import OTHER_STEP
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError, SourceLocation
-from rulec.diagnostics.argument_kinds import finite
+from rulec.diagnostics.argument_kinds import expected, finite
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.formula import Formula
 from rulec.logic.printing import number_in_words
@@ -132,7 +132,7 @@ class CompiledRulebook(Rows):
         step and cannot be compiled again, R0407 for a bound that is no multiple of the step, else
         as ``compile_rulebook``.
         """
-        finite("step_s", step_s)
+        finite("step_s", expected("step_s", "Fraction | float", step_s))
         step = exact_step(step_s)
         if self.recompile is None:
             for rule in self.rules:

@@ -184,6 +184,7 @@ class Monitor:
         same_objects: bool,
     ) -> SoFar:
         """Take the next state without the cache of earlier steps."""
+        expected("place", "SourceLocation | None", place)
         current, number, _, cache = self._now
         number += 1
         bound_rules = current.bound_rules
@@ -233,6 +234,7 @@ class Monitor:
 
         Raises ValueError if it is unknown what was before the first state.
         """
+        expected("objects", "Mapping[str, str]", objects)
         current = self._now[0]
         if self._cut:
             raise ValueError("it is unknown what was before")

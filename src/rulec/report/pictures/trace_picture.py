@@ -20,6 +20,7 @@ from rulec.report.pictures.trace_ribbon import (
     value_style,
 )
 from rulec.report.verdicts.verdict_report import MOST_VIOLATIONS, in_a_line
+from rulec.trace.trace_model import plain_step_s
 
 WIDEST_TITLE = 34
 
@@ -45,7 +46,7 @@ def ribbon_picture(ribbon: Ribbon, rules: CompiledRulebook) -> Picture:
     trace = ribbon.trace
     titles = [_title(row) for row in ribbon.rows]
     left = canvas.MARGIN + canvas.text_width(titles) + 10
-    axis = _Axis(left, len(trace.states), trace.step_s)
+    axis = _Axis(left, len(trace.states), plain_step_s(trace))
     flags, top = _flags(ribbon, axis)
     marks: list[Mark] = []
     labels: list[Mark] = []
@@ -66,9 +67,10 @@ def _explanations(
     by_name = {rule.name: rule for rule in rules.rules}
     explained: set[str] = set()
     labels: list[LabelText] = []
+    step_s = plain_step_s(ribbon.trace)
     for n, violation in enumerate(ribbon.violations[:MOST_VIOLATIONS], 1):
         rule = by_name[violation.rule]
-        when = "" if violation.step is None else f", at {violation.step * ribbon.trace.step_s:g} s"
+        when = "" if violation.step is None else f", at {violation.step * step_s:g} s"
         lines = [("ink", f"{in_a_line(violation, rule, rules.name)}{when}")]
         lines += [("faint", rule.says)] if rule.name not in explained else []
         explained.add(rule.name)

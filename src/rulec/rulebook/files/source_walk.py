@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from os.path import islink, lexists
 from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, SourceLocation
@@ -93,9 +94,9 @@ def sources_below(folder: str, excluded: Exclusion | None = None) -> FoundSource
 def _why_not_entered(folder: Path, files: Sequence[IgnoreFile]) -> str:
     if folder.name.startswith("."):
         return "hidden"
-    if folder.name in ENVIRONMENTS or any((folder / mark).exists() for mark in _MARKS):
+    if folder.name in ENVIRONMENTS or any(lexists(folder / mark) for mark in _MARKS):
         return "an environment"
-    if folder.is_symlink():
+    if islink(folder):  # noqa: PTH114 - the other way raises what a system says of a path
         return "a link to a folder"
     return "ignored by git" if is_ignored(folder, files, is_folder=True) else ""
 
