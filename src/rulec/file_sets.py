@@ -28,6 +28,7 @@ from rulec.files import (
     as_before,
     is_own,
     is_replaced,
+    private,
     put_folder_on_disk,
     put_on_disk,
     refusals,
@@ -117,7 +118,7 @@ def _commit(folder: Path, mark: str, names: Mapping[str, str]) -> None:
     """Let new files count from now on, in one step: the manifest gets its name."""
     part = f".rulec-{mark}-{len(names)}.part"
     try:
-        with open(folder / part, "xb", opener=_private) as stream:
+        with open(folder / part, "xb", opener=private) as stream:
             known = {own: [name, *_identity(folder / own)] for own, name in names.items()}
             manifest = {"inode": os.fstat(stream.fileno()).st_ino, "files": known}
             stream.write(json.dumps(manifest).encode())
@@ -153,10 +154,6 @@ def _identity(path: Path) -> list[int]:
     """What nobody can choose of a file: its number, and when it was last changed (ns)."""
     status = path.stat()
     return [status.st_ino, status.st_ctime_ns]
-
-
-def _private(name: str, flags: int) -> int:
-    return os.open(name, flags, 0o600)
 
 
 def _left_to_do(manifest: Path) -> Mapping[str, tuple[str, int, int]]:

@@ -120,7 +120,7 @@ def written_whole(path: Path, *, in_place: bool = False) -> Iterator[IO[bytes]]:
         name = real.with_name(f".{beginning}.{os.urandom(8).hex()}.part")
         # What is made here is made inside the `try`: whenever a signal comes, nothing stays behind.
         try:
-            with open(name, "xb", opener=_private) as stream:
+            with open(name, "xb", opener=private) as stream:
                 yield stream
                 put_on_disk(stream)
             if not as_before(name, real) and in_place:
@@ -169,7 +169,8 @@ def put_folder_on_disk(folder: Path) -> None:
             os.close(handle)
 
 
-def _private(name: str, flags: int) -> int:
+def private(name: str, flags: int) -> int:
+    """Open a file that is for its owner alone."""
     return os.open(name, flags, 0o600)
 
 

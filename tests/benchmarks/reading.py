@@ -13,6 +13,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import get_args
 
 from figure import Result
 from program import run
@@ -22,7 +23,7 @@ from timing import Timed, children_ms, in_turns, processor_time
 import rulec
 from rulec.monitoring.batch.batch_verify import verify_items
 from rulec.trace import Trace
-from rulec.trace.formats.trace_files import FORMATS, Format, format_of, read_chunks, write_traces
+from rulec.trace.formats.trace_files import Format, format_of, read_chunks, write_traces
 
 N_TRACES, N_STATES, N_VEHICLES = 5_000, 20, 3
 WORK = float(N_TRACES * N_STATES)
@@ -35,7 +36,7 @@ def measure(rounds: int) -> Iterator[Result]:
     """Every format."""
     rules = rulec.compile_rulebook("esterle2019")
     with tempfile.TemporaryDirectory() as folder:
-        files = [written(Path(folder), form) for form in FORMATS]
+        files = [written(Path(folder), form) for form in get_args(Format)]
         tasks: dict[str, Timed] = {}
         for file in files:
             form = format_of(str(file))

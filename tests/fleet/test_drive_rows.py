@@ -10,7 +10,7 @@ from rulec.extraction.to_trace import Place
 from rulec.fleet.drive_rows import DriveRows, driven_m
 from rulec.fleet.finding_columns import COLUMNS, arrow_schema, arrow_table
 from rulec.fleet.judged_by import judged_by, rulebook_hash
-from rulec.monitoring.moments.exposure import exposures
+from rulec.monitoring.moments.drive_facts import facts_of
 from support.builders.fleet_inputs import fleet_rules, lanes, tracks
 
 
@@ -118,8 +118,9 @@ def test_rows_of_rules_have_opportunities_that_arrays_and_states_agree_on(judged
     """Two are too fast: each had one opportunity, its drive, and took it."""
     verdicts, _ = judged
     for answer in verdicts.answers():
-        own = exposures(answer.drive.trace, verdicts.rules, answer.answer)
-        assert own == exposures(answer.drive.arrays, verdicts.rules, answer.answer)
+        facts = facts_of(answer.drive.trace, verdicts.rules, answer.answer)
+        assert facts == facts_of(answer.drive.arrays, verdicts.rules, answer.answer)
+        own = facts.exposure
         for row in rows:
             if row["vehicle"] == answer.drive.trace.id and row.get("rule") in own:
                 if row["kind"] != "rule":

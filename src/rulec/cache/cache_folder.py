@@ -8,7 +8,7 @@ from functools import cache
 from hashlib import sha256
 from pathlib import Path
 
-from rulec.files import OF_OTHERS, is_own
+from rulec.files import OF_OTHERS, is_own, private
 from rulec.resources import package_files
 
 
@@ -53,16 +53,12 @@ def write_own(path: Path, data: bytes) -> None:
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     part = path.with_name(f".{path.name}.{os.urandom(8).hex()}.part")
     try:
-        with open(part, "xb", opener=_for_its_owner) as stream:
+        with open(part, "xb", opener=private) as stream:
             stream.write(data)
         part.replace(path)
     except BaseException:
         part.unlink(missing_ok=True)
         raise
-
-
-def _for_its_owner(name: str, flags: int) -> int:
-    return os.open(name, flags, 0o600)
 
 
 @cache

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
-from typing import Any, Literal, Optional, TypeAlias
+from typing import Any, Optional, TypeAlias
 
 import msgspec
 
 from rulec.report.json_document import JsonDocument
 from rulec.report.verdict_findings import verdict_finding
 from rulec.trace.formats.arrow.parquet import arrow
-
-Kind = Literal["drive", "rule", "finding"]
-"""What a row is about: a drive, a drive and a rule, or a rule and the objects that it is about."""
 
 Cell: TypeAlias = "str | float | tuple[str, ...] | None"
 

@@ -13,7 +13,7 @@ from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.batch_verify import verify_items
 from rulec.monitoring.moments import drive_facts
 from rulec.monitoring.moments.drive_facts import facts_of, facts_of_many
-from rulec.monitoring.moments.exposure import Exposure, exposures
+from rulec.monitoring.moments.exposure import Exposure
 from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
@@ -47,7 +47,7 @@ def counted(
         present or {},
         ends=ends,
     )
-    return exposures(trace, compiled, verify(trace, compiled))["r"]
+    return facts_of(trace, compiled, verify(trace, compiled)).exposure["r"]
 
 
 def state_of(text):
@@ -183,7 +183,7 @@ def test_violations_lie_in_opportunities(chance):
             except RulecError:
                 continue
             judged.append((trace, verdict))
-            found = exposures(trace, compiled, verdict)
+            found = facts_of(trace, compiled, verdict).exposure
             for name, own in found.items():
                 violated = [one for one in verdict.violations if one.rule == name]
                 doubtful = [one for one in verdict.open if one.rule == name]

@@ -16,7 +16,7 @@ from itertools import islice
 import rulec
 from rulec.api.rulebook_compilation import machines
 from rulec.extraction.recording_verdicts import DriveVerdict
-from rulec.monitoring.moments.exposure import exposures
+from rulec.monitoring.moments.drive_facts import facts_of
 from rulec.monitoring.verdict import Verdict
 from rulec.planning.ranking.cheapest import cheapest
 from rulec.trace.plain_unknowns import with_plain_unknowns
@@ -60,7 +60,7 @@ def _in_drives(file, rules):
         if isinstance(answer, DriveVerdict) and isinstance(answer.answer, Verdict):
             verdict = answer.answer
             left_out = {one.rule for one in (*verdict.not_judged, *verdict.open)}
-            exposed = exposures(answer.drive.arrays, verdicts.rules, verdict)
+            exposed = facts_of(answer.drive.arrays, verdicts.rules, verdict).exposure
             names |= {name for name, own in exposed.items() if own.opportunities} - left_out
     return frozenset(names)
 
@@ -72,7 +72,8 @@ def _met(found):
     paths += [one.nodes for one in islice(cheapest(found.possible), _CHEAPEST)]
     for nodes in paths:
         trace = with_plain_unknowns(trace_of(found.paths, nodes, ""))
-        for name, own in exposures(trace, found.rules, Verdict("", ())).items():
+        exposed = facts_of(trace, found.rules, Verdict("", ())).exposure
+        for name, own in exposed.items():
             surely |= {name} if own.opportunities else set()
             perhaps |= {name} if own.perhaps_opportunities else set()
     return frozenset(surely), frozenset(perhaps)

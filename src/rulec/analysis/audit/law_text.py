@@ -135,7 +135,7 @@ def _plain_heads(text: str, shape: re.Pattern[str]) -> list[_Head]:
     return [
         (start, end, named)
         for start, end, head in found
-        if (named := _named(head)) is not None and _after_blank(text, start)
+        if (named := _named(head)) and (start == 0 or text.endswith("\n\n", 0, start))
     ]
 
 
@@ -150,10 +150,6 @@ def _named(head: str) -> tuple[str, str] | None:
     found, _ = references_in(begins[0].rstrip(".:"))
     one = found[0] if len(found) == 1 and not found[0].parts else None
     return None if one is None or one.kind == "sign" else (one.kind, one.number)
-
-
-def _after_blank(text: str, start: int) -> bool:
-    return start == 0 or text.endswith("\n\n", 0, start)
 
 
 def _part(text: str, kind: PartKind, name: str) -> str | None:

@@ -95,7 +95,8 @@ def _step(
         deed: rule_lineage.LineageAction = "confirmed" if item.confirm else "overridden"
         changed = _changed_clauses(before, after)
         gives_law = item.cite is not None
-        lost = tuple(_one_line(one.span.text) for one in lost_exceptions(before, item))
+        parts = [one.span.text.removeprefix("also") for one in lost_exceptions(before, item)]
+        lost = tuple([" ".join(part.split()) for part in parts])
         return rule_lineage.LineageStep(book, deed, after, changed, gives_law=gives_law, lost=lost)
     after = replace(
         before,
@@ -105,10 +106,6 @@ def _step(
     )
     why = item.because.value if item.because else ""
     return rule_lineage.LineageStep(book, "softened", after, _changed_clauses(before, after), why)
-
-
-def _one_line(text: str) -> str:
-    return " ".join(text.removeprefix("also").split())
 
 
 HARDNESS = "hard or soft"

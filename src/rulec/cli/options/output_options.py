@@ -19,6 +19,7 @@ import click
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.file_messages import OVERWRITES_INPUT
+from rulec.report.verdict_findings.finding_writers import ENDINGS
 from rulec.work_trees import is_ordinary
 
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
@@ -29,6 +30,7 @@ Endings = Mapping[str, Sequence[str]]
 _TEXT = (".txt",)
 
 _ENDINGS: Endings = {
+    **ENDINGS,
     "text": _TEXT,
     "full": _TEXT,
     "concise": _TEXT,
@@ -36,11 +38,6 @@ _ENDINGS: Endings = {
     "markdown": (".md", ".markdown"),
     "html": (".html", ".htm"),
     "json": (".json",),
-    "jsonl": (".jsonl", ".ndjson"),
-    "csv": (".csv",),
-    "parquet": (".parquet", ".pq"),
-    "junit": (".xml",),
-    "sarif": (".sarif", ".sarif.json"),
     "dot": (".dot", ".gv"),
     "svg": (".svg",),
     "png": (".png",),

@@ -29,11 +29,8 @@ from rulec.monitoring.moments.trace_truth import (
     FormulaTruth,
     ReadyFormula,
     TraceTruth,
-    tables_of,
 )
 from rulec.monitoring.verdict import OpenVerdict, Verdict, Violation
-from rulec.trace import Trace
-from rulec.trace.trace_arrays import TraceArrays
 from rulec.value_display import short_repr
 
 Counts = NDArray[np.intp]
@@ -72,19 +69,6 @@ Outcome = Literal["violated", "open"]
 
 Chosen = tuple[int, tuple[int, ...]]
 """A trace, and objects of it, as tables count them."""
-
-
-def exposures(
-    trace: Trace | TraceArrays, rulebook: CompiledRulebook, verdict: Verdict
-) -> dict[str, Exposure]:
-    """The exposure to each rule that was judged, by its name.
-
-    The ``verdict`` on the trace says for which objects a rule is violated or open.
-    """
-    tables = tables_of(trace, rulebook.vocabulary)
-    truth = TraceTruth(tables, rulebook.semantics, trace.ends)
-    (found,) = alike_exposures(truth, trace.step_s, rulebook, [verdict], [tuple(trace.objects)])
-    return found
 
 
 def alike_exposures(

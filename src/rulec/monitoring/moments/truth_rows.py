@@ -121,7 +121,8 @@ def _weak_until(
 
 
 def _since(left: TruthRows, right: TruthRows, span: Range, stretches: RowStretches) -> TruthRows:
-    return _looked_back(left, right, span, stretches.first, "cut" if _is_cut(stretches) else "over")
+    beyond: RowEnding = "cut" if stretches.ends == "cut" else "over"
+    return _looked_back(left, right, span, stretches.first, beyond)
 
 
 def _until(left: TruthRows, right: TruthRows, span: Range, stretches: RowStretches) -> TruthRows:
@@ -129,10 +130,6 @@ def _until(left: TruthRows, right: TruthRows, span: Range, stretches: RowStretch
     behind = left.sure.shape[-1] - 1 - stretches.last
     back = _looked_back(_turned(left), _turned(right), span, behind, stretches.ends)
     return _turned(back)
-
-
-def _is_cut(stretches: RowStretches) -> bool:
-    return stretches.ends == "cut"
 
 
 def _turned(truth: TruthRows) -> TruthRows:

@@ -12,6 +12,7 @@ from math import inf
 from types import MappingProxyType
 from typing import NamedTuple
 
+from rulec.recordings.encodings.speed_units import SPEED_UNITS
 from rulec.recordings.encodings.tree import Tree
 
 MAX_SPEED = "MAX_SPEED"
@@ -156,7 +157,6 @@ def signs_by_number(country: str) -> dict[int, str]:
     return {**dict(enumerate(first)), 92: crossing, 170: arrow, **plates}
 
 
-_UNITS_MPS = {"kmh": 1 / 3.6, "km/h": 1 / 3.6, "mph": 0.44704, "m/s": 1.0}
 _WITH_UNIT = re.compile(r"(\d{1,3}(?:\.\d{1,3})?) ?(kmh|km/h|mph|m/s)", re.ASCII)
 """Limits as maps of the INTERACTION dataset have them, ``80kmh`` for one."""
 
@@ -211,7 +211,7 @@ def speed_limit(tree: Tree) -> float:
         return inf
     with_unit = _WITH_UNIT.fullmatch(tree.word.lower())
     if with_unit is not None:
-        return float(with_unit[1]) * _UNITS_MPS[with_unit[2]]
+        return float(with_unit[1]) * SPEED_UNITS[with_unit[2]]
     limit = tree.number()
     if limit < 0:
         raise tree.wrong(f"a speed limit is {limit:g}", "a number not below 0")

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rulec.diagnostics import RulecError, SourceLocation
+from rulec.files import opened
 from rulec.recordings.recording_messages import NOT_A_RECORDING
 
 
@@ -16,6 +17,15 @@ class FileFormat:
     words: str
     help: str
     largest_bytes: int = 200_000_000
+
+    def content(self, path: Path) -> bytes:
+        """All bytes of a file. Raises RulecError R0610 for too many, R0701 if it cannot be read."""
+        most = self.largest_bytes
+        with opened(path) as stream:
+            data = stream.read(most + 1)
+        if len(data) > most:
+            raise self.refused(path, f"it is too large: at most {most:,} bytes are read")
+        return data
 
     def refused(
         self,

@@ -8,7 +8,6 @@ from typing import TypeVar
 
 import msgspec
 
-from rulec.files import opened
 from rulec.recordings.encodings.file_format import FileFormat
 
 T = TypeVar("T")
@@ -20,10 +19,7 @@ def read_json(path: Path, form: FileFormat, kind: type[T]) -> T:
     Raises RulecError R0610 for a file that is larger than the format allows, broken, or holds
     something else, with the place in it as a path of keys or a byte; R0701 if it cannot be opened.
     """
-    with opened(path) as stream:
-        data = stream.read(form.largest_bytes + 1)
-    if len(data) > form.largest_bytes:
-        raise form.refused(path, f"it is larger than {form.largest_bytes:,} bytes")
+    data = form.content(path)
     try:
         return msgspec.json.decode(data.removeprefix(BOM_UTF8), type=kind)
     except (msgspec.DecodeError, UnicodeDecodeError, ValueError) as reason:

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Literal, NamedTuple, TypeAlias
 
 from rulec.diagnostics import RulecError
-from rulec.files import opened
 from rulec.recordings.encodings.file_format import BinaryFormat
 
 MOST_VALUES = 1_000_000
@@ -217,12 +216,9 @@ def wire_file(path: Path, form: BinaryFormat) -> WireFile:
 
     Raises RulecError R0610 for one that is empty or too large, R0701 if it cannot be read.
     """
-    with opened(path) as stream:
-        data = stream.read(form.largest_bytes + 1)
+    data = form.content(path)
     if not data:
         raise form.refused(path, "it is empty")
-    if len(data) > form.largest_bytes:
-        raise form.refused(path, f"it is too large: at most {form.largest_bytes:,} bytes are read")
     return WireFile(data, path, form)
 
 

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from math import isfinite
 from types import MappingProxyType
 
+from rulec.recordings.encodings.speed_units import KMH, SPEED_UNITS
 from rulec.recordings.recording import CYCLES_TOO, LaneMark
 
 _Tags = Mapping[str, str]
@@ -82,8 +83,7 @@ def leads_both_ways(tags: _Tags) -> bool:
     return next((tags[key] for key in keys if key in tags), "yes") in _FALSE
 
 
-_UNITS = {"": 1 / 3.6, "km/h": 1 / 3.6, "kmh": 1 / 3.6, "kph": 1 / 3.6, "mph": 1609.344 / 3600}
-_UNITS |= {"m/s": 1.0, "mps": 1.0}
+_UNITS = {**SPEED_UNITS, "": KMH}
 
 
 def speed_limit(tags: _Tags) -> float | None:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError, did_you_mean
 from rulec.recordings.encodings.file_format import FileFormat
+from rulec.recordings.encodings.speed_units import KMH, MPH
 from rulec.recordings.encodings.table_columns import (
     ColumnKind,
     ColumnTable,
@@ -40,14 +41,13 @@ LANES = FileFormat(
 )
 MOST_LANES = 100_000
 WIDEST_M = 50.0
-_KMH, _MPH = 1 / 3.6, 0.44704
 
 LANE_COLUMNS = (
     ColumnKind("lane", {"lane_id": 1, "lanelet": 1, "lanelet_id": 1}, True, True),
     ColumnKind("x", {"x_m": 1}, required=True),
     ColumnKind("y", {"y_m": 1}, required=True),
     ColumnKind("width", {"width_m": 1}),
-    ColumnKind("limit_mps", {"limit_kmh": _KMH, "limit_mph": _MPH}),
+    ColumnKind("limit_mps", {"limit_kmh": KMH, "limit_mph": MPH}),
     ColumnKind("stop_line", {}),
     *(
         ColumnKind(name, dict.fromkeys(also.split(), 1.0), True)

@@ -11,6 +11,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from rulec.recordings.commonroad.traffic_signs import CATALOGUED, UNKNOWN, national_sign
+from rulec.recordings.encodings.speed_units import KMH, SPEED_UNITS
 from rulec.recordings.opendrive.content.elements import RoadSignal
 
 _LIGHTS = frozenset({"1000001", *(f"10000{number:02}" for number in (8, 9, 10, 11, 12))})
@@ -61,8 +62,6 @@ HOLDS_ON: Mapping[str, frozenset[str]] = MappingProxyType(
 """Signs that hold from where they stand on -> those that end there."""
 
 PRIORITY_SIGNS = frozenset({"PRIORITY"})
-_MPH = "mph"
-_UNITS: Mapping[str, float] = MappingProxyType({"km/h": 1 / 3.6, _MPH: 0.44704, "m/s": 1.0})
 
 
 class CatalogueSign(NamedTuple):
@@ -112,10 +111,10 @@ def _limit(signal: RoadSignal, country: str) -> float | None:
     say nothing.
     """
     if signal.value is not None:
-        unit = signal.unit or (_MPH if country in ("USA", "GBR") else "km/h")
-        return signal.value * _UNITS.get(unit, _UNITS["km/h"])
+        unit = signal.unit or ("mph" if country in ("USA", "GBR") else "km/h")
+        return signal.value * SPEED_UNITS.get(unit, KMH)
     digits = signal.subtype if signal.subtype.isascii() and signal.subtype.isdigit() else ""
     number = int(digits) if 0 < len(digits) < 4 else 0
     if country in _GERMAN and 51 <= number <= 59:
-        return (number - 50) * 10 / 3.6
-    return number / 3.6 if country in _GERMAN and number in (10, 20, 30, 40) else None
+        return (number - 50) * 10 * KMH
+    return number * KMH if country in _GERMAN and number in (10, 20, 30, 40) else None

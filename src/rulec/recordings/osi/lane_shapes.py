@@ -91,7 +91,8 @@ def lane_shape(
 
     ``middles`` are those of all lanes, for what no boundary tells.
     """
-    sides = [[boundaries[x].line for x in ids if x in boundaries] for ids in _bounds(lane)]
+    bounds = lane.left_bounds, lane.right_bounds
+    sides = [[boundaries[x].line for x in ids if x in boundaries] for ids in bounds]
     lines = [lane.centre] if len(lane.centre) > 1 else [x for side in sides for x in side]
     if not lines:
         return None
@@ -109,10 +110,6 @@ def lane_shape(
     middle = 0.0 if len(lane.centre) > 1 else (left + right) / 2
     at = [line.at(stations, side) for side in (left, right, middle)]
     return LaneShape(at[0], at[1], at[2], assumed)
-
-
-def _bounds(lane: TraceLane) -> tuple[Sequence[str], Sequence[str]]:
-    return lane.left_bounds, lane.right_bounds
 
 
 def _side(line: _Line, parts: Iterable[Points]) -> tuple[NDArray[float64], NDArray[float64]]:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import shapely
 
+from rulec.recordings.encodings.speed_units import SPEED_UNITS
 from rulec.recordings.encodings.wire_format import WireFile
 from rulec.recordings.osi.message_fields import Fields, assigned_lanes, number, part, places
 from rulec.recordings.recording import Lanelet, Points
@@ -32,7 +33,6 @@ _NAMES: Mapping[str, str] = {
 """The names that signs have in recordings; others are not about driving, or end something."""
 
 _LIMITS = frozenset({"MAX_SPEED", "MAX_SPEED_ZONE_START"})
-_MPS: Mapping[str, float] = {"kmh": 1 / 3.6, "mph": 0.44704}
 _PAINTED = frozenset({"painted_traffic_sign", "symbolic_traffic_sign"})
 _CROSSING = "crossing_"
 _NARROWEST_M = 0.5
@@ -41,7 +41,7 @@ _Lanes = Mapping[str, Sequence[str]]
 
 def limit_of(value: Fields, file: WireFile) -> float | None:
     """A limit (m/s), None if its unit is not said. Raises RulecError R0610."""
-    unit = _MPS.get(value.get("value_unit", "unknown"))
+    unit = SPEED_UNITS.get(value.get("value_unit", "unknown"))
     limit = number(value, "value", file)
     return limit * unit if unit is not None and limit > 0 else None
 

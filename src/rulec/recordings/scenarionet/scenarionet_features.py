@@ -9,6 +9,7 @@ from types import MappingProxyType
 import numpy as np
 import shapely
 
+from rulec.recordings.encodings.speed_units import MPH
 from rulec.recordings.lane_centres.road_features import (
     BoundaryPart,
     CentreLane,
@@ -20,7 +21,6 @@ from rulec.recordings.recording import LONGEST_M, LaneMark
 from rulec.recordings.scenarionet.data_sets import DataSet
 from rulec.recordings.scenarionet.scenario_dictionary import KeyedValue
 
-MPS_OF_MPH = 0.44704
 JOINED_M = 0.1
 """Lanes without successors in the file lead to those that begin so near their end."""
 
@@ -104,7 +104,7 @@ def _lane(name: str, kind: str, entry: KeyedValue, known: DataSet) -> CentreLane
         id=name,
         centre=centre,
         types=frozenset({_LANE_TYPES[kind]} if kind in _LANE_TYPES else ()),
-        limit_mps=limit * MPS_OF_MPH if limit > 0 else None,
+        limit_mps=limit * MPH if limit > 0 else None,
         follows=_ids(entry.get("entry_lanes")),
         leads_to=_ids(entry.get("exit_lanes")),
         left=sides[0],

@@ -13,6 +13,7 @@ from rulec.recordings.doubts.motion_doubts import with_doubts
 from rulec.recordings.doubts.road_doubts import check_near
 from rulec.recordings.encodings.csv_head import is_number
 from rulec.recordings.encodings.file_format import FileFormat
+from rulec.recordings.encodings.speed_units import KMH, MPH
 from rulec.recordings.encodings.table_columns import (
     ColumnKind,
     ColumnTable,
@@ -43,7 +44,7 @@ _SPARSE_S = 5.0
 _CREEPING_MPS = 0.5
 _MANY_NAMES = 5
 _ALMOST_EVEN = 2.5
-_KMH, _MPH, _DEG = 1 / 3.6, 0.44704, pi / 180
+_DEG = pi / 180
 _LAMPS = cast("tuple[Lamp, ...]", get_args(Lamp))
 
 TRACK_COLUMNS = (
@@ -68,7 +69,7 @@ TRACK_COLUMNS = (
         {"heading_rad": 1, "yaw": 1, "yaw_rad": 1, "psi_rad": 1}
         | {"heading_deg": _DEG, "yaw_deg": _DEG},
     ),
-    ColumnKind("speed", {"speed_mps": 1, "v": 1, "speed_kmh": _KMH, "speed_mph": _MPH}),
+    ColumnKind("speed", {"speed_mps": 1, "v": 1, "speed_kmh": KMH, "speed_mph": MPH}),
     ColumnKind("vx", {"vel_x": 1, "vx_mps": 1}),
     ColumnKind("vy", {"vel_y": 1, "vy_mps": 1}),
     ColumnKind("acceleration", {"acc": 1, "acceleration_mps2": 1}),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rulec.recordings.encodings.speed_units import MPH
 from rulec.recordings.lane_centres.road_features import (
     BoundaryPart,
     CentreLane,
@@ -14,7 +15,6 @@ from rulec.recordings.recording import LONGEST_M
 from rulec.recordings.waymo.waymo_messages import CheckedMessage
 from rulec.recordings.waymo.waymo_tables import MARKS
 
-MPS_OF_MPH = 0.44704
 _FEWEST_CORNERS = 3
 _MOST_POINTS = 1 << 31
 
@@ -70,7 +70,7 @@ def _line(message: CheckedMessage) -> Places3d:
 def _limit(lane: CheckedMessage) -> float | None:
     """The speed limit (m/s); 0 mph is what Waymo writes for none."""
     mph = lane.number("speed_limit_mph") if "speed_limit_mph" in lane.values else 0.0
-    return mph * MPS_OF_MPH if mph > 0 else None
+    return mph * MPH if mph > 0 else None
 
 
 def _side(lane: CheckedMessage, side: str, count: int) -> LaneSide:

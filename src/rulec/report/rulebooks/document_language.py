@@ -52,12 +52,8 @@ def document_language(rulebook: Rulebook, code: LanguageCode) -> DocumentLanguag
     titles = titles_in(code)
     if code == "en":
         return replace(IN_ENGLISH, titles=titles)
-    language = replace(_language(code), types=types_of(rulebook, code))
+    language = replace(GERMAN if code == "de" else FRENCH, types=types_of(rulebook, code))
     return DocumentLanguage(language, _texts(code), titles, topics_in(code))
-
-
-def _language(code: LanguageCode) -> Language:
-    return {"de": GERMAN, "fr": FRENCH}[code]
 
 
 @cache

@@ -21,7 +21,7 @@ from rulec.logic.opportunities import trigger_of_parts
 from rulec.rulebook.arithmetic.linear_arithmetic import all_of, any_of, negated
 from rulec.rulebook.rulebook_model import Exemption, ExemptionScope, Rule
 
-_AND, _THEN, _UNTIL = BinaryOperator.AND, BinaryOperator.THEN, BinaryOperator.UNTIL
+_THEN, _UNTIL = BinaryOperator.THEN, BinaryOperator.UNTIL
 
 MOST_THROUGHOUT = 4
 """Exceptions of one rule that have to hold throughout; the formula grows exponentially in them."""

@@ -221,16 +221,13 @@ def _means(points: Points) -> Points:
 def _bends(points: Points) -> NDArray[intp]:
     """The numbers of points that are enough: every 5 m, and more where a line bends."""
     steps = np.diff(points, axis=0)
-    turned = np.concatenate(([0.0], np.abs(turn(*_pairs(np.arctan2(steps[:, 1], steps[:, 0]))))))
+    angles = np.arctan2(steps[:, 1], steps[:, 0])
+    turned = np.concatenate(([0.0], np.abs(turn(angles[:-1], angles[1:]))))
     share = np.hypot(*steps.T) / _PIECE_M + turned / _TURN_RAD
     reached = np.concatenate(([0.0], np.cumsum(share)))
     wanted = np.linspace(0.0, reached[-1], int(np.ceil(reached[-1])) + 1)
     numbers: NDArray[intp] = distinct(np.searchsorted(reached, wanted).clip(0, len(points) - 1))
     return numbers
-
-
-def _pairs(values: _Values) -> tuple[_Values, _Values]:
-    return values[:-1], values[1:]
 
 
 def turn(before: Angle, after: Angle) -> Angle:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from pathlib import Path, PurePath
-from typing import IO, Any, Literal, get_args
+from typing import IO, Any, Literal
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.files import opened
@@ -19,7 +19,6 @@ from rulec.value_display import brief
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue, UnknownValue
 
 Format = Literal["jsonl", "csv", "parquet"]
-FORMATS: tuple[Format, ...] = get_args(Format)
 
 Kinds = Mapping[str, type]
 """For each name that states speak of what its values are: ``bool``, ``float`` or ``str``.

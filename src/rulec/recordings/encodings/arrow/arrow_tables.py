@@ -15,7 +15,6 @@ from numpy import float64, int64
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
-from rulec.files import opened
 from rulec.recordings.encodings.arrow.arrow_messages import OddMessageError, batch_size
 from rulec.recordings.encodings.arrow.nested_columns import (
     Nested,
@@ -104,10 +103,7 @@ def read_table(path: Path, form: FileFormat, wanted: Wanted) -> ArrowTable:
     R0701 if it cannot be opened, R0706 without pyarrow.
     """
     arrow = _arrow(path)
-    with opened(path) as stream:
-        data = stream.read(form.largest_bytes + 1)
-    if len(data) > form.largest_bytes:
-        raise form.refused(path, f"it is larger than {form.largest_bytes:,} bytes")
+    data = form.content(path)
     try:
         table = _read(arrow, data, path, form, wanted)
         table.validate(full=True)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from math import inf
 
+from rulec.recordings.encodings.speed_units import SPEED_UNITS
 from rulec.recordings.encodings.tree import Tree
 from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.opendrive.content.elements import ContactPoint, Cubic, Orientation, Speed
 
 LONGEST_NAME = 200
-_UNITS = {"m/s": 1.0, "km/h": 1 / 3.6, "mph": 0.44704, "": 1.0}
+_UNITS = {**SPEED_UNITS, "": 1.0}
 """The unit of a speed is m/s where none is given."""
 
 _MOST_LANES = 1_000
