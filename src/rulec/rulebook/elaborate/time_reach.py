@@ -62,7 +62,8 @@ def _narrow(
             yield from _narrow(left, (node, *behind), definitions)
             yield from _narrow(right, behind, definitions)
         case tree.Prefix(operator, operand):
-            if operator in BINDS_NARROWLY and behind and not _is_grouped(operand):
+            grouped = isinstance(operand, tree.Grouping) and operand.grouped
+            if operator in BINDS_NARROWLY and behind and not grouped:
                 nearest = behind[0]
                 joins = nearest.operator in JOINS_ALIKE
                 alike = joins and _speaks_of_time(nearest.right, definitions)
@@ -75,10 +76,6 @@ def _narrow(
         case _:
             for part in parts_of(node):
                 yield from _narrow(part, (), definitions)
-
-
-def _is_grouped(node: tree.Formula) -> bool:
-    return isinstance(node, tree.Grouping) and node.grouped
 
 
 def _reach(

@@ -68,7 +68,8 @@ class LetterClasses:
         if key not in self._groups:
             groups: dict[Cube, int] = {}
             for cube in letters:
-                for part in product(*[_single(cube[place]) for place in fixed]):
+                singles = [[1 << bit for bit in bits_of(cube[place])] for place in fixed]
+                for part in product(*singles):
                     chosen = dict(zip(fixed, part, strict=True))
                     narrowed = [chosen.get(n, mask) for n, mask in enumerate(cube)]
                     groups[part] = groups.get(part, 0) | self.diagram.classes(narrowed)
@@ -151,7 +152,3 @@ def _keep(known: dict[_Key, _Value], key: _Key, value: _Value) -> None:
     if len(known) >= MOST_KEPT:
         known.clear()
     known[key] = value
-
-
-def _single(mask: int) -> list[int]:
-    return [1 << bit for bit in bits_of(mask)]
