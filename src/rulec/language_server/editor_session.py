@@ -5,13 +5,16 @@ from __future__ import annotations
 import asyncio
 import gc
 from collections.abc import Iterable
+from typing import Any
 
 from lsprotocol import types as lsp
+from pygls.exceptions import JsonRpcException, JsonRpcParseError
 from pygls.lsp.server import LanguageServer
 
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.language_server.lenses.code_lenses import KnownAnswers
 from rulec.language_server.names.document_names import DocumentNames, names_in_document
+from rulec.language_server.strict_protocol import StrictProtocol
 from rulec.language_server.workspace import published_diagnostics as published
 from rulec.language_server.workspace.editor_workspace import (
     CheckedDocument,
@@ -34,11 +37,20 @@ class EditorSession(LanguageServer):
     """A server with what it knows of its editor."""
 
     def __init__(self) -> None:
-        super().__init__("rulec", __version__, lsp.TextDocumentSyncKind.Full)
+        kind = lsp.TextDocumentSyncKind.Full
+        super().__init__("rulec", __version__, kind, protocol_cls=StrictProtocol)
+        self.status = 0
         self.editor = EditorWorkspace()
         self.found: dict[str, dict[str, list[Diagnostic]]] = {}
         self.answers = KnownAnswers()
         self.waiting: list[asyncio.TimerHandle] = []
+
+    def report_server_error(self, error: Exception, source: Any) -> None:
+        """Say what is wrong with a message: to whoever sent it, or else to whoever looks."""
+        if isinstance(error, ValueError) and isinstance(self.protocol, StrictProtocol):
+            self.protocol.refuse(None, JsonRpcParseError(str(error)))
+        elif not isinstance(error, JsonRpcException):
+            super().report_server_error(error, source)
 
     def check(self, document: Document) -> CheckedDocument | None:
         """Check a document and publish what is found, in whatever file."""

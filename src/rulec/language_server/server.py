@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import sys
 from pathlib import Path
 
@@ -50,6 +52,10 @@ def _documents(server: EditorSession) -> None:
         server.editor.folders = tuple(own or ([root] if root is not None else []))
         encoding = server.workspace.position_encoding
         server.editor.encoding = encoding or lsp.PositionEncodingKind.Utf16
+
+    @server.feature(lsp.EXIT)
+    def exiting(*_: object) -> None:
+        server.status = 0 if server.protocol._shutdown else 1
 
     @server.feature(lsp.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
     def folders_changed(params: lsp.DidChangeWorkspaceFoldersParams) -> None:
@@ -225,9 +231,14 @@ def _between_the_lines(server: EditorSession) -> None:
         return [] if known is None else code_lenses(*known, uri, server.answers)
 
 
-def serve() -> None:
-    """Serve one editor over standard input and output, until it says to exit."""
+def serve() -> int:
+    """Serve one editor over standard input and output; the exit status that it asks for."""
     collect_in_pauses()
+    for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+        # Whoever reads standard input waits in a thread that nothing ends.
+        signal.signal(number, lambda number, _: os._exit(128 + number))
+    server = language_server()
     # pygls closes what it writes to when it is told to exit, and standard output is still flushed.
     with open(sys.stdout.fileno(), "wb", closefd=False) as replies:
-        language_server().start_io(stdout=replies)
+        server.start_io(stdout=replies)
+    return server.status

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.verb_class import Verb
 from rulec.language_server.editor_settings import EDITORS, editor_settings
 
@@ -16,7 +17,7 @@ from rulec.language_server.editor_settings import EDITORS, editor_settings
     help="Print what to put into this editor's settings, and end.",
 )
 @click.option("--stdio", is_flag=True, help="What some editors add, and what it does anyway.")
-def command(*, editor: str | None, stdio: bool) -> None:  # noqa: ARG001 - it does so anyway
+def command(*, editor: str | None, stdio: bool) -> int:  # noqa: ARG001 - it does so anyway
     """Answer an editor: diagnostics, completion, renaming and the like.
 
     Editors start it themselves and speak the Language Server Protocol with it, over standard input
@@ -25,7 +26,7 @@ def command(*, editor: str | None, stdio: bool) -> None:  # noqa: ARG001 - it do
     """
     if editor is not None:
         click.echo(editor_settings(editor), nl=False)
-        return
+        return ExitStatus.OK
     # The message, 5 ms: not for --help.
     from rulec.language_server.language_server_messages import no_pygls
 
@@ -36,4 +37,4 @@ def command(*, editor: str | None, stdio: bool) -> None:  # noqa: ARG001 - it do
         if (problem.name or "").partition(".")[0] not in ("pygls", "lsprotocol", "cattrs"):
             raise
         raise no_pygls() from None
-    serve()
+    return serve()

@@ -1,0 +1,99 @@
+"""What the protocol asks of a server whatever is sent: a reply to each request, and an end."""
+
+import json
+import signal
+import subprocess
+import sys
+
+import pytest
+
+HOVER = "textDocument/hover"
+SOMEWHERE = {"textDocument": {"uri": "file:///a.rules"}, "position": {"line": 0, "character": 0}}
+BEGINNING = {"processId": None, "rootUri": None, "capabilities": {}}
+
+
+class Wire:
+    """A server's standard input and output."""
+
+    def __init__(self, *, begun=True):
+        command = [sys.executable, "-m", "rulec", "lsp"]
+        pipe = subprocess.PIPE
+        self.server = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL)
+        if begun:
+            assert "result" in self.ask(0, "initialize", BEGINNING)
+
+    def ask(self, number, method, params):
+        return self.reply(message(id=number, method=method, params=params))
+
+    def say(self, text):
+        body = text.encode()
+        self.server.stdin.write(b"Content-Length: %d\r\n\r\n" % len(body) + body)
+        self.server.stdin.flush()
+
+    def reply(self, text):
+        self.say(text)
+        length = 0
+        while (line := self.server.stdout.readline()) != b"\r\n":
+            name, _, value = line.partition(b":")
+            length = int(value) if name == b"Content-Length" else length
+        return json.loads(self.server.stdout.read(length))
+
+
+def message(**parts):
+    return json.dumps({"jsonrpc": "2.0", **parts})
+
+
+@pytest.fixture
+def wire():
+    made = []
+
+    def begin(**how):
+        made.append(Wire(**how))
+        return made[-1]
+
+    yield begin
+    for one in made:
+        one.server.kill()
+        one.server.communicate()
+
+
+@pytest.mark.parametrize(
+    ("text", "number", "code"),
+    [
+        (message(id=1, method=HOVER, params={"textDocument": 3}), 1, -32602),
+        (message(id="a", method=HOVER), "a", -32602),
+        (message(id=1, method="rulec/nothing", params={}), 1, -32601),
+        ("{abc}", None, -32700),
+        ("[]", None, -32600),
+        ("3", None, -32600),
+        (json.dumps({"id": 4, "method": HOVER, "params": SOMEWHERE}), 4, -32600),
+    ],
+)
+def test_what_cannot_be_answered_is_refused_and_the_next_is_answered(wire, text, number, code):
+    server = wire()
+    refused = server.reply(text)
+    assert (refused["id"], refused["error"]["code"]) == (number, code)
+    assert server.ask(9, HOVER, SOMEWHERE) == {"jsonrpc": "2.0", "id": 9, "result": None}
+
+
+def test_requests_have_their_time(wire):
+    server = wire(begun=False)
+    assert server.ask(1, HOVER, SOMEWHERE)["error"]["code"] == -32002
+    assert "result" in server.ask(2, "initialize", BEGINNING)
+    assert server.ask(3, "shutdown", None)["result"] is None
+    assert server.ask(4, HOVER, SOMEWHERE)["error"]["code"] == -32600
+    server.say(message(method="exit"))
+    assert server.server.wait(60) == 0
+
+
+def test_who_exits_without_shutting_down_leaves_in_error(wire):
+    server = wire()
+    server.say(message(method="exit"))
+    assert server.server.wait(60) == 1
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_ends_it_though_the_editor_still_has_its_input(wire, number):
+    server = wire()
+    server.server.send_signal(number)
+    assert server.server.wait(60) == 128 + number
