@@ -13,6 +13,7 @@ from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.monitoring.verdict import Verdict
+from rulec.recordings.building import build_lanelet, build_participant, build_recording
 from rulec.recordings.recording_files import read_recording
 from rulec.recordings.recording_format import RecordingSource
 from rulec.scoring.score import score
@@ -89,6 +90,22 @@ def test_the_wrong_way_on_a_motorway():
         for found in scores.candidates
     ]
     assert ["wrong_way" in rules for rules in blamed] == [False, True]
+
+
+def test_what_a_candidate_jerks_blurs_nothing_that_was_recorded():
+    step_s, steps = 0.1, np.arange(20)
+    lane = build_lanelet("road", [(-50, 0), (300, 0)], types=["urban"])
+    t = step_s * steps
+    bodies = [
+        build_participant(name, "car", t, x + 10 * t, 0 * t, step_s=step_s)
+        for name, x in (("ego", 0.0), ("slow", 40.0))
+    ]
+    world = TrafficWorld(build_recording([lane], bodies, step_s=step_s, side="right"), "ego", 0.4)
+    jerking = np.array([(4 + k % 2, 0.5 * (k % 2), 0.0, 10.0) for k in range(40)])
+    (found,) = assert_equal_to_verify(jerking[None], world, GERMAN, None).candidates
+    gap = found.drives[0].drive.trace.states[0]["gap"]["slow"]
+    # Places of recordings built by programs are known to 5 cm
+    assert gap.high - gap.low < 0.11
 
 
 def test_order_and_company_change_nothing():

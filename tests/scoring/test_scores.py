@@ -116,6 +116,9 @@ def test_margins_are_in_units():
         [[[0, 0, 0, 1e300]]],
         "none",
         [[[0, 0, 0, 1]], [[0, 0]]],
+        [[["0", "0", "0", "1"]]],
+        np.zeros((1, 3, 4), dtype=complex),
+        np.ma.masked_array(np.zeros((1, 3, 4)), mask=np.eye(3, 4)),
     ],
 )
 def test_arrays_that_make_no_sense(candidates):
@@ -135,6 +138,29 @@ def test_an_ego_that_is_not_there():
     for ego in ("eggo", ""):
         with pytest.raises(RulecError, match="R0612"):
             TrafficWorld(recording, ego)
+
+
+@pytest.mark.parametrize("now_s", [-1.0, 12.0, 1e12])
+def test_a_present_at_which_nobody_is_recorded(now_s):
+    # Of the street's two vehicles one is there from 0 s to 11.5 s
+    recording = street([car("slow", 6.0, x=30.0)]).recording
+    with pytest.raises(RulecError, match=r"nobody is recorded.*R0612"):
+        TrafficWorld(recording, "ego", now_s)
+
+
+def test_a_present_just_before_ego_is_there():
+    world = TrafficWorld(street().recording, "ego", -STEP_S)
+    assert (world.now, len(world.past)) == (-1, 0)
+
+
+def test_questions_that_make_no_sense():
+    world = street()
+    found = score(steady(5.0, world.past[-1])[None], world, GERMAN)
+    with pytest.raises(ValueError, match="has no rule `speed_limits`; did you mean `speed_limit`"):
+        found.outcomes("speed_limits")
+    for worth in (0.0, -1.0, 1e300):
+        with pytest.raises(ValueError, match="worth"):
+            found.reward(worth)
 
 
 def test_who_is_on_no_lane_is_not_judged():

@@ -12,13 +12,16 @@ from numpy import bool_, float64, intp
 from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.diagnostics.argument_kinds import finite
+from rulec.diagnostics import did_you_mean
+from rulec.diagnostics.argument_kinds import expected, finite
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict
 from rulec.monitoring.verdict import OpenVerdict, RuleNotJudged, Violation
 from rulec.planning.ranking.penalties import PenaltyOrder, PenaltyRank, ranks_of
 from rulec.scoring.score_margins import RuleMargin, margins_of
 from rulec.value_display import Rows, short_repr
+
+_MOST_WORTH = 1_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,9 +140,12 @@ class Scores(Rows):
         """A number for each candidate, 0 for one that violates nothing, else less.
 
         Each rank counts ``worth`` times the highest one below it, the lowest 1, and a state off the
-        road ``worth`` times the highest of all; what is open counts as violated.
+        road ``worth`` times the highest of all; what is open counts as violated. Raises ValueError
+        for a worth by which a rank would count less than one below it.
         """
         finite("worth", worth)
+        if not 1 <= worth <= _MOST_WORTH:
+            raise ValueError(f"`worth` is a number from 1 to {_MOST_WORTH:,}, not {worth:g}")
         above = self._order.above
         depths = [0] * len(above)
         for rank in reversed(range(len(above))):
@@ -185,8 +191,12 @@ class Scores(Rows):
     def outcomes(self, rule: str) -> list[str]:
         """What each candidate does to a rule: kept, violated, open or not judged.
 
-        The worst for all choices of objects.
+        The worst for all choices of objects. Raises ValueError for a rule that there is not.
         """
+        known = [one.name for one in self.rules.rules]
+        if expected("rule", "str", rule) not in known:
+            hint = did_you_mean(rule, known)
+            raise ValueError(f"{self.rules.name} has no rule `{rule:.40}`" + (hint and f"; {hint}"))
         return [_outcome(found, rule) for found in self.candidates]
 
     def _weights(self, charged: Any) -> NDArray[float64]:

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from rulec.diagnostics import SourceLocation, did_you_mean
 from rulec.diagnostics.argument_kinds import expected, finite
 from rulec.extraction.candidate_drives import CandidateDrives
+from rulec.extraction.recording_parts import span_of, whole_recording
 from rulec.extraction.selection import RequestedDrives, chosen_side
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.encodings.xml_element import LARGEST
@@ -24,6 +25,8 @@ from rulec.scoring.scoring_messages import BAD_CANDIDATES
 from rulec.value_display import short_repr
 
 _COLUMNS = ("x", "y", "heading", "speed")
+_NUMBERS = "iufO"
+"""The kinds of NumPy's arrays that may hold numbers."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +37,7 @@ class TrafficWorld:
     one of its participants, by default the one that the file names. The present is the step at
     ``now_s`` (s of the recording), by default ego's last one; what ego did later is ignored.
     ``wanted`` are thresholds and assumptions; its egos are ignored. Raises RulecError R0612 for an
-    ego that is not there.
+    ego that is not there, or a time at which nobody is.
     """
 
     __repr__ = short_repr
@@ -63,6 +66,15 @@ class TrafficWorld:
                 help=did_you_mean(name, known) or "name a vehicle of the recording",
             )
         object.__setattr__(self, "ego", name)
+        spans = [span_of(body) for body in known.values() if not body.standing]
+        first, last = min(low for low, _ in spans) - 1, max(high for _, high in spans)
+        if not first <= self.now <= last:
+            step_s = self.recording.step_s
+            raise NOT_IN_RECORDING.error(
+                SourceLocation(self.recording.name),
+                f"at {self.now_s:g} s nobody is recorded",
+                help=f"choose a time from {first * step_s:g} to {last * step_s:g} s",
+            )
 
     def __reduce__(self) -> tuple[type[TrafficWorld], tuple[object, ...]]:
         return TrafficWorld, (self.recording, self.ego, self.now_s, self.wanted)
@@ -91,7 +103,10 @@ class TrafficWorld:
         """
         future = _numbers("a candidate", candidate, 2)
         body = self.body_along(future, self.past_of(after))
-        return replace(self._with_headings, participants=(*self._others, body), ego=self.ego)
+        found = replace(self._with_headings, participants=(*self._others, body), ego=self.ego)
+        # A candidate that jerks makes nothing that was recorded less exact
+        noise_m = whole_recording(self.recording).noise_m
+        return replace(found, whole=replace(whole_recording(found), noise_m=noise_m))
 
     def past_of(self, after: ArrayLike | None) -> NDArray[float64]:
         """What was before as an array, empty for nothing. Raises RulecError R0780."""
@@ -191,9 +206,14 @@ class TrafficWorld:
 
 def _numbers(what: str, values: ArrayLike, n_axes: int) -> NDArray[float64]:
     try:
-        found = np.array(values, dtype=float)
+        given = np.array(values, subok=True)
+        # NumPy makes numbers of texts and days, and of what a mask says is none
+        is_odd = given.dtype.kind not in _NUMBERS or np.ma.is_masked(given)
+        found = np.array([] if is_odd else given, dtype=float)
     except (TypeError, ValueError, OverflowError):
-        raise BAD_CANDIDATES.error(None, f"{what}: that is no array of numbers") from None
+        is_odd = True
+    if is_odd:
+        raise BAD_CANDIDATES.error(None, f"{what}: that is no array of numbers")
     shape = "(candidates, states, 4)" if n_axes == 3 else "(states, 4)"
     if found.ndim != n_axes or found.shape[-1] != len(_COLUMNS) or not found.size:
         message = f"{what}: an array of shape {found.shape}"
