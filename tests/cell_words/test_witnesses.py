@@ -35,6 +35,7 @@ AT_ONCE = 50
 TRIED = 5
 """So many times as many motions are tried at most."""
 
+HANDMADE_STEP_S = 0.5
 FILES = sorted(RECORDINGS.glob("*.xml"))
 LANES = (straight(1, 0, 300, left_of=2), straight(2, 0, 300, y=4, right_of=1))
 
@@ -125,6 +126,35 @@ def test_random_scenes(german, scene):
     except RulecError:
         assume(False)
     check(found, 2)
+
+
+def driven_among(others, rules, motion, y=4.0, bounds="car", speed=10.0):
+    """Compare a motion on the left lane, from 2 to 6 m, with its maneuver: the words in cells."""
+    made = recording(LANES, others, ego=(60.0, y))
+    (problem,) = made.problems
+    problem = replace(problem, start=replace(problem.start, speed=speed))
+    scene = seen_from_ego(replace(made, problems=(problem,)), Choice(), "file.xml")
+    horizon_s = HANDMADE_STEP_S * (len(motion) - 1)
+    found = find_maneuvers(scene, rules, horizon_s=horizon_s, step_s=HANDMADE_STEP_S, bounds=bounds)
+    path = paths_of(found.graph, motion)
+    nodes = tuple(next(iter(cells)) for cells in path)
+    assert compared(found, [(nodes, np.array(motion))]) == 1
+    return [found.paths.states[p][node] for p, node in enumerate(nodes)]
+
+
+def test_who_reaches_into_the_lane_of_a_wide_vehicle_is_in_its_way(german):
+    # 2.4 m wide at y = 1, 0.2 m beyond the mark; ego, 2.5 m, drifts from y = 3.2 to 2.8 m
+    wide = vehicle(10, {k: (20.0 + 5 * k, 1.0) for k in range(13)}, speed=10.0, width=2.4)
+    motion = [(0.0, 10.0, -0.8, 0.0), (5.0, 10.0, -1.0, -0.8), (10.0, 10.0, -1.2, 0.0)]
+    states = driven_among([wide], german, motion, 3.2, "bus")
+    assert [state["lateral"]["10"] == "left_of" for state in states[1:]] == [False, False]
+
+
+def test_who_passes_a_cycle_may_overtake(german):
+    rider = vehicle(10, {k: (62.0 + 2 * k, 0.0) for k in range(13)}, "bicycle", 1.8, 0.6, speed=4.0)
+    motion = [(5.0 * k, 10.0, 0.0, 0.0) for k in range(5)]
+    states = driven_among([rider], german, motion)
+    assert states[0]["overtaking"] is not False
 
 
 @pytest.mark.skipif(not FILES, reason="CommonRoad's scenarios are not here")

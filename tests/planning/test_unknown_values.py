@@ -353,3 +353,20 @@ def test_an_unknown_past_is_all_that_it_may_have_been(chance):
         verdict = found.verdict(one)
         assert any(each.strength == "hard" for each in verdict.open) == (one.nodes not in known)
         assert not any(each.strength == "hard" for each in verdict.violations)
+
+
+def test_the_verdict_on_a_maneuver_says_what_is_not_judged_where_all_else_is_known():
+    found = rulec.find_maneuvers("s2", "esterle2019", told_only=True)
+    verdict = found.verdict(found.cheapest(1)[0])
+    # Nobody says whether traffic is congested
+    assert [rule.rule for rule in verdict.not_judged] == ["R1"]
+    assert verdict.satisfied is None
+    assert not verdict.violations
+
+
+def test_maneuvers_that_no_hard_rule_judges_keep_none():
+    text = "rulebook flow use paper hard rule r { require always not CONGESTED }"
+    rules = rulec.compile_rulebook(rulec.parse_rulebook(text))
+    found = rulec.find_maneuvers("s2", rules, told_only=True)
+    assert not found.judges
+    assert "no hard rule can be judged" in repr(found)

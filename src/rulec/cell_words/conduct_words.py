@@ -119,7 +119,7 @@ class ConductWords:
         others = self._others
         side = LEFT if self._frame.probes.among.side == "right" else RIGHT
         fast = column(self._boxes.mean_speed[1])
-        slower = others.may_go_along & (others.along[0] < fast)
+        slower = (others.may_go_along | others.may_ride_along) & (others.along[0] < fast)
         slower &= self._relations.laterals & side > 0
         reach = np.maximum((fast - others.along[0]) * USUAL.catching_up_s, fast * USUAL.passed_s)
         return self._on_own_side() & _nobody(slower & (self._relations.gaps[0] <= reach))

@@ -11,6 +11,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
 
 from rulec.cell_words.ego_boxes import Bounds, EgoBoxes, Floats, column
 from rulec.cell_words.road_frame import Flags, OthersNow, RoadFrame
@@ -87,10 +89,14 @@ class Relations:
         last = np.where(touches, count - 1 - others.perhaps[:, ::-1].argmax(axis=1), count - 1)
         right_edge = np.where(touches, straight[first], others.d[0])
         left_edge = np.where(touches, straight[last + 1], others.d[1])
+        # Who reaches into ego's lane is in its way as far as ego's body is in theirs
+        right_bound, left_bound = (straight[one] for one in self._own_lanes(low, high))
         right = (high <= right_edge) & (
-            (others.d[0] >= high - _HAIR_M) | (high + width < others.d[0])
+            (others.d[0] >= left_bound + _HAIR_M) | (high + width < others.d[0])
         )
-        left = (low >= left_edge) & ((others.d[1] <= low + _HAIR_M) | (low - width > others.d[1]))
+        left = (low >= left_edge) & (
+            (others.d[1] <= right_bound - _HAIR_M) | (low - width > others.d[1])
+        )
         middle = (others.d[0] + others.d[1]) / 2
         found = np.where(high < middle, RIGHT | SAME, np.where(low > middle, SAME | LEFT, _ALL))
         found = np.where(right, RIGHT, np.where(left, LEFT, found))
@@ -109,8 +115,7 @@ class Relations:
         last = np.where(some, lanes.shape[1] - 1 - lanes[:, ::-1].argmax(axis=1), -1)
         inside = (low + _HAIR_M >= straight[first]) & (high - _HAIR_M <= straight[last + 1])
         wide, reach = column(self._boxes.half_width[0]), USUAL.touching_m - loose
-        right = np.clip(np.searchsorted(straight, low + _HAIR_M, "right") - 1, 0, len(straight) - 2)
-        left = np.clip(np.searchsorted(straight, high - _HAIR_M, "left"), 1, len(straight) - 1)
+        right, left = self._own_lanes(low + _HAIR_M, high - _HAIR_M)
         # Of several lanes the innermost bounds are those that are reached beyond first
         nearest = np.minimum(straight[right + 1], straight[left])
         farthest = np.maximum(straight[left - 1], straight[right])
@@ -118,6 +123,15 @@ class Relations:
         clear = np.maximum(others.d[0] - low - wide, high - wide - others.d[1]) > reach
         same: Flags = some & inside & ~(beyond & clear)
         return same
+
+    def _own_lanes(self, low: Floats, high: Floats) -> tuple[NDArray[intp], NDArray[intp]]:
+        """The right bound of the first lane in which ego's middle is, and the left one of the last.
+
+        As indices; ``low`` and ``high`` are the ends of where that is across the road (m).
+        """
+        straight, count = self._straight, len(self._straight)
+        right = np.clip(np.searchsorted(straight, low, "right") - 1, 0, count - 2)
+        return right, np.clip(np.searchsorted(straight, high, "left"), 1, count - 1)
 
     @cached_property
     def gaps(self) -> Bounds:

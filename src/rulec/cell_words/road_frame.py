@@ -34,7 +34,8 @@ class OthersNow:
     that they reach into for sure, ``perhaps`` those that they may. ``along`` are speeds along the
     road, wrong as they may be (m/s). ``counts``: is it one who counts for ego, if it is near?
     ``is_there``: is it, or was it and will it be, so soon that it was there all the time?
-    ``goes_along`` are vehicles that go ego's way for sure, ``may_go_along`` those that may.
+    ``goes_along`` are vehicles that go ego's way for sure, ``may_go_along`` those that may,
+    ``may_ride_along`` cycles that may.
     ``some_come``: does somebody move against ego's direction then, or later?
     """
 
@@ -47,6 +48,7 @@ class OthersNow:
     is_there: Flags
     goes_along: Flags
     may_go_along: Flags
+    may_ride_along: Flags
     some_come: bool
 
 
@@ -157,6 +159,7 @@ class RoadFrame:
             is_there=(was & will)[:, 0],
             goes_along=vehicles & np.all(goes[:, columns], axis=1),
             may_go_along=vehicles & np.any(goes[:, columns], axis=1),
+            may_ride_along=tracks.of_type("light_rider") & np.any(goes[:, columns], axis=1),
             some_come=bool(self._come[:, int(columns[0]) :].any()),
         )
 

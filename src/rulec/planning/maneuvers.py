@@ -88,6 +88,8 @@ class Maneuvers(Rows):
     words: CellWords | None = None
 
     def __repr__(self) -> str:
+        if not self.judges:
+            return f"Maneuvers({self.rules.name}: no hard rule can be judged)"
         counts = f"{short_count(self.satisfying)} of {short_count(self.traces)}"
         return f"Maneuvers({self.rules.name}: {counts} keep every hard rule)"
 
@@ -190,7 +192,7 @@ class Maneuvers(Rows):
         every = self._every.instances
         name = self.graph.scenario.name
         if not any(instance.readings for instance in every):
-            return Verdict(name, violations(every, maneuver.nodes))
+            return Verdict(name, violations(every, maneuver.nodes), not_judged=self.not_judged)
         # Letters that are not known, 15 ms: only where not all is.
         from rulec.monitoring.uncertainty.uncertain_verdict import uncertain_verdict
 

@@ -2,8 +2,10 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from rulec import build_lanelet, build_participant, build_recording, verify_recording
 from rulec.extraction.signals.ego_signals import ego_signals
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording, straight, vehicle
@@ -36,6 +38,18 @@ def test_type_and_length(kind, expected):
     found = world(steady(7, 0, 0, kind=kind, length=6.5))
     assert set(found["ego_type"].tolist()) == {expected}
     assert found["ego_length"].tolist() == [6.5] * 4
+
+
+def test_the_length_of_one_that_turns_is_its_own():
+    t = np.arange(8) / 2
+    bend = np.linspace(0, np.pi / 2, 12)
+    lane = build_lanelet("bend", np.column_stack((15 * np.sin(bend), 15 - 15 * np.cos(bend))))
+    angle = 0.3 + 0.1 * np.arange(8)
+    x, y = 15 * np.sin(angle), 15 - 15 * np.cos(angle)
+    van = build_participant("7", "car", t, x, y, heading=angle + 0.2, step_s=0.5, length=7.0)
+    made = build_recording([lane], [van], step_s=0.5, side="right")
+    (judged,) = verify_recording(made, "at").answers()
+    assert {state["ego_length"] for state in judged.drive.trace.states} == {7.0}
 
 
 def test_speed_in_km_h_and_standing():

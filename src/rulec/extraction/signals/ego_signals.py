@@ -22,6 +22,7 @@ from rulec.extraction.signals.signal_columns import (
 )
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags
+from rulec.recordings.track import TrackOutlines
 from rulec.trace.plain_arrays import medians
 
 _EGO_TYPES = {
@@ -54,9 +55,13 @@ def _ego_type(context: DriveContext) -> SignalColumns:
 
 
 def _ego_length(context: DriveContext) -> SignalColumns:
+    """Ego's length, of a rectangle its own: who turns takes more of the road."""
     lengths = (context.ego_extents.s_max - context.ego_extents.s_min)[0]
     (told,) = np.nonzero(~np.isnan(lengths))
     length, _ = medians(context.spans.number[told], lengths[told], context.spans.n_drives)
+    for drive, body in enumerate(context.ego.participants):
+        if isinstance(body.outlines, TrackOutlines):
+            length[drive] = body.outlines.track.length
     return SignalColumns({"ego_length": rounded(context.spans.spread(length))})
 
 
