@@ -62,15 +62,28 @@ def test_it_says_that_no_trajectory_was_found(tmp_path, capsys, monkeypatch):
 
 
 def test_the_bounds_are_named_where_they_close_the_way(tmp_path, capsys):
-    # 18 m to one that stands: at 20 m/s nobody stops there.
+    # 22 m to the rear of one that stands: from 20 m/s ego has come 18 m after 1 s, and 32 after 2
     file = tmp_path / "fast.toml"
     ego = ROAD.replace("d = 0", 'd = 0\nspeed = 20\nbounds = "braking=4"')
-    file.write_text(ego + CAR.format(name="c", s=50, speed=0))
+    file.write_text(ego + CAR.format(name="c", s=54, speed=0))
     assert main(["maneuvers", str(file), "-r", "esterle2019", "--step", "1", "--json"]) == 1
     end = json.loads(capsys.readouterr().out)["dead_end"]
-    assert end["opened_by"] == ["--bounds none"]
+    assert end == {"last_s": 1.0, "closed_by": ["c"], "opened_by": ["--bounds none"]}
     assert main(["maneuvers", str(file), "-r", "esterle2019", "--step", "1"]) == 1
-    assert "within the bounds of ego's motion" in capsys.readouterr().out
+    text = capsys.readouterr().out
+    assert "none leads on from between 1 s and 2 s within the bounds of ego's motion" in text
+
+
+def test_no_way_within_bounds_leads_to_the_goal(tmp_path, capsys):
+    # It is beyond one that stands on the only lane
+    file = tmp_path / "goal.toml"
+    ego = ROAD.replace("d = 0", 'd = 0\nspeed = 5\nbounds = "car"')
+    goal = "[goal]\ns = [50, 60]\n"
+    file.write_text(ego + goal + CAR.format(name="c", s=44, speed=0))
+    assert main(["maneuvers", str(file), "-r", "esterle2019", "--step", "1"]) == 1
+    text = capsys.readouterr().out
+    assert "no way leads to the goal by the end within the bounds of ego's motion" in text
+    assert "maneuvers   0 " in text
 
 
 def test_a_rule_is_named_that_closes_every_way(tmp_path, capsys):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -21,8 +21,9 @@ MOST_TIMES_FINER = 4
 class DeadEnd:
     """The last layer that a way reaches, and what happens there.
 
-    ``closed_by`` are the obstacles that sweep places onward of its cells within the next layer;
-    none if ways reach the last layer and no goal, or if the road or ego's motion ends them.
+    ``closed_by`` are the obstacles that sweep places onward of its cells within the next layer,
+    or where ego's motion leads from there; none if ways reach the last layer and no goal, or if
+    the road ends them.
     ``opened_by`` are options of a graph, as the command line has them, with each of which alone
     there is a way.
     """
@@ -42,9 +43,9 @@ def dead_end(graph: NavigationGraph) -> DeadEnd | None:
 
 
 def _closing(graph: NavigationGraph, layer: int) -> Iterator[str]:
-    """Obstacles that sweep lanes within the cells reached, in the next layer."""
+    """Obstacles that in the next layer sweep lanes within the cells reached, or ahead of ego."""
     lanes = graph.scenario.road.lanes
-    boxes = [box for i in graph.reached[layer] for box in graph.layers[layer].cells[i].boxes]
+    boxes = [box for i in graph.reached[layer] for box in _onward(graph, layer, i)]
     start, end = (float(graph.step * (layer + more)) for more in (1, 2))
     for obstacle in graph.scenario.obstacles:
         body = swept(obstacle, start, end)
@@ -57,6 +58,17 @@ def _closing(graph: NavigationGraph, layer: int) -> Iterator[str]:
         ]
         if any(part.overlaps(box) for part in taken for box in boxes):
             yield obstacle.id
+
+
+def _onward(graph: NavigationGraph, layer: int, cell: int) -> Iterable[Box]:
+    """Where ego may be on the way from a cell within a step; within no bounds all of the cell."""
+    bounds, own = graph.bounds, graph.reach[layer][cell] if graph.reach else None
+    if bounds is None or own is None:
+        return graph.layers[layer].cells[cell].boxes
+    step, sideways = graph.step_s, max(map(abs, own.lateral_speed))
+    ahead = own.speed[1] * step + bounds.acceleration * step**2 / 2
+    aside = sideways * step + bounds.lateral_acceleration * step**2 / 2
+    return [Box(own.s[0], own.s[1] + ahead, own.d[0] - aside, own.d[1] + aside)]
 
 
 def _openings(graph: NavigationGraph) -> Iterator[str]:

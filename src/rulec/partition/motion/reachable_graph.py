@@ -63,7 +63,10 @@ def ego_motion(ego: Ego, bounds: MotionBounds, step: float, layers: int) -> EgoM
 
 
 def reachable(graph: NavigationGraph, bounds: MotionBounds) -> NavigationGraph:
-    """The graph without what ego cannot reach, or cannot leave towards a goal, within bounds."""
+    """The graph without what ego cannot reach, or cannot leave towards a goal, within bounds.
+
+    Where it reaches no goal, without what it cannot reach.
+    """
     ego, step = graph.scenario.ego, float(graph.step)
     motion = ego_motion(ego, bounds, step, len(graph.layers))
     edges = [
@@ -86,6 +89,8 @@ def reachable(graph: NavigationGraph, bounds: MotionBounds) -> NavigationGraph:
     within = _backward(course, forward, graph.goals)
     final = _forward(course, first, within)
     keep = _kept(graph, edges, final)
+    if not all(used.any() for used in keep):
+        final, keep = forward, _short_of_goals(graph, edges, forward)
     return _without(graph, bounds, keep, final)
 
 
@@ -228,6 +233,14 @@ def _kept(graph: NavigationGraph, edges: Sequence[_Edges], final: _Way) -> list[
     return kept[::-1]
 
 
+def _short_of_goals(
+    graph: NavigationGraph, edges: Sequence[_Edges], forward: _Way
+) -> list[NDArray[np.bool_]]:
+    """Edges, layer by layer, that some motion takes, but for those to a goal."""
+    *before, last = forward.driven
+    return [*before, last & ~np.isin(edges[-1].targets, list(graph.goals))]
+
+
 def _without(
     graph: NavigationGraph,
     bounds: MotionBounds,
@@ -239,12 +252,6 @@ def _without(
     ends: list[set[int]] = [{graph.start}]
     for rows, used in zip(graph.successors, edge_rows, strict=True):
         ends.append({j for row, use in zip(rows, used, strict=True) for j in compress(row, use)})
-    if not all(ends):
-        # No way on: the cells stay as far as some motion gets.
-        ends = [
-            here | set(np.flatnonzero(there).tolist())
-            for here, (_, there) in zip(ends, final.nodes, strict=True)
-        ]
     numbers = [{old: new for new, old in enumerate(sorted(here))} for here in ends]
     layers = tuple(
         _only(layer, number) for layer, number in zip(graph.layers, numbers, strict=True)
