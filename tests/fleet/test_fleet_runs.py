@@ -291,6 +291,40 @@ def test_files_that_hold_no_drives_are_named_and_the_others_are_judged(folder_of
     assert f"  2: {why} (as in {tmp_path / 'a.csv'})\n" in as_text(done)
 
 
+def test_a_table_without_rows_has_no_drives(folder_of, expected, traces, tmp_path):
+    empty = tmp_path / "empty.parquet"
+    parquet.write_table(traces.slice(0, 0), empty)
+    done = run([folder_of, empty], tmp_path / "out")
+    assert (done.tally.judged, done.problems) == (DRIVES, ())
+    assert found_in(tmp_path / "out") == expected
+    assert not run([empty], tmp_path / "none").is_complete
+
+
+def test_a_file_that_is_meant_twice_is_judged_once(folder_of, expected, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    paths = sorted(folder_of.glob("*.parquet"))
+    (tmp_path / "link.parquet").symlink_to(paths[0])
+    spelt = [folder_of, paths[0], os.path.relpath(paths[-1]), tmp_path / "link.parquet"]
+    assert fleet_inputs([str(one) for one in spelt]).tables == tuple(map(str, paths))
+    run(spelt, tmp_path / "out")
+    assert found_in(tmp_path / "out") == expected
+
+
+def test_texts_may_be_views_and_names_may_end_in_capitals(expected, traces, tmp_path):
+    views = [
+        (one.name, pyarrow.string_view() if one.type == pyarrow.string() else one.type)
+        for one in traces.schema
+    ]
+    (tmp_path / "in").mkdir()
+    parquet.write_table(traces.cast(pyarrow.schema(views)), tmp_path / "in/A.PARQUET")
+    run([tmp_path / "in"], tmp_path / "out")
+    assert found_in(tmp_path / "out") == expected
+    judge = FleetJudge(fleet_rules())
+    assert in_order(judge(traces.cast(pyarrow.schema(views)))) == in_order(judge(traces))
+    few = list(rulec.read_traces(tmp_path / "in/A.PARQUET"))
+    assert len(few) == DRIVES
+
+
 PAGE = (Path(__file__).resolve().parents[2] / "docs/fleet.md").read_text(encoding="utf-8")
 
 

@@ -72,13 +72,16 @@ class FleetJudge:
 
 
 def _as_table(table: Any) -> Any:
-    """A record batch, too, as a table. Raises TypeError."""
+    """A record batch, too, as a table without views. Raises TypeError."""
     pyarrow, _ = arrow("the table of drives")
     if isinstance(table, pyarrow.RecordBatch):
-        return pyarrow.Table.from_batches([table])
+        table = pyarrow.Table.from_batches([table])
     if not isinstance(table, pyarrow.Table):
         raise TypeError(
             f"a pyarrow.Table is judged, not a {type(table).__name__}; with Ray's map_batches and "
             "map_groups give batch_format='pyarrow'"
         )
-    return table
+    # As it is there is one: it is loaded
+    from rulec.trace.formats.arrow.arrow_arrays import with_plain_texts
+
+    return with_plain_texts(table)

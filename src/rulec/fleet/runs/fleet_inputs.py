@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import os
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -60,7 +61,15 @@ def fleet_inputs(arguments: Sequence[str]) -> FleetInputs:
                 recordings[path] = None
             else:
                 problems.append(_why_not(path))
-    return FleetInputs(tuple(tables), tuple(recordings), tuple(problems))
+    return FleetInputs(_once(tables), _once(recordings), tuple(problems))
+
+
+def _once(paths: Iterable[str]) -> tuple[str, ...]:
+    """Each file once, however often it is meant, by the first of its paths."""
+    first: dict[str, str] = {}
+    for path in paths:
+        first.setdefault(os.path.realpath(path), path)
+    return tuple(first.values())
 
 
 def _tables_below(argument: str) -> Iterator[str]:
@@ -68,11 +77,10 @@ def _tables_below(argument: str) -> Iterator[str]:
     if not is_folder(folder) or (argument != STANDARD_INPUT and is_recording(argument)):
         return
     tree = tree_of(folder)
-    for ending in PARQUET:
-        for path in sorted(folder.rglob(f"*{ending}")):
-            hidden = any(part.startswith(".") for part in path.relative_to(folder).parts)
-            if path.is_file() and not hidden and not leads_out(path, tree) and _is_table(str(path)):
-                yield str(path)
+    for path in sorted(x for x in folder.rglob("*") if x.name.lower().endswith(PARQUET)):
+        hidden = any(part.startswith(".") for part in path.relative_to(folder).parts)
+        if path.is_file() and not hidden and not leads_out(path, tree) and _is_table(str(path)):
+            yield str(path)
 
 
 def _is_link_out(problem: RulecError) -> bool:

@@ -119,6 +119,7 @@ def _pieces(path: str) -> Iterator[tuple[TablePiece, KeyHashes]]:
             rows += source.metadata.row_group(number).num_rows
             # Nothing but keys is read here
             found += (batch.key_hashes() for batch in keyed_rows(source, [number], whole=False))
-            if rows >= MOST_ROWS or number + 1 == source.num_row_groups:
+            # A table without rows has no drives
+            if found and (rows >= MOST_ROWS or number + 1 == source.num_row_groups):
                 yield TablePiece(path, tuple(groups)), np.unique(np.concatenate(found))
                 groups, found, rows = [], [], 0

@@ -160,3 +160,12 @@ def _bits(buffer: Any, array: Any) -> NDArray[np.bool_]:
     packed = np.frombuffer(buffer, np.uint8)[start // 8 : (stop + 7) // 8]
     bits = np.unpackbits(packed, bitorder="little")[start % 8 :][: len(array)]
     return bits.view(np.bool_)
+
+
+def with_plain_texts(rows: Any) -> Any:
+    """Rows of a table or batch in which no texts are views, which not all of Arrow takes."""
+    is_view = types.is_string_view
+    if not any(map(is_view, rows.schema.types)):
+        return rows
+    columns = [x.cast(pyarrow.string()) if is_view(x.type) else x for x in rows.columns]
+    return type(rows).from_arrays(columns, names=rows.schema.names)

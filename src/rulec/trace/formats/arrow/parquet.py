@@ -95,6 +95,8 @@ def _texts(schema: Any, pyarrow: Any) -> list[str]:
 def _pieces(
     source: Any, problems: tuple[type[Exception], ...], file: str
 ) -> Iterator[Piece | RulecError]:
+    from rulec.trace.formats.arrow.arrow_arrays import with_plain_texts  # loads Arrow, 0.1 s
+
     number = 0
     try:
         for batch in source.iter_batches(_ROWS_AT_ONCE):
@@ -106,7 +108,7 @@ def _pieces(
                     f"the column `{column}` has a text here", SourceLocation(file, number + row + 1)
                 )
                 return
-            yield batch
+            yield with_plain_texts(batch)
             number += len(batch)
     except problems as reason:
         yield _unreadable(f"after row {number} the file", reason, file)
@@ -190,7 +192,7 @@ def check_types(schema: Any, pyarrow: Any, file: str) -> None:
     types = pyarrow.types
     for name, kind in zip(schema.names, schema.types, strict=True):
         value = kind.value_type if types.is_dictionary(kind) else kind
-        known = ("boolean", "integer", "float64", "string", "large_string", "null")
+        known = ("boolean", "integer", "float64", "string", "large_string", "string_view", "null")
         if name in (TOLD, UNKNOWN_NAMES) and (types.is_list(kind) or types.is_large_list(kind)):
             value = kind.value_type
         if not any(getattr(types, f"is_{type_name}")(value) for type_name in known):

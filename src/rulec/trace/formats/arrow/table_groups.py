@@ -19,6 +19,7 @@ from rulec.trace.formats.arrow.arrow_arrays import (
     numbers_in,
     one_text,
     whole_array,
+    with_plain_texts,
 )
 from rulec.trace.formats.arrow.arrow_blocks import cut
 from rulec.trace.formats.arrow.parquet import check_types
@@ -173,8 +174,8 @@ def rows_where(table: Any, codes: NDArray[np.int64], kept: NDArray[np.bool_]) ->
 
 
 def table_of_batch(batch: Any) -> Any:
-    """A record batch as a table."""
-    return pyarrow.Table.from_batches([batch])
+    """A record batch as a table, without views."""
+    return with_plain_texts(pyarrow.Table.from_batches([batch]))
 
 
 def joined(tables: Sequence[Any]) -> Any:
