@@ -90,3 +90,17 @@ def test_what_the_past_has_violated_is_judged_anew():
     # In state 15 it is not known: nobody gains 8 m/s in half a second, so the track slips there
     assert steps == {0: [10], 1: [], 2: [16]}
     assert found.best == 1
+
+
+def test_a_verge_is_no_way_past_a_slow_vehicle():
+    # The right lane ends at y = -1.75; the middle of the last one is 0.85 m beyond it, the body not
+    world = street([car("slow", 4.0, x=45.0)], speed=12.0)
+    eased = 12 * AHEAD - 2 * np.clip(AHEAD - 1, 0, 2) ** 2 - 8 * np.clip(AHEAD - 3, 0, None)
+    straight = 12 * AHEAD
+    beside = np.column_stack((straight, -2.6 * np.clip(AHEAD - 1, 0, 1)))
+    found = scored(world, on_axis(eased), on_axis(straight), beside)
+    # It is 2.6 m aside from the fourth of its 20 states on
+    assert found.off_road.tolist() == [0, 0, 17]
+    assert found.allowed.tolist() == [True, False, False]
+    assert found.best == 0
+    assert found.reward().argmin() == 2

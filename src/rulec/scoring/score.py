@@ -73,13 +73,17 @@ def _scored(
         # Alone, and before all others, to see what it has violated whatever comes
         bodies.insert(0, world.body_at(past, steps[0]))
     roundings = rounded_rulebooks(rules, world.recording.step_s)
+    beside = world.beside_lanes(paths)
     scores: dict[int, CandidateScore] = {}
     for block in _judged(bodies, world, roundings, steps):
         is_every = len(block) == len(bodies)
         if is_asked and not scores:
             ((_, alone), *block) = block
             before = tuple([one for _, verdict in _verdicts(alone) for one in verdict.violations])
-        charged = [_charged(number - is_asked, own, first, n_states) for number, own in block]
+        charged = [
+            _charged(number - is_asked, own, first, beside[number - is_asked])
+            for number, own in block
+        ]
         half = first + n_states // 2
         for found in _anew(charged, before, roundings, (first, half)):
             again = partial(_by_itself, paths[found.number], past, world, rules)
@@ -143,13 +147,19 @@ def _verdicts(
 
 
 def _charged(
-    number: int, drives: tuple[DriveVerdict | NoDrive, ...], first: int, n_states: int
+    number: int,
+    drives: tuple[DriveVerdict | NoDrive, ...],
+    first: int,
+    beside: NDArray[np.bool_],
 ) -> CandidateScore:
-    """A candidate of so many states from a step on, charged with all that is violated."""
+    """A candidate from a step on, charged with all that is violated.
+
+    ``beside`` flags its states that are beside all lanes.
+    """
     violations: list[Violation] = []
     doubtful: list[OpenVerdict] = []
     not_judged = {}
-    on_road = np.zeros(n_states, dtype=bool)
+    on_road = np.zeros(len(beside), dtype=bool)
     for drive, verdict in _verdicts(drives):
         begins = drive.first_step - first
         on_road[max(begins, 0) : max(begins + drive.arrays.n_states, 0)] = True
@@ -162,7 +172,7 @@ def _charged(
         for one in drives
         if isinstance(one, DriveVerdict) and isinstance(one.answer, NotJudged)
     ]
-    off_road = int(n_states - on_road.sum())
+    off_road = int((beside | ~on_road).sum())
     if off_road and not reasons:
         reasons = ["it leaves the lanes that lead its way"]
     return CandidateScore(

@@ -31,9 +31,10 @@ class CandidateScore:
     ``violations`` and ``open`` verdicts are those that it is charged with; the step of a violation
     is a state of the candidate, from 0, before 0 one of the past, None if its end decides.
     ``not_judged`` are rules that the world tells too little for. ``off_road`` of its states are in
-    no drive, because ego is on no lane there that leads its way; no rule is judged in these, and
-    ``why`` says more. ``drives`` are what ``verify_recording`` gives of past and candidate; of many
-    candidates they are made when they are asked for.
+    no drive, because ego is on no lane there that leads its way, so that no rule is judged in
+    these, or with ego's middle beside all lanes; ``why`` says more. ``drives`` are what
+    ``verify_recording`` gives of past and candidate; of many candidates they are made when they are
+    asked for.
     """
 
     __repr__ = short_repr
@@ -97,7 +98,7 @@ class Scores(Rows):
 
     @cached_property
     def off_road(self) -> NDArray[intp]:
-        """How many states of each candidate are on no lane that leads its way."""
+        """How many states of each candidate are on no lane that leads its way, or beside all."""
         return np.array([found.off_road for found in self.candidates], dtype=intp)
 
     @cached_property

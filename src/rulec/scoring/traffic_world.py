@@ -6,7 +6,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy import float64
+import shapely
+from numpy import bool_, float64
 from numpy.typing import ArrayLike, NDArray
 
 from rulec.diagnostics import SourceLocation, did_you_mean
@@ -21,10 +22,14 @@ from rulec.recordings.recording_messages import NOT_IN_RECORDING
 from rulec.recordings.track import Track, TrackOutlines, TrackStates, rectangles
 from rulec.recordings.tracks.derived_motion import accelerations_of
 from rulec.rulebook.rulebook_model import Traffic
+from rulec.scenario.recorded.route import lanelet_area
 from rulec.scoring.scoring_messages import BAD_CANDIDATES
 from rulec.value_display import short_repr
 
 _COLUMNS = ("x", "y", "heading", "speed")
+_BESIDE_M = 0.5
+"""Of 1,900 states of recorded vehicles one is farther beside all lanes."""
+
 _NUMBERS = "iufO"
 """The kinds of NumPy's arrays that may hold numbers."""
 
@@ -118,6 +123,18 @@ class TrafficWorld:
         """Candidates as an array. Raises RulecError R0780."""
         return _numbers("candidates", candidates, 3)
 
+    def beside_lanes(self, paths: NDArray[float64]) -> NDArray[bool_]:
+        """Flags of states in which ego's middle is clearly beside all lanes, as on a verge."""
+        states = paths.reshape(-1, paths.shape[-1])
+        points = shapely.points(states[:, 0], states[:, 1])
+        beside = np.ones(len(states), dtype=bool)
+        beside[self._lanes.query(points, predicate="intersects")[0]] = False
+        # Distances take ten times as long
+        off = np.flatnonzero(beside)
+        near, _ = self._lanes.query(points[off], predicate="dwithin", distance=_BESIDE_M)
+        beside[off[near]] = False
+        return beside.reshape(paths.shape[:-1])
+
     def body_along(self, future: NDArray[float64], past: NDArray[float64]) -> Participant:
         """Ego along a candidate after what was before."""
         return self.body_at(np.concatenate((past, future)), self.now + 1 - len(past))
@@ -168,6 +185,10 @@ class TrafficWorld:
             self._prepared.clear()
             self._prepared[key] = CandidateDrives(recording, side, self.wanted.thresholds, span)
         return self._prepared[key], mirrored
+
+    @cached_property
+    def _lanes(self) -> shapely.STRtree:
+        return shapely.STRtree([*map(lanelet_area, self.recording.lanelets.values())])
 
     @cached_property
     def _with_headings(self) -> Recording:
