@@ -8,6 +8,7 @@ from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
 from rulec.rulebook.elaborate.elaboration_messages import kind_of, short
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_formula
+from rulec.vocabulary.dimensions import LENGTH
 
 SENSELESS_BOUND = Code(
     "R0317",
@@ -38,6 +39,9 @@ def wrong_form(node: tree.Prefix | tree.Infix, bound: tree.BoundNode) -> Diagnos
     else:
         message = f"`{node.operator}` looks at one instant, and this is a stretch of time"
         way_out = f"write `{node.operator}[{text}]`"
+        if bound.high and not bound.low and node.operator in ("next", "previously"):
+            within = "eventually" if node.operator == "next" else "once"
+            way_out += f" for that instant, `{within}[<= {text}]` for one on the way there"
     return SENSELESS_BOUND.at(bound.span, message, expected="expected another bound", help=way_out)
 
 
@@ -62,15 +66,18 @@ def half_a_step(side: tree.NumberLiteral) -> Diagnostic:
 
 
 def no_time(side: tree.Amount, number: NumberByCases) -> Diagnostic:
+    way_out = "write a time, such as `3 s`, or a number of steps, such as `2 steps`"
     if not number.is_constant:
         why = "changes from state to state"
     elif number.dimension is None or number.cases[0][1].constant < 0:
         why = "is below 0"
     else:
         why = f"is {kind_of(number.dimension)}"
+        if number.dimension == LENGTH:
+            way_out = "write a time, such as `3 s`; how far is compared, as in `gap(v) <= 100 m`"
     return SENSELESS_BOUND.at(
         side.span,
         f"`{short(side)}` {why}; a bound is a fixed time",
         expected="expected a time",
-        help="write a time, such as `3 s`, or a number of steps, such as `2 steps`",
+        help=way_out,
     )

@@ -15,7 +15,7 @@ from rulec.syntax import tree
 from rulec.syntax.messages.literal_values import NUMBER_TOO_LARGE
 from rulec.syntax.tree_printer import print_formula
 from rulec.vocabulary import Enumeration, Quantity
-from rulec.vocabulary.dimensions import DIMENSIONS, Dimension
+from rulec.vocabulary.dimensions import DIMENSIONS, TIME, Dimension
 
 OPERATOR_BEFORE_THEN = Code(
     "R0311",
@@ -87,12 +87,15 @@ def _origins(node: tree.Formula, scope: Scope) -> Iterator[Label]:
 def number_for_truth(node: tree.Formula, number: NumberByCases, scope: Scope) -> Diagnostic:
     unit = scope.symbols.unit_text(node.name.text) if isinstance(node, tree.AtomUse) else ""
     inside = f" (in {unit})" if unit else ""
+    way_out = "how long stands in a bound, such as `historically[<= 3 s] p`"
     test = f"< 5 {unit}" if unit else ">= 1" if isinstance(node, tree.Aggregate) else "< …"
+    if not isinstance(node, tree.NumberLiteral) or number.dimension != TIME:
+        way_out = f"compare it, such as `{short(node)} {test}`"
     return NUMBER_OR_FORMULA.at(
         node.span,
         f"`{short(node)}` is {kind_of(number.dimension)}{inside} and cannot be true or false",
         expected="expected something that is true or false",
-        help=f"compare it, such as `{short(node)} {test}`",
+        help=way_out,
         labels=origins(scope, node),
     )
 

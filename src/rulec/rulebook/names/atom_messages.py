@@ -14,6 +14,7 @@ from rulec.rulebook.vocabulary_phrases import phrases_in
 from rulec.syntax import tree
 from rulec.syntax.keywords import INFIX_LETTERS, PREFIX_LETTERS
 from rulec.vocabulary import Enumeration, Quantity, Signal
+from rulec.vocabulary.units import parse_unit
 
 UNKNOWN_NAME = Code(
     "R0202",
@@ -114,6 +115,7 @@ NUMBER_OR_FORMULA = Code(
 _ALIKE = 0.75
 """How alike a name is to what it is a slip of; what is less alike more often means another word."""
 
+_COMPARED = re.compile(r"\s*(?:[<>]=?|!?=)\s*[\d.]+[ \t]*([^\W\d][\w/^%]*|%)?")
 _ATOM = "expected a signal or a value"
 _GLUED = re.compile(rf"([{PREFIX_LETTERS}]+)(\w+)")
 _GLUED_BINARY = re.compile(rf"(\w+?)([{INFIX_LETTERS}])(\w+)")
@@ -169,7 +171,7 @@ def _unknown(
             ("" if use.arguments else _short_form(name, symbols, list(variables)))
             or did_you_mean(name, [*atoms, *quantities, *others], _ALIKE)
             or _by_meaning(name, [*atoms, *quantities], symbols)
-            or f"declare it, such as `signal {_as_used(use, variables)}`, "
+            or f"declare it, such as `{_declaration(use, variables)}`, "
             "or `use` a vocabulary that has it"
         )
     return UNKNOWN_NAME.at(
@@ -196,6 +198,15 @@ def _by_meaning(name: str, known: Sequence[str], symbols: SymbolTable) -> str:
             if word in in_english
         ),
     )
+
+
+def _declaration(use: tree.AtomUse, variables: Mapping[str, str | None]) -> str:
+    """The declaration of a name: of a quantity where it is compared with a number."""
+    compared = _COMPARED.match(use.span.source.text, use.span.end)
+    if compared is None:
+        return f"signal {_as_used(use, variables)}"
+    unit = compared[1] if compared[1] and parse_unit(compared[1]) else "UNIT"
+    return f"quantity {_as_used(use, variables)} in {unit}"
 
 
 def _as_used(use: tree.AtomUse, variables: Mapping[str, str | None]) -> str:

@@ -161,8 +161,8 @@ def _misspelt(scene: ParseContext) -> str:
     token, before = scene.unexpected, scene.before
     if token is None or token.kind != "word" or token.text.casefold() in RESERVED:
         return ""
-    if token.text.casefold() == "infinite":
-        return ""  # it is much like `finite` and means the opposite
+    if token.text.casefold() in ("infinite", "twice"):
+        return ""  # they are much like `finite` and `since`, and mean something else
     words = {word for word in map(spelling, scene.accepted) if word in RESERVED | CONTEXTUAL}
     # One letter is a name, such as `f` behind `eventualy`, and no word misspelt.
     near = did_you_mean(token.text, words) if len(token.text) > 1 else ""

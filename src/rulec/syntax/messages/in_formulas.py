@@ -74,12 +74,18 @@ def advise_on_aggregate(scene: ParseContext) -> str:
     if scene.operator and before == "at" and scene.text_behind in ("time", "times"):
         return f"for `at {text} {scene.text_behind}` write `always`"
     if scene.operator and before == "no" and scene.is_word():
-        variable = scene.text_behind if scene.text_behind.isidentifier() else "x"
-        return f"for `no {text}` write `not some {variable}: {text} (…)`"
+        own = scene.text_behind.isidentifier()
+        plain = "" if own else f"`not {text}`, of objects "
+        variable = scene.text_behind if own else "x"
+        return f"for `no {text}` write {plain}`not some {variable}: {text} (…)`"
+    if text == "every" and scene.operator and scene.is_number(scene.at + 1):
+        return "for `p every 4 h` write `always eventually[<= 4 h] p`"
     word = _QUANTIFIERS.get(text) or (_QUANTIFIERS.get(before) if scene.operator else None)
     if word and (scene.operand or scene.operator) and scene.unexpected is not None:
         if any(scene.is_number(scene.at + number) for number in range(1, 4)) and text == "for":
-            return "for how long stands in a bound, such as `always[<= 3 s] p`"
+            past = scene.text_at(scene.at + 2) in ("last", "past", "previous")
+            word = "historically" if past else "always"
+            return f"for how long stands in a bound, such as `{word}[<= 3 s] p`"
         at = scene.at + (text in _QUANTIFIERS)
         own = scene.text_at(at + 1) == ":" and scene.text_at(at + 2).isidentifier()
         variable = f"{scene.text_at(at)}: {scene.text_at(at + 2)}" if own else "x: vehicle"
@@ -185,7 +191,11 @@ def _comparisons(scene: ParseContext) -> str:
         said = words[:1] if words[:1] in _IN_WORDS else words
         if sign := _IN_WORDS.get(said):
             return f"for `is {' '.join(said)}` write `{sign}`"
+        if words[0].isidentifier() and words[0] not in keywords.RESERVED:
+            return f"what is of an object is written `{words[0]}({before})`"
         return "quantities are compared by `<`, `<=`, `=`, `!=`, `>=` or `>`"
+    if scene.operator and scene.is_number(scene.at + 1) and (sign := _IN_WORDS.get((before, text))):
+        return f"how many stands behind what is counted: `count x: vehicle (…) {sign} 3`"
     if scene.operator and text == "==":
         return "quantities are compared by `=`, formulas by `iff`"
     if (scene.operator or scene.quantity) and text in _SIGNS:
@@ -213,6 +223,8 @@ _CONJUNCTIONS: Final = {
     "before": "for `p before q` write `not q weak until p`",
     "after": "for `q after p` write `not q weak until p`",
     **dict.fromkeys(("while", "whenever"), "for `q while p` write `p implies q`"),
+    "only": "for `p only if q` write `p implies q`",
+    **dict.fromkeys(("twice", "thrice"), "for `p twice` write `p then not p then p`"),
 }
 
 
@@ -230,6 +242,8 @@ def _operators(scene: ParseContext) -> str:
         return f"leave out `{text}`: what a formula says must hold, such as `speed <= 50 km/h`"
     if scene.operator and (meant := _CONJUNCTIONS.get(text)):
         return meant
+    if text == "as" and scene.text_behind == "soon":
+        return "for `as soon as p, q` write `always (p implies q)`, or `eventually[<= 2 s] q` in it"
     word = _MEANT.get(text) or (
         text.casefold() if text.casefold() in keywords.OPERATOR_WORDS else None
     )
