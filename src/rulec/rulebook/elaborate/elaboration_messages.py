@@ -192,6 +192,7 @@ def two_dimensions(
         or _other_unit(second, first, scope)
         or _other_unit(first, second, scope)
         or _kind_help(first, left, second, right)
+        or _parameter_help(second, second_kind, first, scope)
         or "check the names and the units",
         labels=(Label(first.span.place, f"this is {first_kind}"), *origins(scope, first, second)),
     )
@@ -201,6 +202,13 @@ def _unit_help(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:
     unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
     bare = isinstance(node, tree.NumberLiteral) and not node.unit
     return f"write the unit, such as `{short(node)} {unit}`" if bare and unit else ""
+
+
+def _parameter_help(node: tree.Formula, kind: str, beside: tree.Formula, scope: Scope) -> str:
+    unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
+    is_param = isinstance(node, tree.AtomUse) and scope.constants.overlay.kind_of(node.name.text)
+    said = f"write its unit where it is declared, such as `param {short(node)} = 3 {unit}`"
+    return said if is_param == "parameter" and kind == "a number" and unit else ""
 
 
 def _other_unit(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:

@@ -120,6 +120,8 @@ def _quotes(scene: ParseContext) -> str:
         return ""
     grouped = scene.is_number(scene.at - 1) and scene.is_number(scene.at + 1)
     if token.kind == "quoted" or (token.text in _SINGLE and not grouped):
+        if scene.operand:
+            return f"write `{scene.text_behind}` without quotes"
         return 'texts stand in straight double quotes: "…"'
     if scene.accepted == {"STRING"} and (token.kind != "symbol" or token.text == "§"):
         return 'put the text in double quotes: "…"'

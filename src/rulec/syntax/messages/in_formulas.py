@@ -126,6 +126,8 @@ def _arguments(scene: ParseContext) -> str:
         return "without arguments there are no parentheses"
     if scene.accepted == {"NAME"} and scene.text_before == "," and scene.text == ")":
         return "delete the `,`"
+    if scene.accepted == {"COMMA", "RPAR"} and scene.text == ":":
+        return f"types stand where variables are declared: leave out `: {scene.text_behind}`"
     if scene.accepted == {"COMMA", "RPAR"} and scene.text == "(":
         return "an argument is a name; it has no arguments of its own"
     if scene.accepted == {"COMMA", "RPAR"} and scene.is_word():
@@ -139,7 +141,9 @@ def _conditionals(scene: ParseContext) -> str:
     otherwise = "else" in behind
     then = behind.index("then") if "then" in behind else None
     truths = then is not None and not scene.is_number(scene.at + then + 1)
-    if text == "if" and scene.operand and otherwise and truths:
+    if (scene.operator and text == "else") or (
+        text == "if" and scene.operand and otherwise and truths
+    ):
         return "write `(p implies q) and (not p implies r)` for `if p then q else r`"
     if text == "?" or (otherwise and text == "if"):
         if scene.operator and text == "if":
