@@ -28,6 +28,17 @@ def drawing(number=2):
     )
 
 
+def test_a_halo_is_drawn_before_its_words_for_viewers_that_know_no_order_of_painting():
+    words = LabelText("ego", (50, 30), style="name")
+    svg = as_bytes(Drawing("", [Picture("", 120, 70, (words,))]), "svg", "f").decode()
+    halo, above = [one for one in ET.fromstring(svg).iter(f"{SVG}text") if one.text == "ego"]
+    assert (halo.get("class"), above.get("class")) == ("name halo", "name")
+    assert halo.get("aria-hidden") == "true"
+    rules = dict(re.findall(r"^(\.name\S*) \{ (.*) \}$", svg, re.MULTILINE))
+    assert "stroke" in rules[".name.halo"]
+    assert "stroke" not in rules[".name"]
+
+
 def test_svg():
     root = ET.fromstring(as_bytes(drawing(), "svg", "f"))
     texts = [one.text for one in root.iter(f"{SVG}text")]

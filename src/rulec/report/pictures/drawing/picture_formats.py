@@ -11,7 +11,7 @@ from typing import Literal, cast
 from rulec.report.pictures.drawing import canvas
 from rulec.report.pictures.drawing.canvas import Area, LabelText, Mark, Picture, Point, Polyline
 from rulec.report.pictures.drawing.matplotlib_file import Printed, as_printed
-from rulec.report.pictures.drawing.styles import Theme, as_css
+from rulec.report.pictures.drawing.styles import STYLES, Theme, as_css
 from rulec.report.text.terminal_text import visible
 
 Format = Literal["svg", "png", "pdf", "html"]
@@ -130,6 +130,10 @@ def _drawn(mark: Mark) -> Iterator[str]:
         case LabelText(text, (x, y), anchor, style, turned):
             turn = f' transform="rotate(-90 {x:.1f} {y:.1f})"' if turned else ""
             place = f'x="{x:.1f}" y="{y + 4:.1f}" text-anchor="{anchor}"{turn}'
+            if STYLES[style].halo:
+                # A text of its own: many viewers do not know in which order to paint one's parts.
+                halo = f'class="{style} halo" aria-hidden="true"'
+                yield f"<text {halo} {place}>{escape(visible(text))}</text>"
             yield f'<text class="{style}" {place}>{escape(visible(text))}</text>'
 
 

@@ -141,15 +141,14 @@ def _rules(used: Collection[str], colours: Mapping[str, str], *, shape: bool) ->
         if name not in used:
             continue
         parts = [f"fill: {colours[style.fill] if style.fill else 'none'}"]
-        if style.stroke:
-            parts.append(f"stroke: {colours[style.stroke]}")
+        line = [f"stroke: {colours[style.stroke]}"] if style.stroke else []
         if shape and style.stroke:
-            parts.append(f"stroke-width: {style.width:g}")
+            line.append(f"stroke-width: {style.width:g}")
         if shape and style.dash:
-            parts.append(f"stroke-dasharray: {' '.join(f'{length:g}' for length in style.dash)}")
-        if shape and style.halo:
-            parts.append("paint-order: stroke; stroke-linejoin: round")
+            line.append(f"stroke-dasharray: {' '.join(f'{length:g}' for length in style.dash)}")
         if shape and style.bold:
             parts.append("font-weight: bold")
-        rules.append(f".{name} {{ {'; '.join(parts)} }}")
+        rules.append(f".{name} {{ {'; '.join(parts if style.halo else parts + line)} }}")
+        if style.halo:
+            rules.append(f".{name}.halo {{ {'; '.join([*line, 'stroke-linejoin: round'])} }}")
     return rules
