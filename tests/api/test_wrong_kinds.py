@@ -199,6 +199,11 @@ def test_what_is_no_trace_is_said(changes, said):
             TypeError,
             "`place` is a SourceLocation, not str",
         ),
+        (
+            lambda: rulec.verify(traced(told=3), RULES, rulec.Assumptions(ends="cut")),
+            rulec.RulecError,
+            "`told` is a frozenset of names, not int",
+        ),
         (lambda: rulec.show("esterle2019", "R1", width=0), ValueError, "columns or more, not 0"),
         (lambda: RULES.at_step(None), TypeError, "`step_s` is a Fraction or a number, not None"),
         (

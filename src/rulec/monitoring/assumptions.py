@@ -46,7 +46,9 @@ class Assumptions:
 
     def applied(self, trace: Trace) -> Trace:
         """The trace with these assumptions; what it tells stays. Raises RulecError R0724."""
-        told = trace.told
+        told: object = trace.told
+        if not isinstance(told, frozenset | tuple | None):
+            return trace  # what is no trace is said by whoever judges
         untold = {} if told is None else {k: v for k, v in self.values.items() if k not in told}
         states = trace.states
         if self.values or self.defaults:
@@ -58,7 +60,7 @@ class Assumptions:
         if self.defaults:
             told = None
         elif told is not None:
-            told = told.union(untold)
+            told = frozenset(told).union(untold)
         return replace(trace, states=states, ends=ends, told=told, step_s=self._step_of(trace))
 
     def _step_of(self, trace: Trace) -> float:
