@@ -55,7 +55,7 @@ def input_files(arguments: Sequence[str]) -> InputFiles:
     problems: list[RulecError] = []
     for argument in arguments:
         for path in _matching(argument, problems):
-            if path == STANDARD_INPUT or not _is_searched(Path(path)):
+            if path == STANDARD_INPUT or not is_folder(Path(path)) or _is_recording(Path(path)):
                 paths[path] = None
                 continue
             found, others, refused = _recordings_below(path)
@@ -102,11 +102,6 @@ def _matching(argument: str, problems: list[RulecError]) -> Sequence[str]:
             )
         )
     return files or [path for path in found if Path(path).is_dir()]
-
-
-def _is_searched(path: Path) -> bool:
-    """True for a folder, unless that is itself a recording of some format."""
-    return is_folder(path) and not _is_recording(path)
 
 
 def _recordings_below(folder: str) -> tuple[list[str], int, list[RulecError]]:

@@ -10,7 +10,7 @@ from hypothesis import given
 import rulec
 from rulec.automata.outcome_machine import bits_of
 from rulec.monitoring.state_view import StateView, with_values
-from rulec.monitoring.uncertainty.state_letters.completing.completions import joint_digits
+from rulec.monitoring.uncertainty.state_letters.completions.completions import joint_digits
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     EntangledReads,
     NothingKnown,

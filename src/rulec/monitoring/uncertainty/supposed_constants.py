@@ -107,7 +107,7 @@ def _values_of(
         within = exact(bounds.low), exact(bounds.high)
     number = ltl.QuantityTerm(name)
     # Arrangements of planes, 2 ms: only where a constant number is unknown.
-    from rulec.monitoring.uncertainty.state_letters.completing.linear_arrangement import (
+    from rulec.monitoring.uncertainty.state_letters.completions.linear_arrangement import (
         LinearPlane,
         sample_points,
     )

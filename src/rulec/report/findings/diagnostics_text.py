@@ -71,7 +71,8 @@ def _window(excerpt: str, place: SourceLocation, columns: int) -> tuple[list[str
     column = min((place.column or 1) - 1, len(excerpt))
     # A hostile line may have millions of characters: look only at what can be shown.
     start = max(0, column - columns)
-    cells = [_cell(one) for one in excerpt[start : column + columns]]
+    shown = excerpt[start : column + columns]
+    cells = [" " * TAB if one == "\t" else visible(one) for one in shown]
     widths = [cell_width(cell) for cell in cells]
     whole = start == 0 and len(excerpt) == len(cells)
     if whole and sum(widths) <= columns:
@@ -90,10 +91,6 @@ def _window(excerpt: str, place: SourceLocation, columns: int) -> tuple[list[str
         columns_left -= widths[last]
         last += 1
     return cells[first:last], start + first, start + first > 0, start + last < len(excerpt)
-
-
-def _cell(character: str) -> str:
-    return " " * TAB if character == "\t" else visible(character)
 
 
 _FRAME = "bold blue"

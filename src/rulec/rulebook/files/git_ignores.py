@@ -117,10 +117,6 @@ def pattern_of(line: str) -> IgnorePattern | None:
     return IgnorePattern(parts if anchored else ("**", *parts), includes, folders_only)
 
 
-def _part_fits(part: str, name: str) -> bool:
-    return _expression(part).fullmatch(name) is not None
-
-
 @lru_cache(maxsize=4096)
 def _expression(part: str) -> re.Pattern[str]:
     """A part as a regular expression that never goes back to an earlier ``*``."""
@@ -168,7 +164,7 @@ def _fit(pattern: Sequence[str], names: Sequence[str]) -> bool:
         if at < len(pattern) and pattern[at] == "**":
             again = (at, here)
             at += 1
-        elif at < len(pattern) and _part_fits(pattern[at], names[here]):
+        elif at < len(pattern) and _expression(pattern[at]).fullmatch(names[here]):
             at += 1
             here += 1
         elif again is not None:

@@ -14,7 +14,7 @@ from rulec.monitoring.batch.columns.column_reader import Mask
 from rulec.monitoring.batch.stacked.stack import Places, Stack
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.state_view import StateView, with_values
-from rulec.monitoring.uncertainty.state_letters.completing.completions import can_be
+from rulec.monitoring.uncertainty.state_letters.completions.completions import can_be
 from rulec.monitoring.uncertainty.state_letters.related_facts import related_facts
 from rulec.trace.plain_arrays import distinct
 from rulec.vocabulary.partial_values import PartialValue

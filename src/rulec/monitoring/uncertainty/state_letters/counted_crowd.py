@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic import formula as ltl
-from rulec.monitoring.uncertainty.state_letters.completing.completions import Digits
+from rulec.monitoring.uncertainty.state_letters.completions.completions import Digits
 from rulec.monitoring.uncertainty.state_letters.joint_values import (
     MOST_KNOWN,
     Bits,

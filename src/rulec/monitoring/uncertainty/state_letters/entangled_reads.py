@@ -19,7 +19,7 @@ from rulec.logic import formula as ltl
 from rulec.logic.kleene import Unknown, holds
 from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.number_regions import number_regions
-from rulec.monitoring.uncertainty.state_letters.completing.completions import joint_digits
+from rulec.monitoring.uncertainty.state_letters.completions.completions import joint_digits
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import (
     CountsApart,
     count_in,

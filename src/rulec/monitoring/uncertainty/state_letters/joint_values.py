@@ -17,7 +17,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import holds
 from rulec.monitoring.state_view import StateView, with_values
-from rulec.monitoring.uncertainty.state_letters.completing.completions import (
+from rulec.monitoring.uncertainty.state_letters.completions.completions import (
     MOST_COMPLETIONS,
     Digits,
 )

@@ -20,7 +20,7 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
 from rulec.monitoring.state_view import StateView, with_values
-from rulec.monitoring.uncertainty.state_letters.completing.completions import Digits, joint_digits
+from rulec.monitoring.uncertainty.state_letters.completions.completions import Digits, joint_digits
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import count_in
 from rulec.monitoring.uncertainty.state_letters.joint_values import (
     MOST_KNOWN,

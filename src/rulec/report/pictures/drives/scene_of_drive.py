@@ -67,9 +67,10 @@ def drive_scene(
     origin: Points = np.round(path.mean(axis=0))
     lanelets = scene_map.lanelets_near(recording, path)
     bodies = _bodies(tracks, row, origin)
+    known = {body.id for body in tracks.participants}
+    # An object has a number more than its participant when it has come back.
     participants = {
-        name: _participant(name, {body.id for body in tracks.participants})
-        for name in drive.arrays.objects
+        name: name if name in known else name.rpartition("_")[0] for name in drive.arrays.objects
     }
     ids = {body.id: body for body in bodies}
     steps = range(first, first + drive.arrays.n_states)
@@ -110,11 +111,6 @@ def _notes(verdicts: RecordingVerdicts, verdict: Verdict) -> Iterator[str]:
 
 def _in_time(violations: Sequence[Violation]) -> list[Violation]:
     return sorted(violations, key=lambda one: float("inf") if one.step is None else one.step)
-
-
-def _participant(name: str, known: set[str]) -> str:
-    """The participant of an object, which has a number more when it has come back."""
-    return name if name in known else name.rpartition("_")[0]
 
 
 def _bodies(tracks: Tracks, ego: int, origin: Points) -> tuple[Body, ...]:

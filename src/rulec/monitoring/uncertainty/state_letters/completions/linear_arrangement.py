@@ -13,7 +13,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from rulec.logic.formula import Term
-from rulec.monitoring.uncertainty.state_letters.completing.planar_cells import (
+from rulec.monitoring.uncertainty.state_letters.completions.planar_cells import (
     PlanarLine,
     points_of_cells,
 )

@@ -23,7 +23,7 @@ from rulec.logic.kleene import (
     number_of,
     weighted_sum,
 )
-from rulec.monitoring.uncertainty.state_letters.completing.completion_search import (
+from rulec.monitoring.uncertainty.state_letters.completions.completion_search import (
     CompletionSearch,
     Link,
     Possible,
@@ -43,7 +43,9 @@ from rulec.vocabulary.partial_values import Interval, OneOf
 from rulec.vocabulary.vocabulary_model import choices
 
 if TYPE_CHECKING:
-    from rulec.monitoring.uncertainty.state_letters.completing.linear_arrangement import LinearPlane
+    from rulec.monitoring.uncertainty.state_letters.completions.linear_arrangement import (
+        LinearPlane,
+    )
 
 Digits: TypeAlias = tuple[int, ...]
 """A digit for each read."""
@@ -200,7 +202,7 @@ def _completed(
         return None
     planes = [plane for link in cluster.links for plane in _planes(link, reads, view)]
     # Arrangements of planes, 2 ms: only where numbers that are compared are unknown.
-    from rulec.monitoring.uncertainty.state_letters.completing.linear_arrangement import (
+    from rulec.monitoring.uncertainty.state_letters.completions.linear_arrangement import (
         sample_points,
     )
 
@@ -287,7 +289,7 @@ def _planes_of_sum(
                     yield from _planes_in(body, {**environment, variable: item}, view)
     if coefficients:
         # As above.
-        from rulec.monitoring.uncertainty.state_letters.completing.linear_arrangement import (
+        from rulec.monitoring.uncertainty.state_letters.completions.linear_arrangement import (
             LinearPlane,
         )
 
