@@ -199,7 +199,8 @@ FORMULAS = [
     ("p strong until q", "strong", "`strong` stands before `release`"),
     ("(p & q))", ")", "delete the `)`, or open it before"),
     ("p;", ";", "delete the `;`"),
-    ("'p'", "'p'", 'texts stand in straight double quotes: "…"'),
+    ("'p'", "'p'", "write `p` without quotes"),
+    ("“p”", "“", "write `p` without quotes"),
 ]
 
 

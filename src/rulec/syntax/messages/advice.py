@@ -120,8 +120,9 @@ def _quotes(scene: ParseContext) -> str:
         return ""
     grouped = scene.is_number(scene.at - 1) and scene.is_number(scene.at + 1)
     if token.kind == "quoted" or (token.text in _SINGLE and not grouped):
-        if scene.operand:
-            return f"write `{scene.text_behind}` without quotes"
+        name = token.text.strip("'") if token.kind == "quoted" else scene.text_behind
+        if scene.operand and name.isidentifier():
+            return f"write `{name}` without quotes"
         return 'texts stand in straight double quotes: "…"'
     if scene.accepted == {"STRING"} and (token.kind != "symbol" or token.text == "§"):
         return 'put the text in double quotes: "…"'
