@@ -4,11 +4,11 @@ import pytest
 from hypothesis import given
 
 from rulec.logic.fold import fold_constants
-from rulec.logic.formula import Binary, BinaryOperator, Constant, Formula, Unary, UnaryOperator
+from rulec.logic.formula import Binary, BinaryOperator, Constant, Unary, UnaryOperator
 from rulec.logic.printing import formula_text
 from rulec.logic.semantics import truth_values
 from rulec.rulebook.loader import parse_rulebook
-from support.generators.random_formulas import formulas, letters, words
+from support.generators.random_formulas import formulas, letters, parts_of, words
 
 JOINING = {BinaryOperator.AND, BinaryOperator.OR, BinaryOperator.IMPLIES}
 
@@ -22,23 +22,13 @@ def test_the_meaning_stays(formula, word):
 
 @given(formulas)
 def test_no_constant_is_joined_or_denied(formula):
-    for part in _parts(fold_constants(formula)):
+    for part in parts_of(fold_constants(formula)):
         match part:
             case Unary(UnaryOperator.NOT, operand):
                 assert not isinstance(operand, Constant)
             case Binary(operator, left, right) if operator in JOINING:
                 assert not isinstance(left, Constant)
                 assert not isinstance(right, Constant)
-
-
-def _parts(formula: Formula):
-    yield formula
-    match formula:
-        case Unary(_, operand):
-            yield from _parts(operand)
-        case Binary(_, left, right):
-            yield from _parts(left)
-            yield from _parts(right)
 
 
 @pytest.mark.parametrize(

@@ -37,19 +37,9 @@ from support.builders.rulebooks import (
     no,
     rule,
 )
-from support.generators.random_formulas import formulas, letters, words
+from support.generators.random_formulas import formulas, letters, parts_of, words
 
 CARS = {"car1": "car", "car2": "car"}
-
-
-def parts_of(formula):
-    yield formula
-    match formula:
-        case Unary(_, operand):
-            yield from parts_of(operand)
-        case Binary(_, left, right):
-            yield from parts_of(left)
-            yield from parts_of(right)
 
 
 def trace_of(word):

@@ -84,20 +84,12 @@ def test_one_mistake_is_one_error_in_its_place(put, wrong):
         assert [item.signals[0].name.text for item in signals] == ["before", "behind"], shown
 
 
-def test_header_lines_on_one_line():
-    glued = " ".join(construct.right[0] for construct in HEADER)
-    apart = "\n".join(construct.right[0] for construct in HEADER)
-    file, mistakes = read(in_header(glued))
+@pytest.mark.parametrize(("put", "constructs"), [(in_header, HEADER), (among_items, ITEMS)])
+def test_constructs_on_one_line(put, constructs):
+    first = [construct.right[0] for construct in constructs]
+    file, mistakes = read(put(" ".join(first)))
     assert mistakes == (), render_diagnostics(mistakes)
-    assert file == read(in_header(apart))[0]
-
-
-def test_items_on_one_line():
-    glued = " ".join(construct.right[0] for construct in ITEMS)
-    apart = "\n".join(construct.right[0] for construct in ITEMS)
-    file, mistakes = read(among_items(glued))
-    assert mistakes == (), render_diagnostics(mistakes)
-    assert file == read(among_items(apart))[0]
+    assert file == read(put("\n".join(first)))[0]
 
 
 def test_clauses_on_one_line():

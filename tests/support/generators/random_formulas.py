@@ -57,6 +57,17 @@ states = st.fixed_dictionaries(
 words = st.lists(states, min_size=1, max_size=7)
 
 
+def parts_of(formula):
+    """The formula and all that it is made of."""
+    yield formula
+    match formula:
+        case Unary(_, operand):
+            yield from parts_of(operand)
+        case Binary(_, left, right):
+            yield from parts_of(left)
+            yield from parts_of(right)
+
+
 def letters(word: list[dict]) -> list[frozenset[Atom]]:
     """The atoms, with the rule's variable ``x``, that are true in each state."""
     return [
