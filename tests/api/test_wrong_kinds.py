@@ -161,6 +161,7 @@ def test_what_is_no_trace_is_said(changes, said):
             ValueError,
             "`now_s` is a finite number, not nan",
         ),
+        (lambda: rulec.TrafficWorld(DRIVEN, "1", 1e308), rulec.RulecError, "nobody is recorded"),
         (lambda: rulec.TrafficWorld(DRIVEN, 1), TypeError, "`ego` is a str, not int"),
         (lambda: rulec.RequestedDrives(None), TypeError, "`egos` is .*not NoneType"),
         (lambda: rulec.Monitor(RULES).past("v"), TypeError, "`objects` is a dict, not str"),

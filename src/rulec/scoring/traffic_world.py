@@ -89,7 +89,7 @@ class TrafficWorld:
         """The present time step."""
         if self.now_s is None:
             return max(self._body.states)
-        return round(self.now_s / self.recording.step_s)
+        return round(max(-1e18, min(self.now_s / self.recording.step_s, 1e18)))
 
     @cached_property
     def past(self) -> NDArray[float64]:
