@@ -69,12 +69,13 @@ def test_to_and_fro_on_the_mark_is_no_change_of_lanes():
 
 
 @pytest.mark.parametrize(
-    ("behind_mps", "gap_m", "clear"), [(20, 3, True), (28, 30, True), (28, 18, False)]
+    ("behind_mps", "gap_m", "clear"),
+    [(20, 7, True), (20, 3, False), (28, 30, True), (28, 18, False)],
 )
 def test_who_has_to_brake_for_a_change_of_lanes(behind_mps, gap_m, clear):
-    # Ego changes in state 5 at 20 m/s and x = 50. An equally fast one needs no room. One that is
-    # 8 m/s faster has 8 m less after a second: with 22 m left it brakes with 8²/(2·22) = 1.45 m/s²,
-    # with 10 m left with 3.2 m/s².
+    # Ego changes in state 5 at 20 m/s and x = 50. An equally fast one needs 0.3 s to react, which
+    # is 6 m. One that is 8 m/s faster has 8 m less after a second: with 22 m left it brakes with
+    # 8²/(2·22) = 1.45 m/s², with 10 m left with 3.2 m/s².
     ego = going(7, 0, 1, 20, count=8, across=1.0)
     other = going(8, 50 - 4 - gap_m - behind_mps * 2.5, 2, behind_mps, count=8)
     told = states([ego, other])

@@ -348,6 +348,25 @@ def test_who_has_waited_needs_a_moment_to_get_going():
     assert found[gone:60] == "?" * 10 + "F" * (50 - gone)
 
 
+@pytest.mark.parametrize(("fast", "expected"), [(20.0, "F"), (5.0, "?")])
+def test_who_drives_on_later_has_not_broken_down(fast, expected):
+    """It stands from 4 to 12 s, with nobody near; no lamp is told. Slowly it may be towed."""
+    speeds = [*np.linspace(20, 0, 9), *[0.0] * 16, *np.linspace(0, fast, 16), *[fast] * 30]
+    x = 50 + np.concatenate(([0.0], np.cumsum(np.array(speeds[:-1]) / 2)))
+    ego = vehicle(7, {k: (place, 0) for k, place in enumerate(x)})
+    found = told(reason_signals, "cause_to_brake", LONG, ego, complete=SIMULATED)
+    assert set(found[9:24]) == {expected}
+
+
+def test_who_stands_when_it_is_first_seen_may_have_waited_until_then():
+    speeds = [*[0.0] * 30, *np.linspace(0, 20, 16), *[20.0] * 20]
+    x = 50 + np.concatenate(([0.0], np.cumsum(np.array(speeds[:-1]) / 2)))
+    ego = vehicle(7, {k: (place, 0) for k, place in enumerate(x)})
+    found = told(reason_signals, "cause_to_brake", LONG, ego, complete=SIMULATED)
+    # It has the time to get going after 5 s
+    assert (set(found[:11]), set(found[11:28])) == ({"?"}, {"F"})
+
+
 def test_who_holds_up_others():
     road = [straight(1, 0, 2500, limit_mps=30.0)]
     slow, follower = steady(7, 100, 0, 10, 100), steady(8, 85, 0, 10, 100)

@@ -11,6 +11,7 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
 from rulec.extraction.signals.conduct.lanes_from_behind import comes_into_lane
 from rulec.extraction.signals.conduct.manoeuvre_signals import swings_round
+from rulec.extraction.signals.conduct.squeezing_in import squeezed
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, ids_by_state
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags
@@ -60,7 +61,7 @@ def _at_fork(context: DriveContext, change: int) -> bool:
 
 
 def _lane_is_clear(context: DriveContext) -> SignalColumns:
-    """Whether nobody has to brake for ego, in states of its lane changes.
+    """Whether nobody has to brake or get out of the way for ego, in states of its lane changes.
 
     Unknown where the only ones are about to be past, as ego comes in behind them, or only reach
     into its lane from the one beyond. Also where one comes from behind on a lane that forks, and
@@ -72,10 +73,13 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
     changes = np.flatnonzero(_changes(context))
     found, perhaps = _disturbed(context, changes)
     disturbed[:, changes] = found
-    unsure[changes] = perhaps.any(axis=0)
+    no_room, maybe_none = squeezed(context, changes)
+    disturbed[:, changes] |= no_room
+    unsure[changes] = perhaps.any(axis=0) | maybe_none.any(axis=0)
     in_lane = context.extents.lane[:, changes] == context.ego_lane[changes]
     in_lane |= found & ~context.in_ego_lane[:, changes]
-    moot[changes] = ~np.any(found & in_lane & ~_pulls_away(context, changes), axis=0)
+    has_to_brake = found & in_lane & ~_pulls_away(context, changes)
+    moot[changes] = ~np.any(has_to_brake | no_room, axis=0)
     clear: Flags = ~np.any(disturbed, axis=0)
     stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
     return SignalColumns(

@@ -74,6 +74,8 @@ def _on_far_lane(context: DriveContext) -> SignalColumns:
 def _on_near_lane(context: DriveContext) -> SignalColumns:
     free = _near_lane_is_free(context)
     doubtful = _perhaps_on_near_lane(context) | _of_no_use(context) | _goes_back(context)
+    # For which buses such a lane is, and when, no map tells, nor do those have to use it that may
+    doubtful |= _is_beside(context, _BUS_LANE)
     return SignalColumns(
         {"near_lane_is_free": free}, unknown={"near_lane_is_free": free & doubtful}
     )

@@ -42,6 +42,9 @@ _FAR_SLOWER, _SLOWER = 0.5, 0.75
 _MOVES_OFF_S = 5.0
 """Who has waited gets going in so long."""
 
+_DRIVES_KMH = 30.0
+"""Who is as fast later on has not broken down, nor is towed."""
+
 
 def reason_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
     """The signals of reasons to brake and of holding up others, those of the names."""
@@ -57,8 +60,8 @@ def _cause_to_brake(context: DriveContext) -> SignalColumns:
 def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     """Flags of states with a reason to brake, stand or be slow, and of those perhaps with one.
 
-    Ego that stands has perhaps broken down, unless its hazard lights are known to be off; one that
-    stands soon, whose drive ends, that is beside somebody, or comes up to one beside its lane who
+    Ego that stands has perhaps broken down, unless its hazard lights are known to be off, or it
+    drives on at ``_DRIVES_KMH`` afterwards; one that stands soon, whose drive ends, that is beside somebody, or comes up to one beside its lane who
     is less than half as fast, and may come into it, had perhaps something to do; so has one before
     or on a lane that joins others, where it looks for a gap, one that has stood for a
     reason up to ``_MOVES_OFF_S`` ago, and one that brakes hard with nobody near behind, whom it
@@ -69,7 +72,8 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     caused[others.states] = _by_others(context, others)
     soon = round(context.thresholds.preparing_s / context.recording.step_s)
     spans, stands = context.spans, ~moves(context)
-    perhaps = spans.within(stands, soon) & ~(stands & _shows_no_hazard(context))
+    broken_down = stands & ~_drives_on(context, stands)
+    perhaps = spans.within(broken_down, soon) & ~(stands & _shows_no_hazard(context))
     perhaps |= spans.columns + soon // 2 >= spans.end
     # Ego may want to get in behind one beside it, or let it in
     beside = (others.away > _IN_WAY_M) & (others.away <= _COMES_M)
@@ -85,6 +89,19 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
         farther = (others.ahead > _reach(context)[others.states]) & (others.away <= _ROAD_M)
         perhaps[others.states] |= ~farther.any(axis=0)
     return caused, perhaps & ~caused
+
+
+def _drives_on(context: DriveContext, stands: Flags) -> Flags:
+    """Flags of states in which ego stands, and drives on in earnest later in its drive.
+
+    Of one that stands when its drive begins nobody knows for what, nor until it has had the time to
+    get going.
+    """
+    spans = context.spans
+    drives = context.ego.speed[0] * KMH >= _DRIVES_KMH
+    later = spans.next_state(drives) < spans.end
+    drives_on: Flags = stands & later & ~spans.begins_here
+    return drives_on
 
 
 def _slow_beside(context: DriveContext, others: _Others) -> Flags:

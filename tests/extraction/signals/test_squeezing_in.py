@@ -1,0 +1,119 @@
+"""Who changes lanes where another one has no room, as that one shows by getting out of the way."""
+
+import numpy as np
+import pytest
+
+from rulec.extraction.signals.conduct.lane_change_signals import lane_change_signals
+from support.builders.drive_contexts import context_of, told_on_both_sides
+from support.builders.recordings import recording, straight, vehicle
+
+STEP_S, STEPS, CHANGE = 0.1, 60, 35
+BEGINS, ENDS = 20, 50
+"""Ego moves over from 2 to 5 s; its middle is 0.3 m beyond the mark in the state of the change."""
+
+
+def lanes(count):
+    """Lanes 4 m wide."""
+    found = []
+    for number in range(1, count + 1):
+        left, right = (number + 1 if number < count else None), (number - 1 or None)
+        found.append(straight(number, 0, 900, 4 * (number - 1), left_of=left, right_of=right))
+    return found
+
+
+def driving(number, start, y, speeds, **more):
+    """A vehicle 4 m long and 2 m wide, at these speeds (m/s) and places across in each state."""
+    x = start + np.concatenate(([0.0], np.cumsum(speeds[:-1] * STEP_S)))
+    return vehicle(number, {k: (x[k], y[k]) for k in range(STEPS)}, speed=speeds[0], **more)
+
+
+def across(begin, end, of, to):
+    return np.interp(np.arange(STEPS), [begin, end], [of, to])
+
+
+def steady_speed(mps=20.0):
+    return np.full(STEPS, mps)
+
+
+def braking(begin, mps2):
+    """20 m/s, and for a second slower and slower."""
+    return np.interp(np.arange(STEPS), [begin, begin + 10], [20.0, 20.0 - mps2])
+
+
+def told(*others, road=None, route=("1",)):
+    """Whether the lane is clear in the state of the change, "?" where that is unknown."""
+    # At 1.33 m/s it is 0.3 m beyond the mark at 2 m after 1.73 s, and there all of the next state
+    ego = driving(7, 100, across(BEGINS, ENDS, 0.0, 4.0), steady_speed())
+    found = recording(road or lanes(3), [ego, *others], step_s=STEP_S)
+    words = told_on_both_sides(lane_change_signals, found, route)
+    changes = np.flatnonzero(np.array(words["lane_change"]) == "True")
+    assert len(changes) == 1
+    assert abs(int(changes[0]) - 38) <= 1
+    return words["lane_is_clear"][int(changes[0])]
+
+
+@pytest.mark.parametrize(
+    ("gap_m", "clear"),
+    # 0.3 s at 20 m/s are 6 m
+    [(1.0, "False"), (5.5, "False"), (6.5, "True"), (15.0, "True")],
+)
+def test_one_close_behind_has_no_room_to_react(gap_m, clear):
+    assert told(driving(8, 96 - gap_m, np.full(STEPS, 4.0), steady_speed())) == clear
+
+
+def test_ego_draws_away_from_one_close_behind():
+    """It is 2 m/s slower: 5 m behind in the state of the change it has 7.6 m less to go."""
+    slower = driving(8, 96 - 5.0 + 7.6, np.full(STEPS, 4.0), steady_speed(18.0))
+    assert told(slower) == "True"
+
+
+@pytest.mark.parametrize(
+    ("begin", "clear"),
+    # Who was on its way before is not driven out; ego begins in state 20
+    [(23, "False"), (10, "?")],
+)
+def test_who_gets_out_of_the_way_sideways_had_no_room(begin, clear):
+    other = driving(8, 99, across(begin, begin + 15, 4.0, 6.6), steady_speed())
+    assert told(other) == clear
+
+
+def test_who_goes_aside_far_ahead_was_not_in_the_way():
+    other = driving(8, 130, across(23, 38, 4.0, 6.6), steady_speed())
+    assert told(other) == "True"
+
+
+@pytest.mark.parametrize(
+    ("start", "mps2", "clear"),
+    [
+        # Beside ego when that begins, and 6 m farther back, behind it, when that has changed lanes
+        (98.0, 8.0, "False"),
+        # Too far back to be run into
+        (70.0, 8.0, "True"),
+    ],
+)
+def test_who_brakes_out_of_the_way_had_no_room(start, mps2, clear):
+    other = driving(8, start, np.full(STEPS, 4.0), braking(22, mps2))
+    assert told(other) == clear
+
+
+def test_who_brakes_for_another_one_may_not_brake_for_ego():
+    other = driving(8, 98.0, np.full(STEPS, 4.0), braking(22, 8.0))
+    slower = driving(9, 140.0, np.full(STEPS, 4.0), steady_speed(12.0))
+    assert told(other, slower) == "?"
+
+
+def test_who_brakes_gently_before_ego_comes_may_let_it_in():
+    """It is 1.4 m/s slower when ego comes over the mark, and 10 cm behind it by then."""
+    slows = np.interp(np.arange(STEPS), [20, 26], [20.0, 18.6])
+    other = driving(8, 96.4, np.full(STEPS, 4.0), slows)
+    assert told(other) == "?"
+
+
+def test_where_ego_s_lane_ends_they_let_each_other_in():
+    road = [
+        straight(1, 0, 330, left_of=2),
+        straight(2, 0, 330, 4, right_of=1, successors=(3,)),
+        straight(3, 330, 900, 4, predecessors=(2,)),
+    ]
+    other = driving(8, 98.0, np.full(STEPS, 4.0), braking(22, 8.0))
+    assert told(other, road=road, route=("2", "3")) == "?"
