@@ -98,6 +98,67 @@ def test_nobody_is_in_the_way_at_the_next_junction_who_was_at_the_last_one(lengt
     assert conflict[enters].tolist() == [True, False]
 
 
+@pytest.mark.parametrize("cuts_corner", [False, True])
+def test_the_next_junction_ends_a_conflict_also_for_who_is_on_none_of_its_ways(cuts_corner):
+    """Its middle passes beside the next one, as that of a long one does that cuts the corner."""
+    ends = {"15": [(29, -4), (29, 2)], "16": [(29, 2), (29, 90)]}
+    road = [
+        replace(own, centre=np.array(ends[own.id], dtype=float)) if own.id in ends else own
+        for own in LINK
+    ]
+    road = [
+        lanelet(
+            own.id,
+            own.centre,
+            successors=own.successors,
+            predecessors=own.predecessors,
+            signs=own.signs,
+            types=own.types,
+            junction=own.junction,
+        )
+        for own in road
+    ]
+    aside = 2.6 if cuts_corner else 0.0
+    x = -50 + 2.0 * np.arange(60)
+    y = np.interp(x, [14, 23, 35, 44], [0, aside, aside, 0])
+    ego = vehicle(7, {k: (x[k], y[k]) for k in range(60)}, speed=10, length=18.0)
+    leaves_s = (58.6 + 9) / 10
+    places = {k: (7, -3.6 + 10 * (k / 5 - leaves_s - 0.5)) for k in range(60)}
+    other = vehicle(8, places, speed=10, heading=np.pi / 2)
+    found = replace(recording(road, [ego, other], step_s=0.2), complete=frozenset({"YIELD"}))
+    context = context_of(found, route=("1", "2", "9", "10", "11"))
+    row = [body.id for body in context.surroundings.tracks.participants].index("7")
+    assert len(context.surroundings.passages.of_row[row]) == (1 if cuts_corner else 2)
+    enters = np.flatnonzero(junction_signals(context).world["enters_junction"])
+    conflict = priority_signals(context).world["conflict_from_right"]
+    assert conflict[enters].tolist() == [True, False]
+
+
+@pytest.mark.parametrize("turns", [False, True])
+def test_nobody_knows_of_one_before_another_junction_whether_it_turns_into_the_road(turns):
+    """It comes along the link, 15 m long, when ego has driven in from the south."""
+    bend = [(7, -10), (7, -4), (7.5, -1.5), (8.5, -0.3), (10, 0)]
+    way = lanelet(8, bend, predecessors=(4,), successors=(9,), types=INSIDE, junction="x")
+    west = [(-90.0, 0.0), (60.0, 0.0)]
+    path = np.array([(7.0, -90.0), *bend, (60.0, 0.0)] if turns else west)
+    # At 4 m/s ego's front is in the junction at 3 s, its rear out of the other's way at 5.25 s
+    ego = vehicle(7, {k: (29, -18 + 0.8 * k) for k in range(60)}, speed=4, heading=np.pi / 2)
+    to_link = float(np.hypot(*np.diff(path[: (6 if turns else 1)], axis=0).T).sum())
+    # Its front is where the ways cross, at x = 28, 0.8 s after that; turning it is in the junction
+    # before from 3.3 s on
+    start = (to_link + 18 if turns else 118) - 2 - 10 * 6.05
+    other = along(8, path, start + 2.0 * np.arange(60))
+    signs = [
+        replace(own, signs=frozenset({"YIELD"}) if own.id == "14" else frozenset()) for own in LINK
+    ]
+    found = replace(
+        recording([*signs, way], [ego, other], step_s=0.2), complete=frozenset({"YIELD"})
+    )
+    told = priority_signals(context_of(found, route=("14", "15", "16")))
+    side = "conflict_from_left"
+    assert (told.world[side].any(), told.unknown[side].any()) == (not turns, turns)
+
+
 @pytest.mark.parametrize(("length", "sure"), [(4.5, True), (20.0, True), (60.0, False)])
 @pytest.mark.parametrize(("comes_s", "conflict"), [(3.0, True), (6.0, False)])
 def test_of_a_long_one_the_front_counts(length, sure, comes_s, conflict):
@@ -164,6 +225,15 @@ def test_a_conflict_is_one_of_a_single_junction():
     from_right = signals.world["conflict_from_right"]
     assert not from_right[:4].any()
     assert from_right[9]
+
+
+@pytest.mark.parametrize(("creeps_mps", "known"), [(0.0, False), (2.0, True)])
+def test_one_that_stands_when_ego_drives_in_may_wait_for_others(creeps_mps, known):
+    """It moves off when ego leaves the junction at 2.5 s, and comes less than a second later."""
+    places = [-6 - 2.5 * creeps_mps, -6, -4, 2]
+    found = signals(NORTH, lambda t: np.interp(t, [0, 2.5, 3, 3.5], places), np.pi / 2)
+    told = found.world["conflict_from_right"].any(), found.unknown["conflict_from_right"].any()
+    assert told == (known, not known)
 
 
 def test_one_that_would_have_come_at_once_was_held_up():

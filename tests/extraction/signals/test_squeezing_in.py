@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rulec.extraction.signals.conduct.lane_change_signals import lane_change_signals
-from support.builders.drive_contexts import context_of, told_on_both_sides
+from support.builders.drive_contexts import told_on_both_sides
 from support.builders.recordings import recording, straight, vehicle
 
 STEP_S, STEPS, CHANGE = 0.1, 60, 35

@@ -61,11 +61,12 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     """Flags of states with a reason to brake, stand or be slow, and of those perhaps with one.
 
     Ego that stands has perhaps broken down, unless its hazard lights are known to be off, or it
-    drives on at ``_DRIVES_KMH`` afterwards; one that stands soon, whose drive ends, that is beside somebody, or comes up to one beside its lane who
-    is less than half as fast, and may come into it, had perhaps something to do; so has one before
-    or on a lane that joins others, where it looks for a gap, one that has stood for a
-    reason up to ``_MOVES_OFF_S`` ago, and one that brakes hard with nobody near behind, whom it
-    would surprise. Where not all traffic is recorded it is as far as somebody is recorded ahead.
+    drives on at ``_DRIVES_KMH`` afterwards; one that stands soon, whose drive ends, that is beside
+    somebody, or comes up to one beside its lane who is less than half as fast, and may come into
+    it, had perhaps something to do; so has one before or on a lane that joins others, where it
+    looks for a gap, one that has stood for a reason up to ``_MOVES_OFF_S`` ago, and one that brakes
+    hard with nobody near behind, whom it would surprise. Where not all traffic is recorded it is as
+    far as somebody is recorded ahead.
     """
     caused = _by_map(context)
     others = _others(context, np.flatnonzero(~caused))

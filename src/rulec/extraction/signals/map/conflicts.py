@@ -161,7 +161,9 @@ def _held_up(
     if at is None or comes is None:
         return (first, False) if int(present[-1]) < until else None
     if (at - until) * step_s < limits.yielding_s:
-        return first, leaves is not None or _drives_on(context, own, comes)
+        drove_on = leaves is not None or _drives_on(context, own, comes)
+        drives_in = min(max(passages.front_enters(own), first), last)
+        return first, drove_on and not _stands(context, other, drives_in)
     if (at - until) * step_s >= limits.held_up_s:
         return None
     travelled = passages.travelled[other.row]
@@ -177,6 +179,12 @@ def _held_up(
         return None
     for_ego = not _bends(context, other, first + decides, comes)
     return int(columns[soon.argmax()]), leaves is not None and for_ego
+
+
+def _stands(context: DriveContext, other: Passage, column: int) -> bool:
+    """True if one stands before a junction when ego drives in: others may be in its way as well."""
+    speed = context.surroundings.passages.tracks.speed[other.row, column]
+    return bool(speed < SLOWEST_MPS) and column < other.first
 
 
 def _slows_down(context: DriveContext, other: Passage, first: int, last: int) -> bool:

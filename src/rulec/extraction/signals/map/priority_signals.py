@@ -156,6 +156,12 @@ def _next(context: DriveContext, passage: Passage) -> int:
     passages = context.surroundings.passages
     later = [x for x in passages.of_row[passage.row] if x.first > passage.first]
     enters = [passages.front_enters(x) - first_column(context) for x in later[:1]]
+    # The middle of a long body may cut the next one's corner and never be in it
+    first = int(np.clip(passage.first - first_column(context), 0, context.states - 1))
+    beyond = context.ego_extents.s[0, first]
+    starts = [start for start, _ in context.road.junctions if start > beyond]
+    there = np.flatnonzero(context.ego_extents.s_max[0, first:] >= min(starts, default=np.inf))
+    enters += [first + int(state) - 1 for state in there[:1]]
     return min(enters, default=context.states)
 
 
@@ -242,11 +248,31 @@ def _encounters(context: DriveContext, own: Passage) -> Iterator[Encounter]:
             and own.sure
             and other.sure
             and settled is not None
+            and not _turned_in_later(context, own, other)
             and _is_seen(passages.tracks.present[other.row], first + shift, latest),
             other=other,
             together=abs(lead_s) <= context.thresholds.together_s,
             comes_first=lead_s > context.thresholds.together_s,
         )
+
+
+def _turned_in_later(context: DriveContext, own: Passage, other: Passage) -> bool:
+    """True if one turned into the road to the junction at another one, when ego drove in already.
+
+    Where links are short nobody knows of one that is still before the junction at their other end
+    whether it comes. Who waits within the junction drives in where it moves off.
+    """
+    passages = context.surroundings.passages
+    speed = passages.tracks.speed[own.row, own.first : own.last + 1]
+    waits = np.flatnonzero(speed < SLOWEST_MPS)
+    drives_in = own.first + int(waits[-1]) if len(waits) else passages.front_enters(own)
+    least = np.radians(context.thresholds.turned_deg)
+    return any(
+        drives_in < passages.front_enters(before) < other.first
+        and abs(passages.way(before).turned) > least
+        for before in passages.of_row[other.row]
+        if before.junction != own.junction
+    )
 
 
 def _is_seen(present: Flags, first: int, last: int) -> bool:
