@@ -1,11 +1,14 @@
 """Who changes lanes where another one has no room, as that one shows by getting out of the way."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from rulec.extraction.signals.conduct.lane_change_signals import lane_change_signals
+from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
 from support.builders.drive_contexts import told_on_both_sides
-from support.builders.recordings import recording, straight, vehicle
+from support.builders.recordings import lanelet, recording, straight, vehicle
 
 STEP_S, STEPS, CHANGE = 0.1, 60, 35
 BEGINS, ENDS = 20, 50
@@ -24,7 +27,9 @@ def lanes(count):
 def driving(number, start, y, speeds, **more):
     """A vehicle 4 m long and 2 m wide, at these speeds (m/s) and places across in each state."""
     x = start + np.concatenate(([0.0], np.cumsum(speeds[:-1] * STEP_S)))
-    return vehicle(number, {k: (x[k], y[k]) for k in range(STEPS)}, speed=speeds[0], **more)
+    body = vehicle(number, {k: (x[k], y[k]) for k in range(STEPS)}, **more)
+    states = {k: replace(state, speed=float(speeds[k])) for k, state in body.states.items()}
+    return replace(body, states=states)
 
 
 def across(begin, end, of, to):
@@ -96,6 +101,37 @@ def test_who_brakes_out_of_the_way_had_no_room(start, mps2, clear):
     assert told(other) == clear
 
 
+@pytest.mark.parametrize(("mps2", "clear"), [(6.0, "False"), (0.0, "False")])
+def test_who_comes_from_behind_has_to_brake_before_ego_is_in_its_lane_or_then(mps2, clear):
+    """It is 8 m/s faster, and 14.5 m behind when ego has changed lanes did it not brake before.
+
+    That leaves 6.5 m after a second of reaction, and 64 / 13 = 4.9 m/s² to brake with.
+    """
+    speeds = np.interp(np.arange(STEPS), [28, 38], [28.0, 28.0 - mps2])
+    assert told(driving(8, 100 - 18.5 - 8 * 3.8, np.full(STEPS, 4.0), speeds)) == clear
+
+
+@pytest.mark.parametrize(("mps", "clear"), [(14.0, "False"), (6.0, "True")])
+def test_who_comes_onto_the_road_looks_for_those_on_it(mps, clear):
+    """Ego sets off beside the road at 1 s, and is on its lane at 3 s, at 4 m/s.
+
+    The other one is 14 m behind then: at 10 m/s more it would run into ego within its reaction.
+    """
+    speeds = np.interp(np.arange(STEPS), [10, 50], [0.0, 8.0])
+    ego = driving(7, 100, across(10, 40, -4.0, 0.0), speeds)
+    at_3 = 100 + float(speeds[:30].sum()) * STEP_S
+    other = driving(8, at_3 - 18 - mps * 3.0, np.zeros(STEPS), np.full(STEPS, mps))
+    found = recording([straight(1, 0, 900)], [ego, other], step_s=STEP_S)
+    words = told_on_both_sides(lane_change_signals, found, ("1",))
+    assert "True" not in words["lane_change"]
+    assert ("False" in words["lane_is_clear"]) == (clear == "False")
+    if clear == "False":
+        # Its middle is on the lane, 2 m from the edge, in state 25
+        assert words["lane_is_clear"].index("False") == 25
+        joins = told_on_both_sides(manoeuvre_signals, found, ("1",))["joins_road"]
+        assert joins[25] == "True"
+
+
 def test_who_brakes_for_another_one_may_not_brake_for_ego():
     other = driving(8, 98.0, np.full(STEPS, 4.0), braking(22, 8.0))
     slower = driving(9, 140.0, np.full(STEPS, 4.0), steady_speed(12.0))
@@ -117,3 +153,33 @@ def test_where_ego_s_lane_ends_they_let_each_other_in():
     ]
     other = driving(8, 98.0, np.full(STEPS, 4.0), braking(22, 8.0))
     assert told(other, road=road, route=("2", "3")) == "?"
+
+
+@pytest.mark.parametrize(
+    ("away_m", "mps2", "clear"),
+    # 10 m/s: with 20 m to ego after a second 100 / 40 = 2.5 m/s² are needed, with 60 m 0.8 m/s²
+    [(30, 3.0, "False"), (30, 0.7, "?"), (70, 3.0, "True")],
+)
+def test_who_turns_round_looks_for_those_who_come_towards_it(away_m, mps2, clear):
+    """Ego turns by a half circle, 4 m across, to the lane of the other direction."""
+    turns = np.clip((np.arange(STEPS) - 20) / 20, 0, 1) * np.pi
+    x = 100 + np.minimum(np.arange(STEPS) - 20, 0) * 0.3 + 2 * np.sin(turns)
+    x -= np.maximum(np.arange(STEPS) - 40, 0) * 0.3
+    y = 2 - 2 * np.cos(turns)
+    poses = [vehicle(7, {k: (x[k], y[k])}, heading=turns[k], speed=3.0) for k in range(STEPS)]
+    ego = replace(
+        poses[0],
+        states={k: pose.states[k] for k, pose in enumerate(poses)},
+        outlines={k: pose.outlines[k] for k, pose in enumerate(poses)},
+    )
+    speeds = np.interp(np.arange(STEPS), [30, 60], [10.0, 10.0 - 3 * mps2])
+    # So far from ego's middle when that is across the road
+    begins = 102 + away_m + 30 * 1.0
+    way = begins - np.concatenate(([0.0], np.cumsum(speeds[:-1] * STEP_S)))
+    other = vehicle(8, {k: (way[k], 4.0) for k in range(STEPS)}, heading=np.pi)
+    states = {k: replace(state, speed=float(speeds[k])) for k, state in other.states.items()}
+    road = [straight(1, 0, 300), lanelet(2, [(300, 4), (0, 4)])]
+    found = recording(road, [ego, replace(other, states=states)], step_s=STEP_S)
+    words = told_on_both_sides(lane_change_signals, found, ("1",))
+    told_words = set(words["lane_is_clear"])
+    assert told_words - {"True"} == (set() if clear == "True" else {clear})

@@ -10,8 +10,13 @@ from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
 from rulec.extraction.signals.conduct.lanes_from_behind import comes_into_lane
-from rulec.extraction.signals.conduct.manoeuvre_signals import swings_round
-from rulec.extraction.signals.conduct.squeezing_in import squeezed
+from rulec.extraction.signals.conduct.manoeuvre_signals import (
+    beyond_near_edge,
+    swings_round,
+    u_turns,
+)
+from rulec.extraction.signals.conduct.squeezing_in import Way, squeezed
+from rulec.extraction.signals.conduct.turning_round import has_to_brake_for_turn
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, ids_by_state
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags
@@ -61,7 +66,7 @@ def _at_fork(context: DriveContext, change: int) -> bool:
 
 
 def _lane_is_clear(context: DriveContext) -> SignalColumns:
-    """Whether nobody has to brake or get out of the way for ego, in states of its lane changes.
+    """Whether nobody has to brake or get out of the way for ego that comes into a lane.
 
     Unknown where the only ones are about to be past, as ego comes in behind them, or only reach
     into its lane from the one beyond. Also where one comes from behind on a lane that forks, and
@@ -70,16 +75,20 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
     """
     disturbed = np.zeros(context.relevant.shape, dtype=bool)
     moot, unsure = np.zeros((2, context.states), dtype=bool)
-    changes = np.flatnonzero(_changes(context))
-    found, perhaps = _disturbed(context, changes)
-    disturbed[:, changes] = found
-    no_room, maybe_none = squeezed(context, changes)
-    disturbed[:, changes] |= no_room
-    unsure[changes] = perhaps.any(axis=0) | maybe_none.any(axis=0)
-    in_lane = context.extents.lane[:, changes] == context.ego_lane[changes]
-    in_lane |= found & ~context.in_ego_lane[:, changes]
-    has_to_brake = found & in_lane & ~_pulls_away(context, changes)
-    moot[changes] = ~np.any(has_to_brake | no_room, axis=0)
+    flagged, ways = _ways_into_lanes(context)
+    states = np.array([way.state for way in ways], dtype=intp)
+    found, perhaps = _disturbed(context, states)
+    no_room, maybe_none = squeezed(context, ways)
+    in_lane = context.extents.lane[:, states] == context.ego_lane[states]
+    in_lane |= found & ~context.in_ego_lane[:, states]
+    has_to_brake = found & in_lane & ~_pulls_away(context, states)
+    disturbed[:, flagged] = found | no_room
+    unsure[flagged] = perhaps.any(axis=0) | maybe_none.any(axis=0)
+    moot[flagged] = ~np.any(has_to_brake | no_room, axis=0)
+    turns = u_turns(context)
+    brakes, may_brake = has_to_brake_for_turn(context, turns)
+    disturbed |= brakes
+    unsure |= may_brake.any(axis=0)
     clear: Flags = ~np.any(disturbed, axis=0)
     stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
     return SignalColumns(
@@ -87,6 +96,28 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
         unknown={"lane_is_clear": np.where(clear, unsure, moot | stands)},
         whom={"lane_is_clear": ids_by_state(disturbed, context.ids)},
     )
+
+
+def _ways_into_lanes(context: DriveContext) -> tuple[NDArray[intp], list[Way]]:
+    """The states in which ego comes into another lane, or onto the road, and its ways there.
+
+    Onto the road it comes over its near edge, and is there ``changed_m`` farther on.
+    """
+    lane, inside = context.steady_lane, -beyond_near_edge(context)
+    changes = np.flatnonzero(_changes(context)).tolist()
+    ways = [
+        Way(at, int(max(lane[at - 1], lane[at])), to_left=bool(lane[at] > lane[at - 1]))
+        for at in changes
+    ]
+    there, end = inside >= context.thresholds.changed_m, context.spans.end
+    settled = context.spans.next_state(there)
+    enters = np.flatnonzero(context.spans.enters(inside >= 0))
+    flagged = [at for at in enters.tolist() if settled[at] < end[at] and at not in changes]
+    to_left = context.side == "right"
+    for at in flagged:
+        state = int(settled[at])
+        ways.append(Way(state, int(lane[state]) + (not to_left), to_left=to_left))
+    return np.array(changes + flagged, dtype=intp), ways
 
 
 def _changes(context: DriveContext) -> Flags:

@@ -230,7 +230,8 @@ def _beyond_far_edge(context: DriveContext) -> Floats:
     return left if context.side == "right" else right
 
 
-def _beyond_near_edge(context: DriveContext) -> Floats:
+def beyond_near_edge(context: DriveContext) -> Floats:
+    """How far (m) ego's middle is beyond the road's edge at its near side."""
     right, left = _beyond_edges(context)
     return right if context.side == "right" else left
 
@@ -264,6 +265,11 @@ def _on_map(context: DriveContext) -> Flags:
 
 
 def _u_turn(context: DriveContext) -> SignalColumns:
+    return SignalColumns({"u_turn": u_turns(context)})
+
+
+@once
+def u_turns(context: DriveContext) -> Flags:
     """Whether ego turns round on a short way, while it is across; unknown where the map decides.
 
     By the whole track: where it has turned round it is on another road. In a junction, and where
@@ -274,7 +280,7 @@ def _u_turn(context: DriveContext) -> SignalColumns:
         leaves_road = np.abs(context.ego_extents.turned[0]) >= 2 * _ACROSS_RAD
         turns = turns & context.spans.any(turns & leaves_road)
         turns &= ~context.spans.any(_touches_junction(context, turns))
-    return SignalColumns({"u_turn": turns})
+    return turns
 
 
 def swings_round(context: DriveContext) -> Flags:
@@ -342,8 +348,8 @@ def _joins_road(context: DriveContext) -> SignalColumns:
     Of one that comes from beside the road at an angle, or is there when first seen, nobody knows
     whether a road is there that the map leaves out, nor of who turns round what is its road yet.
     """
-    outside = (_beyond_near_edge(context) > _loose(context)) & _on_map(context)
-    inside, joins = _beyond_near_edge(context) <= 0, np.zeros(context.states, dtype=bool)
+    outside = (beyond_near_edge(context) > _loose(context)) & _on_map(context)
+    inside, joins = beyond_near_edge(context) <= 0, np.zeros(context.states, dtype=bool)
     perhaps = np.zeros(context.states, dtype=bool)
     stands = outside & (context.ego.speed[0] * KMH < context.thresholds.standing_kmh)
     reach, spans = round(context.thresholds.setting_off_s / context.recording.step_s), context.spans

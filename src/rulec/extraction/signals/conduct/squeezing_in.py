@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
-from numpy import intp
-from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
@@ -26,39 +27,49 @@ _LONGEST_S = 4.0
 """Who changes lanes has moved over for so long at most."""
 
 
-def squeezed(context: DriveContext, changes: NDArray[intp]) -> tuple[Flags, Flags]:
-    """Flags of those whom ego leaves no room in these states of its changes, and perhaps so.
+@dataclass(frozen=True, slots=True)
+class Way:
+    """Ego's way into a lane: over which of the road's lines, and is that to its left?
 
-    Those so near behind it that they cannot react; and those whom it would have run into, had they
-    gone on as they did when it began to move over: they had to get out of its way, surely if they
-    were beside it when its body came over the mark, or braked harder than ``disturbing_mps2``
-    afterwards, and perhaps if they let it in, or have one ahead of them who is slower. Perhaps,
-    too, where ego's lane ends: there they let each other in.
+    ``state`` is the one in which its middle is clearly beyond.
     """
-    sure, perhaps = np.zeros((2, len(context.relevant), len(changes)), dtype=bool)
-    for number, change in enumerate(changes.tolist()):
-        begins, reaches = _moves_over(context, change)
-        close = _close_behind(context, change)
-        gave_way, unsure = _gives_way(context, begins, reaches, change)
+
+    state: int
+    line: int
+    to_left: bool
+
+
+def squeezed(context: DriveContext, ways: Sequence[Way]) -> tuple[Flags, Flags]:
+    """Flags of those whom ego leaves no room on these ways into lanes, and perhaps so.
+
+    Those so near behind it that they cannot react; those whom it would have run into, had they gone
+    on as they did when it began to move over: they had to get out of its way, surely if they were
+    beside it when its body came over the mark, or braked harder than ``disturbing_mps2``
+    afterwards, and perhaps if they let it in, or have one ahead of them who is slower; and those
+    who would have had to brake so hard, and did before ego was in their lane. Perhaps, too, where
+    ego's lane ends: there they let each other in.
+    """
+    sure, perhaps = np.zeros((2, len(context.relevant), len(ways)), dtype=bool)
+    for number, way in enumerate(ways):
+        begins, reaches = _moves_over(context, way)
+        close = _close_behind(context, way.state)
+        gave_way, unsure = _gives_way(context, begins, reaches, way.state)
         ends = _lane_ends(context, begins)
         sure[:, number] = (close | gave_way) & (not ends)
         perhaps[:, number] = unsure | close | gave_way
     return sure, perhaps & ~sure
 
 
-def _moves_over(context: DriveContext, change: int) -> tuple[int, int]:
+def _moves_over(context: DriveContext, way: Way) -> tuple[int, int]:
     """The states from which ego moves to the other lane, and its body is across the mark."""
-    lane, own = context.steady_lane, context.ego_extents
-    first = int(context.spans.first[change])
-    first = max(first, change - round(_LONGEST_S / context.recording.step_s))
-    to_left = lane[change] > lane[change - 1]
-    mark = max(lane[change - 1], lane[change])
-    across = own.across[0, first:change] * (1 if to_left else -1)
+    own, first = context.ego_extents, int(context.spans.first[way.state])
+    first = max(first, way.state - round(_LONGEST_S / context.recording.step_s))
+    across = own.across[0, first : way.state] * (1 if way.to_left else -1)
     stays = np.flatnonzero(across < _DRIFT_MPS)
     begins = first + int(stays[-1]) if len(stays) else first
-    beyond = own.left_of_max[0] if to_left else -own.left_of_min[0]
-    over = np.flatnonzero(beyond[begins:change, mark] > context.thresholds.touching_m)
-    return begins, begins + int(over[0]) if len(over) else change
+    beyond = own.left_of_max[0] if way.to_left else -own.left_of_min[0]
+    over = np.flatnonzero(beyond[begins : way.state, way.line] > context.thresholds.touching_m)
+    return begins, begins + int(over[0]) if len(over) else way.state
 
 
 def _close_behind(context: DriveContext, change: int) -> Flags:
@@ -79,10 +90,10 @@ def _gives_way(
     others, own, place = context.extents, context.ego_extents, context.tolerances.place_m
     lane, went_s = context.steady_lane[change], (change - begins) * context.recording.step_s
     there = context.going_along[:, begins] & context.going_along[:, change]
-    there &= (others.lane[:, begins] == lane) & (np.abs(others.across[:, begins]) < _DRIFT_MPS)
+    there &= (others.lane[:, begins] == lane) & ~_drifts(context, begins, lane)
     on = others.along[:, begins] * went_s
     low, high = others.s_min[:, begins] + on, others.s_max[:, begins] + on
-    would: Flags = (
+    would: Flags = np.asarray(
         there & (own.s_min[0, change] + place < high) & (low < own.s_max[0, change] - place)
     )
     for side in (1, -1):
@@ -95,17 +106,37 @@ def _gives_way(
         (others.d_min + others.d_max)[:, change] - (others.d_min + others.d_max)[:, begins]
     )
     would &= (slower > _SLOWED_MPS + context.tolerances.speed_mps) | (aside / 2 > _ASIDE_M + place)
-    brakes = _brakes(context, reaches, change)
+    hard = _brakes(context, reaches, change)
     beside = relations.station(context)[:, reaches] == relations.BESIDE
-    return would & (beside | brakes) & ~_held_up(context, begins, lane), would
+    faster = others.along[:, begins] - own.along[0, change]
+    left = own.s_min[0, change] - high - faster * context.thresholds.reaction_s
+    too_near = faster**2 > 2 * context.thresholds.disturbing_mps2 * np.maximum(left, 0.0)
+    too_near &= there & (faster > 0) & (high <= own.s_min[0, change])
+    sure = (would & (beside | hard)) | (too_near & hard)
+    return sure & ~_held_up(context, begins, lane), would
+
+
+def _drifts(context: DriveContext, state: int, lane: int) -> Flags:
+    """Flags of those who move sideways in a lane: the road's own line may bend from one to another.
+
+    Over half of ``smoothing_s``, as far as the drive goes back.
+    """
+    steps = max(round(context.thresholds.smoothing_s / 2 / context.recording.step_s), 1)
+    before = max(state - steps, int(context.spans.first[state]))
+    middle = context.extents.middle_from(np.full(context.states, lane))
+    went_s = (state - before) * context.recording.step_s
+    moved = np.abs(middle[:, state] - middle[:, before])
+    drifts: Flags = moved > _DRIFT_MPS * went_s + context.tolerances.place_m
+    return drifts
 
 
 def _brakes(context: DriveContext, begins: int, change: int) -> Flags:
-    """Flags of those who brake harder than ``disturbing_mps2`` in some of these states."""
-    states, tracks = slice(begins, change + 1), context.tracks
+    """Flags of those who brake harder than ``disturbing_mps2`` then, or ``reaction_s`` later."""
+    reacts = round(context.thresholds.reaction_s / context.recording.step_s)
+    end = min(change + reacts + 1, int(context.spans.end[change]))
+    states, tracks = slice(begins, end), context.tracks
     least = tracks.acceleration[:, states] + tracks.acceleration_error[:, states]
-    brakes: Flags = (least < -context.thresholds.disturbing_mps2).any(axis=1)
-    return brakes
+    return np.asarray((least < -context.thresholds.disturbing_mps2).any(axis=1))
 
 
 def _held_up(context: DriveContext, state: int, lane: int) -> Flags:

@@ -1,0 +1,84 @@
+"""Who has to brake for ego as it turns round on the road."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
+
+from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.signals.measured_numbers import own_widths
+from rulec.extraction.tracks.tracks import Flags, Floats
+
+_SLOWED_MPS = 0.5
+"""Who is slower by more afterwards may have had to brake."""
+
+
+def has_to_brake_for_turn(context: DriveContext, turns: Flags) -> tuple[Flags, Flags]:
+    """Flags of vehicles that must brake for ego in states in which it turns round, and perhaps so.
+
+    Ego is across their way, and they would have to brake harder than ``disturbing_mps2`` after
+    their reaction time not to run into it. They do brake so hard, or are slower a while later. Who
+    comes up behind on the lanes of ego's own way sees it slow down, and is none of them.
+    """
+    shape = context.relevant.shape
+    sure, perhaps = np.zeros((2, *shape), dtype=bool)
+    states = np.flatnonzero(turns)
+    if not len(states):
+        return sure, perhaps
+    near = _too_near(context, states)
+    near &= context.tracks.of_type("vehicle")[:, None] & ~context.going_along[:, states]
+    rows, columns = near.nonzero()
+    for row, state in zip(rows.tolist(), states[columns].tolist(), strict=True):
+        brakes, slower = _brakes(context, row, state)
+        sure[row, state], perhaps[row, state] = brakes, slower and not brakes
+    return sure, perhaps
+
+
+def _too_near(context: DriveContext, states: NDArray[intp]) -> Flags:
+    """Flags of those to whose way ahead ego comes so near that they must brake hard, by state."""
+    tracks, own, limits = context.tracks, context.ego, context.thresholds
+    heading, speed = tracks.heading[:, states], np.nan_to_num(tracks.speed[:, states])
+    dx, dy = own.x[0, states] - tracks.x[:, states], own.y[0, states] - tracks.y[:, states]
+    cos, sin = np.cos(heading), np.sin(heading)
+    ahead, aside = dx * cos + dy * sin, np.abs(dy * cos - dx * sin)
+    length = _lengths(context)
+    half, wide = length[0] / 2, own_widths(context)[states] / 2
+    turned = own.heading[0, states] - heading
+    along = half * np.abs(np.cos(turned)) + wide * np.abs(np.sin(turned))
+    across = half * np.abs(np.sin(turned)) + wide * np.abs(np.cos(turned))
+    others = context.extents
+    widths = (others.d_max - others.d_min)[:, states]
+    left = ahead - along - length[1:, None] / 2 - speed * limits.reaction_s
+    blocked = (ahead > 0) & (aside < across + widths / 2 - context.tolerances.place_m)
+    needs: Flags = speed**2 > 2 * limits.disturbing_mps2 * np.maximum(left, 0.0)
+    found: Flags = blocked & needs & (speed * KMH >= limits.standing_kmh)
+    return found
+
+
+def _lengths(context: DriveContext) -> Floats:
+    """The lengths (m) of ego and of the others along the road, where they lie along it best."""
+    bodies = (context.ego_extents, context.extents)
+    rows = [body.s_max - body.s_min for body in bodies]
+    lengths: Floats = np.concatenate([np.fmax.reduce(row, axis=1, initial=0.0) for row in rows])
+    return lengths
+
+
+def _brakes(context: DriveContext, row: int, state: int) -> tuple[bool, bool]:
+    """Does one brake harder than ``disturbing_mps2`` soon, and is it slower then?
+
+    Also after ego's drive along this road, which ends where it has turned round.
+    """
+    tracks, limits = context.surroundings.tracks, context.thresholds
+    own, column = int(context.tracks.rows[row]), int(context.columns[state])
+    soon, before = (
+        round(seconds / context.recording.step_s)
+        for seconds in (limits.reaction_s + limits.smoothing_s, limits.smoothing_s)
+    )
+    span = slice(max(column - before, 0), column + soon + 1)
+    least = tracks.acceleration[own, span] + tracks.acceleration_error[own, span]
+    speeds = tracks.speed[own, span]
+    speeds = speeds[~np.isnan(speeds)]
+    brakes = bool(np.any(least < -limits.disturbing_mps2))
+    slower = bool(speeds.min() < speeds[0] - _SLOWED_MPS - context.tolerances.speed_mps)
+    return brakes, slower
