@@ -45,6 +45,11 @@ def braking(begin, mps2):
     return np.interp(np.arange(STEPS), [begin, begin + 10], [20.0, 20.0 - mps2])
 
 
+def braking_from_behind(mps2):
+    """28 m/s, 8 m/s more than ego's, and slower from 2.8 to 3.8 s."""
+    return np.interp(np.arange(STEPS), [28, 38], [28.0, 28.0 - mps2])
+
+
 def told(*others, road=None, route=("1",)):
     """Whether the lane is clear in the state of the change, "?" where that is unknown."""
     # At 1.33 m/s it is 0.3 m beyond the mark at 2 m after 1.73 s, and there all of the next state
@@ -107,8 +112,14 @@ def test_who_comes_from_behind_has_to_brake_before_ego_is_in_its_lane_or_then(mp
 
     That leaves 6.5 m after a second of reaction, and 64 / 13 = 4.9 m/s² to brake with.
     """
-    speeds = np.interp(np.arange(STEPS), [28, 38], [28.0, 28.0 - mps2])
+    speeds = braking_from_behind(mps2)
     assert told(driving(8, 100 - 18.5 - 8 * 3.8, np.full(STEPS, 4.0), speeds)) == clear
+
+
+def test_of_one_whose_speeds_contradict_its_places_nobody_knows_how_hard_it_braked():
+    other = driving(8, 100 - 18.5 - 8 * 3.8, np.full(STEPS, 4.0), braking_from_behind(6.0))
+    states = {k: replace(state, speed=28.0) for k, state in other.states.items()}
+    assert told(replace(other, states=states)) == "?"
 
 
 @pytest.mark.parametrize(("mps", "clear"), [(14.0, "False"), (6.0, "True")])

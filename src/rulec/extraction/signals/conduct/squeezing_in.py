@@ -106,14 +106,14 @@ def _gives_way(
         (others.d_min + others.d_max)[:, change] - (others.d_min + others.d_max)[:, begins]
     )
     would &= (slower > _SLOWED_MPS + context.tolerances.speed_mps) | (aside / 2 > _ASIDE_M + place)
-    hard = _brakes(context, reaches, change)
+    hard, may_be_hard = _brakes(context, reaches, change)
     beside = relations.station(context)[:, reaches] == relations.BESIDE
     faster = others.along[:, begins] - own.along[0, change]
     left = own.s_min[0, change] - high - faster * context.thresholds.reaction_s
     too_near = faster**2 > 2 * context.thresholds.disturbing_mps2 * np.maximum(left, 0.0)
     too_near &= there & (faster > 0) & (high <= own.s_min[0, change])
     sure = (would & (beside | hard)) | (too_near & hard)
-    return sure & ~_held_up(context, begins, lane), would
+    return sure & ~_held_up(context, begins, lane), would | (too_near & may_be_hard)
 
 
 def _drifts(context: DriveContext, state: int, lane: int) -> Flags:
@@ -130,13 +130,18 @@ def _drifts(context: DriveContext, state: int, lane: int) -> Flags:
     return drifts
 
 
-def _brakes(context: DriveContext, begins: int, change: int) -> Flags:
-    """Flags of those who brake harder than ``disturbing_mps2`` then, or ``reaction_s`` later."""
+def _brakes(context: DriveContext, begins: int, change: int) -> tuple[Flags, Flags]:
+    """Flags of those who brake harder than ``disturbing_mps2`` then, and perhaps do.
+
+    Or up to ``reaction_s`` later.
+    """
     reacts = round(context.thresholds.reaction_s / context.recording.step_s)
     end = min(change + reacts + 1, int(context.spans.end[change]))
     states, tracks = slice(begins, end), context.tracks
-    least = tracks.acceleration[:, states] + tracks.acceleration_error[:, states]
-    return np.asarray((least < -context.thresholds.disturbing_mps2).any(axis=1))
+    gained, wrong = tracks.acceleration[:, states], tracks.acceleration_error[:, states]
+    limit = -context.thresholds.disturbing_mps2
+    hard: Flags = np.asarray((gained + wrong < limit).any(axis=1))
+    return hard, np.asarray((gained - wrong < limit).any(axis=1))
 
 
 def _held_up(context: DriveContext, state: int, lane: int) -> Flags:
