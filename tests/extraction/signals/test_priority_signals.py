@@ -134,6 +134,15 @@ def test_the_next_junction_ends_a_conflict_also_for_who_is_on_none_of_its_ways(c
     assert conflict[enters].tolist() == [True, False]
 
 
+def test_a_junction_is_not_the_next_one_after_itself():
+    """Its area is wider than ego's way through it is long, by 2 m on both sides."""
+    wide = [lanelet(own.id, own.centre, 12.0, types=own.types, junction="x") for own in NORTH[1:2]]
+    wide = [replace(wide[0], predecessors=("4",), successors=("6",))]
+    found = signals([NORTH[0], *wide, NORTH[2]], lambda t: -3 + 10 * (t - 3.0), np.pi / 2)
+    # Its middle is in the area in state 3, at x = -5, and its front on the way, which begins at -4
+    assert found.world["conflict_from_right"][3]
+
+
 @pytest.mark.parametrize("turns", [False, True])
 def test_nobody_knows_of_one_before_another_junction_whether_it_turns_into_the_road(turns):
     """It comes along the link, 15 m long, when ego has driven in from the south."""

@@ -157,8 +157,11 @@ def _next(context: DriveContext, passage: Passage) -> int:
     later = [x for x in passages.of_row[passage.row] if x.first > passage.first]
     enters = [passages.front_enters(x) - first_column(context) for x in later[:1]]
     # The middle of a long body may cut the next one's corner and never be in it
-    first = int(np.clip(passage.first - first_column(context), 0, context.states - 1))
-    beyond = context.ego_extents.s[0, first]
+    first, last = (
+        int(np.clip(column - first_column(context), 0, context.states - 1))
+        for column in (passage.first, passage.last)
+    )
+    beyond = context.ego_extents.s[0, last]
     starts = [start for start, _ in context.road.junctions if start > beyond]
     there = np.flatnonzero(context.ego_extents.s_max[0, first:] >= min(starts, default=np.inf))
     enters += [first + int(state) - 1 for state in there[:1]]
