@@ -217,6 +217,19 @@ def test_who_stands_and_drifts_across_a_mark_does_not_surely_disturb_others(mps,
     assert found.unknown["lane_is_clear"][23] == unknown
 
 
+@pytest.mark.parametrize(("moves_off", "unknown"), [(22, True), (10, False)])
+def test_who_moves_off_when_it_has_slid_across_a_mark_does_not_surely_disturb_others(
+    moves_off, unknown
+):
+    """As above, but it moves off, at 2 m/s, shortly before it is as far beyond, or long before."""
+    places = {k: (max(k - moves_off, 0), 1.18 + 0.05 * k) for k in range(30)}
+    ego = vehicle(7, places, speed=2.0)
+    other = steady(8, places[23][0] - 15 - 5.0 * 23, 4, speed=10, steps=30)
+    found = lane_change_signals(context_of(recording(lanes(2), [ego, other]), ("1",)))
+    assert np.flatnonzero(~found.world["lane_is_clear"]).tolist() == [23]
+    assert found.unknown["lane_is_clear"][23] == unknown
+
+
 def test_comfort_and_reaction_are_thresholds():
     assert clear(-5, 15, disturbing_mps2=2.1)
     assert not clear(-6, 15, reaction_s=1.2)

@@ -15,7 +15,7 @@ from rulec.extraction.signals.conduct.manoeuvre_signals import (
     swings_round,
     u_turns,
 )
-from rulec.extraction.signals.conduct.squeezing_in import Way, squeezed
+from rulec.extraction.signals.conduct.squeezing_in import WayIn, squeezed
 from rulec.extraction.signals.conduct.turning_round import has_to_brake_for_turn
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, ids_by_state
 from rulec.extraction.signals.signal_passes import Passes, signals_by
@@ -27,6 +27,9 @@ _INDICATIONS = ("no_indicator", "near_indicator", "far_indicator")
 
 _JUMP_MPS = 5.0
 """Nobody steers across so fast: simulators change lanes in a step, with or without a signal."""
+
+_JUST_STOOD_S = 1.0
+"""Who stood so short a time ago has not driven over a mark since: it slid there as it stood."""
 
 _FORK_M = 15.0
 """So far behind where a lane has forked its ways lie over each other."""
@@ -70,8 +73,8 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
 
     Unknown where the only ones are about to be past, as ego comes in behind them, or only reach
     into its lane from the one beyond. Also where one comes from behind on a lane that forks, and
-    nobody knows whether into ego's. And if ego stands by its speed, whose places drift across the
-    mark: nothing stands and changes lanes.
+    nobody knows whether into ego's. And if ego stands by its speed, or just stood, whose places
+    drift across the mark: nothing stands and changes lanes.
     """
     disturbed = np.zeros(context.relevant.shape, dtype=bool)
     moot, unsure = np.zeros((2, context.states), dtype=bool)
@@ -91,6 +94,8 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
     unsure |= may_brake.any(axis=0)
     clear: Flags = ~np.any(disturbed, axis=0)
     stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
+    just_stood = round(_JUST_STOOD_S / context.recording.step_s)
+    stands |= _changes(context) & context.spans.within_last(stands, just_stood)
     return SignalColumns(
         {"lane_is_clear": clear},
         unknown={"lane_is_clear": np.where(clear, unsure, moot | stands)},
@@ -98,7 +103,7 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
     )
 
 
-def _ways_into_lanes(context: DriveContext) -> tuple[NDArray[intp], list[Way]]:
+def _ways_into_lanes(context: DriveContext) -> tuple[NDArray[intp], list[WayIn]]:
     """The states in which ego comes into another lane, or onto the road, and its ways there.
 
     Onto the road it comes over its near edge, and is there ``changed_m`` farther on.
@@ -106,7 +111,7 @@ def _ways_into_lanes(context: DriveContext) -> tuple[NDArray[intp], list[Way]]:
     lane, inside = context.steady_lane, -beyond_near_edge(context)
     changes = np.flatnonzero(_changes(context)).tolist()
     ways = [
-        Way(at, int(max(lane[at - 1], lane[at])), to_left=bool(lane[at] > lane[at - 1]))
+        WayIn(at, int(max(lane[at - 1], lane[at])), to_left=bool(lane[at] > lane[at - 1]))
         for at in changes
     ]
     there, end = inside >= context.thresholds.changed_m, context.spans.end
@@ -116,7 +121,7 @@ def _ways_into_lanes(context: DriveContext) -> tuple[NDArray[intp], list[Way]]:
     to_left = context.side == "right"
     for at in flagged:
         state = int(settled[at])
-        ways.append(Way(state, int(lane[state]) + (not to_left), to_left=to_left))
+        ways.append(WayIn(state, int(lane[state]) + (not to_left), to_left=to_left))
     return np.array(changes + flagged, dtype=intp), ways
 
 

@@ -28,7 +28,7 @@ _LONGEST_S = 4.0
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
+class WayIn:
     """Ego's way into a lane: over which of the road's lines, and is that to its left?
 
     ``state`` is the one in which its middle is clearly beyond.
@@ -39,7 +39,7 @@ class Way:
     to_left: bool
 
 
-def squeezed(context: DriveContext, ways: Sequence[Way]) -> tuple[Flags, Flags]:
+def squeezed(context: DriveContext, ways: Sequence[WayIn]) -> tuple[Flags, Flags]:
     """Flags of those whom ego leaves no room on these ways into lanes, and perhaps so.
 
     Those so near behind it that they cannot react; those whom it would have run into, had they gone
@@ -60,7 +60,7 @@ def squeezed(context: DriveContext, ways: Sequence[Way]) -> tuple[Flags, Flags]:
     return sure, perhaps & ~sure
 
 
-def _moves_over(context: DriveContext, way: Way) -> tuple[int, int]:
+def _moves_over(context: DriveContext, way: WayIn) -> tuple[int, int]:
     """The states from which ego moves to the other lane, and its body is across the mark."""
     own, first = context.ego_extents, int(context.spans.first[way.state])
     first = max(first, way.state - round(_LONGEST_S / context.recording.step_s))
@@ -91,6 +91,9 @@ def _gives_way(
     lane, went_s = context.steady_lane[change], (change - begins) * context.recording.step_s
     there = context.going_along[:, begins] & context.going_along[:, change]
     there &= (others.lane[:, begins] == lane) & ~_drifts(context, begins, lane)
+    # Who takes another way where the lane forks brakes for that
+    on_its_way = slice(begins, min(change + _reacts(context), int(context.spans.end[change])))
+    there &= ~context.elsewhere[:, on_its_way].any(axis=1)
     on = others.along[:, begins] * went_s
     low, high = others.s_min[:, begins] + on, others.s_max[:, begins] + on
     would: Flags = np.asarray(
@@ -108,7 +111,10 @@ def _gives_way(
     would &= (slower > _SLOWED_MPS + context.tolerances.speed_mps) | (aside / 2 > _ASIDE_M + place)
     hard, may_be_hard = _brakes(context, reaches, change)
     beside = relations.station(context)[:, reaches] == relations.BESIDE
-    faster = others.along[:, begins] - own.along[0, change]
+    # Who comes from behind has to see that ego comes
+    comes_s = (change - reaches) * context.recording.step_s
+    high = others.s_max[:, reaches] + others.along[:, reaches] * comes_s
+    faster = others.along[:, reaches] - own.along[0, change]
     left = own.s_min[0, change] - high - faster * context.thresholds.reaction_s
     too_near = faster**2 > 2 * context.thresholds.disturbing_mps2 * np.maximum(left, 0.0)
     too_near &= there & (faster > 0) & (high <= own.s_min[0, change])
@@ -135,13 +141,17 @@ def _brakes(context: DriveContext, begins: int, change: int) -> tuple[Flags, Fla
 
     Or up to ``reaction_s`` later.
     """
-    reacts = round(context.thresholds.reaction_s / context.recording.step_s)
-    end = min(change + reacts + 1, int(context.spans.end[change]))
+    end = min(change + _reacts(context), int(context.spans.end[change]))
     states, tracks = slice(begins, end), context.tracks
     gained, wrong = tracks.acceleration[:, states], tracks.acceleration_error[:, states]
     limit = -context.thresholds.disturbing_mps2
     hard: Flags = np.asarray((gained + wrong < limit).any(axis=1))
     return hard, np.asarray((gained - wrong < limit).any(axis=1))
+
+
+def _reacts(context: DriveContext) -> int:
+    """So many states from one on others have reacted to it."""
+    return round(context.thresholds.reaction_s / context.recording.step_s) + 1
 
 
 def _held_up(context: DriveContext, state: int, lane: int) -> Flags:
