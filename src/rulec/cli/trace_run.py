@@ -61,6 +61,9 @@ class TraceRun:
     opened: bool = False
     open_hard: bool = False
 
+    def __post_init__(self) -> None:
+        self._names = [rule.name for rule in self.rules.rules]
+
     def files(self, files: Sequence[str], form: Format | None, assumed: Assumptions) -> None:
         """Judge the traces of files, with one summary for all of them."""
         for file in files:
@@ -136,9 +139,9 @@ class TraceRun:
     def _judged(self, file: str, answer: Any, left: int, findings: list[VerdictFinding]) -> int:
         """Say a verdict; how many violations have been explained."""
         traces, place, verdict = answer
-        self.total.add_trace(verdict, [rule.name for rule in self.rules.rules])
+        self.total.add_trace(verdict, self._names)
         self.open_hard |= any(result.strength == "hard" for result in verdict.open)
-        self.judged |= len(verdict.not_judged) < max(len(self.rules.rules), 1)
+        self.judged |= len(verdict.not_judged) < max(len(self._names), 1)
         says = bool(verdict.violations or verdict.open or verdict.not_judged)
         if not says and not self.to.wants_lines:
             return 0

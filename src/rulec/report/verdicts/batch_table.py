@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -50,15 +50,19 @@ class BatchTally:
             ego = min(times, key=lambda name: times[name])
             self.first.setdefault(rule, (file, ego, times[ego]))
 
-    def add_trace(self, verdict: Verdict, rules: Sequence[str]) -> None:
+    def add_trace(self, verdict: Verdict, rules: Collection[str]) -> None:
         """Add the verdict on a trace, by these rules."""
-        self.satisfied += verdict.satisfied is True
-        self.violated += verdict.satisfied is False
-        self.doubtful += verdict.satisfied is None
-        is_open = {one.rule for one in verdict.open}
-        self.drives.update({violation.rule for violation in verdict.violations})
-        self.open_in.update(is_open)
-        self.judged_in.update(set(rules) - is_open - {one.rule for one in verdict.not_judged})
+        satisfied = verdict.satisfied
+        self.satisfied += satisfied is True
+        self.violated += satisfied is False
+        self.doubtful += satisfied is None
+        if verdict.violations:
+            self.drives.update({violation.rule for violation in verdict.violations})
+        if verdict.open or verdict.not_judged:
+            is_open = {one.rule for one in verdict.open}
+            self.open_in.update(is_open)
+            rules = set(rules) - is_open - {one.rule for one in verdict.not_judged}
+        self.judged_in.update(rules)
 
     def include(self, other: BatchTally) -> None:
         """Add what was judged by the same rulebook elsewhere; where first stays as it is."""
