@@ -24,13 +24,15 @@ P, Q = Atom("p"), Atom("q")
 VOCABULARY = Vocabulary("two", {}, {"p": Signal("p", (), False), "q": Signal("q", (), False)})
 LETTERS = [frozenset(chosen) for chosen in ((), (P,), (Q,), (P, Q))]
 LONGEST = 4
+STEPS = {"next", "weak next", "previously", "weak previously"}
+"""These look at one state, whose distance is both ends of their bound."""
 
 
 def narrowed(found):
     """Bounds so small that four letters before the word tell all that may have been."""
     match found:
         case Unary(operator, operand, bound):
-            return Unary(operator, narrowed(operand), small(bound))
+            return Unary(operator, narrowed(operand), small(bound, is_one=operator.value in STEPS))
         case Atom():
             return found
     if hasattr(found, "left"):
@@ -39,10 +41,12 @@ def narrowed(found):
     return found
 
 
-def small(bound):
+def small(bound, is_one=False):
     if bound is None:
         return None
     low = min(bound.low, Fraction(1))
+    if is_one:
+        return Bound(low, low, "steps")
     return Bound(low, None if bound.high is None else min(bound.high, low + 1), "steps")
 
 

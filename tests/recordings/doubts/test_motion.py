@@ -135,3 +135,30 @@ def test_who_is_as_fast_as_no_traffic(tmp_path):
     """Hundredths of a second for tenths: 100 m/s along the lane are 1,000 m/s."""
     (remark,) = told(tmp_path, step=0.001, speed=lambda row: 1000.0)
     assert remark.startswith("half of the vehicles move at 3,600 km/h or more: columns, or units")
+
+
+def test_impossible_speeds_of_single_states(tmp_path):
+    def spawned(row):
+        # Who goes east is put on the road from far away, as simulators do it
+        return 17367.0 if row["heading"] == 0 and row["x"] % 10 == 0 else 10.0
+
+    (remark,) = told(tmp_path, speed=spawned)
+    assert remark == (
+        "4 speeds are up to 62,521 km/h, where places say otherwise: "
+        "there it is the speeds of places that count"
+    )
+    recording = read_recording(tmp_path / "DEU_Some-1_1_T-1.xml")
+    speeds = [state.speed for body in recording.participants for state in body.states.values()]
+    assert speeds == pytest.approx([10.0] * 80)
+    accelerations = [x.acceleration for x in recording.participants[0].states.values()]
+    assert accelerations == pytest.approx([0.0] * 20)
+
+
+def test_one_impossible_speed(tmp_path):
+    (remark,) = told(tmp_path, cars=1, speed=lambda row: 200.0 if row["x"] == 3 else 10.0)
+    assert remark.startswith("one speed is 720 km/h, where")
+
+
+def test_impossible_speeds_in_a_wrong_unit(tmp_path):
+    (remark,) = told(tmp_path, speed=lambda row: 1000.0)
+    assert "speeds are 100 times what places and times say" in remark

@@ -10,6 +10,7 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
+from rulec.recordings.doubts.impossible_speeds import without_impossible_speeds
 from rulec.recordings.doubts.limit_doubts import limit_doubts
 from rulec.recordings.doubts.road_doubts import road_doubts
 from rulec.recordings.recording import Recording
@@ -39,6 +40,7 @@ def with_doubts(recording: Recording, refused: Callable[[str], RulecError]) -> R
     ``refused`` makes the error for who cannot be read. Raises it (R0610) if most vehicles move
     across or against their headings.
     """
+    recording = without_impossible_speeds(recording)
     tracks = _tracks(recording)
     doubts = (*limit_doubts(recording, tracks), *road_doubts(recording.lanelets, tracks))
     recording = replace(recording, remarks=(*recording.remarks, *doubts)) if doubts else recording
