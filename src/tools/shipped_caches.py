@@ -32,6 +32,9 @@ from rulec.syntax.parser import parse
 STEPS_S = (None, Fraction(1), Fraction(1, 2), Fraction(1, 10))
 """The steps of machines that ship; None are those of the rules' own examples."""
 
+STEPS_OF: Mapping[str, Sequence[Fraction]] = {"de": (Fraction(1, 25),)}
+"""More steps: drones film German roads at 25 Hz (highD, inD, rounD, exiD, uniD)."""
+
 _BOOKS = shipped_key("which rulebooks, of which texts")
 TRIED = ("esterle2019", "de")
 """Of these rulebooks it is seen each time whether what commands ask for is there."""
@@ -105,7 +108,7 @@ def asked_for(name: str) -> tuple[dict[bytes, bytes], dict[str, str]]:
     with keeping(), _recorded() as entries:
         rulebook = read_rulebook(name).rulebook
         steps = StepCompiler(rulebook)
-        for step in STEPS_S:
+        for step in (*STEPS_S, *STEPS_OF.get(name, ())):
             try:
                 compiled = steps.at_own_steps() if step is None else steps(step)
             except RulecError:
