@@ -37,12 +37,19 @@ with _without_graphs():
 TRUE, FALSE = 1, -1
 
 
+class _Functions(BDD):
+    """Diagrams that are dropped as a whole: ``dd`` looks through them again for forgotten ones."""
+
+    def __del__(self) -> None:
+        pass
+
+
 class Diagrams:
     """Functions of variables, which are ordered as they are declared."""
 
     def __init__(self) -> None:
         # Its types say less than what it does.
-        self._functions: Any = BDD()  # type: ignore[abstract]
+        self._functions: Any = _Functions()  # type: ignore[abstract]
         self._supports: dict[int, frozenset[str]] = {1: frozenset()}
         self._letters: dict[ltl.Proposition, str] = {}
 

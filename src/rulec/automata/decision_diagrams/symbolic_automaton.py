@@ -192,8 +192,13 @@ def with_registers(
     """The automaton beside registers of the past, whose atoms are no variables any more.
 
     A state is one of the automaton and one of each register. These and a letter decide what the
-    registers say, by that the automaton's edge, and the registers' next states.
+    registers say, by that the automaton's edge, and the registers' next states. In a state that is
+    never left the past makes no difference.
     """
+    nothing = tuple([register.at_first for register in registers])
+    never_left = [
+        len(row) == 1 and next(iter(row))[0] == state for state, row in enumerate(automaton.edges)
+    ]
     operands = [
         (register, diagrams.of_state(register.left), diagrams.of_state(register.right))
         for register in registers
@@ -224,15 +229,17 @@ def with_registers(
         state: tuple[int, tuple[int, ...]],
     ) -> Iterable[tuple[tuple[int, tuple[int, ...]], int, int]]:
         found: dict[tuple[tuple[int, tuple[int, ...]], int], int] = {}
+        if never_left[state[0]]:
+            return [(state, marks, TRUE) for _, marks in automaton.edges[state[0]]]
         for letters, said, after in moves(state[1]):
             for (target, marks), own in automaton.edges[state[0]].items():
                 met = diagrams.both(diagrams.given(own, said), letters)
                 if met != FALSE:
-                    key = (target, after), marks
+                    key = (target, nothing if never_left[target] else after), marks
                     found[key] = diagrams.either(found.get(key, FALSE), met)
         return [(target, marks, letters) for (target, marks), letters in found.items()]
 
-    states, rows = explored((0, tuple([register.at_first for register in registers])), step)
+    states, rows = explored((0, nothing), step)
     ends = automaton.ends_well
     product = replace(
         automaton,

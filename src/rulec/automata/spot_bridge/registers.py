@@ -23,7 +23,8 @@ def with_registers(
 
     A state is one of the automaton and one of each register. These and a letter decide what the
     registers say, by that the automaton's edge, and the registers' next states: so it stays
-    deterministic and complete. Once a finite word is over the registers are back at their start.
+    deterministic and complete. Once a finite word is over the registers are back at their start; so
+    they are in a state that is never left, where the past makes no difference.
     """
     operands = _Operands(automaton, registers, spot_formulas)
     propositions = automaton.get_dict()
@@ -38,24 +39,35 @@ def with_registers(
     product.copy_acceptance_of(automaton)
     product.set_init_state(product.new_state())
     empty = tuple(register.at_first for register in registers)
+    never_left = [_is_never_left(automaton, state) for state in range(automaton.num_states())]
     numbers = {(automaton.get_init_state_number(), empty): 0}
     reached = list(numbers)
     over = (-going, operands.nothing, empty)
     for state, values in reached:
         source = numbers[state, values]
+        if never_left[state]:
+            (edge,) = automaton.out(state)
+            product.new_edge(source, source, buddy.bddtrue, edge.acc)
+            continue
         choices = [(letters & going, cube, later) for letters, cube, later in operands.on(values)]
         for edge in automaton.out(state):
             for letters, cube, later in [*choices, over]:
                 both = buddy.bdd_restrict(edge.cond, cube) & letters
                 if both == buddy.bddfalse:
                     continue
-                target = (edge.dst, later)
+                target = (edge.dst, empty if never_left[edge.dst] else later)
                 if target not in numbers:
                     numbers[target] = product.new_state()
                     reached.append(target)
                 product.new_edge(source, numbers[target], both, edge.acc)
     product.merge_edges()
     return product
+
+
+def _is_never_left(automaton: Any, state: int) -> bool:
+    """Tell whether a state has one edge, to itself, which all letters take."""
+    edges = list(automaton.out(state))
+    return len(edges) == 1 and edges[0].dst == state and edges[0].cond == buddy.bddtrue
 
 
 class _Operands:
