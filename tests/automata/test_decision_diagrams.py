@@ -18,7 +18,7 @@ from rulec.automata.decision_diagrams.symbolic_automaton import SymbolicAutomato
 from rulec.automata.mealy_monitor import IMPOSSIBLE, Read
 from rulec.automata.worker.job_answers import answer_to
 from rulec.diagnostics import RulecError
-from rulec.logic.formula import Binary, BinaryOperator, Unary, UnaryOperator
+from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator
 from rulec.logic.semantics import holds
 from rulec.rulebook.loader import read_rulebook
 from rulec.rulebook.rulebook_model import Axiom
@@ -116,6 +116,23 @@ def test_letters_that_facts_exclude_have_no_class():
     excluded = [number for number, symbol in enumerate(machine.letters) if symbol == IMPOSSIBLE]
     assert machine.reads == (Read("p", ()), Read("place", ("x",), ("near",), others=True))
     assert excluded == [1]  # p and near
+
+
+@pytest.mark.usefixtures("compiled_anew")
+@pytest.mark.parametrize("choice", [pytest.param("spot", marks=pytest.mark.spot), "diagrams"])
+def test_counts_of_which_letters_leave_one_are_no_product(choice):
+    """Together the counts have 160,000 values, of which letters that can be lead to 802."""
+    near, far, gone = (Atom("place", ("x",), value) for value in ("near", "far", "gone"))
+    counts = [
+        Binary(BinaryOperator.SINCE, gone, one, Bound(Fraction(0), Fraction(400), "steps"))
+        for one in (near, far)
+    ]
+    demands = [implies(one, count) for one, count in zip((P, Q), counts, strict=True)]
+    asked = job(always(Binary(BinaryOperator.AND, *demands)))
+    ((answer,), _) = compiler.answers_to([asked], choice=choice)
+    assert isinstance(answer, Done)
+    # That neither is due, how long one still is, and that it is broken
+    assert len(answer.machine.successors) == 1 + 2 * 400 + 1
 
 
 @pytest.fixture
