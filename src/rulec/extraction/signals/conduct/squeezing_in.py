@@ -94,20 +94,20 @@ def _gives_way(
     # Who takes another way where the lane forks brakes for that
     on_its_way = slice(begins, min(change + _reacts(context), int(context.spans.end[change])))
     there &= ~context.elsewhere[:, on_its_way].any(axis=1)
+    if not there.any():
+        return there, there
     on = others.along[:, begins] * went_s
     low, high = others.s_min[:, begins] + on, others.s_max[:, begins] + on
     would: Flags = np.asarray(
         there & (own.s_min[0, change] + place < high) & (low < own.s_max[0, change] - place)
     )
-    for side in (1, -1):
-        # Bounds of lanes bend with the road: places across it are those of the road's own line
-        nearer, farther = (own.d_max, others.d_min) if side > 0 else (-own.d_min, -others.d_max)
-        apart = side * (others.d_min + others.d_max - own.d_min - own.d_max)[:, begins] > 0
-        would &= ~apart | (nearer[0, change] > farther[:, begins] + place)
+    # Bounds of lanes bend with the road: places across it are those of the road's own line
+    right, left = others.d_min[:, begins], others.d_max[:, begins]
+    to_left = left + right - own.d_min[0, begins] - own.d_max[0, begins]
+    would &= ~(to_left > 0) | (own.d_max[0, change] > right + place)
+    would &= ~(to_left < 0) | (own.d_min[0, change] < left - place)
     slower = others.along[:, begins] - others.along[:, change]
-    aside = np.abs(
-        (others.d_min + others.d_max)[:, change] - (others.d_min + others.d_max)[:, begins]
-    )
+    aside = np.abs(others.d_min[:, change] + others.d_max[:, change] - right - left)
     would &= (slower > _SLOWED_MPS + context.tolerances.speed_mps) | (aside / 2 > _ASIDE_M + place)
     hard, may_be_hard = _brakes(context, reaches, change)
     beside = relations.station(context)[:, reaches] == relations.BESIDE
