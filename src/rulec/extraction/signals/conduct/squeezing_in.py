@@ -90,12 +90,14 @@ def _gives_way(
     others, own, place = context.extents, context.ego_extents, context.tolerances.place_m
     lane, went_s = context.steady_lane[change], (change - begins) * context.recording.step_s
     there = context.going_along[:, begins] & context.going_along[:, change]
-    there &= (others.lane[:, begins] == lane) & ~_drifts(context, begins, lane)
+    there &= others.lane[:, begins] == lane
+    # Mostly there is nobody
+    if not there.any():
+        return there, there
+    there &= ~_drifts(context, begins, lane)
     # Who takes another way where the lane forks brakes for that
     on_its_way = slice(begins, min(change + _reacts(context), int(context.spans.end[change])))
     there &= ~context.elsewhere[:, on_its_way].any(axis=1)
-    if not there.any():
-        return there, there
     on = others.along[:, begins] * went_s
     low, high = others.s_min[:, begins] + on, others.s_max[:, begins] + on
     would: Flags = np.asarray(
