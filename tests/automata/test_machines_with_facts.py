@@ -32,6 +32,7 @@ from rulec.logic.formula import (
 from rulec.logic.semantics import holds
 from rulec.monitoring.verify import verify
 from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook, Variable
+from rulec.rulebook.rules.implied_signals import with_implied
 from rulec.trace import Trace
 from rulec.vocabulary import Quantity as DeclaredQuantity
 from rulec.vocabulary import Vocabulary
@@ -84,7 +85,7 @@ def compiled(book):
         return None
     whole = CompiledRulebook(
         "test",
-        book.vocabulary,
+        with_implied(book.vocabulary, [axiom.formula for axiom in book.axioms]),
         (compiler._compiled(book.rules[0], None, done),),
         "",
         "",
