@@ -32,8 +32,18 @@ from rulec.syntax.parser import parse
 STEPS_S = (None, Fraction(1), Fraction(1, 2), Fraction(1, 10))
 """The steps of machines that ship; None are those of the rules' own examples."""
 
-STEPS_OF: Mapping[str, Sequence[Fraction]] = {"de": (Fraction(1, 25),)}
-"""More steps: drones film German roads at 25 Hz (highD, inD, rounD, exiD, uniD)."""
+_AT_20_HZ, _AT_25_HZ, _AT_30_HZ = Fraction(1, 20), Fraction(1, 25), Fraction(1, 30)
+STEPS_OF: Mapping[str, Sequence[Fraction]] = {
+    "de": (_AT_20_HZ, _AT_25_HZ, _AT_30_HZ),
+    "us": (_AT_20_HZ, _AT_30_HZ),
+    "us-nv": (_AT_20_HZ,),
+    "cn": (_AT_30_HZ,),
+}
+"""More steps, those of data sets: highD and its kin film German roads at 25 Hz, openDD at 30.
+
+nuPlan has American ones, Nevada's for one, at 20 Hz, CitySim at 30, AD4CHE Chinese ones at 30; many
+simulators take 20.
+"""
 
 _BOOKS = shipped_key("which rulebooks, of which texts")
 TRIED = ("esterle2019", "de")
