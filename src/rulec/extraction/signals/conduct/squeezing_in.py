@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
@@ -49,19 +52,16 @@ def squeezed(context: DriveContext, ways: Sequence[WayIn]) -> tuple[Flags, Flags
     who would have had to brake so hard, and did before ego was in their lane. Perhaps, too, where
     ego's lane ends: there they let each other in.
     """
-    sure, perhaps = np.zeros((2, len(context.relevant), len(ways)), dtype=bool)
-    for number, way in enumerate(ways):
-        begins, reaches = _moves_over(context, way)
-        close = _close_behind(context, way.state)
-        gave_way, unsure = _gives_way(context, begins, reaches, way.state)
-        ends = _lane_ends(context, begins)
-        sure[:, number] = (close | gave_way) & (not ends)
-        perhaps[:, number] = unsure | close | gave_way
-    return sure, perhaps & ~sure
+    moves = [_moves_over(context, way) for way in ways]
+    begins, reaches, changes = np.array(moves, dtype=intp).reshape(-1, 3).T
+    close = _close_behind(context, changes)
+    gave_way, unsure = _gives_way(context, begins, reaches, changes)
+    sure = (close | gave_way) & ~_lane_ends(context, begins)
+    return sure, (unsure | close | gave_way) & ~sure
 
 
-def _moves_over(context: DriveContext, way: WayIn) -> tuple[int, int]:
-    """The states from which ego moves to the other lane, and its body is across the mark."""
+def _moves_over(context: DriveContext, way: WayIn) -> tuple[int, int, int]:
+    """The states from which ego moves to the other lane, its body is across the mark, and that."""
     own, first = context.ego_extents, int(context.spans.first[way.state])
     first = max(first, way.state - round(_LONGEST_S / context.recording.step_s))
     across = own.across[0, first : way.state] * (1 if way.to_left else -1)
@@ -69,91 +69,110 @@ def _moves_over(context: DriveContext, way: WayIn) -> tuple[int, int]:
     begins = first + int(stays[-1]) if len(stays) else first
     beyond = own.left_of_max[0] if way.to_left else -own.left_of_min[0]
     over = np.flatnonzero(beyond[begins : way.state, way.line] > context.thresholds.touching_m)
-    return begins, begins + int(over[0]) if len(over) else way.state
+    return begins, begins + int(over[0]) if len(over) else way.state, way.state
 
 
-def _close_behind(context: DriveContext, change: int) -> Flags:
-    """Flags of those behind ego in its new lane who have no room to react."""
-    along, own = context.extents.along[:, change], context.ego_extents.along[0, change]
+def _close_behind(context: DriveContext, changes: NDArray[intp]) -> Flags:
+    """Flags of those behind ego in its new lane who have no room to react, by way."""
+    along, own = context.extents.along[:, changes], context.ego_extents.along[0, changes]
     place, speed = context.tolerances.place_m, context.tolerances.speed_mps
-    close: Flags = relations.gap(context)[:, change] + place < _NO_ROOM_S * (along - speed)
+    close: Flags = relations.gap(context)[:, changes] + place < _NO_ROOM_S * (along - speed)
     close &= own - along < _DRAWS_AWAY_MPS + speed
-    close &= relations.station(context)[:, change] == relations.IN_FRONT_OF
-    close &= context.going_along[:, change] & context.in_ego_lane[:, change]
+    close &= relations.station(context)[:, changes] == relations.IN_FRONT_OF
+    close &= context.going_along[:, changes] & context.in_ego_lane[:, changes]
     return close
 
 
 def _gives_way(
-    context: DriveContext, begins: int, reaches: int, change: int
+    context: DriveContext, begins: NDArray[intp], reaches: NDArray[intp], changes: NDArray[intp]
 ) -> tuple[Flags, Flags]:
-    """Flags of those who got out of ego's way between these states, and of those perhaps."""
+    """Flags of those who got out of ego's way between these states, by way, and perhaps did."""
     others, own, place = context.extents, context.ego_extents, context.tolerances.place_m
-    lane, went_s = context.steady_lane[change], (change - begins) * context.recording.step_s
-    there = context.going_along[:, begins] & context.going_along[:, change]
-    there &= others.lane[:, begins] == lane
-    # Mostly there is nobody
-    if not there.any():
-        return there, there
-    there &= ~_drifts(context, begins, lane)
+    lanes, went_s = context.steady_lane[changes], (changes - begins) * context.recording.step_s
+    there = context.going_along[:, begins] & context.going_along[:, changes]
+    there &= others.lane[:, begins] == lanes
+    there &= ~_drifts(context, begins, lanes)
     # Who takes another way where the lane forks brakes for that
-    on_its_way = slice(begins, min(change + _reacts(context), int(context.spans.end[change])))
-    there &= ~context.elsewhere[:, on_its_way].any(axis=1)
+    there &= ~_any_between(context, begins, changes, lambda states: context.elsewhere[:, states])
     on = others.along[:, begins] * went_s
     low, high = others.s_min[:, begins] + on, others.s_max[:, begins] + on
     would: Flags = np.asarray(
-        there & (own.s_min[0, change] + place < high) & (low < own.s_max[0, change] - place)
+        there & (own.s_min[0, changes] + place < high) & (low < own.s_max[0, changes] - place)
     )
     # Bounds of lanes bend with the road: places across it are those of the road's own line
     right, left = others.d_min[:, begins], others.d_max[:, begins]
     to_left = left + right - own.d_min[0, begins] - own.d_max[0, begins]
-    would &= ~(to_left > 0) | (own.d_max[0, change] > right + place)
-    would &= ~(to_left < 0) | (own.d_min[0, change] < left - place)
-    slower = others.along[:, begins] - others.along[:, change]
-    aside = np.abs(others.d_min[:, change] + others.d_max[:, change] - right - left)
+    would &= ~(to_left > 0) | (own.d_max[0, changes] > right + place)
+    would &= ~(to_left < 0) | (own.d_min[0, changes] < left - place)
+    slower = others.along[:, begins] - others.along[:, changes]
+    aside = np.abs(others.d_min[:, changes] + others.d_max[:, changes] - right - left)
     would &= (slower > _SLOWED_MPS + context.tolerances.speed_mps) | (aside / 2 > _ASIDE_M + place)
-    hard, may_be_hard = _brakes(context, reaches, change)
+    hard, may_be_hard = _brakes(context, reaches, changes)
     beside = relations.station(context)[:, reaches] == relations.BESIDE
     # Who comes from behind has to see that ego comes
-    comes_s = (change - reaches) * context.recording.step_s
+    comes_s = (changes - reaches) * context.recording.step_s
     high = others.s_max[:, reaches] + others.along[:, reaches] * comes_s
-    faster = others.along[:, reaches] - own.along[0, change]
-    left = own.s_min[0, change] - high - faster * context.thresholds.reaction_s
+    faster = others.along[:, reaches] - own.along[0, changes]
+    left = own.s_min[0, changes] - high - faster * context.thresholds.reaction_s
     too_near = faster**2 > 2 * context.thresholds.disturbing_mps2 * np.maximum(left, 0.0)
-    too_near &= there & (faster > 0) & (high <= own.s_min[0, change])
+    too_near &= there & (faster > 0) & (high <= own.s_min[0, changes])
     sure = (would & (beside | hard)) | (too_near & hard)
-    return sure & ~_held_up(context, begins, lane), would | (too_near & may_be_hard)
+    for way in np.flatnonzero(sure.any(axis=0)).tolist():
+        sure[:, way] &= ~_held_up(context, int(begins[way]), int(lanes[way]))
+    return sure, would | (too_near & may_be_hard)
 
 
-def _drifts(context: DriveContext, state: int, lane: int) -> Flags:
+def _drifts(context: DriveContext, states: NDArray[intp], lanes: NDArray[intp]) -> Flags:
     """Flags of those who move sideways in a lane: the road's own line may bend from one to another.
 
-    Over half of ``smoothing_s``, as far as the drive goes back.
+    By state and lane, over half of ``smoothing_s``, as far as the drive goes back.
     """
     steps = max(round(context.thresholds.smoothing_s / 2 / context.recording.step_s), 1)
-    before = max(state - steps, int(context.spans.first[state]))
-    middle = context.extents.middle_from(np.full(context.states, lane))
-    went_s = (state - before) * context.recording.step_s
-    moved = np.abs(middle[:, state] - middle[:, before])
+    before = np.maximum(states - steps, context.spans.first[states])
+    went_s = (states - before) * context.recording.step_s
+    low, high = context.extents.left_of_min, context.extents.left_of_max
+    now, then = (low[:, at, lanes] + high[:, at, lanes] for at in (states, before))
+    moved = np.abs(now - then) / 2
     drifts: Flags = moved > _DRIFT_MPS * went_s + context.tolerances.place_m
     return drifts
 
 
-def _brakes(context: DriveContext, begins: int, change: int) -> tuple[Flags, Flags]:
-    """Flags of those who brake harder than ``disturbing_mps2`` then, and perhaps do.
+def _brakes(
+    context: DriveContext, begins: NDArray[intp], changes: NDArray[intp]
+) -> tuple[Flags, Flags]:
+    """Flags of those who brake harder than ``disturbing_mps2`` then, by way, and perhaps do.
 
     Or up to ``reaction_s`` later.
     """
-    end = min(change + _reacts(context), int(context.spans.end[change]))
-    states, tracks = slice(begins, end), context.tracks
-    gained, wrong = tracks.acceleration[:, states], tracks.acceleration_error[:, states]
-    limit = -context.thresholds.disturbing_mps2
-    hard: Flags = np.asarray((gained + wrong < limit).any(axis=1))
-    return hard, np.asarray((gained - wrong < limit).any(axis=1))
+    limit, tracks = -context.thresholds.disturbing_mps2, context.tracks
+
+    def brake(states: NDArray[intp], sign: int) -> Flags:
+        wrong = sign * tracks.acceleration_error[:, states]
+        flags: Flags = tracks.acceleration[:, states] + wrong < limit
+        return flags
+
+    hard, may_be_hard = (
+        _any_between(context, begins, changes, partial(brake, sign=sign)) for sign in (1, -1)
+    )
+    return hard, may_be_hard
 
 
-def _reacts(context: DriveContext) -> int:
-    """So many states from one on others have reacted to it."""
-    return round(context.thresholds.reaction_s / context.recording.step_s) + 1
+def _any_between(
+    context: DriveContext,
+    begins: NDArray[intp],
+    changes: NDArray[intp],
+    flags_of: Callable[[NDArray[intp]], Flags],
+) -> Flags:
+    """For each way whether flags of states are true in any until others have reacted to it."""
+    if not len(changes):
+        return np.zeros((len(context.relevant), 0), dtype=bool)
+    reacts = round(context.thresholds.reaction_s / context.recording.step_s) + 1
+    ends = np.minimum(changes + reacts, context.spans.end[changes])
+    lengths = (ends - begins).astype(intp)
+    first = np.cumsum(lengths) - lengths
+    states = np.arange(int(lengths.sum())) + np.repeat(begins - first, lengths)
+    found: Flags = np.logical_or.reduceat(flags_of(states), first, axis=1)
+    return found
 
 
 def _held_up(context: DriveContext, state: int, lane: int) -> Flags:
@@ -169,9 +188,8 @@ def _held_up(context: DriveContext, state: int, lane: int) -> Flags:
     return held
 
 
-def _lane_ends(context: DriveContext, state: int) -> bool:
-    """True if the lane that ego leaves ends soon, and is none by which one joins a road."""
-    lanelets = own_lanelets(context)
-    lanelet = lanelets.lanelets[lanelets.number[state]]
-    goes_on = lanes_that_go_on(context)[state, context.steady_lane[state]]
-    return not goes_on and JOINING not in lanelet.types
+def _lane_ends(context: DriveContext, states: NDArray[intp]) -> Flags:
+    """Flags of states in which ego's lane ends soon, and is none by which one joins a road."""
+    joins = own_lanelets(context).flags(lambda lanelet: JOINING in lanelet.types)
+    goes_on = lanes_that_go_on(context)[states, context.steady_lane[states]]
+    return ~(goes_on | joins[states])
