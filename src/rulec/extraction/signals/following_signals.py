@@ -103,8 +103,9 @@ def _before(context: DriveContext, cells: Cells) -> Floats:
     return time
 
 
-def parts_soon(context: DriveContext, cells: tuple[NDArray[intp], ...]) -> Flags:
-    """Flags of those cells, rows and columns, whose lane is not ego's within ``parting_s``.
+@once
+def parts_soon(context: DriveContext) -> Flags:
+    """Flags of those ahead in ego's lane whose lane is not ego's within ``parting_s``.
 
     Or who are clear of ego at its side then, as on a broad lane; or who are lost from sight before,
     and go aside by ``_AWAY_MPS``, or do so from each other when they are seen last, such that they
@@ -112,6 +113,8 @@ def parts_soon(context: DriveContext, cells: tuple[NDArray[intp], ...]) -> Flags
     ``_DRIFT_MPS``, and a change of lanes may have them clear. Where ways part in a junction nobody
     is clear of one that stops before.
     """
+    _, _, follows = relations.ahead_in_lane(context)
+    cells = follows.nonzero()
     horizon = round(context.thresholds.parting_s / context.recording.step_s)
     (pairs, places), others, own = pair_states(context, cells), context.extents, context.ego_extents
     spans, at, columns = pairs.spans, (pairs.rows, pairs.columns), pairs.columns
@@ -138,7 +141,8 @@ def parts_soon(context: DriveContext, cells: tuple[NDArray[intp], ...]) -> Flags
     swings_out |= closes_in & (away > _DRIFT_MPS) & (moved > context.thresholds.touching_m)
     lost = gone <= np.minimum(np.where(inside[last], stopped, until), until)
     parts |= seen & lost & ((others.across[at] * side >= _AWAY_MPS) | swings_out)
-    found: Flags = parts[places]
+    found = np.zeros(context.relevant.shape, dtype=bool)
+    found[cells] = parts[places]
     return found
 
 
@@ -147,10 +151,7 @@ def may_part(context: DriveContext) -> SignalColumns:
 
     No law says how near they may be by then.
     """
-    _, _, follows = relations.ahead_in_lane(context)
-    cells = follows.nonzero()
-    unknown = np.zeros(context.relevant.shape, dtype=bool)
-    unknown[cells] = parts_soon(context, cells)
+    unknown = parts_soon(context)
     return SignalColumns(
         about={"parts_soon": np.zeros_like(unknown)}, unknown={"parts_soon": unknown}
     )
@@ -226,7 +227,7 @@ def _need_not_follow(
     speed = np.maximum(context.ego_extents.along[0], 0.0)
     react_m = speed[cells[1]] * context.thresholds.reaction_s
     stood = _stood_before(context, distinct(cells[0]))[cells]
-    moot: Flags = parts_soon(context, cells) | (stood & (short - react_m <= 0))
+    moot: Flags = parts_soon(context)[cells] | (stood & (short - react_m <= 0))
     return moot
 
 
