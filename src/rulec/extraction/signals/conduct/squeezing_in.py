@@ -147,14 +147,11 @@ def _brakes(
     limit, tracks = -context.thresholds.disturbing_mps2, context.tracks
 
     def brake(states: NDArray[intp], sign: int) -> Flags:
-        wrong = sign * tracks.acceleration_error[:, states]
-        flags: Flags = tracks.acceleration[:, states] + wrong < limit
-        return flags
+        gained, wrong = tracks.acceleration[:, states], tracks.acceleration_error[:, states]
+        return np.asarray(gained + sign * wrong < limit)
 
-    hard, may_be_hard = (
-        _any_between(context, begins, changes, partial(brake, sign=sign)) for sign in (1, -1)
-    )
-    return hard, may_be_hard
+    hard = _any_between(context, begins, changes, partial(brake, sign=1))
+    return hard, _any_between(context, begins, changes, partial(brake, sign=-1))
 
 
 def _any_between(
