@@ -216,3 +216,34 @@ def test_who_joins_a_motorway_at_a_usual_pace_gives_way(seconds, apart, blamed):
     other = going(8, 230 - apart - 31 * 6.5, 4.0, 31.0, 24)
     found = violated(recording(road, [ego, other]), GERMAN, egos=("7",))
     assert ("joining_motorway" in found["7"]) is blamed
+
+
+def test_who_drives_along_a_lane_for_cycles():
+    """5 s on its own lane, 2.5 s over to the one for cycles, 5 s along that, all at 10 m/s."""
+    cycles = straight(2, 0, 1000, y=-2.5, width=1.5, left_of=1, types=frozenset({"bicycleLane"}))
+    lane = straight(1, 0, 1000, y=0.0, width=3.5, limit_mps=50 / 3.6)
+    across = np.interp(np.arange(25), [10, 15], [0.0, -2.5])
+    car = vehicle(7, {k: (50 + 5 * k, y) for k, y in enumerate(across)}, speed=10.0, width=1.8)
+    beside = recording([replace(lane, right_of="2"), cycles], [car])
+    assert "cycle_lane" in violated(beside, BRITISH)["7"]
+    assert "bus_lane" in violated(beside, GERMAN)["7"]
+    # A map without any may have left them out
+    (judged,) = RecordingVerdicts(
+        recording([lane], [car]), BRITISH, RequestedDrives(), ""
+    ).answers()
+    assert "cycle_lane" in {rule.rule for rule in judged.answer.not_judged}
+
+
+@pytest.mark.parametrize(("walks_at", "blamed"), [(-1.4, False), (-6.0, True)])
+def test_who_goes_round_one_that_walks_along_the_road(walks_at, blamed):
+    """Ego, 14 m/s, is on the other half for 4 s; on its own one somebody comes towards it there.
+
+    Ego's front is level with the walker after some 5.7 s: (100 - 10 - 2) m at 15.4 m/s.
+    """
+    lanes = [straight(1, 0, 600, width=3.5), straight(2, 600, 0, 3.5, width=3.5)]
+    across = np.interp(np.arange(24), [3, 8, 15, 20], [0.0, 2.3, 2.3, 0.0])
+    car = vehicle(7, {k: (10 + 7 * k, y) for k, y in enumerate(across)}, speed=14.0, width=1.8)
+    places = {k: (100 - 0.7 * k, walks_at) for k in range(24)}
+    walker = vehicle(8, places, "pedestrian", length=0.5, width=0.5, speed=1.4, heading=pi)
+    found = violated(recording(lanes, [car, walker]), GERMAN, egos=("7",))
+    assert ("wrong_way" in found["7"]) is blamed

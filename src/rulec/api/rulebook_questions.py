@@ -191,15 +191,18 @@ class RulebookQuestions(RulebookVerbs):
         from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
         from rulec.recordings.recording_files import read_recording
         from rulec.recordings.recording_format import RecordingSource
-        from rulec.trace.vocabulary_projection import with_told_values
+        from rulec.trace.vocabulary_projection import values_lacking, with_told_values
 
         rulebook = self.compile(reference)
-        told = TELLABLE_WORDS.get(str(source))
+        told, lacking = TELLABLE_WORDS.get(str(source)), frozenset[str]()
         if told is None:
             recording = read_recording(where or RecordingSource(Path(source)))
             drives = selected_drives(recording, RequestedDrives(), str(source), rulebook.traffic)
             told = told_words(drives)
-        return audit_source(rulebook, str(source), with_told_values(told, rulebook.vocabulary))
+            types = (lanelet.types for lanelet in recording.lanelets.values())
+            lacking = values_lacking(frozenset().union(*types))
+        words = with_told_values(told, rulebook.vocabulary, lacking)
+        return audit_source(rulebook, str(source), words)
 
     def tree(self, reference: str | Path) -> BookLineage:
         """Trace everything in a rulebook to its origin and through its changes."""

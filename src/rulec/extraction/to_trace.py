@@ -30,7 +30,7 @@ from rulec.extraction.signals.conduct.next_lane_signals import next_lane_signals
 from rulec.extraction.signals.conduct.overtaking_signals import overtaking_signals
 from rulec.extraction.signals.conduct.reason_signals import reason_signals
 from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
-from rulec.extraction.signals.ego_lanelets import own_lanelets
+from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
 from rulec.extraction.signals.ego_signals import ego_signals
 from rulec.extraction.signals.flow_signals import flow_signals
 from rulec.extraction.signals.following_signals import following_signals, safe_gaps
@@ -59,7 +59,7 @@ from rulec.logic.formula import Relation
 from rulec.monitoring.explain.margins import Margin
 from rulec.trace import Trace, Value
 from rulec.trace.trace_arrays import TraceArrays
-from rulec.trace.vocabulary_projection import known_type, with_told_values
+from rulec.trace.vocabulary_projection import known_type, values_lacking, with_told_values
 from rulec.value_display import short_repr
 from rulec.vocabulary import Vocabulary
 
@@ -275,7 +275,8 @@ def to_traces(
     if not writer.defaults:
         told = frozenset(kinds)
         if vocabulary is not None:
-            told |= with_told_values(told - writer.assumed.keys(), vocabulary)
+            lacking = values_lacking(map_contents(context).types)
+            told |= with_told_values(told - writer.assumed.keys(), vocabulary, lacking)
     kind_of = [kind[0] if vocabulary is None else known_type(kind, vocabulary) for kind in types]
     for name, columns, own in zip(names, spans.slices, presences(context), strict=True):
         known = [(x, kind) for x in own if (kind := kind_of[x.row]) is not None]

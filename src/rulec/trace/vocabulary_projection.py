@@ -39,7 +39,7 @@ MEASURED = RECORDED_UNITS.keys() - {"limit", "ego_length", "visibility"}
 UNTOLD_VALUES: Mapping[str, frozenset[str]] = {
     "light": frozenset(("flashing_amber", "flashing_red", "red_cross")),
     "lane_kind": frozenset(("branching_lane", "signposted_lane")),
-    "surface": frozenset(("cycle_lane", "tram_track")),
+    "surface": frozenset(("tram_track",)),
     "crossing_kind": frozenset(("unmarked_crossing",)),
 }
 """Enumeration -> values that no format has: where another one is told, it may be one of these."""
@@ -169,11 +169,24 @@ def _fits(name: str, value: _Signal, declaration: Declaration) -> bool:
     return fits(name, known, declaration)
 
 
-def with_told_values(names: frozenset[str], vocabulary: Vocabulary) -> frozenset[str]:
-    """The names, and the values that can be told of those of which not all can be."""
+def values_lacking(types: frozenset[str]) -> frozenset[str]:
+    """The values that a map with lanelets of these types does not tell, as others do.
+
+    One without lanes for cycles may have left them out.
+    """
+    return frozenset() if "bicycleLane" in types else frozenset({"cycle_lane"})
+
+
+def with_told_values(
+    names: frozenset[str], vocabulary: Vocabulary, lacking: frozenset[str] = frozenset()
+) -> frozenset[str]:
+    """The names, and the values that can be told of those of which not all can be.
+
+    Values that are ``lacking`` could be told by other files than this one.
+    """
     told = set(names)
     for name in UNTOLD_VALUES.keys() & names:
         item = vocabulary.declarations.get(name)
         if isinstance(item, Enumeration):
-            told |= {*item.values} - UNTOLD_VALUES[name]
+            told |= {*item.values} - UNTOLD_VALUES[name] - lacking
     return frozenset(told)

@@ -123,6 +123,24 @@ def test_ego_passes_an_obstacle_on_the_lane_beside():
     assert signals(lanes, beyond, stands)["obstructed"] == ["False"] * 4
 
 
+@pytest.mark.parametrize(
+    ("start", "step", "blocked"),
+    [
+        ((20.0, -1.7), (-0.7, 0.0), True),  # towards ego, at the edge: 3.4 m and less are left
+        ((20.0, -1.7), (0.7, 0.0), True),  # or along with it
+        ((20.0, -1.7), (0.0, 0.7), False),  # crosses the road
+        ((20.0, -2.6), (0.7, 0.0), False),  # beside the road
+        ((45.0, -1.7), (0.7, 0.0), False),  # farther ahead than ego would be in 4 s
+    ],
+)
+def test_who_walks_along_in_ego_s_lane_leaves_no_room(start, step, blocked):
+    """Ego is 2 m wide and wants 1.5 m to them, in a lane of 4 m that reaches from -2 to 2."""
+    places = {k: (start[0] + step[0] * k, start[1] + step[1] * k) for k in range(4)}
+    heading = float(np.arctan2(step[1], step[0]))
+    walker = vehicle(9, places, "pedestrian", length=0.5, width=0.5, speed=1.4, heading=heading)
+    assert signals(two_ways(), ego(mps=2), walker)["obstructed"][0] == str(blocked)
+
+
 def test_one_that_moves_is_no_obstacle():
     assert signals(two_ways(), ego(), steady(9, 20, 0, 5))["obstructed"] == ["False"] * 4
 

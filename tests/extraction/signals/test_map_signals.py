@@ -126,6 +126,11 @@ def test_surfaces_by_ego_s_middle():
         "carriageway",
         "bus_lane",
     ]
+    for_cycles = {"types": frozenset({"bicycleLane"})}
+    assert map_signals(context([97, 101], second=for_cycles)).world["surface"].tolist() == [
+        "carriageway",
+        "cycle_lane",
+    ]
 
 
 @pytest.mark.parametrize(("kind", "last"), [("bicycle", "carriageway"), ("car", "bus_lane")])

@@ -20,6 +20,12 @@ from rulec.trace.plain_arrays import distinct
 _BESIDE_M = 0.5
 """A vehicle needs so much more room than it is wide."""
 
+_BESIDE_WALKERS_M = 1.5
+"""So much more it needs past people in the road: laws ask for 1 m to 2 m, or for enough."""
+
+_ALONG = np.cos(np.pi / 4)
+"""Who walks at no more than that angle to the road walks along it, either way."""
+
 
 def clearance_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
     """The signals of what leaves ego room to go on, to overtake, and to pass."""
@@ -115,16 +121,21 @@ def _edges(context: DriveContext) -> tuple[NDArray[intp], NDArray[intp]]:
 def _obstructed(context: DriveContext) -> Flags:
     """Flags of states in which what stands in a lane that ego is in leaves no room within it.
 
-    Ahead, beside ego, or so near behind it that ego may still be on its way back.
+    Ahead, beside ego, or so near behind it that ego may still be on its way back. So do people who
+    walk along in it.
     """
     own = context.ego_extents
-    width = own.d_max[0] - own.d_min[0] + _BESIDE_M
+    width = own.d_max[0] - own.d_min[0]
     used = own.inside[0] > 0
     used[np.arange(context.states), context.ego_lane] = True
     blocked, present = np.zeros(context.states, dtype=bool), presence_cells(context)
     near = present.part(np.flatnonzero(_near_obstacle(context)))
     stands = near.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
-    cells = near.part(np.flatnonzero(stands & near.of(context.relevant)))
+    walks = context.tracks.of_type("pedestrian")[near.rows]
+    walks &= np.abs(np.cos(near.of(context.extents.turned))) >= _ALONG
+    needed = np.where(walks, _BESIDE_WALKERS_M, _BESIDE_M)
+    chosen = np.flatnonzero((stands | walks) & near.of(context.relevant))
+    cells, needed = near.part(chosen), needed[chosen]
     sets, columns = cells.of(context.lanes_within[0]), cells.columns
     for lane in range(used.shape[1]):
         there = np.flatnonzero(is_in(sets, lane) & used[columns, lane])
@@ -133,7 +144,8 @@ def _obstructed(context: DriveContext) -> Flags:
         part, bound = cells.part(there), np.full(context.states, lane)
         low, _ = context.extents.cells_from_bound(part, bound)
         _, high = context.extents.cells_from_bound(part, bound + 1)
-        blocked[part.columns[np.maximum(low, -high) < width[part.columns]]] = True
+        room = width[part.columns] + needed[there]
+        blocked[part.columns[np.maximum(low, -high) < room]] = True
     return blocked
 
 
@@ -144,6 +156,8 @@ def _near_obstacle(context: DriveContext) -> Flags:
     near: Flags = gap <= context.thresholds.obstacle_m
     reach = along[present.columns] * context.thresholds.parting_s
     early = ~near & (gap <= reach) & (present.of(relations.station(context)) == relations.BEHIND)
+    walks = context.tracks.of_type("pedestrian")[present.rows]
+    near |= early & walks
     early &= present.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
     rows, never_moves = distinct(present.rows[early]), np.zeros(len(context.relevant), dtype=bool)
     never_moves[rows] = relations.stays(context, rows)

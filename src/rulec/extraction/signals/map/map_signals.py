@@ -9,7 +9,12 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
-from rulec.extraction.signals.ego_lanelets import lanelets_at, map_contents, own_lanelets
+from rulec.extraction.signals.ego_lanelets import (
+    CYCLE_LANE,
+    lanelets_at,
+    map_contents,
+    own_lanelets,
+)
 from rulec.extraction.signals.map.junction_signals import own_light
 from rulec.extraction.signals.map.stop_lines import stop_line
 from rulec.extraction.signals.measured_numbers import corner_ahead, own_front
@@ -49,6 +54,7 @@ _AT_WORK = ("green_light", "amber_light", "red_light")
 
 _SURFACES = {
     "busLane": "bus_lane",
+    CYCLE_LANE: "cycle_lane",
     "shoulder": "hard_shoulder",
     "level_crossing": "level_crossing",
 }
