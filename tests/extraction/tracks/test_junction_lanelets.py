@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.extraction.tracks.driven_road import junction_lanelets
+from rulec.extraction.tracks.junctions import junctions_of
 from support.builders.recordings import lanelet, recording, straight
 
 
@@ -38,3 +39,17 @@ def test_ways_that_do_not_meet_or_are_no_lanes_make_no_junction():
 def test_where_a_map_marks_junctions_only_those_count():
     marked = straight(3, 60, 80, types=frozenset({"intersection"}))
     assert junction_lanelets(recording([ALONG, across(2, 90), marked])) == {"3"}
+
+
+def test_a_level_crossing_is_no_junction_but_has_its_ways():
+    """Which of them a train comes on is told; that cars do not block the junction there, not."""
+    road = straight(1, -20, 20, types=frozenset({"level_crossing"}))
+    rails = across(2, 90, types=frozenset({"rail"}))
+    found = recording([road, rails])
+    assert junction_lanelets(found) == frozenset()
+    (junction,) = junctions_of(found)
+    assert {x.id for way in junction.ways for x in way.lanelets} == {"1", "2"}
+    # On one that marks junctions others are none, as before
+    marked = straight(3, 60, 80, types=frozenset({"intersection"}))
+    (junction,) = junctions_of(recording([road, rails, marked]))
+    assert {x.id for way in junction.ways for x in way.lanelets} == {"3"}

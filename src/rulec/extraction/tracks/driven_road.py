@@ -275,14 +275,34 @@ def junction_lanelets(recording: Recording) -> frozenset[str]:
     lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
     if not lanes or marks_junctions(recording):
         return frozenset(lanelet.id for lanelet in lanes if "intersection" in lanelet.types)
+    pairs = [pair for pair in _crossing_pairs(lanes) if not any(map(_is_level_crossing, pair))]
+    return frozenset(lanelet.id for pair in pairs for lanelet in pair)
+
+
+def level_crossing_lanelets(recording: Recording) -> frozenset[str]:
+    """The ids of the lanelets that cross at level crossings, where no junctions are marked.
+
+    A level crossing is no junction: what cars may not block is another rule's there.
+    """
+    lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
+    if marks_junctions(recording) or not any(map(_is_level_crossing, lanes)):
+        return frozenset()
+    pairs = [pair for pair in _crossing_pairs(lanes) if any(map(_is_level_crossing, pair))]
+    return frozenset(lanelet.id for pair in pairs for lanelet in pair)
+
+
+def _is_level_crossing(lanelet: Lanelet) -> bool:
+    return "level_crossing" in lanelet.types
+
+
+def _crossing_pairs(lanes: Sequence[Lanelet]) -> Iterator[tuple[Lanelet, Lanelet]]:
+    """The pairs of lanelets whose middles cross at more than ``_CROSSING_ANGLE``."""
     lines = [shapely.LineString(lanelet.centre) for lanelet in lanes]
     firsts, seconds = shapely.STRtree(lines).query(lines, predicate="crosses")
-    crossing: set[str] = set()
     for first, second in zip(firsts.tolist(), seconds.tolist(), strict=True):
         meeting = shapely.intersection(lines[first], lines[second])
         if first < second and _angle(lanes[first], lanes[second], meeting) > _CROSSING_ANGLE:
-            crossing.update((lanes[first].id, lanes[second].id))
-    return frozenset(crossing)
+            yield lanes[first], lanes[second]
 
 
 def _angle(first: Lanelet, second: Lanelet, meeting: shapely.Geometry) -> float:

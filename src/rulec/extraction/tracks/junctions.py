@@ -11,7 +11,12 @@ from itertools import pairwise, takewhile
 import numpy as np
 import shapely
 
-from rulec.extraction.tracks.driven_road import TURN_REACH_M, junction_lanelets, marks_junctions
+from rulec.extraction.tracks.driven_road import (
+    TURN_REACH_M,
+    junction_lanelets,
+    level_crossing_lanelets,
+    marks_junctions,
+)
 from rulec.recordings.recording import (
     ALL_STOP,
     REGULATING,
@@ -194,6 +199,7 @@ def _junction_ids(recording: Recording) -> dict[str, str]:
         for x in lanelets.values()
         if x.junction and x.id not in inside and {"rail", "level_crossing"} & x.types
     ]
+    rails += sorted(level_crossing_lanelets(recording) - {*inside, *rails})
     named = {number: lanelets[number].junction for number in (*inside, *rails)}
     unnamed = [number for number, name in named.items() if not name]
     if unnamed:
