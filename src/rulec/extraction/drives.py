@@ -28,6 +28,7 @@ from rulec.extraction.tracks.road_extents import (
 )
 from rulec.extraction.tracks.road_places import RoadPlaces, are_on_road, near_road, rows_in_reach
 from rulec.extraction.tracks.surroundings import Surroundings
+from rulec.extraction.tracks.towed import towed_by
 from rulec.extraction.tracks.tracks import Flags, Tracks, tracks_of
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
 from rulec.recordings.recording import Lanelet, Recording, Side
@@ -155,6 +156,9 @@ class Drives:
         body = self._tracks.participants[row]
         if 2 * len(body.states) < len(body.outlines):
             yield NoDrive(ego, "it has no track: its places are sets that it may be in")
+            return
+        if tower := towed_by(self._tracks, row, self.recording.step_s):
+            yield NoDrive(ego, f"`{tower}` tows it")
             return
         stretches = self._planned[row] if row in self._planned else self.stretches(row)
         yield from self.along(row, stretches)

@@ -120,16 +120,26 @@ class Tracks:
 
         Of those that stand for good in the first column only.
         """
-        bodies, widths = self.bodies, np.zeros(self.present.shape)
+        return self._sizes(lambda x, y, way: y * np.cos(way) - x * np.sin(way))
+
+    @cached_property
+    def lengths(self) -> Floats:
+        """The greatest length (m) of each participant's body along its headings."""
+        along = self._sizes(lambda x, y, way: x * np.cos(way) + y * np.sin(way))
+        longest: Floats = along.max(axis=1, initial=0.0)
+        return longest
+
+    def _sizes(self, along: Callable[[Floats, Floats, Floats], Floats]) -> Floats:
+        """How long bodies are along a line, which each corner's place and heading tell."""
+        bodies, sizes = self.bodies, np.zeros(self.present.shape)
         outlines, way = bodies.outlines, self.heading[bodies.rows, bodies.columns]
         x, y = outlines.corners.T
-        sin, cos = (np.repeat(values, outlines.counts) for values in (np.sin(way), np.cos(way)))
-        across = y * cos - x * sin
+        at = along(x, y, np.repeat(way, outlines.counts))
         most, least = (
-            extreme.reduceat(across, outlines.starts) for extreme in (np.maximum, np.minimum)
+            extreme.reduceat(at, outlines.starts) for extreme in (np.maximum, np.minimum)
         )
-        widths[bodies.rows, bodies.columns] = most - least
-        return widths
+        sizes[bodies.rows, bodies.columns] = most - least
+        return sizes
 
     def part(self, rows: NDArray[intp], columns: slice) -> Tracks:
         """The tracks of some participants in a range of steps."""
