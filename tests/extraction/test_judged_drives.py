@@ -247,3 +247,21 @@ def test_who_goes_round_one_that_walks_along_the_road(walks_at, blamed):
     walker = vehicle(8, places, "pedestrian", length=0.5, width=0.5, speed=1.4, heading=pi)
     found = violated(recording(lanes, [car, walker]), GERMAN, egos=("7",))
     assert ("wrong_way" in found["7"]) is blamed
+
+
+@pytest.mark.parametrize(
+    ("book", "apart", "blamed"), [("de", 1, True), ("fr", 1, True), ("de", 40, False)]
+)
+def test_who_comes_back_from_the_other_half_before_one_that_it_has_overtaken(book, apart, blamed):
+    """Both drive at 16 m/s as ego comes back, after 10 s, so far ahead; it has been at 20 m/s."""
+    lanes = [straight(1, 0, 1000, width=3.5), straight(2, 1000, 0, 3.5, width=3.5)]
+    behind = vehicle(8, {k: (100 + 8 * k, 0.0) for k in range(30)}, speed=16.0, width=1.8)
+    steps = np.arange(30)
+    # Its middle is over the mark, at 1.75 m, in the state 20
+    ahead = 100 + 8 * steps + 4 + apart + np.where(steps < 16, 2.0 * (steps - 16), 0.0)
+    across = np.interp(steps, [2, 6, 18, 22], [0.0, 3.5, 3.5, 0.0])
+    speeds = np.where(steps < 16, 20.0, 16.0)
+    car = vehicle(7, {int(k): (float(ahead[k]), float(across[k])) for k in steps}, width=1.8)
+    states = {k: replace(state, speed=float(speeds[k])) for k, state in car.states.items()}
+    found = violated(recording(lanes, [replace(car, states=states), behind]), machines(book))
+    assert ("safe_return" in found["7"]) is blamed

@@ -12,6 +12,7 @@ from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
 from rulec.extraction.signals.conduct.lanes_from_behind import comes_into_lane
 from rulec.extraction.signals.conduct.manoeuvre_signals import (
     beyond_near_edge,
+    comes_back_over_middle,
     swings_round,
     u_turns,
 )
@@ -106,7 +107,8 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
 def _ways_into_lanes(context: DriveContext) -> tuple[NDArray[intp], list[WayIn]]:
     """The states in which ego comes into another lane, or onto the road, and its ways there.
 
-    Onto the road it comes over its near edge, and is there ``changed_m`` farther on.
+    Onto the road it comes over its near edge, and is there ``changed_m`` farther on; or over its
+    far one, back from the other half.
     """
     lane, inside = context.steady_lane, -beyond_near_edge(context)
     changes = np.flatnonzero(_changes(context)).tolist()
@@ -122,7 +124,13 @@ def _ways_into_lanes(context: DriveContext) -> tuple[NDArray[intp], list[WayIn]]
     for at in flagged:
         state = int(settled[at])
         ways.append(WayIn(state, int(lane[state]) + (not to_left), to_left=to_left))
-    return np.array(changes + flagged, dtype=intp), ways
+    back = np.flatnonzero(comes_back_over_middle(context)).tolist()
+    back = [at for at in back if at not in changes and at not in flagged]
+    lanes = context.existing_lanes
+    first, last = lanes.argmax(axis=1), lanes.shape[1] - lanes[:, ::-1].argmax(axis=1)
+    far = last if to_left else first
+    ways += [WayIn(at, int(far[at]), to_left=not to_left) for at in back]
+    return np.array(changes + flagged + back, dtype=intp), ways
 
 
 def _changes(context: DriveContext) -> Flags:

@@ -165,6 +165,18 @@ def _goes_over(context: DriveContext, there: Flags, perhaps: Flags) -> Flags:
     return over
 
 
+def comes_back_over_middle(context: DriveContext) -> Flags:
+    """Flags of the first states in which ego is back on its own half of a road.
+
+    Not those in which it turns round, or has driven into a junction.
+    """
+    there, _ = oncoming_side(context)
+    back = context.spans.enters(~there)
+    if back.any():
+        back &= (_beyond_far_edge(context) <= _loose(context)) & ~swings_round(context)
+    return back
+
+
 def goes_over_the_middle(context: DriveContext) -> Flags:
     """Flags of states in which ego is on both halves of a road, as it goes to the other or back.
 
