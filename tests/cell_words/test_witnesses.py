@@ -4,6 +4,7 @@ import os
 import random
 from dataclasses import replace
 from math import floor
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,8 +12,11 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from rulec import Maneuver, RulecError, compile_rulebook, find_maneuvers, verify_many
+from rulec.cell_words.place_words import PlaceWords
+from rulec.cell_words.probe_drives import LaneProbe
 from rulec.scenario import Choice
 from rulec.scenario.recorded.recorded_scene import seen_from_ego
+from rulec.vocabulary.partial_values import Interval
 from support.builders.recordings import RECORDINGS, recording, straight, vehicle
 from support.generators.driven_motions import driven, paths_of
 from support.oracles.witness_drives import (
@@ -99,6 +103,30 @@ def check_sampled(found, number, chance):
         if compared_so_far >= number:
             break
     return compared_so_far
+
+
+def test_rules_of_the_other_side_are_refused():
+    """No word would be told, so that every maneuver would count as keeping them."""
+    scene = seen_from_ego(replace(recording(LANES, ego=(60, 0)), side="right"), Choice(), "f.xml")
+    with pytest.raises(RulecError, match="R0418"):
+        find_maneuvers(scene, compile_rulebook("gb"))
+    assert find_maneuvers(scene, compile_rulebook("de")).judges
+
+
+def test_distances_to_junctions_between_two_places():
+    """Right behind a junction it is as far to the next one as it gets, place or no place."""
+    far = (1.0, 0.0, 40.0, 39.0, 38.0)
+    states = [{"distance_to_junction": metres} for metres in far]
+    lane = LaneProbe(0, np.arange(5.0), states)
+    lanes = SimpleNamespace(straight=np.array([-2.0, 2.0]))
+    probes = SimpleNamespace(
+        origin=SimpleNamespace(lanes=lanes), lanes=(lane,), stretches=((0, 0.0, 4.0),)
+    )
+    places = PlaceWords(probes, frozenset({"distance_to_junction"}))
+    (found,) = places.of_cells(
+        SimpleNamespace(s=(np.array([1.0]), np.array([3.0])), d=(np.zeros(1), np.zeros(1)))
+    )
+    assert found["distance_to_junction"] == Interval(0.0, 41.0)
 
 
 @st.composite

@@ -133,6 +133,23 @@ def test_a_past_that_makes_no_sense():
         score(steady(5.0, world.past[-1])[None], world, GERMAN, [[1, 2, 3]])
 
 
+@pytest.mark.parametrize("nothing", [street().past[:0], [], np.empty((0, 4))])
+def test_a_past_without_states_is_none(nothing):
+    world = street()
+    candidates = np.array([steady(5.0, world.past[-1]), steady(30.0, world.past[-1])])
+    without, found = score(candidates, world, GERMAN), score(candidates, world, GERMAN, nothing)
+    assert [one.violations for one in found.candidates] == [
+        one.violations for one in without.candidates
+    ]
+    assert without.candidates[1].violations
+
+
+@pytest.mark.parametrize("bad", [np.empty((0, 3)), np.empty((0, 2, 4)), [[1, 2, 3, 4], [5]]])
+def test_a_past_without_states_has_the_columns(bad):
+    with pytest.raises(RulecError, match="R0780"):
+        score(steady(5.0, street().past[-1])[None], street(), GERMAN, bad)
+
+
 def test_an_ego_that_is_not_there():
     recording = street().recording
     for ego in ("eggo", ""):

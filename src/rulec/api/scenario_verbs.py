@@ -61,7 +61,8 @@ class ScenarioVerbs(SessionSettings):
         ``Monitor``, or its snapshot. Without a ``partition`` it is the one whose relations the
         rules read. The ``assumptions`` are about what the scenario leaves unknown or does not
         mention; what else it does not mention has its default, or with ``told_only`` is unknown.
-        Source: algorithm 1 of the paper. Raises RulecError.
+        Source: algorithm 1 of the paper. Raises RulecError, R0418 of a recorded scene whose traffic
+        keeps to the other side than the rules'.
         """
         from rulec.monitoring.assumptions import Assumptions
         from rulec.planning import SceneReading, evaluate, partition_for

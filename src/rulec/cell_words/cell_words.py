@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.cell_words.cell_messages import other_side
 from rulec.cell_words.conduct_words import CONDUCT, ConductWords
 from rulec.cell_words.ego_boxes import EgoBoxes, ego_boxes
 from rulec.cell_words.place_words import (
@@ -55,7 +56,7 @@ class CellWords:
 def cell_words(graph: NavigationGraph, rules: CompiledRulebook) -> CellWords | None:
     """The words that rules read, in the cells of a recorded scene; None of any other scene.
 
-    Nothing is told where the recording would have to be mirrored.
+    Raises RulecError R0418 where the recording would have to be mirrored.
     """
     account = graph.scenario.account
     origin = None if account is None else account.origin
@@ -63,10 +64,7 @@ def cell_words(graph: NavigationGraph, rules: CompiledRulebook) -> CellWords | N
         return None
     side, mirrored = chosen_side(origin.recording, RequestedDrives(), rules.traffic)
     if mirrored:
-        nothing: State = {}
-        states = tuple((nothing,) * len(layer.cells) for layer in graph.layers)
-        types = {name: (own.type, *own.broader) for name, own in graph.objects.items()}
-        return CellWords(states, frozenset(), types, graph.present)
+        raise other_side(graph.scenario.name, str(origin.recording.side), rules.name, rules.traffic)
     probes = probe_drives(graph, origin, rules, side, NEEDS_JUNCTION | NEEDS_CROSSING)
     try:
         frame = RoadFrame(probes)

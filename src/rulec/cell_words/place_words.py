@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -228,18 +228,23 @@ class PlaceWords:
         return words
 
     def _ways(self, spans: Sequence[tuple[int, int, int]], low: float, high: float) -> Words:
-        ways: Words = {}
-        for name in self._distances:
-            values = [
-                self._lanes[number].probe.states[place].get(name, UNKNOWN)
-                for number, _, _ in spans
-                for place in np.flatnonzero(
-                    (self._lanes[number].s >= low - EVERY_M)
-                    & (self._lanes[number].s <= high + EVERY_M)
-                ).tolist()
-            ]
-            ways[name] = hull(values)
-        return ways
+        return {name: hull(self._to(name, spans, low, high)) for name in self._distances}
+
+    def _to(
+        self, name: str, spans: Sequence[tuple[int, int, int]], low: float, high: float
+    ) -> Iterator[Any]:
+        """How far it is at all places between two."""
+        for number, _, _ in spans:
+            lane = self._lanes[number]
+            begin = int(np.searchsorted(lane.s, low - EVERY_M, "left"))
+            end = int(np.searchsorted(lane.s, high + EVERY_M, "right"))
+            values = [state.get(name, UNKNOWN) for state in lane.probe.states[begin:end]]
+            yield from values
+            for before, after in pairwise(values):
+                if UNKNOWN not in (before, after) and _ends(after)[1] > _ends(before)[1]:
+                    # The next one is from here on what was reached between the two places
+                    nearest = max(_ends(before)[0] - EVERY_M, 0.0)
+                    yield Interval(nearest, _ends(after)[1] + EVERY_M)
 
 
 def _runs(probe: LaneProbe, names: frozenset[str]) -> _Lane:

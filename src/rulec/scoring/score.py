@@ -45,9 +45,9 @@ def score(
     """Judge what one might do next, each candidate by itself, after what was before.
 
     ``candidates`` (candidate x state x 4) has x, y (m), heading (rad) and speed (m/s), a state for
-    each step of the world from the one after its present on; ``after`` (state x 4) leads up to it.
-    Each is what ``verify_recording`` says of the recording in which ego drives so, past and
-    candidate together. Raises RulecError R0780.
+    each step of the world from the one after its present on; ``after`` (state x 4) leads up to it,
+    and may have no states. Each is what ``verify_recording`` says of the recording in which ego
+    drives so, past and candidate together. Raises RulecError R0780.
     """
     paths, past = world.candidates_of(candidates), world.past_of(after)
     # Many candidates have some ten thousand parts, none of which is garbage

@@ -27,6 +27,7 @@ from rulec.scoring.scoring_messages import BAD_CANDIDATES
 from rulec.value_display import short_repr
 
 _COLUMNS = ("x", "y", "heading", "speed")
+_NOTHING = 0, len(_COLUMNS)
 _BESIDE_M = 0.5
 """Of 1,900 states of recorded vehicles one is farther beside all lanes."""
 
@@ -115,9 +116,7 @@ class TrafficWorld:
 
     def past_of(self, after: ArrayLike | None) -> NDArray[float64]:
         """What was before as an array, empty for nothing. Raises RulecError R0780."""
-        if after is None:
-            return np.empty((0, len(_COLUMNS)))
-        return _numbers("what was before", after, 2)
+        return _numbers("what was before", [] if after is None else after, 2, or_none=True)
 
     def candidates_of(self, candidates: ArrayLike) -> NDArray[float64]:
         """Candidates as an array. Raises RulecError R0780."""
@@ -225,7 +224,9 @@ class TrafficWorld:
         return float(np.ptp(ahead)), float(np.ptp(aside)), -float(ahead.min() + ahead.max()) / 2
 
 
-def _numbers(what: str, values: ArrayLike, n_axes: int) -> NDArray[float64]:
+def _numbers(
+    what: str, values: ArrayLike, n_axes: int, *, or_none: bool = False
+) -> NDArray[float64]:
     try:
         given = np.array(values, subok=True)
         # NumPy makes numbers of texts and days, and of what a mask says is none
@@ -235,6 +236,9 @@ def _numbers(what: str, values: ArrayLike, n_axes: int) -> NDArray[float64]:
         is_odd = True
     if is_odd:
         raise BAD_CANDIDATES.error(None, f"{what}: that is no array of numbers")
+    # So is a past that is cut before its first state, also as a list
+    if or_none and found.shape in {(0,), _NOTHING}:
+        return np.empty(_NOTHING)
     shape = "(candidates, states, 4)" if n_axes == 3 else "(states, 4)"
     if found.ndim != n_axes or found.shape[-1] != len(_COLUMNS) or not found.size:
         message = f"{what}: an array of shape {found.shape}"
