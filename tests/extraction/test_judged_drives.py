@@ -265,3 +265,27 @@ def test_who_comes_back_from_the_other_half_before_one_that_it_has_overtaken(boo
     states = {k: replace(state, speed=float(speeds[k])) for k, state in car.states.items()}
     found = violated(recording(lanes, [replace(car, states=states), behind]), machines(book))
     assert ("safe_return" in found["7"]) is blamed
+
+
+@pytest.mark.parametrize(
+    ("walks_at", "begins_m", "found"),
+    [(-1.5, 44, "open"), (-1.5, 46, "violated"), (-3.5, 44, "kept"), (-3.5, 46, "kept")],
+)
+def test_whom_ego_goes_past_between_two_states(walks_at, begins_m, found):
+    """Ego, 14 m/s and 4 m long, comes 6.4 m a state nearer to one of 0.5 m that walks ahead.
+
+    Their bodies are level where their middles are within 2.25 m: from 44 m on these are 3.2 m from
+    each other in state 8 and as far in state 9, from 46 m on 1.2 m in state 8. Across the road
+    there are 0.4 m between them, or 2.4 m, where the law wants 1.5 m in town and 2 m outside.
+    """
+    lane = straight(1, 0, 600, width=8.0, types=frozenset({"urban"}))
+    car = vehicle(7, {k: (begins_m + 7 * k, 0.0) for k in range(20)}, speed=14.0, width=1.7)
+    places = {k: (98.4 + 0.6 * k, walks_at) for k in range(20)}
+    walker = vehicle(8, places, "pedestrian", length=0.5, width=0.5, speed=1.2)
+    (judged,) = RecordingVerdicts(
+        recording([lane], [car, walker]), GERMAN, RequestedDrives(("7",)), ""
+    ).answers()
+    asked, answer = "lateral_gap_to_pedestrians", judged.answer
+    assert asked not in {rule.rule for rule in answer.not_judged}
+    assert (asked in {rule.rule for rule in answer.open}) is (found == "open")
+    assert (asked in {rule.rule for rule in answer.violations}) is (found == "violated")

@@ -46,6 +46,10 @@ _EDGE_M, _ROOM_M = 0.5, 3.05
 """Who parks does so at the edge; the widest vehicle (2.55 m) gets by with half a metre more."""
 
 
+_ASKED_FOR_M = 3.0
+"""No law asks for more room between a vehicle and a cycle, or people in the road."""
+
+
 def participant_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
     """The signals of objects, those of the names."""
     return signals_by(_PASSES, context, names)
@@ -59,19 +63,34 @@ def _station(context: DriveContext) -> SignalColumns:
     """The stations; unknown within the tolerance of places, but for who passes.
 
     There only the moment is in doubt. Who gets on so slowly that it is for long is beside ego, or
-    is not, all that time.
+    is not, all that time. Unknown, too, of cycles and people whom nobody saw beside ego.
     """
     station, others = relations.station(context), relations.possible_stations(context)
     doubtful = np.logical_or.reduce([station != codes for codes in others])
     there = context.relevant & ~np.isnan(context.extents.s_min)
     longest = round(context.thresholds.passed_s / context.recording.step_s)
+    doubtful &= ~only_when(station, doubtful, there, longest, context.spans)
     return SignalColumns(
         about={"station": station},
-        unknown={
-            "station": doubtful & ~only_when(station, doubtful, there, longest, context.spans)
-        },
+        unknown={"station": doubtful | _passed_unseen(context)},
         texts={"station": STATIONS},
     )
+
+
+def _passed_unseen(context: DriveContext) -> Flags:
+    """Flags of cycles and people near ego's side whom it went past from one state to the next.
+
+    In both of these: how near it was as it was beside them lies in between.
+    """
+    passed, spans = np.zeros(context.relevant.shape, dtype=bool), context.spans
+    rows = np.flatnonzero(context.tracks.of_type("vulnerable_user"))
+    station = relations.station(context)[rows]
+    near = (relations.way_across(context)[rows] < _ASKED_FOR_M) & context.relevant[rows]
+    ahead = near & (station == relations.BEHIND)
+    past = near & (station == relations.IN_FRONT_OF)
+    comes = past & spans.before(ahead)
+    passed[rows] = comes | (ahead & spans.after(comes))
+    return passed
 
 
 def _lateral(context: DriveContext) -> SignalColumns:
