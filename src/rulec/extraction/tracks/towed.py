@@ -12,6 +12,9 @@ _DRAWBAR_M = 1.5
 _STEADY_M = 0.4
 """Nor is its distance spread by more: nobody who drives keeps so close to another so evenly."""
 
+_ASIDE_M = 2.0
+"""Nor is its middle ever farther aside of the line that it heads along."""
+
 _FAST_MPS, _LEAST_S = 8.0, 2.0
 """Told is this at such a speed, and of who is there for so long: queues that creep look alike."""
 
@@ -35,5 +38,7 @@ def towed_by(tracks: Tracks, row: int, step_s: float) -> str | None:
     reach = (tracks.lengths[others] + tracks.lengths[row]) / 2
     close = (ahead > reach / 2) & (away.mean(axis=1) < reach + _DRAWBAR_M)
     close &= away.std(axis=1) <= _STEADY_M
+    aside = np.abs(y * np.cos(heading) - x * np.sin(heading)).max(axis=1, initial=0.0)
+    close &= aside <= _ASIDE_M
     found = others[close & (others != row)]
     return tracks.participants[found[0]].id if len(found) else None
