@@ -92,6 +92,15 @@ def test_the_wrong_way_on_a_motorway():
     assert ["wrong_way" in rules for rules in blamed] == [False, True]
 
 
+def test_who_keeps_right_behind_another_one_is_not_towed():
+    """Ego drives itself, though it stays 1 m behind one of 4.5 m that is as fast all the time."""
+    world = street([car("lead", 10.0, x=-9.5)])
+    x, y, heading, _ = world.past[-1]
+    close = [(x + 10.0 * STEP_S * k, y, heading, 10.0) for k in range(1, 9)]
+    (found,) = assert_equal_to_verify(np.array([close]), world, GERMAN, world.past).candidates
+    assert "following_distance" in {one.rule for one in found.violations}
+
+
 def test_what_a_candidate_jerks_blurs_nothing_that_was_recorded():
     step_s, steps = 0.1, np.arange(20)
     lane = build_lanelet("road", [(-50, 0), (300, 0)], types=["urban"])

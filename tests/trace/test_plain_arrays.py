@@ -13,6 +13,7 @@ from rulec.trace.plain_arrays import (
     medians,
     medians_hold,
     quantile,
+    ranges,
     sorted_in,
 )
 
@@ -35,6 +36,14 @@ def test_quantiles_are_those_of_numpy(numbers, share):
 
 def test_what_is_no_number_has_no_quantile():
     assert np.isnan(quantile(np.array([1.0, np.nan]), 0.5))
+
+
+@given(st.lists(st.tuples(st.integers(-9, 9), st.integers(0, 5)), max_size=9))
+def test_ranges_stand_one_after_the_other(wanted):
+    begins, lengths = np.array(wanted, dtype=np.intp).reshape(-1, 2).T
+    numbers, firsts = ranges(begins, lengths)
+    assert numbers.tolist() == [n for begin, size in wanted for n in range(begin, begin + size)]
+    assert firsts.tolist() == [sum(size for _, size in wanted[:k]) for k in range(len(wanted))]
 
 
 @given(st.lists(st.tuples(st.integers(0, 9), st.integers(-3, 3)), max_size=60), st.booleans())

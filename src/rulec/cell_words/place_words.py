@@ -228,12 +228,12 @@ class PlaceWords:
         return words
 
     def _ways(self, spans: Sequence[tuple[int, int, int]], low: float, high: float) -> Words:
-        return {name: hull(self._to(name, spans, low, high)) for name in self._distances}
+        return {name: hull(self._distances_to(name, spans, low, high)) for name in self._distances}
 
-    def _to(
+    def _distances_to(
         self, name: str, spans: Sequence[tuple[int, int, int]], low: float, high: float
     ) -> Iterator[Any]:
-        """How far it is at all places between two."""
+        """How far it may be to something, at the places of lanes between two."""
         for number, _, _ in spans:
             lane = self._lanes[number]
             begin = int(np.searchsorted(lane.s, low - EVERY_M, "left"))

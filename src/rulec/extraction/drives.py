@@ -157,8 +157,11 @@ class Drives:
         if 2 * len(body.states) < len(body.outlines):
             yield NoDrive(ego, "it has no track: its places are sets that it may be in")
             return
-        if tower := towed_by(self._tracks, row, self.recording.step_s):
-            yield NoDrive(ego, f"`{tower}` tows it")
+        # Whom the file says to be ego drives itself, however near to another one
+        is_ego = ego == self.recording.ego
+        towing = None if is_ego else towed_by(self._tracks, row, self.recording.step_s)
+        if towing is not None:
+            yield NoDrive(ego, f"`{towing}` tows it")
             return
         stretches = self._planned[row] if row in self._planned else self.stretches(row)
         yield from self.along(row, stretches)

@@ -27,7 +27,7 @@ from rulec.scoring.scoring_messages import BAD_CANDIDATES
 from rulec.value_display import short_repr
 
 _COLUMNS = ("x", "y", "heading", "speed")
-_NOTHING = 0, len(_COLUMNS)
+_NO_STATES = 0, len(_COLUMNS)
 _BESIDE_M = 0.5
 """Of 1,900 states of recorded vehicles one is farther beside all lanes."""
 
@@ -237,8 +237,8 @@ def _numbers(
     if is_odd:
         raise BAD_CANDIDATES.error(None, f"{what}: that is no array of numbers")
     # So is a past that is cut before its first state, also as a list
-    if or_none and found.shape in {(0,), _NOTHING}:
-        return np.empty(_NOTHING)
+    if or_none and found.shape in {(0,), _NO_STATES}:
+        return np.empty(_NO_STATES)
     shape = "(candidates, states, 4)" if n_axes == 3 else "(states, 4)"
     if found.ndim != n_axes or found.shape[-1] != len(_COLUMNS) or not found.size:
         message = f"{what}: an array of shape {found.shape}"

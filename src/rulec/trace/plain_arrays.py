@@ -66,6 +66,17 @@ def quantile(values: NDArray[Any], share: float) -> float:
     return float(low + (high - low) * (place - below))
 
 
+def ranges(
+    begins: NDArray[np.intp], lengths: NDArray[np.intp]
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Whole numbers from each beginning on, so many each, one range after the other.
+
+    With where each range begins among them.
+    """
+    firsts = np.cumsum(lengths) - lengths
+    return np.arange(int(lengths.sum())) + np.repeat(begins - firsts, lengths), firsts
+
+
 def in_order(groups: NDArray[np.intp]) -> NDArray[np.intp]:
     """The places of whole numbers in ascending order; equal ones stay in theirs."""
     # Small ones are sorted in linear time

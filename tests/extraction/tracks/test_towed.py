@@ -1,5 +1,7 @@
 """Who is towed, which nobody drives: bodies of 5 m behind cars of 4 m, in steps of 0.5 s."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -32,6 +34,25 @@ def test_who_is_towed_has_no_drive(apart, mps, speeds_behind, towed):
     (found,) = drives.of("8")
     assert isinstance(found, NoDrive) is towed
     assert not towed or found.why == "`7` tows it"
+
+
+def test_who_has_ever_been_on_the_next_lane_is_not_towed():
+    """It moves over by 3.5 m right behind the other one, which is as far away all the time."""
+    along = 50 + np.cumsum(np.full(12, 6.0))
+    aside = np.interp(np.arange(12), [2, 8], [3.5, 0.0])
+    away = np.sqrt(5.5**2 - aside**2)
+    behind = {k: (float(along[k] - away[k]), float(aside[k])) for k in range(12)}
+    cars = [going(7, 50, 12.0), vehicle(8, behind, length=5.0)]
+    road = [straight(1, 0, 400, left_of="2"), straight(2, 0, 400, y=4.0, right_of="1")]
+    (found,) = Drives(recording(road, cars), "right").of("8")
+    assert not isinstance(found, NoDrive)
+
+
+def test_who_is_ego_by_the_file_is_not_towed():
+    cars = [going(7, 50, SPEEDS), going(8, 44.5, SPEEDS, length=5.0)]
+    found = replace(recording([straight(1, 0, 400)], cars), ego="8")
+    (drive,) = Drives(found, "right").of("8")
+    assert not isinstance(drive, NoDrive)
 
 
 def test_who_is_there_before_is_not_towed_yet():

@@ -45,7 +45,6 @@ _TWO_WHEELED = ("motorcycle", "bicycle")
 _EDGE_M, _ROOM_M = 0.5, 3.05
 """Who parks does so at the edge; the widest vehicle (2.55 m) gets by with half a metre more."""
 
-
 _ASKED_FOR_M = 3.0
 """No law asks for more room between a vehicle and a cycle, or people in the road."""
 

@@ -194,13 +194,13 @@ def _junction_ids(recording: Recording) -> dict[str, str]:
     # Looked for once: on maps without marked junctions that goes through all lanelets
     crossing = junction_lanelets(recording)
     inside = [number for number in lanelets if number in crossing]
-    rails = [
+    with_rails = [
         x.id
         for x in lanelets.values()
         if x.junction and x.id not in inside and {"rail", "level_crossing"} & x.types
     ]
-    rails += sorted(level_crossing_lanelets(recording) - {*inside, *rails})
-    named = {number: lanelets[number].junction for number in (*inside, *rails)}
+    with_rails += sorted(level_crossing_lanelets(recording) - {*inside, *with_rails})
+    named = {number: lanelets[number].junction for number in (*inside, *with_rails)}
     unnamed = [number for number, name in named.items() if not name]
     if unnamed:
         areas = [lanelet_area(lanelets[number]) for number in unnamed]

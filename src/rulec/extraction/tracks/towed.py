@@ -13,10 +13,10 @@ _STEADY_M = 0.4
 """Nor is its distance spread by more: nobody who drives keeps so close to another so evenly."""
 
 _ASIDE_M = 2.0
-"""Nor is its middle ever farther aside of the line that it heads along."""
+"""Nor is who tows it ever farther aside of the line that it heads along."""
 
 _FAST_MPS, _LEAST_S = 8.0, 2.0
-"""Told is this at such a speed, and of who is there for so long: queues that creep look alike."""
+"""Only who gets so fast, and is there for so long, is known to be towed: queues creep alike."""
 
 
 def towed_by(tracks: Tracks, row: int, step_s: float) -> str | None:

@@ -29,6 +29,7 @@ from rulec.extraction.signals.signal_passes import (
 from rulec.extraction.tracks.lane_sets import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.recording import JOINING, Lanelet, LaneMark, Side
+from rulec.trace.plain_arrays import ranges
 
 _SOON_M = 10.0
 """Who is no farther behind ego than this, and what he gains in ``passed_s``, is soon beside it."""
@@ -289,13 +290,12 @@ def _unseen(context: DriveContext, most: int) -> Iterator[tuple[NDArray[intp], .
 
 
 def _around(
-    rows: NDArray[intp], edge: NDArray[intp], ranges: tuple[NDArray[intp], NDArray[intp]]
+    rows: NDArray[intp], edge: NDArray[intp], bounds: tuple[NDArray[intp], NDArray[intp]]
 ) -> tuple[NDArray[intp], ...]:
     """Rows and edges for each state of a range each, and these states."""
-    first, end = ranges
+    first, end = bounds
     lengths = end - first
-    before = np.cumsum(lengths) - lengths
-    states = np.arange(int(lengths.sum())) + np.repeat(first - before, lengths)
+    states, _ = ranges(first, lengths)
     return np.repeat(rows, lengths), np.repeat(edge, lengths), states
 
 

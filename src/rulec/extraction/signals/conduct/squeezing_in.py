@@ -16,6 +16,7 @@ from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.queues import lanes_that_go_on
 from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import JOINING
+from rulec.trace.plain_arrays import ranges
 
 _NO_ROOM_S, _DRAWS_AWAY_MPS = 0.3, 1.0
 """One so near behind ego has no room to react in, unless ego draws away from it."""
@@ -53,15 +54,16 @@ def squeezed(context: DriveContext, ways: Sequence[WayIn]) -> tuple[Flags, Flags
     ego's lane ends: there they let each other in.
     """
     moves = [_moves_over(context, way) for way in ways]
-    begins, reaches, changes = np.array(moves, dtype=intp).reshape(-1, 3).T
+    begins, reaches = np.array(moves, dtype=intp).reshape(-1, 2).T
+    changes = np.array([way.state for way in ways], dtype=intp)
     close = _close_behind(context, changes)
     gave_way, unsure = _gives_way(context, begins, reaches, changes)
     sure = (close | gave_way) & ~_lane_ends(context, begins)
     return sure, (unsure | close | gave_way) & ~sure
 
 
-def _moves_over(context: DriveContext, way: WayIn) -> tuple[int, int, int]:
-    """The states from which ego moves to the other lane, its body is across the mark, and that."""
+def _moves_over(context: DriveContext, way: WayIn) -> tuple[int, int]:
+    """The states from which ego moves to the other lane, and its body is across the mark."""
     own, first = context.ego_extents, int(context.spans.first[way.state])
     first = max(first, way.state - round(_LONGEST_S / context.recording.step_s))
     across = own.across[0, first : way.state] * (1 if way.to_left else -1)
@@ -69,7 +71,7 @@ def _moves_over(context: DriveContext, way: WayIn) -> tuple[int, int, int]:
     begins = first + int(stays[-1]) if len(stays) else first
     beyond = own.left_of_max[0] if way.to_left else -own.left_of_min[0]
     over = np.flatnonzero(beyond[begins : way.state, way.line] > context.thresholds.touching_m)
-    return begins, begins + int(over[0]) if len(over) else way.state, way.state
+    return begins, begins + int(over[0]) if len(over) else way.state
 
 
 def _close_behind(context: DriveContext, changes: NDArray[intp]) -> Flags:
@@ -165,9 +167,7 @@ def _any_between(
         return np.zeros((len(context.relevant), 0), dtype=bool)
     reacts = round(context.thresholds.reaction_s / context.recording.step_s) + 1
     ends = np.minimum(changes + reacts, context.spans.end[changes])
-    lengths = (ends - begins).astype(intp)
-    first = np.cumsum(lengths) - lengths
-    states = np.arange(int(lengths.sum())) + np.repeat(begins - first, lengths)
+    states, first = ranges(begins, ends - begins)
     found: Flags = np.logical_or.reduceat(flags_of(states), first, axis=1)
     return found
 

@@ -19,7 +19,7 @@ from rulec.monitoring.batch.stacked.stack import Places, Stack
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
-from rulec.trace.plain_arrays import distinct
+from rulec.trace.plain_arrays import distinct, ranges
 
 _MOST_TOGETHER = 1 << 20
 """So many states of pairs are looked at together."""
@@ -225,6 +225,5 @@ def _joined(first: Places, second: Places, stack: Stack) -> Iterator[tuple[Place
     for part in distinct(parts):
         own = np.flatnonzero(parts == part)
         repeats = counts[own]
-        before = np.cumsum(repeats) - repeats
-        places = np.arange(repeats.sum()) + np.repeat(begins[own] - before, repeats)
+        places, _ = ranges(begins[own], repeats)
         yield np.repeat(first[own], repeats), second[places]
