@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from rulec.diagnostics import Diagnostic, Fix
+from rulec.diagnostics import Diagnostic
 from rulec.rulebook.elaborate import time_reach_messages as say
 from rulec.rulebook.elaborate.elaboration_messages import short
+from rulec.rulebook.elaborate.reach_of_until import until_warnings
 from rulec.rulebook.names.referenced_names import atoms_in, parts_of
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.rulebook_overlay import Overlay
@@ -29,16 +30,20 @@ def requirement_warnings(
 
 
 def operator_warnings(node: tree.Formula, overlay: Overlay) -> Iterator[Diagnostic]:
-    """Warnings for the operators of time in a formula that reach less far than what follows."""
-    yield from _narrow(node, (), overlay.definitions)
+    """Warnings for the operators of time in a formula that reach less far than it may seem."""
+    narrow = [*_narrow(node, (), overlay.definitions)]
+    yield from narrow
+    for warning in until_warnings(node):
+        if not any(covers(one, warning) for one in narrow):
+            yield warning
 
 
-def covers(fix: Fix | None, warning: Diagnostic) -> bool:
-    """Tell whether a fix rewrites the place of another warning."""
-    if fix is None or warning.place is None or fix.place.file != warning.place.file:
+def covers(first: Diagnostic, warning: Diagnostic) -> bool:
+    """Tell whether what a warning is about, or its fix rewrites, is the place of another one."""
+    place = first.place if first.fix is None else first.fix.place
+    if place is None or warning.place is None or place.file != warning.place.file:
         return False
-    end = (fix.place.end_line or 0, fix.place.end_column or 0)
-    return fix.place.start <= warning.place.start < end
+    return place.start <= warning.place.start < (place.end_line or 0, place.end_column or 0)
 
 
 def _conjuncts(node: tree.Formula) -> Iterator[tree.Formula]:

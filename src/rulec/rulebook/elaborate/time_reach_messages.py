@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rulec.diagnostics import Diagnostic, Fix, Span
 from rulec.diagnostics.code import Code
+from rulec.rulebook.elaborate.elaboration_messages import short
 from rulec.syntax import tree
 
 FIRST_STATE_ONLY = Code(
@@ -28,6 +29,19 @@ NARROW_OPERATOR = Code(
     "these around the operator, as `rulec fmt` does, so that it can be seen.",
     bad="rulebook example\nsignal a, b\nhard rule r { require always a implies b }\n",
     good="rulebook example\nsignal a, b\nhard rule r { require always (a implies b) }\n",
+)
+
+TWO_READINGS = Code(
+    "R0362",
+    title="an `and` or `or` beside `until` can be read in two ways",
+    why="The operators `until`, `release`, `weak until`, `strong release` and `since` bind tighter "
+    "than `and`, `or` and `xor`: `a until b and c` is `(a until b) and c`, which asks for `c` at "
+    "once, not when `b` comes. Many read it the other way. With parentheses around the one part or "
+    "the other everybody sees what is meant; the message has both.",
+    bad="rulebook example\nsignal a, b, c default false\n"
+    "hard rule r { require always (a implies b until c and not a) }\n",
+    good="rulebook example\nsignal a, b, c default false\n"
+    "hard rule r { require always (a implies b until (c and not a)) }\n",
 )
 
 
@@ -66,3 +80,37 @@ def narrow_operator(prefix: tree.Prefix, follows: str, until: int) -> Diagnostic
         severity="warning",
         fix=Fix(whole.place, f"{head} ({inside})"),
     )
+
+
+def two_readings(
+    node: tree.Infix, before: tree.Infix | None, behind: tree.Infix | None
+) -> Diagnostic:
+    """``a until b and c``, with what joins something to the front or the end of it, or both."""
+    start, end = node.span.start, node.span.end
+    operator = _sign(node) + (node.bound.span.text if node.bound else "")
+    left, right = _operand_text(node.left), _operand_text(node.right)
+    now, other, other_end = f"({left} {operator} {right})", left, right
+    if before is not None:
+        start, ahead = before.span.start, f"{_operand_text(before.left)} {_sign(before)}"
+        now, other = f"{ahead} {now}", f"({ahead} {left})"
+    if behind is not None:
+        end, rest = behind.span.end, f"{_sign(behind)} {_operand_text(behind.right)}"
+        now, other_end = f"{now} {rest}", f"({right} {rest})"
+    (join, *_) = [one.operator for one in (behind, before) if one is not None]
+    return TWO_READINGS.at(
+        Span(node.span.source, start, end),
+        f"`{join}` beside `{node.operator}` can be read in two ways",
+        expected=f"this means `{now}`",
+        help=f"write the one you mean: `{now}`, or `{other} {operator} {other_end}`",
+        severity="warning",
+    )
+
+
+def _sign(node: tree.Infix) -> str:
+    return " ".join((node.sign or node.operator).split())
+
+
+def _operand_text(node: tree.Formula) -> str:
+    """An operand on one line, short, in its parentheses if it has some."""
+    grouped = isinstance(node, tree.Grouping) and node.grouped
+    return f"({short(node)})" if grouped else short(node)

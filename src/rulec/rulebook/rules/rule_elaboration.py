@@ -118,7 +118,7 @@ def _time_warnings(item: tree.RuleItem, scope: Scope) -> Iterator[Diagnostic]:
     if item.require is not None:
         for warning in requirement_warnings(item.require, scope.symbols, overlay):
             # What an operator was meant to speak of is not blamed a second time.
-            if not any(covers(one.fix, warning) for one in narrow):
+            if not any(covers(one, warning) for one in narrow):
                 yield warning
 
 
