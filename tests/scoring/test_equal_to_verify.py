@@ -18,6 +18,7 @@ from rulec.recordings.recording_files import read_recording
 from rulec.recordings.recording_format import RecordingSource
 from rulec.scoring.score import score
 from rulec.scoring.traffic_world import TrafficWorld
+from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.recordings import RECORDINGS
 from support.builders.scored_worlds import STEP_S, car, lit_junction, street
 
@@ -151,6 +152,27 @@ def test_recorded_worlds():
                 assert_equal_to_verify(np.array(futures), world, GERMAN, world.past)
                 seen += 1
     assert seen > 20
+
+
+def test_who_only_reaches_over_the_middle_is_judged_without_who_goes_beyond_it():
+    """Both are 20 m behind one that goes straight on as fast as they do."""
+    lanes = [
+        build_lanelet("there", [(-100, 0), (500, 0)], types=["urban"]),
+        build_lanelet("back", [(500, 3.5), (-100, 3.5)], types=["urban"]),
+    ]
+    bodies = [car("ego", 10.0, x=-15.0, count=4), car("slow", 10.0, x=5.0)]
+    world = TrafficWorld(build_recording(lanes, bodies, step_s=STEP_S, side="right"), "ego")
+    reaching, beyond = (
+        [(world.past[-1][0] + 10.0 * STEP_S * k, y, 0.0, 10.0) for k in range(1, 13)]
+        for y in (1.2, 3.5)
+    )
+    scores = assert_equal_to_verify(np.array([reaching, beyond]), world, GERMAN, None)
+    overtaking = [
+        {state["overtaking"] for state in found.drives[0].drive.trace.states}
+        for found in scores.candidates
+    ]
+    # Only who is on the other side may have given up
+    assert overtaking == [{False}, {UNKNOWN}]
 
 
 def test_many_candidates_come_to_what_few_do(monkeypatch):

@@ -54,12 +54,20 @@ def _overtaking(context: DriveContext) -> SignalColumns:
     stands = (context.tracks.speed * KMH < context.thresholds.standing_kmh) & side
     overtakes, unsure = _overtakes(context, ~stands)
     if side.any():
+        side = _with_all_that_joins(context, side, on_both_halves(context))
         goes_round, may_go_round = _overtakes(context, stands & _near_enough_to_go_round(context))
-        side |= on_both_halves(context)
         overtakes = overtakes | goes_round | _meanwhile(context, overtakes, side)
         perhaps = _meanwhile(context, unsure | _close_behind(context), side)
         unsure = unsure | may_go_round | perhaps
     return SignalColumns({"overtaking": overtakes}, unknown={"overtaking": unsure & ~overtakes})
+
+
+def _with_all_that_joins(context: DriveContext, flags: Flags, more: Flags) -> Flags:
+    """Flags, and those of ``more`` without a break between them and a flagged state."""
+    spans, either = context.spans, flags | more
+    outside = spans.latest(~either), spans.next_state(~either)
+    joins: Flags = (spans.latest(flags) > outside[0]) | (spans.next_state(flags) < outside[1])
+    return either & joins
 
 
 def _near_enough_to_go_round(context: DriveContext) -> Flags:
