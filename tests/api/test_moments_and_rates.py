@@ -51,6 +51,15 @@ def test_moments_of_traces_and_of_what_is_none():
         rulec.find("sped > 1", [fast])
 
 
+def test_a_formula_about_an_object_holds_while_it_is_there():
+    """The last state goes on for ever, and of who has left that is its last one."""
+    states = [{"station": {"a": "behind"}} if k in (1, 2) else {} for k in range(4)]
+    left = rulec.Trace("t", 1, {"a": "car"}, states, {"a": (1, 2)})
+    for formula in ("weak previously behind(v)", "eventually behind(v)"):
+        (found,) = rulec.find(f"(v: vehicle) {formula}", [left])
+        assert times([found]) == [("t", 1.0, 2.0, "surely")]
+
+
 def test_rates_are_those_of_the_command(cars, capsys):
     folder, file = cars
     written = folder / "found.jsonl"

@@ -72,6 +72,13 @@ def test_an_implication():
     assert found == Exposure(2, 2, 1.5, 1.5, 1, 1)
 
 
+def test_who_has_left_is_nobody_to_be_exposed_to():
+    """The trigger holds in the second of two states, and where that is repeated for the verdict."""
+    rule = "hard rule r (v: vehicle) { require always (previously behind(v) implies not red) }"
+    found = counted(rule, "behind(a)", "behind(a)", "", "", present={"a": (0, 1)})
+    assert found == Exposure(1, 1, 0.5, 0.5, 0, 0)
+
+
 def test_a_rule_may_be_violated_at_several_opportunities():
     """The verdict knows one violation, the one that cannot be mended."""
     found = counted(IMPLICATION, "red go", "red go", "", "red", "", "red go")

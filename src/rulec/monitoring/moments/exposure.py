@@ -198,7 +198,7 @@ class _Tally:
         n_traces, n_states = self._there.shape
         traces, begins = np.unique(part.choices.trace, return_index=True)
         size = min(n_states, part.sure.shape[1])
-        for level, flags in enumerate((part.sure, part.possible)):
+        for level, flags in enumerate(part.in_trace()):
             exposed = np.logical_or.reduceat(flags[:, :size], begins, axis=0)
             self._exposed[level, traces, :size] |= exposed
             own = part.choices.trace[opportunities[level].rows]

@@ -14,7 +14,6 @@ from rulec.logic.bounds import NotAMultipleError, in_steps
 from rulec.logic.formula import Formula
 from rulec.monitoring.moments.stretches import Flags, stretches_of
 from rulec.monitoring.moments.trace_truth import (
-    FormulaTruth,
     ReadyFormula,
     TraceTruth,
     tables_of,
@@ -50,17 +49,18 @@ def moments(trace: Trace | TraceArrays, query: FormulaQuery) -> list[Moment]:
     tables = tables_of(trace, query.vocabulary)
     truth, n_states = TraceTruth(tables, query.semantics, trace.ends), tables.n_states
     asked = truth.choices_of(query.rule.variables)
-    found: dict[tuple[str, ...], list[tuple[FormulaTruth, int]]] = {}
+    found: dict[tuple[str, ...], list[tuple[Flags, Flags]]] = {}
     for rounded in roundings:
         ready = ReadyFormula(rounded, place=trace.place if isinstance(trace, Trace) else None)
         for part in truth.of(ready, asked):
-            for row in np.flatnonzero(part.possible.any(axis=1)).tolist():
+            sure, possible = (flags[:, :n_states] for flags in part.in_trace())
+            for row in np.flatnonzero(possible.any(axis=1)).tolist():
                 choice = tuple([tables.objects[item] for item in part.choices.items[row]])
-                found.setdefault(choice, []).append((part, row))
+                found.setdefault(choice, []).append((sure[row], possible[row]))
     result = []
     for choice, rows in found.items():
-        possible = np.any([part.possible[row, :n_states] for part, row in rows], axis=0)
-        sure = np.all([part.sure[row, :n_states] for part, row in rows], axis=0)
+        possible = np.any([flags for _, flags in rows], axis=0)
+        sure = np.all([flags for flags, _ in rows], axis=0)
         sure &= len(rows) == len(roundings)
         objects = dict(zip(asked.variables, choice, strict=True))
         result += sorted(_of_one(objects, sure, possible), key=lambda one: one.first)

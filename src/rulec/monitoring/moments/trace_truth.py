@@ -53,14 +53,20 @@ class FormulaTruth:
     """The truth of a formula at every state, a row for each choice of objects.
 
     ``rows`` are which of the choices that were asked about. ``sure`` and ``possible`` (rows x
-    states) are False where not all their objects are there. Behind the last state of a row that
+    states) are False where not all their objects are there. Behind the ``last`` state of a row that
     goes on for ever are those until nothing changes any more.
     """
 
     choices: ChosenObjects
     rows: Places
+    last: Places
     sure: NDArray[np.bool_]
     possible: NDArray[np.bool_]
+
+    def in_trace(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """``sure`` and ``possible`` in states of the trace alone."""
+        there = np.arange(self.sure.shape[1]) <= self.last[:, None]
+        return self.sure & there, self.possible & there
 
 
 def tables_of(trace: Trace | TraceArrays, vocabulary: Vocabulary) -> NameTables:
@@ -147,6 +153,7 @@ class TraceTruth:
         return FormulaTruth(
             choices=own,
             rows=rows,
+            last=last,
             sure=truth.sure & there,
             possible=truth.possible & there,
         )
