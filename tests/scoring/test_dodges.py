@@ -3,7 +3,10 @@
 import numpy as np
 
 from rulec.api.rulebook_compilation import machines
+from rulec.recordings.building import build_lanelet, build_recording
+from rulec.recordings.recording import Light
 from rulec.scoring.score import score
+from rulec.scoring.traffic_world import TrafficWorld
 from support.builders.scored_worlds import STEP_S, along, car, lit_junction, street
 
 GERMAN = machines("de")
@@ -104,3 +107,32 @@ def test_a_verge_is_no_way_past_a_slow_vehicle():
     assert found.allowed.tolist() == [True, False, False]
     assert found.best == 0
     assert found.reward().argmin() == 2
+
+
+def test_looking_back_is_no_way_past_a_red_light():
+    """The lanes of the other direction, on which who looks back is judged, have no light."""
+    ways = {
+        "right": [("in", -100, 60), ("across", 60, 80), ("out", 80, 400)],
+        "left": [("back in", 400, 80), ("back across", 80, 60), ("back", 60, -100)],
+    }
+    lanes = []
+    for y, own in zip((0.0, 3.5), ways.values(), strict=True):
+        for k, (name, begin, end) in enumerate(own):
+            more = {"lights": [Light(0, (("red", 1000),))]} if name == "in" else {}
+            onward = [own[k + 1][0]] if k < 2 else []
+            inside = {"junction": "j"} if k == 1 else {}
+            line = [(begin, y), (end, y)]
+            town = {"types": ["urban"], "limit_mps": 50 / 3.6, **more, **inside}
+            lanes.append(build_lanelet(name, line, successors=onward, **town))
+    ego = car("ego", 10.0, x=-15.0, count=4)
+    made = build_recording(lanes, [ego], step_s=STEP_S, side="right", complete={"light"})
+    world = TrafficWorld(made, "ego")
+    ahead, slowly = on_axis(10.0 * AHEAD), on_axis(-2.0 * AHEAD)
+    paths = np.array([along(path, world.past[-1]) for path in (ahead, ahead, ahead, slowly)])
+    paths[1, :, 2], paths[2, 10:, 2], paths[3, :, 2] = np.pi, 1.8, 0.0
+    found = score(paths, world, GERMAN, world.past)
+    assert found.outcomes("red_light")[0] == "violated"
+    # 2 m/s are 7.2 km/h, as slow as one walks
+    assert found.off_road.tolist() == [0, 20, 10, 0]
+    assert found.allowed.tolist()[:3] == [False] * 3
+    assert found.reward()[1:3].max() < found.reward()[0]

@@ -73,7 +73,7 @@ def _scored(
         # Alone, and before all others, to see what it has violated whatever comes
         bodies.insert(0, world.body_at(past, steps[0]))
     roundings = rounded_rulebooks(rules, world.recording.step_s)
-    beside = world.beside_lanes(paths)
+    beside, back = world.beside_lanes(paths), world.drives_back(paths, past)
     scores: dict[int, CandidateScore] = {}
     for block in _judged(bodies, world, roundings, steps):
         is_every = len(block) == len(bodies)
@@ -81,8 +81,8 @@ def _scored(
             ((_, alone), *block) = block
             before = tuple([one for _, verdict in _verdicts(alone) for one in verdict.violations])
         charged = [
-            _charged(number - is_asked, own, first, beside[number - is_asked])
-            for number, own in block
+            _charged(at, own, first, beside[at], back[at])
+            for at, own in ((number - is_asked, own) for number, own in block)
         ]
         half = first + n_states // 2
         for found in _anew(charged, before, roundings, (first, half)):
@@ -151,10 +151,11 @@ def _charged(
     drives: tuple[DriveVerdict | NoDrive, ...],
     first: int,
     beside: NDArray[np.bool_],
+    back: NDArray[np.bool_],
 ) -> CandidateScore:
     """A candidate from a step on, charged with all that is violated.
 
-    ``beside`` flags its states that are beside all lanes.
+    ``beside`` flags its states that are beside all lanes, ``back`` those in which it drives back.
     """
     violations: list[Violation] = []
     doubtful: list[OpenVerdict] = []
@@ -172,15 +173,17 @@ def _charged(
         for one in drives
         if isinstance(one, DriveVerdict) and isinstance(one.answer, NotJudged)
     ]
-    off_road = int((beside | ~on_road).sum())
-    if off_road and not reasons:
+    off_road = beside | ~on_road
+    if off_road.any() and not reasons:
         reasons = ["it leaves the lanes that lead its way"]
+    if back.any():
+        reasons.append("it drives backwards, faster than at walking pace")
     return CandidateScore(
         number,
         violations=tuple(violations),
         open=tuple(doubtful),
         not_judged=tuple(not_judged.values()),
-        off_road=off_road,
+        off_road=int((off_road | back).sum()),
         why="; ".join(reasons),
         drives=drives,
     )

@@ -32,9 +32,9 @@ class CandidateScore:
     is a state of the candidate, from 0, before 0 one of the past, None if its end decides.
     ``not_judged`` are rules that the world tells too little for. ``off_road`` of its states are in
     no drive, because ego is on no lane there that leads its way, so that no rule is judged in
-    these, or with ego's middle beside all lanes; ``why`` says more. ``drives`` are what
-    ``verify_recording`` gives of past and candidate; of many candidates they are made when they are
-    asked for.
+    these, or with ego's middle beside all lanes, or driven backwards; ``why`` says more. ``drives``
+    are what ``verify_recording`` gives of past and candidate; of many candidates they are made when
+    they are asked for.
     """
 
     __repr__ = short_repr

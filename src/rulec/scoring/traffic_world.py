@@ -16,6 +16,7 @@ from rulec.extraction.candidate_drives import CandidateDrives
 from rulec.extraction.recording_parts import span_of, whole_recording
 from rulec.extraction.selection import RequestedDrives, chosen_side
 from rulec.extraction.tracks.mirror import mirrored_recording
+from rulec.recordings.encodings.speed_units import KMH
 from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.recording import HEADINGS, Participant, Recording
 from rulec.recordings.recording_messages import NOT_IN_RECORDING
@@ -133,6 +134,19 @@ class TrafficWorld:
         near, _ = self._lanes.query(points[off], predicate="dwithin", distance=_BESIDE_M)
         beside[off[near]] = False
         return beside.reshape(paths.shape[:-1])
+
+    def drives_back(self, paths: NDArray[float64], past: NDArray[float64]) -> NDArray[bool_]:
+        """Flags of states to which ego goes against its heading, faster than at walking pace.
+
+        The lanes that it is judged on lead the way that it looks, which is not the one it goes.
+        """
+        before = np.empty_like(paths[:, :1])
+        before[:, 0] = past[-1] if len(past) else paths[:, 0]
+        x, y = np.moveaxis(np.diff(np.concatenate((before, paths), axis=1), axis=1), 2, 0)[:2]
+        is_back = x * np.cos(paths[..., 2]) + y * np.sin(paths[..., 2]) < 0
+        most_mps = self.wanted.thresholds.walking_pace_kmh * KMH
+        back: NDArray[bool_] = is_back & (np.hypot(x, y) > most_mps * self.recording.step_s)
+        return back
 
     def body_along(self, future: NDArray[float64], past: NDArray[float64]) -> Participant:
         """Ego along a candidate after what was before."""
