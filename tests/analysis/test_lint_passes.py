@@ -6,7 +6,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.analysis.lint.antecedents import antecedents, has_constant, occurrence
 from rulec.analysis.lint.conflict_findings import conflicts
 from rulec.analysis.lint.conflict_search import common_objects, conflict
 from rulec.analysis.lint.finding_messages import undecided_diagnostic
@@ -27,6 +26,7 @@ from rulec.logic.printing import formula_text
 from rulec.resource_limits import in_force
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rulebook_model import Axiom, Rule, Variable
+from rulec.rulebook.rules.antecedents import antecedents, has_constant, occurrence
 from rulec.trace import Trace
 from rulec.witnesses.letter_functions import monitor_function
 from rulec.witnesses.object_universe import ObjectUniverse

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from rulec.automata import compiler
 from rulec.automata.alphabet import propositions_of, reads_of
-from rulec.automata.axiom_instances import AxiomInstance, axiom_groups
+from rulec.automata.axiom_groups import axiom_groups
 from rulec.automata.compiler_jobs import Done, Failed, Job
 from rulec.automata.decision_diagrams.diagram_compiler import COMPILER
 from rulec.automata.decision_diagrams.diagrams import TRUE, Diagrams
@@ -22,6 +22,7 @@ from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, Unar
 from rulec.logic.semantics import holds
 from rulec.rulebook.loader import read_rulebook
 from rulec.rulebook.rulebook_model import Axiom
+from rulec.rulebook.rules.axiom_instances import AxiomInstance
 from support.builders.rulebooks import P, Q, always, book, eventually, implies, rule
 from support.generators.random_formulas import ATOMS
 from support.generators.timed_formulas import (

@@ -3,11 +3,12 @@
 from itertools import product
 
 from rulec.automata.alphabet import propositions_of
-from rulec.automata.axiom_instances import axiom_groups, axiom_instances, linked
+from rulec.automata.axiom_groups import axiom_groups
 from rulec.logic.formula import Atom, atoms_of
 from rulec.logic.semantics import holds
 from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rulebook_model import Variable
+from rulec.rulebook.rules.axiom_instances import axiom_instances, linked
 
 TOWN = """
 rulebook town

@@ -35,6 +35,8 @@ FOR_AUTHORS = {
     "R0316": "what the name means",
     "R0320": "which day the law holds from, and what it says then",
     "R0323": "how the rule is said more simply",
+    "R0363": "whether the fact or the rule says too much",
+    "R0409": "which of the facts says too much",
     "R0326": "which objects are counted in place of named",
 }
 """What only the author of a text can say."""

@@ -1,5 +1,7 @@
 """States that contradict facts: reported with the fact and its values, wherever they turn up."""
 
+from dataclasses import replace
+
 import pytest
 
 from rulec.automata.bundle.bundle_file import from_json, to_json
@@ -187,10 +189,28 @@ def test_facts_that_contradict_each_other_leave_no_state():
                 "hard rule u (a: car, b: car) { require s and never p(a) or p(b) }"
             )
         )
-    (found,) = caught.value.diagnostics
+    (found,) = [one for one in caught.value.diagnostics if one.severity == "error"]
     assert found.code == "R0409"
     assert found.message == "`q(c) and not q(d)` can never be a fact"
     assert found.place.line == 3
+    assert found.notes == ("there would be no state with 2 objects of type `car`",)
+
+
+def test_what_a_check_leaves_open_the_compiler_finds():
+    """It has no limit but time; here nothing has checked the facts together."""
+    words = "rulebook a type car signal p(c: car), q(c: car) default false\n"
+    rule = "hard rule r (a: car) { require always p(a) }"
+    first, second = (
+        parse_rulebook(f"{words}fact {fact}\n{rule}")
+        for fact in ("p(c) and q(c)", "not (p(c) and q(c))")
+    )
+    with pytest.raises(RulecError) as caught:
+        compile_rulebook(replace(first, axioms=first.axioms + second.axioms))
+    (found,) = caught.value.diagnostics
+    assert found.code == "R0409"
+    assert found.message == (
+        "these facts contradict each other: `p(c) and q(c)`, `not (p(c) and q(c))`"
+    )
     assert found.notes == ("there would be no state with a `car`",)
 
 

@@ -23,18 +23,11 @@ def propositions_of(formula: ltl.Formula) -> tuple[ltl.Proposition, ...]:
     return tuple(dict.fromkeys(ltl.atoms_of(formula)))
 
 
-def subject_of(proposition: ltl.Proposition) -> object:
-    """The thing whose value makes a proposition true or false."""
-    if isinstance(proposition, ltl.Comparison):
-        return proposition.terms
-    return proposition.name, proposition.arguments
-
-
 def reads_of(formula: ltl.Formula, vocabulary: Vocabulary) -> tuple[Read | NumberRead, ...]:
     """Reads of a formula, in order of first mention, one for each subject."""
     used: dict[object, list[ltl.Proposition]] = {}
     for proposition in propositions_of(formula):
-        used.setdefault(subject_of(proposition), []).append(proposition)
+        used.setdefault(ltl.subject_of(proposition), []).append(proposition)
     return tuple(_read(together, vocabulary) for together in used.values())
 
 
@@ -110,7 +103,7 @@ def letters_with(
         stride *= read.size
     sets: dict[ltl.Proposition, int] = {}
     for proposition in propositions:
-        read, stride = about[subject_of(proposition)]
+        read, stride = about[ltl.subject_of(proposition)]
         # The letters whose digit is 0 come in runs, as long as the stride.
         zeros = ((1 << stride) - 1) * (everything // ((1 << stride * read.size) - 1))
         sets[proposition] = sum(

@@ -18,7 +18,7 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from rulec.automata.alphabet import propositions_of, reads_of
-from rulec.automata.axiom_instances import axiom_groups, axiom_instances
+from rulec.automata.axiom_groups import axiom_groups
 from rulec.automata.bundle.compiled_rulebook import (
     CompiledAxiom,
     CompiledRule,
@@ -39,6 +39,7 @@ from rulec.logic.printing import time_in_words
 from rulec.resource_limits import COMPILING
 from rulec.rulebook.elaborate.rule_messages import no_multiple
 from rulec.rulebook.rulebook_model import Axiom, Rule, Rulebook, parts_of
+from rulec.rulebook.rules.axiom_instances import axiom_instances
 from rulec.rulebook.rules.exemptions import rule_trigger
 from rulec.rulebook.rules.implied_signals import with_implied
 from rulec.version import __version__

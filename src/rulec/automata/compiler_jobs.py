@@ -6,11 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from rulec.automata.axiom_instances import AxiomGroup, AxiomInstance
+from rulec.automata.axiom_groups import AxiomGroup
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read
 from rulec.automata.tables import DeterministicAutomaton
 from rulec.logic.formula import Formula
 from rulec.logic.semantics import Semantics
+from rulec.rulebook.rules.axiom_instances import AxiomInstance
 
 MOST_LETTERS = 1 << 16
 MOST_STEPS_AHEAD = 10_000

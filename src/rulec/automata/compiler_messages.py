@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from rulec.automata.axiom_instances import AxiomInstance
 from rulec.automata.compiler_jobs import Failed
 from rulec.automata.worker.confinement import Confinement
-from rulec.diagnostics import Diagnostic, Label
+from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.code import Code
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import operations_of
-from rulec.logic.printing import formula_text
 from rulec.resource_limits import COMPILING
 from rulec.rulebook.rulebook_model import Rule, provision_note
+from rulec.rulebook.rules.axiom_messages import contradictory_facts
 
 _SIGNALS = ", ".join(f"s{number}" for number in range(1, 18))
 _EACH = [f"not s{number}" for number in range(1, 18)]
@@ -73,20 +72,6 @@ SPOT_NOT_CONFINED = Code(
     kind="circumstance",
 )
 
-CONTRADICTORY_AXIOMS = Code(
-    "R0409",
-    title="facts contradict each other",
-    why="A `fact` holds in every state. If several cannot hold together, or one cannot hold at "
-    "all, there is no state that a rule could speak of. The message names facts that "
-    "contradict each other, none of them needlessly.",
-    bad="rulebook example\nsignal wet, fog default false\nfact wet or fog\nfact not wet\n"
-    "fact not fog\nhard rule r { require always not (wet and fog) }\n",
-    good="rulebook example\nsignal wet, fog default false\nfact not (wet and fog)\n"
-    "hard rule r { require always not wet }\n",
-    kind="compiled",
-)
-
-
 _GET_SPOT = (
     "`pip install spottl` on Linux x86-64 with glibc 2.34 or later, "
     "`conda install -c conda-forge spot` elsewhere; a compiled rulebook runs without Spot"
@@ -107,7 +92,7 @@ def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnosti
                 notes=_provision(rule),
             )
         case Failed("facts", contradiction=instances):
-            return _contradiction(rule, instances)
+            return contradictory_facts(instances, rule.variables)
         case Failed("reach"):
             return SPOT_MISSING.at(
                 rule.span,
@@ -137,25 +122,6 @@ def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnosti
 
 def _provision(rule: Rule) -> tuple[str, ...]:
     return (provision_note(rule.name, rule.cite),) if rule.cite else ()
-
-
-def _contradiction(rule: Rule, instances: tuple[AxiomInstance, ...]) -> Diagnostic:
-    axioms = list(dict.fromkeys(instance.fact for instance in instances))
-    first, *others = axioms
-    facts = ", ".join(f"`{formula_text(axiom.formula)}`" for axiom in axioms)
-    types = {variable.name: variable.type for variable in rule.variables}
-    who = sorted({f"a `{types[name]}`" for instance in instances for name in instance.variables})
-    return CONTRADICTORY_AXIOMS.at(
-        first.span,
-        f"these facts contradict each other: {facts}" if others else f"{facts} can never be a fact",
-        expected="no state can be so",
-        help="a fact is what holds in every state: correct or remove "
-        + ("one of them" if others else "it"),
-        labels=tuple(
-            Label(axiom.span.place, "and so") for axiom in others if axiom.span is not None
-        ),
-        notes=(f"there would be no state with {' and '.join(who)}",) if who else (),
-    )
 
 
 def no_spot(problem: str) -> Diagnostic:

@@ -7,7 +7,6 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from rulec.automata.axiom_instances import axiom_instances
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.book_tests.book_test_messages import unexercised
@@ -24,6 +23,7 @@ from rulec.logic.formula import Comparison, Formula, Proposition, atoms_of
 from rulec.logic.kleene import holds
 from rulec.monitoring.verify import letter_reader_of
 from rulec.rulebook.rulebook_model import Rule
+from rulec.rulebook.rules.axiom_instances import axiom_instances
 from rulec.value_display import short_repr
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.coverage_witness import (

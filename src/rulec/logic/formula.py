@@ -195,6 +195,13 @@ def atoms_of(formula: Formula) -> Iterator[Proposition]:
             yield part
 
 
+def subject_of(proposition: Proposition) -> object:
+    """The thing whose value makes a proposition true or false."""
+    if isinstance(proposition, Comparison):
+        return proposition.terms
+    return proposition.name, proposition.arguments
+
+
 def with_operands(
     operation: Unary | Binary, transform: Callable[[Formula], Formula]
 ) -> Unary | Binary:

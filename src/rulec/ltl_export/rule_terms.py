@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import count
 
-from rulec.automata.alphabet import knowledge, propositions_of, reads_of, subject_of
-from rulec.automata.axiom_instances import axiom_groups, axiom_instances
+from rulec.automata.alphabet import knowledge, propositions_of, reads_of
+from rulec.automata.axiom_groups import axiom_groups
 from rulec.automata.compiler import RuleFormula
 from rulec.automata.compiler_jobs import MOST_STEPS_AHEAD
 from rulec.logic import formula as ltl
@@ -23,6 +23,7 @@ from rulec.logic.sentences.wording import atom_clause, comparison_clause
 from rulec.ltl_export.ltl_messages import too_long
 from rulec.ltl_export.ltl_terms import Term, Terms, conjunction, size_of
 from rulec.rulebook.rulebook_model import Rule, Rulebook
+from rulec.rulebook.rules.axiom_instances import axiom_instances
 
 MOST_SIGNS = 2_000_000
 """Of one rule's text."""
@@ -82,13 +83,13 @@ def rule_terms(rulebook: Rulebook, lowered: RuleFormula, phrases: Mapping[str, s
     groups = axiom_groups(
         own, axiom_instances(rule.variables, rulebook.axioms, vocabulary), vocabulary
     )
-    about = {subject_of(one) for one in own}
+    about = {ltl.subject_of(one) for one in own}
     known = [knowledge(reads_of(formula, vocabulary), own), *(group.known for group in groups)]
     # What facts say of other words alone is no business of the rule's.
     facts = [
         fold_constants(fact)
         for fact in known
-        if any(subject_of(one) in about for one in propositions_of(fact))
+        if any(ltl.subject_of(one) in about for one in propositions_of(fact))
     ]
     spoken_of = dict.fromkeys([*own, *(one for fact in facts for one in propositions_of(fact))])
     # Past operators become propositions of what held an instant ago.

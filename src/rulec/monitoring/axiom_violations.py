@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
 from rulec.logic.formula import Atom, Count, atoms_of
@@ -16,6 +15,7 @@ from rulec.logic.kleene import Unknown, holds, number_of
 from rulec.logic.printing import formula_text, term_text
 from rulec.monitoring.monitoring_messages import VIOLATED_AXIOM
 from rulec.monitoring.state_view import StateView
+from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import Value
 from rulec.vocabulary.vocabulary_model import choices
 

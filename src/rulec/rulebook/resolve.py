@@ -23,6 +23,11 @@ from rulec.rulebook.rulebook_model import (
     Topic,
     Traffic,
 )
+from rulec.rulebook.rules.axiom_contradictions import (
+    all_contradictions,
+    contradictions,
+    ruled_out_triggers,
+)
 from rulec.rulebook.rules.axioms import axioms_of, contradicted
 from rulec.rulebook.rules.implied_signals import with_implied
 from rulec.rulebook.rules.rule_elaboration import translate_rule
@@ -70,8 +75,12 @@ def translated(entry: RuleEntry, names: BookNames, confirmed: bool) -> Translate
     )
     if rule is None or names.symbols.mistakes:
         return TranslatedRule(rule, tuple(mistakes))
-    against = contradicted(rule, names.axioms, names.vocabulary)
-    return TranslatedRule(rule, tuple(mistakes), tuple(against))
+    known = names.axioms, names.vocabulary
+    mistakes += contradictions(rule.variables, *known)
+    if rule.book == names.vocabulary.name:
+        # Whoever says that there are no trams need not drop each rule on trams that is inherited.
+        mistakes += ruled_out_triggers(rule, *known, entry.item.name.span)
+    return TranslatedRule(rule, tuple(mistakes), tuple(contradicted(rule, *known)))
 
 
 def names_of(
@@ -97,6 +106,9 @@ def names_of(
     axioms, wrong_facts = axioms_of(files, symbols, constants)
     mistakes += wrong_facts
     vocabulary = symbols.vocabulary(file.name.text if file.name else "")
+    if not symbols.mistakes and (wrong_facts := all_contradictions(axioms, vocabulary)):
+        mistakes += wrong_facts
+        axioms = ()  # no more is said of what they rule out
     return BookNames(
         symbols,
         constants,
@@ -206,11 +218,12 @@ def resolve_vocabulary(file: tree.File) -> tuple[Vocabulary | None, tuple[Diagno
     """A vocabulary by itself, and what is wrong with it."""
     symbols = symbol_table([file])
     mark_constant_and_presumed(symbols, [file])
-    _, wrong_facts = axioms_of([file], symbols, ConstantsAndMacros(Overlay(), ""))
+    axioms, wrong_facts = axioms_of([file], symbols, ConstantsAndMacros(Overlay(), ""))
+    vocabulary = symbols.vocabulary(file.name.text if file.name else "")
+    if not symbols.mistakes:
+        wrong_facts += all_contradictions(axioms, vocabulary)
     mistakes = [*symbols.mistakes, *wrong_facts]
-    if file.name is None or mistakes:
-        return None, tuple(mistakes)
-    return symbols.vocabulary(file.name.text), ()
+    return None if file.name is None or mistakes else vocabulary, tuple(mistakes)
 
 
 def _levels_of_broken_lines(books: Sequence[tree.File]) -> list[str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
 
-from rulec.analysis.lint.antecedents import Antecedent
 from rulec.analysis.lint.conflict_search import Conflict
 from rulec.analysis.lint.finding_messages import (
     CONFLICTING_RULES,
@@ -20,6 +19,7 @@ from rulec.diagnostics import Diagnostic, Label
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import formula_text
 from rulec.rulebook.rulebook_model import Rule
+from rulec.rulebook.rules.antecedents import Antecedent
 from rulec.witnesses.undecided import UndecidedError
 
 Occurring = Mapping[str, Sequence[tuple[Antecedent, str]]]

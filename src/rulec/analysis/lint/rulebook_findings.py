@@ -7,13 +7,6 @@ from dataclasses import replace
 
 from rulec.analysis.diff.rule_comparison import RuleComparison
 from rulec.analysis.lint import finding_messages
-from rulec.analysis.lint.antecedents import (
-    Antecedent,
-    AntecedentKind,
-    antecedents,
-    has_constant,
-    occurrence,
-)
 from rulec.analysis.lint.conflict_findings import (
     Occurring,
     conflict_questions,
@@ -29,6 +22,13 @@ from rulec.diagnostics import Diagnostic, Label, Span
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.printing import formula_text
 from rulec.rulebook.rulebook_model import Rule, Rulebook
+from rulec.rulebook.rules.antecedents import (
+    Antecedent,
+    AntecedentKind,
+    antecedents,
+    has_constant,
+    occurrence,
+)
 from rulec.witnesses.undecided import UndecidedError
 
 
@@ -130,21 +130,15 @@ def _others(
 def _idle(
     rule: Rule, occurring: Sequence[tuple[Antecedent, str]], answers: RuleAnswers
 ) -> Iterator[tuple[AntecedentKind, Diagnostic]]:
-    what = {
-        "implies": "what stands before `implies`",
-        "phase": "the first phase",
-        "when": "the condition `when`",
-        "unless": "the exception",
-    }
     for trigger, asked_name in occurring:
         try:
             occurs = answers.can_be_kept(asked_name)
         except UndecidedError as problem:
-            question = f"{what[trigger.kind]} can ever hold"
+            question = f"{trigger.in_words} can ever hold"
             yield trigger.kind, finding_messages.undecided_diagnostic(rule, question, problem)
             continue
         if not occurs:
-            message = f"{what[trigger.kind]} of rule `{rule.name}` never holds: "
+            message = f"{trigger.in_words} of rule `{rule.name}` never holds: "
             yield (
                 trigger.kind,
                 finding_messages.NEVER_TRIGGERED.at(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rulec.automata.alphabet import AND, joined, propositions_of
-from rulec.automata.axiom_instances import possible_letters
+from rulec.automata.axiom_groups import possible_letters
 from rulec.automata.compiler_jobs import Compiler, Job, Translated
 from rulec.automata.spot_bridge.spot_automata import VERSION, explore, in_hoa
 from rulec.automata.spot_bridge.spot_formulas import projected

@@ -6,7 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from rulec.automata.alphabet import count_letters, letters_with, propositions_of
-from rulec.automata.axiom_instances import AxiomGroup, AxiomInstance
+from rulec.automata.axiom_groups import AxiomGroup
 from rulec.automata.compiler_jobs import (
     MOST_STEPS_AHEAD,
     BeyondReachError,
@@ -23,6 +23,7 @@ from rulec.automata.worker.random_words import agrees
 from rulec.logic.bounds import operations_of
 from rulec.logic.codec import to_data
 from rulec.logic.formula import Formula
+from rulec.rulebook.rules.axiom_instances import AxiomInstance
 from rulec.validation.table_proof import prove_words
 from rulec.validation.unprovable import UnprovableError
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from rulec.automata.axiom_instances import counts
 from rulec.code_generation.compiled_c.c_library import CLibrary, CMonitor, CSaid
 from rulec.code_generation.monitor_layout import VERDICTS
 from rulec.code_generation.proof.probing_inputs import nests, weighs
@@ -15,6 +14,7 @@ from rulec.monitoring.monitoring_messages import VIOLATED_AXIOM
 from rulec.monitoring.online.four_valued import RunningVerdict, best_of, worst_of
 from rulec.monitoring.online.monitor_state import SoFar
 from rulec.monitoring.online.running_monitor import Monitor
+from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import State
 
 EXCLUDED_BY_FACTS = 5

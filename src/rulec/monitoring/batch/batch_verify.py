@@ -10,7 +10,6 @@ from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
 
-from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError
@@ -36,6 +35,7 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingV
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation
 from rulec.monitoring.verify import rulebook_for_trace, verify_or_reason
+from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import Trace
 from rulec.trace.formats.alike_lines import LineBlock
 from rulec.trace.formats.table_blocks import Block, OddTableError, outlined

@@ -11,7 +11,6 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import SourceLocation, named
 from rulec.monitoring.axiom_violations import check_counting_axioms
@@ -26,6 +25,7 @@ from rulec.monitoring.online.prepared_rule import PreparedRule
 from rulec.monitoring.online.rule_group import GroupNode, RuleGroup, RuleGroups, RulesRead
 from rulec.monitoring.state_validation import check_state, has_partial_values
 from rulec.resource_limits import CHOICES
+from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import State
 from rulec.vocabulary.vocabulary_model import choices
 

@@ -8,7 +8,6 @@ from functools import cache
 from itertools import product
 from math import prod
 
-from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.outcome_machine import KEPT
 from rulec.logic.formula import Count, Formula
@@ -32,6 +31,7 @@ from rulec.planning.maneuvers import Maneuvers
 from rulec.planning.probability.event_probability import Event
 from rulec.planning.product.graph_instances import HARD, SOFT
 from rulec.planning.rule_instances import in_rule_words, past_for
+from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import Trace, TraceGraph
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.object_universe import counts_in

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
 from rulec.automata.outcome_machine import VIOLATED
 from rulec.automata.thresholds import exact_step
@@ -37,6 +36,7 @@ from rulec.monitoring.state_validation import check_objects, check_told
 from rulec.monitoring.uncertainty.judged_rules import JudgedRules, judged_rules
 from rulec.monitoring.uncertainty.uncertain_machine import Answer as RuleAnswer
 from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict, Violation
+from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace.shared_columns import SharedColumns
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_columns import Array

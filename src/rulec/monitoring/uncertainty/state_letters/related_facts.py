@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 
-from rulec.automata.axiom_instances import counts
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_of
 from rulec.rulebook.rulebook_model import Variable
+from rulec.rulebook.rules.axiom_instances import counts
 from rulec.vocabulary import Vocabulary
 
 

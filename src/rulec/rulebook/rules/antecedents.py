@@ -6,7 +6,7 @@ of vacuity in temporal model checking", 2001).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -15,6 +15,13 @@ from rulec.rulebook.rulebook_model import Rule
 
 AntecedentKind = Literal["implies", "phase", "when", "unless"]
 
+_IN_WORDS: Mapping[AntecedentKind, str] = {
+    "implies": "what stands before `implies`",
+    "phase": "the first phase",
+    "when": "the condition `when`",
+    "unless": "the exception",
+}
+
 
 @dataclass(frozen=True, slots=True)
 class Antecedent:
@@ -22,6 +29,11 @@ class Antecedent:
 
     kind: AntecedentKind
     formula: Formula
+
+    @property
+    def in_words(self) -> str:
+        """What it is of its rule."""
+        return _IN_WORDS[self.kind]
 
 
 def antecedents(rule: Rule) -> Iterator[Antecedent]:

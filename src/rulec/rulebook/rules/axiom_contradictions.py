@@ -1,0 +1,89 @@
+"""Facts that leave no state, and facts that leave none in which a rule asks for anything.
+
+That is found without automata, where few values have to be tried; the rest is left to the compiler
+and to `rulec analyze`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from rulec.diagnostics import Diagnostic, Span
+from rulec.logic import formula as ltl
+from rulec.rulebook.rulebook_model import Axiom, Rule, Variable
+from rulec.rulebook.rules import axiom_messages as say
+from rulec.rulebook.rules.antecedents import antecedents, has_constant
+from rulec.rulebook.rules.axiom_instances import (
+    AxiomInstance,
+    axiom_instances,
+    linked,
+    subjects_of,
+)
+from rulec.rulebook.rules.possible_states import may_hold
+from rulec.vocabulary import Vocabulary
+
+
+def contradictions(
+    variables: Sequence[Variable], axioms: Sequence[Axiom], vocabulary: Vocabulary
+) -> Iterator[Diagnostic]:
+    """Errors (R0409) for axioms that leave no state of objects that variables stand for.
+
+    No axiom is in two of them.
+    """
+    for group in linked(axiom_instances(variables, axioms, vocabulary)):
+        rest = list(group)
+        while not may_hold([instance.formula for instance in rest], vocabulary):
+            needed = _needed(rest, (), vocabulary)
+            yield say.contradictory_facts(needed, variables)
+            told = {id(instance.fact) for instance in needed}
+            rest = [instance for instance in rest if id(instance.fact) not in told]
+
+
+def all_contradictions(axioms: Sequence[Axiom], vocabulary: Vocabulary) -> list[Diagnostic]:
+    """The same of the objects that each of the axioms speaks of, each set of facts once."""
+    scenes = dict.fromkeys(axiom.variables for axiom in axioms)
+    found: dict[object, Diagnostic] = {}
+    for variables in sorted(scenes, key=len):
+        for one in contradictions(variables, axioms, vocabulary):
+            found.setdefault((one.place, one.message), one)
+    return list(found.values())
+
+
+def ruled_out_triggers(
+    rule: Rule, axioms: Sequence[Axiom], vocabulary: Vocabulary, span: Span | None
+) -> Iterator[Diagnostic]:
+    """Warnings (R0363), about a place, for what a rule waits for and axioms rule out.
+
+    A fact that an option switches on says nothing of the rulebook with another one.
+    """
+    lasting = [axiom for axiom in axioms if not has_constant(axiom.formula)]
+    groups = [*linked(axiom_instances(rule.variables, lasting, vocabulary))] if lasting else []
+    for what, trigger in _triggers(rule) if groups else ():
+        about = {ltl.subject_of(atom) for atom in ltl.atoms_of(trigger)}
+        related = [one for group in groups if subjects_of(group) & about for one in group]
+        formulas = [instance.formula for instance in related]
+        if not related or may_hold([trigger, *formulas], vocabulary):
+            continue
+        if may_hold([trigger], vocabulary):
+            needed = _needed(related, (trigger,), vocabulary)
+            yield say.ruled_out(what, trigger, needed, span)
+
+
+def _triggers(rule: Rule) -> Iterator[tuple[str, ltl.Formula]]:
+    for antecedent in antecedents(rule):
+        yield f"{antecedent.in_words} of rule `{rule.name}`", antecedent.formula
+    match rule.required or rule.formula:
+        case ltl.Unary(ltl.UnaryOperator.NEVER, operand) if not has_constant(operand):
+            yield f"what rule `{rule.name}` forbids", operand
+
+
+def _needed(
+    instances: Sequence[AxiomInstance], others: Sequence[ltl.Formula], vocabulary: Vocabulary
+) -> tuple[AxiomInstance, ...]:
+    """Instances that cannot hold together with other formulas, none of them needlessly."""
+    needed = [*instances]
+    for instance in instances:
+        fewer = [one for one in needed if one is not instance]
+        if not may_hold([*others, *(one.formula for one in fewer)], vocabulary):
+            needed = fewer
+    return tuple(needed)

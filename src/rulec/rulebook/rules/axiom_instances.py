@@ -1,0 +1,77 @@
+"""Axioms of a rulebook, instantiated for the variables of a rule.
+
+A fact holds for all distinct objects of its types, so it holds for a rule's variables in every way
+that they fit. Facts that count are no part of this: how many objects there are, and which, is
+another matter in every state, so traces alone can tell (``rulec.monitoring.axiom_violations``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from rulec.logic import formula as ltl
+from rulec.logic.free_names import rename_variables
+from rulec.rulebook.rulebook_model import Axiom, Variable
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.vocabulary_model import choices
+
+
+@dataclass(frozen=True, slots=True)
+class AxiomInstance:
+    """Axiom instantiated for a rule's ``variables``, in order of its own."""
+
+    fact: Axiom
+    variables: tuple[str, ...]
+    formula: ltl.Formula
+
+
+def axiom_instances(
+    variables: Sequence[Variable], axioms: Iterable[Axiom], vocabulary: Vocabulary
+) -> tuple[AxiomInstance, ...]:
+    """Instances of every axiom for distinct variables of its types or subtypes.
+
+    Facts without variables are said once, facts that count are left out.
+    """
+    types = {variable.name: variable.type for variable in variables}
+    instances = []
+    for fact in axioms:
+        if counts(fact.formula):
+            continue
+        own = [variable.name for variable in fact.variables]
+        for chosen in choices([variable.type for variable in fact.variables], types, vocabulary):
+            renaming = dict(zip(own, chosen, strict=True))
+            formula = rename_variables(fact.formula, renaming)
+            instances.append(AxiomInstance(fact, chosen, formula))
+    return tuple(instances)
+
+
+def counts(formula: ltl.Formula) -> bool:
+    """Tell whether a formula contains a count of objects."""
+    return any(
+        isinstance(term, ltl.Count)
+        for atom in ltl.atoms_of(formula)
+        if isinstance(atom, ltl.Comparison)
+        for _, term in atom.terms
+    )
+
+
+def linked(instances: Iterable[AxiomInstance]) -> Iterator[tuple[AxiomInstance, ...]]:
+    """The instances in groups that have nothing to do with each other."""
+    groups: list[tuple[set[object], list[AxiomInstance]]] = []
+    for instance in instances:
+        about, members = subjects_of([instance]), [instance]
+        for group in [group for group in groups if group[0] & about]:
+            groups.remove(group)
+            about |= group[0]
+            members = [*group[1], *members]
+        groups.append((about, members))
+    for _, members in groups:
+        yield tuple(members)
+
+
+def subjects_of(instances: Iterable[AxiomInstance]) -> set[object]:
+    """What instances speak of."""
+    return {
+        ltl.subject_of(atom) for instance in instances for atom in ltl.atoms_of(instance.formula)
+    }

@@ -1,0 +1,95 @@
+"""Messages about facts that leave no state, or none in which a rule asks for anything."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+
+from rulec.diagnostics import Diagnostic, Label, Span
+from rulec.diagnostics.code import Code
+from rulec.logic.formula import Formula
+from rulec.logic.printing import formula_text
+from rulec.rulebook.rulebook_model import Axiom, Variable
+from rulec.rulebook.rules.axiom_instances import AxiomInstance
+
+CONTRADICTORY_AXIOMS = Code(
+    "R0409",
+    title="facts contradict each other",
+    why="A `fact` holds in every state. If several cannot hold together, or one cannot hold at "
+    "all, there is no state that a rule could speak of. The message names facts that "
+    "contradict each other, none of them needlessly.",
+    bad="rulebook example\nsignal wet, fog default false\nfact wet or fog\nfact not wet\n"
+    "fact not fog\nhard rule r { require always not (wet and fog) }\n",
+    good="rulebook example\nsignal wet, fog default false\nfact not (wet and fog)\n"
+    "hard rule r { require always not wet }\n",
+)
+
+TRIGGER_RULED_OUT = Code(
+    "R0363",
+    title="facts rule out what a rule waits for",
+    why="The left side of an `implies` that always holds, the first phase of a sequence that is "
+    "forbidden, a condition (`when`), an exception (`unless`), or all that a rule forbids can be "
+    "in no state, because facts say so: the rule, or its exception, has no effect. Either the fact "
+    "says too much, or the rule is not needed. The message names facts that rule it out, none of "
+    "them needlessly; `rulec analyze` finds what can never be without facts, too.",
+    bad="rulebook example\nsignal parked, standing, lit default false\n"
+    "fact parked implies standing\n"
+    "hard rule r { require always (parked and not standing implies lit) }\n",
+    good="rulebook example\nsignal parked, standing, lit default false\n"
+    "fact parked implies standing\n"
+    "hard rule r { require always (parked and standing implies lit) }\n",
+)
+
+
+def contradictory_facts(
+    instances: Iterable[AxiomInstance], variables: Sequence[Variable]
+) -> Diagnostic:
+    """R0409: facts that contradict each other of objects that variables stand for."""
+    instances = tuple(instances)
+    first, *others = axioms = _facts_of(instances)
+    types = {variable.name: variable.type for variable in variables}
+    objects = {name for instance in instances for name in instance.variables}
+    number = Counter(types[name] for name in objects)
+    who = [
+        f"a `{type_}`" if several == 1 else f"{several} objects of type `{type_}`"
+        for type_, several in sorted(number.items())
+    ]
+    return CONTRADICTORY_AXIOMS.at(
+        first.span,
+        f"these facts contradict each other: {_in_words(axioms)}"
+        if others
+        else f"{_in_words(axioms)} can never be a fact",
+        expected="no state can be so",
+        help="a fact is what holds in every state: correct or remove "
+        + ("one of them" if others else "it"),
+        labels=_labels(others, "and so"),
+        notes=(f"there would be no state with {' and '.join(who)}",) if who else (),
+    )
+
+
+def ruled_out(
+    what: str, trigger: Formula, instances: Iterable[AxiomInstance], span: Span | None
+) -> Diagnostic:
+    """R0363: facts rule out what a rule, or its exception, waits for; ``what`` names that."""
+    axioms = _facts_of(instances)
+    return TRIGGER_RULED_OUT.at(
+        span,
+        f"{what} can never be: `{formula_text(trigger)}`",
+        expected=f"ruled out by the fact{'s' if len(axioms) > 1 else ''} {_in_words(axioms)}",
+        help="correct the rule or the fact; as they stand, this part of the rule has no effect",
+        labels=_labels(axioms, "this holds in every state"),
+        severity="warning",
+    )
+
+
+def _facts_of(instances: Iterable[AxiomInstance]) -> list[Axiom]:
+    return list(dict.fromkeys(instance.fact for instance in instances))
+
+
+def _in_words(axioms: Iterable[Axiom]) -> str:
+    return ", ".join(f"`{formula_text(axiom.formula)}`" for axiom in axioms)
+
+
+def _labels(axioms: Iterable[Axiom], words: str) -> tuple[Label, ...]:
+    spans = (axiom.span for axiom in axioms)
+    return tuple(Label(span.place, words) for span in spans if span is not None)

@@ -1,0 +1,140 @@
+"""Whether there is a state in which formulas hold together, by trying values (Davis, Putnam).
+
+What a formula says of other moments, and numbers that are sums, may be anything here: a state that
+is not found there is none, one that is found there may be.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import pairwise
+from math import floor
+
+from rulec.logic import formula as ltl
+from rulec.logic.linear_comparison import stands
+from rulec.vocabulary import Enumeration, Vocabulary
+
+_MOST_LOOKED_AT = 50_000
+"""So often a formula is looked at for one question; what takes more is left to the compiler."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Open:
+    """The value that decides, and is not known yet: of an atom, a number, or a part with time."""
+
+    subject: object
+
+
+def may_hold(formulas: Sequence[ltl.Formula], vocabulary: Vocabulary) -> bool:
+    """False if no state satisfies all formulas; also true where that takes too long to say."""
+    search = _Search(formulas, _values(formulas, vocabulary))
+    return search.finds({})
+
+
+@dataclass(slots=True)
+class _Search:
+    formulas: Sequence[ltl.Formula]
+    values: Mapping[object, Sequence[object]]
+    left: int = field(default=_MOST_LOOKED_AT)
+
+    def finds(self, known: Mapping[object, object]) -> bool:
+        """Tell whether what is known of a state can be made up so that all formulas hold."""
+        self.left -= len(self.formulas)
+        if self.left < 0:
+            return True
+        first: _Open | None = None
+        for formula in self.formulas:
+            value = _truth(formula, known)
+            if value is False:
+                return False
+            if isinstance(value, _Open) and first is None:
+                first = value
+        if first is None:
+            return True
+        values = self.values.get(first.subject, (False, True))
+        return any(self.finds({**known, first.subject: value}) for value in values)
+
+
+def _truth(formula: ltl.Formula, known: Mapping[object, object]) -> bool | _Open:
+    match formula:
+        case ltl.Constant(value):
+            return value
+        case ltl.Atom():
+            subject = ltl.subject_of(formula)
+            found = known.get(subject)
+            return _Open(subject) if found is None else found == (formula.value or True)
+        case ltl.Comparison(terms, relation, limit):
+            number = known.get(terms)
+            return _Open(terms) if number is None else stands(number, relation, limit)  # type: ignore[arg-type]
+        case ltl.Unary(ltl.UnaryOperator.NOT, operand):
+            return _negated(_truth(operand, known))
+        case ltl.Binary(operator, left, right) if operator in _OF_ONE_STATE:
+            first, second = _truth(left, known), _truth(right, known)
+            return _joined(operator, first, second)
+    found = known.get(formula)
+    return _Open(formula) if found is None else found is True
+
+
+_OF_ONE_STATE = frozenset(
+    (
+        *(ltl.BinaryOperator.AND, ltl.BinaryOperator.OR, ltl.BinaryOperator.IMPLIES),
+        *(ltl.BinaryOperator.IFF, ltl.BinaryOperator.XOR),
+    )
+)
+
+
+def _negated(value: bool | _Open) -> bool | _Open:
+    return value if isinstance(value, _Open) else not value
+
+
+def _joined(
+    operator: ltl.BinaryOperator, first: bool | _Open, second: bool | _Open
+) -> bool | _Open:
+    match operator:
+        case ltl.BinaryOperator.IMPLIES:
+            return _joined(ltl.BinaryOperator.OR, _negated(first), second)
+        case ltl.BinaryOperator.AND | ltl.BinaryOperator.OR:
+            settles = operator is ltl.BinaryOperator.OR
+            if first is settles or second is settles:
+                return settles
+            return first if isinstance(first, _Open) else second
+    if isinstance(first, _Open):
+        return first
+    if isinstance(second, _Open):
+        return second
+    return (first is second) is (operator is ltl.BinaryOperator.IFF)
+
+
+def _values(
+    formulas: Iterable[ltl.Formula], vocabulary: Vocabulary
+) -> dict[object, Sequence[object]]:
+    """The values to be tried of all that formulas speak of, the most usual first."""
+    limits: dict[tuple[tuple[Fraction, ltl.Term], ...], set[Fraction]] = {}
+    values: dict[object, Sequence[object]] = {}
+    for proposition in (atom for formula in formulas for atom in ltl.atoms_of(formula)):
+        if isinstance(proposition, ltl.Comparison):
+            limits.setdefault(proposition.terms, set()).add(proposition.limit)
+            continue
+        declaration = vocabulary.declarations[proposition.name]
+        usual = declaration.default
+        every = declaration.values if isinstance(declaration, Enumeration) else (False, True)
+        values[ltl.subject_of(proposition)] = sorted(every, key=lambda value: value != usual)
+    for terms, own in limits.items():
+        is_count = len(terms) == 1 and isinstance(terms[0][1], ltl.Count)
+        values[terms] = _whole(own) if is_count else _around(own)
+    return values
+
+
+def _around(limits: Iterable[Fraction]) -> list[Fraction]:
+    """A number in each part of the line that limits cut it into."""
+    ascending = sorted(limits)
+    between = [(low + high) / 2 for low, high in pairwise(ascending)]
+    return [*ascending, *between, ascending[0] - 1, ascending[-1] + 1]
+
+
+def _whole(limits: Iterable[Fraction]) -> list[Fraction]:
+    """The same for numbers of objects."""
+    near = {floor(limit) + more for limit in limits for more in (-1, 0, 1)}
+    return [Fraction(number) for number in sorted({0, *near}) if number >= 0]
