@@ -80,6 +80,9 @@ def _read(file: Path) -> Mapping[str, list[str]]:
         value = settings.setdefault(name, [])
         if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
             raise _wrong(file, f"`{name}` is not a list of {of}", how)
+        if not all(item.strip() for item in value):
+            here = "; the file's own folder is `.`" if name == "search_path" else ""
+            raise _wrong(file, f"`{name}` has an empty text in its list", f"leave it out{here}")
     return settings
 
 

@@ -37,6 +37,8 @@ def test_without_a_file_there_are_no_folders(tmp_path):
         ('search_path = "books"', "not a list of folders"),
         ("search_path = [1]", "not a list of folders"),
         ('search_path = ["boks"]', "names `boks`, which is no folder"),
+        ('search_path = [""]', "`search_path` has an empty text in its list"),
+        ('exclude = ["old/", " "]', "`exclude` has an empty text in its list"),
     ],
 )
 def test_what_is_wrong(tmp_path, text, words):

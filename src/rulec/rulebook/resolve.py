@@ -26,7 +26,7 @@ from rulec.rulebook.rulebook_model import (
 from rulec.rulebook.rules.axiom_contradictions import (
     all_contradictions,
     contradictions,
-    ruled_out_triggers,
+    impossible_triggers,
 )
 from rulec.rulebook.rules.axioms import axioms_of, contradicted
 from rulec.rulebook.rules.implied_signals import with_implied
@@ -79,7 +79,7 @@ def translated(entry: RuleEntry, names: BookNames, confirmed: bool) -> Translate
     mistakes += contradictions(rule.variables, *known)
     if rule.book == names.vocabulary.name:
         # Whoever says that there are no trams need not drop each rule on trams that is inherited.
-        mistakes += ruled_out_triggers(rule, *known, entry.item.name.span)
+        mistakes += impossible_triggers(rule, *known, entry.item.name.span)
     return TranslatedRule(rule, tuple(mistakes), tuple(contradicted(rule, *known)))
 
 

@@ -154,7 +154,7 @@ def _quoted_edits(
         yield from _deletions(text, start, end)
     if finding.help.startswith("did you mean") and asked:
         yield from _misspelt(asked[0], text, start)
-    for word in asked:
+    for word in dict.fromkeys(asked):
         if word == text[start:end]:
             continue
         first_word, _, rest = word.partition(" ")

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 from math import gcd, perm
 
 from rulec.diagnostics import Diagnostic, Label, did_you_mean, named
@@ -30,6 +31,19 @@ UNUSED_VARIABLE = Code(
     bad="rulebook example\nuse paper\n"
     "hard rule r (v: vehicle, p: pedestrian) { require always not r(v) }\n",
     good="rulebook example\nuse paper\nhard rule r (v: vehicle) { require always not r(v) }\n",
+)
+
+EXCEPTION_BEHIND_ANOTHER = Code(
+    "R0364",
+    title="an exception stands right behind another one",
+    why="Each `unless` of a rule exempts by itself, so `unless signposted unless night` exempts at "
+    "night, signposted or not. It may be read as an exception of the exception, which is one "
+    "formula: `unless signposted and not night`. Where either exempts, each stands on a line of "
+    "its own, as `rulec fmt` writes them.",
+    bad="rulebook example\nsignal turning, signposted, night default false\n"
+    "hard rule r {\n  require never turning\n  unless signposted unless night\n}\n",
+    good="rulebook example\nsignal turning, signposted, night default false\n"
+    "hard rule r {\n  require never turning\n  unless signposted and not night\n}\n",
 )
 
 UNUSED_CONSTANT = Code(
@@ -284,3 +298,20 @@ def _common_step(first: Fraction, second: Fraction) -> Fraction:
     return Fraction(
         gcd(first.numerator * second.denominator, second.numerator * first.denominator), below
     )
+
+
+def exceptions_on_one_line(item: tree.RuleItem) -> Iterator[Diagnostic]:
+    """A warning for each exception that stands on the line on which another one ends."""
+    for first, second in pairwise(item.unless):
+        before, here = first.span.place, second.span.place
+        same_line = (before.file, before.end_line) == (here.file, here.line)
+        if same_line and not second.also:
+            yield EXCEPTION_BEHIND_ANOTHER.at(
+                second.span,
+                "this exempts besides the exception before it, and takes nothing from it",
+                expected="another exception of the whole rule",
+                help="for an exception of the exception write `unless p and not q`; where either "
+                "exempts, begin a new line",
+                labels=(Label(before, "this exempts by itself"),),
+                severity="warning",
+            )

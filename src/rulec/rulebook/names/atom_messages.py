@@ -31,8 +31,8 @@ UNKNOWN_VARIABLE = Code(
     why="The variables of a rule are those in the parentheses behind its name, each with a type.",
     bad="rulebook example\nuse paper\nhard rule r (v: vehicle) { require always not r(w) and b(v) "
     "}\n",
-    good="rulebook example\nuse paper\nhard rule r (v: vehicle) { require never (r(v) and b(v)) "
-    "}\n",
+    good="rulebook example\nuse paper\n"
+    "hard rule r (v: vehicle) { require never (r(v) and next b(v)) }\n",
 )
 
 UNKNOWN_SIDE = Code(

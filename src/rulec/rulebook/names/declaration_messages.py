@@ -9,6 +9,7 @@ from rulec.diagnostics import Diagnostic, Label, Span, any_of, did_you_mean, nam
 from rulec.diagnostics.code import Code
 from rulec.rulebook.names.word_meanings import DescribedWord, offer
 from rulec.syntax import tree
+from rulec.syntax.messages.literals import how_hours_are_written
 from rulec.vocabulary.units import known_unit_names, unit_refusal
 
 UNKNOWN_TYPE = Code(
@@ -244,7 +245,8 @@ def unknown_unit(unit: str, span: Span, quantity: str = "") -> Diagnostic:
     if unit in ("step", "steps"):
         way_out = "steps count in the bounds of temporal operators only, such as `next[2 steps]`"
     else:
-        way_out = did_you_mean(unit, known_unit_names())
+        by_the_clock = how_hours_are_written(span.text)
+        way_out = by_the_clock or did_you_mean(unit, known_unit_names())
     return UNKNOWN_UNIT.at(
         span,
         f"there is no unit `{unit}`",

@@ -44,6 +44,16 @@ LOST_EXCEPTION = Code(
     "override rule keep_near_side { also unless congested at some point }\n",
 )
 
+IDLE_OVERRIDE = Code(
+    "R0261",
+    title="an override changes nothing",
+    why="What `override rule` does not say stays as it is inherited, and whose law the rule is, "
+    "too. An override that says nothing new has no effect: either what is different is missing, or "
+    "the rule is this rulebook's own law as it is, which `confirm rule` says.",
+    bad="rulebook example\nextends vienna\noverride rule keep_near_side { }\n",
+    good='rulebook example\nextends vienna\nconfirm rule keep_near_side { cite "s. 1" }\n',
+)
+
 INHERITED_ALREADY = Code(
     "R0214",
     title="a name is inherited already",
@@ -261,6 +271,19 @@ def priority_circle(
         labels=tuple(
             Label(levels[name].span.place, f"`{name}` was placed here") for name in placed
         ),
+    )
+
+
+def idle_override(item: tree.RuleItem) -> Diagnostic:
+    """An override that says nothing new."""
+    name = item.name.text
+    return IDLE_OVERRIDE.at(
+        item.name.span,
+        f"this override of `{name}` changes nothing",
+        expected="all of it is as it is inherited",
+        help="say what is different; where it is law as it is, write "
+        f'`confirm rule {name} {{ cite "…" }}`; or leave it out',
+        severity="warning",
     )
 
 

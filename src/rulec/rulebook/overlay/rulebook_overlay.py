@@ -245,6 +245,8 @@ class Overlay:
             return
         base = self.rules[item.name.text]
         after = merged(base.item, item)
+        if after == base.item and item.cite is None and not item.confirm:
+            self.mistakes.append(say.idle_override(item))
         gone = lost_exceptions(base.item, item)
         # Who says in words what the rule is now has said what its exceptions are.
         if gone and item.says is None and not item.confirm:

@@ -1,4 +1,4 @@
-"""Facts that leave no state, and facts that leave none in which a rule asks for anything.
+"""Facts that leave no state, and rules that wait for what can be in none.
 
 That is found without automata, where few values have to be tried; the rest is left to the compiler
 and to `rulec analyze`.
@@ -49,24 +49,22 @@ def all_contradictions(axioms: Sequence[Axiom], vocabulary: Vocabulary) -> list[
     return list(found.values())
 
 
-def ruled_out_triggers(
+def impossible_triggers(
     rule: Rule, axioms: Sequence[Axiom], vocabulary: Vocabulary, span: Span | None
 ) -> Iterator[Diagnostic]:
-    """Warnings (R0363), about a place, for what a rule waits for and axioms rule out.
+    """Warnings (R0363), about a place, for what a rule waits for and no state can be like.
 
     A fact that an option switches on says nothing of the rulebook with another one.
     """
     lasting = [axiom for axiom in axioms if not has_constant(axiom.formula)]
     groups = [*linked(axiom_instances(rule.variables, lasting, vocabulary))] if lasting else []
-    for what, trigger in _triggers(rule) if groups else ():
+    for what, trigger in _triggers(rule):
         about = {ltl.subject_of(atom) for atom in ltl.atoms_of(trigger)}
         related = [one for group in groups if subjects_of(group) & about for one in group]
-        formulas = [instance.formula for instance in related]
-        if not related or may_hold([trigger, *formulas], vocabulary):
+        if may_hold([trigger, *(instance.formula for instance in related)], vocabulary):
             continue
-        if may_hold([trigger], vocabulary):
-            needed = _needed(related, (trigger,), vocabulary)
-            yield say.ruled_out(what, trigger, needed, span)
+        needed = _needed(related, (trigger,), vocabulary)
+        yield say.ruled_out(what, trigger, needed, span)
 
 
 def _triggers(rule: Rule) -> Iterator[tuple[str, ltl.Formula]]:

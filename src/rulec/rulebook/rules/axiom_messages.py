@@ -24,14 +24,15 @@ CONTRADICTORY_AXIOMS = Code(
     "hard rule r { require always not wet }\n",
 )
 
-TRIGGER_RULED_OUT = Code(
+IMPOSSIBLE_TRIGGER = Code(
     "R0363",
-    title="facts rule out what a rule waits for",
+    title="what a rule waits for can be in no state",
     why="The left side of an `implies` that always holds, the first phase of a sequence that is "
     "forbidden, a condition (`when`), an exception (`unless`), or all that a rule forbids can be "
-    "in no state, because facts say so: the rule, or its exception, has no effect. Either the fact "
-    "says too much, or the rule is not needed. The message names facts that rule it out, none of "
-    "them needlessly; `rulec analyze` finds what can never be without facts, too.",
+    "in no state: the rule, or its exception, has no effect. No number is above 22 and below 6, "
+    "and an enumeration has one value: where one of them is enough, write `or`. Or facts say so: "
+    "either one says too much, or the rule is not needed. The message names facts that rule it "
+    "out, none of them needlessly. `rulec analyze` looks at several states, too (R0805).",
     bad="rulebook example\nsignal parked, standing, lit default false\n"
     "fact parked implies standing\n"
     "hard rule r { require always (parked and not standing implies lit) }\n",
@@ -70,13 +71,19 @@ def contradictory_facts(
 def ruled_out(
     what: str, trigger: Formula, instances: Iterable[AxiomInstance], span: Span | None
 ) -> Diagnostic:
-    """R0363: facts rule out what a rule, or its exception, waits for; ``what`` names that."""
+    """R0363: what a rule waits for, which ``what`` names, is ruled out, perhaps by facts."""
     axioms = _facts_of(instances)
-    return TRIGGER_RULED_OUT.at(
+    many = "s" if len(axioms) > 1 else ""
+    return IMPOSSIBLE_TRIGGER.at(
         span,
         f"{what} can never be: `{formula_text(trigger)}`",
-        expected=f"ruled out by the fact{'s' if len(axioms) > 1 else ''} {_in_words(axioms)}",
-        help="correct the rule or the fact; as they stand, this part of the rule has no effect",
+        expected=f"ruled out by the fact{many} {_in_words(axioms)}"
+        if axioms
+        else "no state can be so",
+        help="correct the rule or the fact; as they stand, this part of the rule has no effect"
+        if axioms
+        else "a number has one value at a time, and so has an enumeration; where one of these is "
+        "enough write `or`",
         labels=_labels(axioms, "this holds in every state"),
         severity="warning",
     )

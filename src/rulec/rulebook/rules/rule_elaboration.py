@@ -54,6 +54,7 @@ def translate_rule(
     if item.complete and formula is not None:
         mistakes += scope.unused(item.variables, item)
         mistakes += _time_warnings(item, scope)
+        mistakes += say.exceptions_on_one_line(item)
     if (crowded := say.many_choices(item, len(variables))) is not None:
         scope.report(crowded)
     if item.level is not None and levels is not None and item.level.text not in levels:

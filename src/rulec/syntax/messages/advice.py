@@ -46,6 +46,8 @@ def advise_on_bound(scene: ParseContext) -> str:
     if scene.opened("[", "]") is not None and not scene.operand:
         return _inside(scene)
     text, before = scene.text, scene.text_before
+    if text == "[" and scene.operand and _holds_a_formula(scene):
+        return "a formula stands in parentheses, `(p or q)`; brackets hold bounds of time"
     if text == "[" and scene.operand and before in _BOOLEAN:
         return "only operators over time take a bound, such as `always[<= 3 s]`"
     if text == "[" and scene.operator and (near := did_you_mean(before, UNARY_OPERATORS)):
@@ -60,6 +62,12 @@ def advise_on_bound(scene: ParseContext) -> str:
             sign = "" if word == "after" else "<= "
             return f"write `{_WITHIN[word]}[{sign}{amount}] p`"
     return ""
+
+
+def _holds_a_formula(scene: ParseContext) -> bool:
+    """Tell whether what a bracket opens begins with no time."""
+    behind = scene.token(scene.at + 1)
+    return behind is not None and (behind.kind == "word" or behind.text in ("!", "("))
 
 
 def _inside(scene: ParseContext) -> str:
@@ -119,6 +127,11 @@ def _quotes(scene: ParseContext) -> str:
     if token is None:
         return ""
     grouped = scene.is_number(scene.at - 1) and scene.is_number(scene.at + 1)
+    if token.text[0] in "'’" and before is not None and before.kind == "word" and scene.touches():
+        later = "; what is so in the next state is written `next p`" if scene.operator else ""
+        return f"a name has letters, digits and `_` only{later}"
+    if token.kind == "string" and scene.first == "fact" and scene.at == 1:
+        return "a fact has no label: write it above, as a remark that begins with `#`"
     if token.kind == "quoted" or (token.text in _SINGLE and not grouped):
         name = token.text.strip("'") if token.kind == "quoted" else scene.text_behind
         if scene.operand and name.isidentifier():
@@ -210,7 +223,7 @@ def _name(scene: ParseContext) -> str:
 
 def _punctuation(scene: ParseContext) -> str:
     text = scene.text
-    begins = scene.at == 1 and scene.kind == "clause" and text in (":", "=", "-")
+    begins = scene.at == 1 and scene.kind in ("clause", "item") and text in (":", "=", "-")
     ends = "$END" in scene.accepted or scene.accepted == {"STRING"}
     if begins or (text in (";", ".", ",", ":", "=") and ends):
         return f"delete the `{text}`"
@@ -232,9 +245,12 @@ def _parentheses(scene: ParseContext) -> str:
 
 def _closed_before_a_clause(scene: ParseContext) -> str:
     """Advice on what is open where a clause begins: that word may have been meant for a formula."""
-    behind = scene.source.text[scene.tokens[-1].end :].split(maxsplit=1)
-    word = behind[0] if behind else ""
-    if word in ("unless", "when"):
+    behind = scene.source.text[scene.tokens[-1].end :]
+    word, *_ = (*behind.split(maxsplit=1), "")
+    line = behind.lstrip().partition("\n")[0]
+    # On a line of its own, and with no `)` more than it opens, it is a clause as it should be.
+    is_clause = "\n" in behind[: behind.find(word)] and line.count(")") <= line.count("(")
+    if word in ("unless", "when") and not is_clause:
         instead = "p or q` for `p unless q" if word == "unless" else "q implies p` for `p when q"
         return f"`{word}` is a clause behind the whole formula; inside of one write `{instead}`"
     return "close it with `)`"

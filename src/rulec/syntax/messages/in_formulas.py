@@ -6,6 +6,7 @@ from typing import Final
 
 from rulec.diagnostics import did_you_mean
 from rulec.syntax import keywords
+from rulec.syntax.messages.literals import how_hours_are_written
 from rulec.syntax.messages.parse_context import COMPARISONS, ParseContext
 
 _OTHER_SPELLINGS: Final = {
@@ -129,10 +130,24 @@ def _arguments(scene: ParseContext) -> str:
     if scene.accepted == {"COMMA", "RPAR"} and scene.text == ":":
         return f"types stand where variables are declared: leave out `: {scene.text_behind}`"
     if scene.accepted == {"COMMA", "RPAR"} and scene.text == "(":
+        if opened and scene.text_at(opened - 1).casefold() in ("abs", "absolute", "magnitude"):
+            return _ABSOLUTE
         return "an argument is a name; it has no arguments of its own"
+    joins = scene.text in keywords.PRECEDENCE or scene.text in (
+        *keywords.SYMBOLS.values(),
+        *RELATIONS,
+    )
+    if opened and scene.accepted == {"COMMA", "RPAR"} and joins:
+        named = "".join(token.text for token in scene.tokens[opened - 1 : scene.at])
+        return f"close the parenthesis behind the name: `{named})`"
     if scene.accepted == {"COMMA", "RPAR"} and scene.is_word():
         return "separate the names by `,`"
     return ""
+
+
+_ABSOLUTE: Final = (
+    "there is no absolute value: say both limits, such as `-3 km/h <= x and x <= 3 km/h`"
+)
 
 
 def _conditionals(scene: ParseContext) -> str:
@@ -165,6 +180,8 @@ def _numbers(scene: ParseContext) -> str:
     token, text = scene.unexpected, scene.text
     if token is None or not (scene.operator or scene.quantity):
         return ""
+    if text == ":" and scene.is_number(scene.at - 1) and scene.is_number(scene.at + 1):
+        return how_hours_are_written(f"{scene.text_before}:{scene.text_behind}")
     around = scene.is_number(scene.at - 1) and scene.is_number(scene.at + 1)
     if text == "," and around:
         return scene.with_a_point()
@@ -219,6 +236,9 @@ def _comparisons(scene: ParseContext) -> str:
         return "write `a <= x and x <= b`"
     if text == "+" and scene.quantity:
         return "delete the `+`"
+    if text in ("|", "||") and scene.quantity:
+        closing = (token for token in scene.tokens[scene.at + 1 :] if token.text in ("|", "||"))
+        return _ABSOLUTE if any(closing) else ""
     return ""
 
 

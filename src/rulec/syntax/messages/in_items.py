@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Container
 from typing import Final
 
-from rulec.syntax.keywords import OPERATOR_LETTERS, OPERATOR_WORDS, RESERVED
+from rulec.syntax.keywords import OPERATOR_LETTERS, OPERATOR_WORDS, RESERVED, UNARY_OPERATORS
 from rulec.syntax.messages.literals import how_a_date_is_written
 from rulec.syntax.messages.parse_context import SCOPES, ParseContext
 
@@ -62,6 +62,9 @@ def advise_on_item(scene: ParseContext) -> str:
     dates = advise_on_dates(scene)
     if dates:
         return dates
+    asks = text in UNARY_OPERATORS or text in ("if", "every", "some", "no")
+    if asks and scene.accepted == {"$END"} and scene.unexpected and scene.unexpected.first:
+        return "what must hold stands in a rule: `hard rule NAME { require … }`"
     if first == "use" and text == ",":
         return "write a `use` line for each vocabulary"
     if first == "fact" and text == ":" and scene.text_at(1) == "(":
@@ -184,6 +187,8 @@ def advise_on_rule_head(scene: ParseContext) -> str:
         return "a variable is written with its type, such as `v: vehicle`"
     if scene.accepted >= {"COMMA", "RPAR"} and scene.is_word() and scene.text_behind == ":":
         return "separate the variables by `,`"
+    if scene.unexpected is None and "RPAR" in scene.accepted:
+        return "close the list of variables with `)`"
     if text == ":" and "RPAR" not in scene.accepted:
         return "what a rule says stands between `{` and `}`"
     return _HEAD if "RPAR" not in scene.accepted else ""

@@ -10,6 +10,8 @@ _ISO_DATE = re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}")
 
 _DAY_FIRST = re.compile(r"([0-9]{1,2})\. ?([0-9]{1,2})\. ?([0-9]{4})\b")
 
+_BY_THE_CLOCK = re.compile(r"([0-9]{1,2})\s*[hH:.]\s*([0-5][0-9])(?:\s*h)?")
+
 _DIRECTION_CONTROLS = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
 """Unicode's bidirectional controls: they show a text in another order than it is read."""
 
@@ -35,6 +37,17 @@ def how_a_date_is_written(text: str) -> str:
         if not why_not_a_day(written):
             return f"a date is written year-month-day: `{written}`"
     return "a date is written year-month-day, such as `2006-03-28`"
+
+
+def how_hours_are_written(text: str) -> str:
+    """The way out for ``8:30`` or ``8h30``, a time of day by the clock; empty for anything else."""
+    found = _BY_THE_CLOCK.fullmatch(text)
+    if found is None:
+        return ""
+    hours, minutes = map(int, found.groups())
+    exact = minutes % 3 == 0
+    number = f"{hours + minutes / 60:g} h" if exact else f"{hours} h + {minutes} min"
+    return f"a time of day is a number of hours: write `{number}`"
 
 
 def misleads(character: str) -> bool:

@@ -245,7 +245,7 @@ def _open_parenthesis(source: Source, scene: ParseContext) -> tuple[Label, ...]:
     signs = {"RPAR": ("(", ")"), "RSQB": ("[", "]")}
     for kind, (opening, closing) in signs.items():
         opened = scene.opened(opening, closing) if kind in scene.accepted else None
-        if opened is not None and scene.kind in ("clause", "formula", "item"):
+        if opened is not None and scene.kind in ("clause", "formula", "item", "rule_head"):
             place = _span(source, scene.tokens[opened]).place
             return (Label(place, "this is still open"),)
     return ()

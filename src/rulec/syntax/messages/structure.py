@@ -196,7 +196,8 @@ class StructureMessages:
             self.place(index),
             f"`{'in force' if word == 'in' else word}` stands outside of any rule",
             expected="expected a declaration or a rule",
-            help="clauses stand between the `{` and the `}` of their rule",
+            help="clauses stand between the `{` and the `}` of their rule, as in "
+            "`hard rule NAME { require … }`",
             labels=labels,
         )
 
