@@ -11,7 +11,9 @@ import pytest
 import rulec
 from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.cli.main import main
+from rulec.code_generation.compiled_c import c_library
 from rulec.code_generation.compiled_c.c_library import CLibrary
+from rulec.code_generation.compiled_c.rust_library import RustLibrary
 from rulec.code_generation.letter_cells import EXCLUDED, LEAF, letter_cells
 from rulec.code_generation.monitor_files import monitor_texts
 from rulec.code_generation.monitor_layout import monitor_layout
@@ -221,9 +223,59 @@ def test_options_that_make_no_sense(options, tmp_path, capsys):
     assert "--objects" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(("command", "code"), [("no-such-compiler", "R0751"), ("false", "R0752")])
-def test_a_compiler_that_is_not_there_or_fails(esterle, command, code, monkeypatch):
-    monkeypatch.setenv("CC", command)
+@pytest.mark.parametrize(
+    ("script", "code", "said"),
+    [
+        (None, "R0751", "`no-such-compiler` is not found"),
+        ("exit 3", "R0752", "it ended with status 3 and said nothing"),
+        ("kill -SEGV $$", "R0752", "it was ended by signal 11 and said nothing"),
+        (r"printf 'f\374r' >&2; exit 1", "R0752", "has failed: f\N{REPLACEMENT CHARACTER}r"),
+        ("exit 0", "R0752", "it has written no library for this Python: esterle2019.so: "),
+    ],
+)
+def test_a_compiler_that_is_not_there_or_fails(esterle, script, code, said, monkeypatch, tmp_path):
+    compiler = tmp_path / "compiler"
+    if script is not None:
+        compiler.write_text(f"#!/bin/sh\n{script}\n")
+        compiler.chmod(0o755)
+    monkeypatch.setenv("CC", "no-such-compiler" if script is None else str(compiler))
     with pytest.raises(RulecError) as caught:
         CLibrary(monitor_layout(esterle, {}))
-    assert caught.value.diagnostics[0].code == code
+    (found,) = caught.value.diagnostics
+    assert found.code == code
+    assert said in found.message
+    assert "`CC`" in found.help
+
+
+def test_a_variable_that_is_no_command(esterle, monkeypatch):
+    monkeypatch.setenv("CC", "gcc 'unclosed")
+    with pytest.raises(RulecError) as caught:
+        CLibrary(monitor_layout(esterle, {}))
+    (found,) = caught.value.diagnostics
+    assert (found.code, "no command: `gcc 'unclosed`" in found.message) == ("R0751", True)
+
+
+def test_an_empty_variable_is_none(monkeypatch):
+    monkeypatch.setenv("CC", " ")
+    with monkeypatch.context() as patched:
+        patched.setattr("shutil.which", lambda name: f"/bin/{name}")
+        assert c_library.compiler() == ["cc"]
+
+
+def test_rust_that_is_not_there_or_fails(esterle, monkeypatch, tmp_path):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(RulecError) as caught:
+        RustLibrary(monitor_layout(esterle, {}))
+    (missing,) = caught.value.diagnostics
+    assert missing.message == "there is no Rust compiler: `rustc` is not found"
+    assert missing.code == "R0751"
+    (tmp_path / "rustc").write_text(
+        "#!/bin/sh\necho 'error: edition 2021 is unstable' >&2; exit 1\n"
+    )
+    (tmp_path / "rustc").chmod(0o755)
+    with pytest.raises(RulecError) as caught:
+        RustLibrary(monitor_layout(esterle, {}))
+    (failed,) = caught.value.diagnostics
+    assert failed.code == "R0752"
+    assert failed.message.endswith("has failed: error: edition 2021 is unstable")
+    assert failed.help == "update Rust by `rustup update`"

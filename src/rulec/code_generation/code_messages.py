@@ -37,40 +37,65 @@ def no_engine_in_c(error: RulecError, place: SourceLocation | None) -> RulecErro
     return RulecError([replace(one, place=place, help=way_out) for one in error.diagnostics])
 
 
-NO_C_COMPILER = Code(
+NO_MONITOR_COMPILER = Code(
     "R0751",
-    title="there is no C compiler",
-    why="Monitors in C are proved, and judge as the engine `c`, after the user's own compiler has "
-    "compiled them: the one that the environment variable `CC` names, or `cc`. rulec brings none "
-    "along, and takes no other engine instead.",
+    title="there is no compiler for a monitor",
+    why="Monitors are proved, and judge as the engine `c`, after the user's own compiler has "
+    "compiled them: in C the one that the environment variable `CC` names, or `cc`, in Rust "
+    "`rustc`. rulec brings none along, and takes no other engine instead. To write a monitor takes "
+    "none.",
     kind="circumstance",
 )
 
-C_COMPILER_FAILED = Code(
+MONITOR_COMPILER_FAILED = Code(
     "R0752",
-    title="the C compiler has failed",
-    why="What rulec writes is C99, and has to compile without a warning. The message has the "
-    "command and what the compiler said. If it is no compiler for C99, name another one in the "
-    "environment variable `CC`; else please report the rulebook.",
+    title="the compiler of a monitor has failed",
+    why="What rulec writes is C99, or Rust of the edition 2021, and has to compile without a "
+    "warning. The message has the command and what the compiler said. If it is no compiler for "
+    "C99, name another one in the environment variable `CC`; if `rustc` is older than 1.56, get a "
+    "newer one; else please report the rulebook.",
     kind="circumstance",
 )
 
 
 def no_compiler(command: str) -> RulecError:
-    """The error (R0751) about a compiler that is not there."""
-    return NO_C_COMPILER.error(
+    """The error (R0751) about a C compiler that is not there."""
+    return NO_MONITOR_COMPILER.error(
         None,
         f"there is no C compiler: `{command}` is not found",
         help="install one, or name it in the environment variable `CC`",
     )
 
 
-def compiler_failed(command: str, said: str) -> RulecError:
-    """The error (R0752) about a compiler that has failed."""
-    first = "\n".join(said.strip().splitlines()[:5])
-    return C_COMPILER_FAILED.error(
-        None, f"`{command}` has failed: {first}", help="name another compiler in `CC`"
+def unreadable_command(command: str, problem: str) -> RulecError:
+    """The error (R0751) about a ``CC`` that is no command."""
+    return NO_MONITOR_COMPILER.error(
+        None,
+        f"the environment variable `CC` is no command: `{command}` ({problem})",
+        help="name a compiler in it as in a shell, such as `gcc -m32`, or unset it",
     )
+
+
+def no_rust_compiler() -> RulecError:
+    """The error (R0751) about ``rustc``, which is not there."""
+    return NO_MONITOR_COMPILER.error(
+        None,
+        "there is no Rust compiler: `rustc` is not found",
+        help="install Rust, or put its folder on the `PATH`; without `--prove` the monitor is "
+        "written all the same",
+    )
+
+
+def compiler_failed(command: str, said: str, status: int | None = None) -> RulecError:
+    """The error (R0752) about a compiler that has failed, with what it said, or its status."""
+    first = "\n".join(said.strip().splitlines()[:5])
+    if not first:
+        ended = "ended" if status is None else f"ended with status {status}"
+        first = f"it {ended if status is None or status >= 0 else f'was ended by signal {-status}'}"
+        first += " and said nothing"
+    is_rust = command.startswith("rustc")
+    another = "update Rust by `rustup update`" if is_rust else "name another compiler in `CC`"
+    return MONITOR_COMPILER_FAILED.error(None, f"`{command}` has failed: {first}", help=another)
 
 
 MONITOR_DIFFERS = Code(

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.code_generation.code_messages import C_COMPILER_FAILED, no_engine_in_c
+from rulec.code_generation.code_messages import MONITOR_COMPILER_FAILED, no_engine_in_c
 from rulec.code_generation.compiled_c.c_library import CLibrary, compiler, is_all_known
 from rulec.code_generation.monitor_layout import VERDICTS, RuleLayout, monitor_layout
 from rulec.diagnostics import RulecError
@@ -59,7 +59,7 @@ class CEngine:
         try:
             verdict = self.verify(item)
         except RulecError as error:
-            if error.diagnostics[0].code == C_COMPILER_FAILED.code:
+            if error.diagnostics[0].code == MONITOR_COMPILER_FAILED.code:
                 raise  # not of this trace alone
             return NotJudged(item.id, as_answer(error))
         self.judged[verdict.engine] += 1

@@ -14,7 +14,11 @@ from pathlib import Path
 from typing import Any
 
 from rulec.code_generation.c_files import c_header, c_source, in_own_names
-from rulec.code_generation.code_messages import compiler_failed, no_compiler
+from rulec.code_generation.code_messages import (
+    compiler_failed,
+    no_compiler,
+    unreadable_command,
+)
 from rulec.code_generation.monitor_layout import VERDICTS, MonitorLayout
 from rulec.code_generation.written_names import prefix_of
 from rulec.monitoring.online.four_valued import FourValued, RunningVerdict, within
@@ -33,9 +37,13 @@ _HARNESS = Path(__file__).parent.parent / "c_texts" / "harness.c"
 
 def compiler() -> list[str]:
     """The command of the C compiler: what ``CC`` says, or ``cc``. Raises RulecError R0751."""
-    command = shlex.split(os.environ.get("CC", "cc"))
-    if not command or shutil.which(command[0]) is None:
-        raise no_compiler(command[0] if command else "cc")
+    named = os.environ.get("CC", "")
+    try:
+        command = shlex.split(named) or ["cc"]
+    except ValueError as problem:
+        raise unreadable_command(named, str(problem)) from None
+    if shutil.which(command[0]) is None:
+        raise no_compiler(command[0])
     return command
 
 
@@ -43,23 +51,33 @@ def run_compiler(command: list[str], folder: Path) -> str:
     """Run a compiler in a folder; its command line. Raises RulecError R0752."""
     line = shlex.join(command)
     try:
-        done = subprocess.run(
-            command, cwd=folder, capture_output=True, text=True, timeout=300, check=False
-        )
+        done = subprocess.run(command, cwd=folder, capture_output=True, timeout=300, check=False)
     except (OSError, subprocess.TimeoutExpired) as problem:
         raise compiler_failed(line, str(problem)) from None
     if done.returncode:
-        raise compiler_failed(line, done.stderr)
+        # Compilers speak the user's language, in the encoding of their own.
+        raise compiler_failed(line, done.stderr.decode(errors="replace"), done.returncode)
     return line
+
+
+def loaded(library: Path, command: str) -> ctypes.CDLL:
+    """A library that a command has written. Raises RulecError R0752 if it is none."""
+    try:
+        return ctypes.CDLL(str(library))
+    except OSError as problem:
+        said = str(problem).replace(f"{library.parent}/", "")
+        raise compiler_failed(
+            command, f"it has written no library for this Python: {said}"
+        ) from None
 
 
 def first_line_of(command: list[str]) -> str:
     """What a program says of itself; empty if it says nothing."""
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+        done = subprocess.run(command, capture_output=True, timeout=60, check=False)
     except (OSError, subprocess.TimeoutExpired):
         return ""
-    return next(iter(done.stdout.splitlines()), "")
+    return next(iter(done.stdout.decode(errors="replace").splitlines()), "")
 
 
 class CLibrary:
@@ -79,7 +97,7 @@ class CLibrary:
         self._level = "-O2" if optimised else "-O0"
         self._prefix = prefix_of(layout.rulebook.name)
         with tempfile.TemporaryDirectory(prefix="rulec-") as folder:
-            self._library = ctypes.CDLL(str(self._compiled(Path(folder), source)))
+            self._library = loaded(self._compiled(Path(folder), source), self.command)
         self.object_type, self.input_type = structures(layout)
         self.call("state_size").restype = ctypes.c_size_t
         self.call("kept_size").restype = ctypes.c_size_t

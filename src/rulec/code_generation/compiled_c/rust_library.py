@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
+from rulec.code_generation.code_messages import no_rust_compiler
 from rulec.code_generation.compiled_c.c_library import CLibrary, first_line_of, run_compiler
 from rulec.code_generation.rust_files import rust_harness, rust_source
 
@@ -11,12 +13,14 @@ from rulec.code_generation.rust_files import rust_harness, rust_source
 class RustLibrary(CLibrary):
     """A crate's source and what a proof asks of it, compiled by ``rustc``.
 
-    Raises RulecError R0752 if that fails, or is not there.
+    Raises RulecError R0751 if that is not there, R0752 if it fails.
     """
 
     language = "Rust"
 
     def _compiled(self, folder: Path, source: str | None) -> Path:
+        if shutil.which("rustc") is None:
+            raise no_rust_compiler()
         layout, name = self.layout, self._prefix
         (folder / "lib.rs").write_text(rust_source(layout) if source is None else source, "utf-8")
         (folder / "harness.rs").write_text(rust_harness(layout), "utf-8")

@@ -68,9 +68,25 @@ def _casts(layout: MonitorLayout, chance: Random) -> Iterator[dict[str, str]]:
     known = {f"o{number}": chance.choice(kinds) for number in range(6)}
     for _ in range(CASTS):
         there = chance.sample(sorted(known), chance.randrange(5))
-        yield {
-            name: chance.choice(kinds) if chance.random() < 0.1 else known[name] for name in there
-        }
+        yield _seated(
+            layout,
+            {
+                name: chance.choice(kinds) if chance.random() < 0.1 else known[name]
+                for name in there
+            },
+        )
+
+
+def _seated(layout: MonitorLayout, objects: Mapping[str, str]) -> dict[str, str]:
+    """The objects but for those without a seat, which Python's monitor looks at all the same."""
+    room = {stretch: stretch[1] - stretch[0] for stretch in layout.seats.values()}
+    seated = {}
+    for name, kind in objects.items():
+        stretch = layout.seats[kind]
+        if room[stretch] > 0:
+            room[stretch] -= 1
+            seated[name] = kind
+    return seated
 
 
 def _state(
@@ -113,6 +129,8 @@ def table_drives(layout: MonitorLayout, chance: Random, n_states: int) -> Iterat
         if trace.required:
             continue  # who is counted cannot be told
         objects = {item.name: item.type for item in (*rule.variables, *trace.objects)}
+        if len(_seated(layout, objects)) < len(objects):
+            continue
         states = [
             _with(values, _state(layout, chance, objects, (0.0, 1.0))) for values in trace.states
         ]
