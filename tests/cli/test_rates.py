@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import re
 from xml.etree import ElementTree
 
 import pytest
@@ -45,6 +46,19 @@ def test_a_table_as_text(found, capsys):
     assert " ".join(row.split()) == expected
     assert "no opportunity: school_bus" in printed
     assert "not judged: zipper" in printed
+
+
+def test_long_lists_of_rules_are_broken(tmp_path, capsys):
+    names = [f"rule_with_quite_a_long_name_{number}" for number in range(20)]
+    own = {**SHARED, "vehicle": "v", "strength": "hard", "outcome": "not_judged"}
+    drive = {**own, "kind": "drive", "outcome": "kept", "duration_s": 3600.0, "distance_m": 5e4}
+    rows = [drive, *({**own, "kind": "rule", "rule": name} for name in names)]
+    path = tmp_path / "found.jsonl"
+    path.write_text("".join(f"{json.dumps(row)}\n" for row in rows))
+    assert main(["rates", str(path)]) == 0
+    printed = capsys.readouterr().out
+    assert max(map(len, printed.splitlines())) <= 100
+    assert f"  not judged: {', '.join(names)}" in re.sub(r",\n +", ", ", printed)
 
 
 def test_the_same_as_json_and_csv(found, capsys):

@@ -160,6 +160,15 @@ def test_a_report_stands_beside_what_is_written(tmp_path, capsys):
     assert report.count(": 0 differ\n") == 7
 
 
+@pytest.mark.parametrize("seats", ["vehicle=1", "obstacle=1"])
+def test_few_seats_are_proved_on_drives_that_fit(seats, tmp_path):
+    """Beyond them the monitor says less than Python's, as it should."""
+    arguments = ["compile", "esterle2019", "--emit", "c", "--prove", "-o", str(tmp_path)]
+    assert main([*arguments, "--objects", seats]) == 0
+    report = (tmp_path / "esterle2019_proof.txt").read_text()
+    assert report.count(": 0 differ\n") == 7
+
+
 def test_what_differs_is_not_written(tmp_path, monkeypatch):
     part = monitor_proof.ProofPart("steps", 3, ("rule R1, pair of state and class 2",))
     monkeypatch.setattr(monitor_proof, "proof_of", lambda *_: iter([part]))

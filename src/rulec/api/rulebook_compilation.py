@@ -14,6 +14,9 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.argument_kinds import finite
 
+MOST_STEPS = 1000
+"""So many steps a compiled rulebook may be for: each takes time, and a place in its file."""
+
 if TYPE_CHECKING:
     from rulec.automata.outcome_machine import OutcomeMachine
     from rulec.rulebook.rulebook_model import Rulebook
@@ -86,6 +89,10 @@ def compile_rulebook(
     from rulec.automata.thresholds import exact_step
 
     if isinstance(step_s, Sequence):
+        if step_s[MOST_STEPS:]:
+            raise ValueError(
+                f"`step_s` has more than {MOST_STEPS:,} steps: give those that traces have"
+            )
         if len(step_s) != 1:
             return _for_steps(reference, search_path, warn, list(map(exact_step, step_s)), at)
         (step_s,) = step_s

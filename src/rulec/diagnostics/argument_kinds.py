@@ -9,7 +9,7 @@ from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache, wraps
 from inspect import Parameter, signature
-from itertools import chain, repeat
+from itertools import chain, islice, repeat
 from math import isfinite
 from numbers import Rational, Real
 from os import PathLike
@@ -117,7 +117,8 @@ def expected(name: str, annotation: str, value: Any) -> Any:
     if not isinstance(value, Sequence | Set):
         is_array = hasattr(type(value), "ndim")
         return items if kind.name == "Iterable" and not is_array else tuple(items)
-    for _ in items:
+    # All items of a range are of one kind, and there may be more than anybody can look at.
+    for _ in islice(items, 1) if isinstance(value, range) else items:
         pass
     return value
 

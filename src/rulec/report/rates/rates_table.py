@@ -11,14 +11,15 @@ from rulec.rates.exact_intervals import Interval
 from rulec.rates.rule_rates import Rate, RuleRates, ViolationRates
 from rulec.report.text import markdown
 from rulec.report.text.outgoing import spreadsheet_text
-from rulec.report.text.terminal_text import table_lines, visible
+from rulec.report.text.terminal_text import broken, table_lines, visible
 
+_WIDTH = 100
 _HEAD = ("rule", "opportunities", "violated", "per hour", "per 1000 km", "per opportunity")
 
 
 def as_text(rates: ViolationRates) -> str:
     """A table for each group; below each rate the interval over drives, in braces."""
-    lines = [*_about(rates)]
+    lines = [row for line in _about(rates) for row in broken(visible(line), _WIDTH)]
     for group, rules in _groups(rates):
         tested = [rule for rule in rules if _is_tested(rule)]
         lines += ["", *([f"{group}: {_size(rules)}"] if group else [_size(rules)])]
@@ -27,7 +28,8 @@ def as_text(rates: ViolationRates) -> str:
             rows += [tuple(_cells(rule)), *(("", "", "", *more) for more in _below(rule))]
         if tested:
             lines += table_lines(rows, indent="  ", right=(1, 2))
-        lines += [f"  {line}" for line in _others(rules)]
+        for line in _others(rules):
+            lines += broken(visible(line), _WIDTH, "  ", "    ")
     return "\n".join(visible(line.rstrip()) for line in lines)
 
 
