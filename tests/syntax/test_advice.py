@@ -6,7 +6,9 @@ from rulec.diagnostics import RulecError, Source
 from rulec.syntax import parse, parse_formula
 from rulec.syntax.messages.in_items import FORMS, IN_FORCE
 
-COMPARED = "quantities are compared by `=`, formulas by `iff`"
+COMPARED = (
+    "quantities are compared by `=`, formulas by `iff`; one of several values stands alone: `q`"
+)
 NAMES = "names are made of letters, digits and `_`, and begin with a letter"
 AS_OFTEN = "a state is one step long: write it as often as it lasts, with `;` between"
 BOUNDS = "a bound is written `[<= 3 s]`, `[>= 1 s]`, `[1 s .. 4 s]` or `[2 steps]`"
@@ -241,10 +243,10 @@ LINES = [
     ("use paper, road", ",", "write a `use` line for each vocabulary"),
     ("use my words", "words", "a name is one word, such as `my_words`"),
     ('law "A" 2020', "2020", 'the line is written `law "…"` or `law "…" as of 2006-03-28`'),
-    ("hard rule no-u { require p }", "-", NAMES),
+    ("hard rule no-u { require p }", "-", f"{NAMES}, such as `no_u`"),
     ('hard rule "A" { require p }', '"A"', "write `A` without quotes"),
     ('hard rule "Too fast!" { require p }', '"Too fast!"', f"{NAMES}, such as `too_fast`"),
-    ('hard rule "§ 5" { require p }', '"§ 5"', NAMES),
+    ('hard rule "§ 5" { require p }', '"§ 5"', f"{NAMES}; its article is said by `cite`"),
     ("// why", "//", "a comment begins with `#`"),
     ("hard rule a { require p accept { p for 3 s } }", "for", AS_OFTEN),
     ("hard rule a { require p accept { 3 x (not p) } }", "3", AS_OFTEN),
@@ -252,7 +254,11 @@ LINES = [
     ("colour", "colour", "an enumeration is declared by `colour is one of a, b`"),
     ("hard a { require p }", "a", "write `hard rule a`"),
     ("soft a { require p }", "a", "write `soft rule a`"),
-    ("rule a { require p }", "rule", "a rule begins with `hard rule` or `soft rule`"),
+    (
+        "rule a { require p }",
+        "rule",
+        "write `hard rule a`, or `soft rule` for one that may yield",
+    ),
     ("sotf rule a { require p }", "sotf", "did you mean `soft`?"),
     (
         "hard rule a (v car) { require p }",

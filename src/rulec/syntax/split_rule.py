@@ -31,7 +31,8 @@ class RuleSplitter:
             head = Piece("rule_head", first, opened)
         else:
             opened = index - 1
-            missing = self.say.no_open(opened, "the rule's clauses")
+            confirms = self.marks.is_word(first, "confirm")
+            missing = self.say.no_open(opened, "the rule's clauses", confirms=confirms)
             head = Piece("rule_head", first, index, then=missing)
             if not (self._at_clause(index) or self.marks.begins_misspelt(index)):
                 index += self.marks.is_symbol(index, "}")

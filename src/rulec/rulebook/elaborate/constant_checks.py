@@ -93,7 +93,7 @@ def _check_definition(
         relations=dict.fromkeys(untyped, AnyArgument()),
         calls=(Call(item.name.text, None),),
         taken=frozenset(first),
-        of_definition=True,
+        owner="definition",
     )
     meaning = None
     with scope.within_limits("definition", item.name):

@@ -52,7 +52,7 @@ def expand_macro(
         relations=relations,
         calls=(*scope.calls, Call(name, use.span)),
         used=set(),
-        of_definition=True,
+        owner="definition",
     )
     return evaluate(item.body, inner)
 

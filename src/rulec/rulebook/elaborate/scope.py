@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from typing import Literal
 
 from rulec.diagnostics import Diagnostic, Label, Span
 from rulec.logic.formula import Atom, QuantityTerm
@@ -68,7 +69,7 @@ class Scope:
     counted: frozenset[str] = frozenset()
     taken: frozenset[str] = frozenset()
     in_moment: bool = False
-    of_definition: bool = False
+    owner: Literal["rule", "definition", "example"] = "rule"
     blamed: set[int] = field(default_factory=set)
     """Where uses of definitions begin that have been found to be wrong."""
 
@@ -212,10 +213,9 @@ class Scope:
         variable = self.variables.get(argument.text)
         if variable is None:
             variables = list(self.variables)
-            owner = "definition" if self.of_definition else "rule"
             self.report(
                 atom_messages.unknown_variable(
-                    argument, self.symbols, variables, relations, owner=owner
+                    argument, self.symbols, variables, relations, owner=self.owner
                 )
             )
             return None

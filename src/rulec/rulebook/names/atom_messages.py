@@ -321,10 +321,13 @@ def unknown_variable(
 
     In the place of one a definition could take ``relations``.
     """
-    if variables:
+    kind = next(iter(symbols.types), "vehicle")
+    if owner == "example":
+        declared = f"({name.text}: {kind})"
+        way_out = f"declare it behind the rule's name, or behind this example's label: `{declared}`"
+    elif variables:
         way_out = f"the {owner}'s variables are {named(variables)}"
     else:
-        kind = next(iter(symbols.types), "vehicle")
         way_out = f"declare it behind the {owner}'s name, such as `({name.text}: {kind})`"
     return UNKNOWN_VARIABLE.at(
         name.span,

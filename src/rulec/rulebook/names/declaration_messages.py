@@ -247,6 +247,9 @@ def unknown_unit(unit: str, span: Span, quantity: str = "") -> Diagnostic:
     else:
         by_the_clock = how_hours_are_written(span.text)
         way_out = by_the_clock or did_you_mean(unit, known_unit_names())
+        number = span.text.removesuffix(unit).strip()
+        if not way_out and number and unit.isidentifier():
+            way_out = f"for a product write `{number} * {unit}`; units are such as `m`, `km/h`, `s`"
     return UNKNOWN_UNIT.at(
         span,
         f"there is no unit `{unit}`",

@@ -30,7 +30,7 @@ def example_of(example: tree.ExampleItem, formula: ltl.Formula | None, scope: Sc
         if name.text in variables:
             scope.report(twice("object", name, variables[name.text].span))
         variables[name.text] = BoundVariable(known_type, parameter.span, name.text)
-    inside = replace(scope, variables=variables, used=set())
+    inside = replace(scope, variables=variables, used=set(), owner="example")
     types = {name: variable.type for name, variable in variables.items() if variable.type}
     needed: dict[Key, ltl.Atom | ltl.QuantityTerm] = {}
     if formula is not None:

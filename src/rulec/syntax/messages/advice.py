@@ -8,6 +8,7 @@ from typing import Final
 
 from rulec.diagnostics import did_you_mean
 from rulec.syntax.keywords import (
+    CLAUSE_WORDS,
     CONTEXTUAL,
     ITEM_WORDS,
     OPERATOR_LETTERS,
@@ -165,8 +166,13 @@ def _comment(scene: ParseContext) -> str:
 
 def _name_of_two_words(scene: ParseContext) -> str:
     is_name = scene.kind == "rule_head" and scene.text_at(scene.at - 2) == "rule"
-    if is_name and scene.is_word() and scene.text_at(scene.at + 1) in ("(", "{", ""):
-        return f"a name is one word: `{scene.text_before}_{scene.text}`"
+    if is_name and scene.is_word() and scene.text not in ITEM_WORDS | CLAUSE_WORDS:
+        words = [scene.text_before]
+        for token in scene.tokens[scene.at :]:
+            if token.kind != "word" or token.text in ("in", "weight"):
+                break
+            words.append(token.text)
+        return f"a name is one word: `{'_'.join(words)}`"
     assigned = scene.at == 2 and scene.first in ("set", "param", "option", "define", "redefine")
     if assigned and scene.is_word() and scene.text_at(scene.at + 1) in ("=", ":"):
         return f"a name is one word: `{scene.text_before}_{scene.text}`"
@@ -212,8 +218,12 @@ def _name(scene: ParseContext) -> str:
     if scene.kind != "state" and (named or (hyphen and before.kind == "word")):
         rule = "names are made of letters, digits and `_`, and begin with a letter"
         name = re.sub(r"\W+", "_", token.text.casefold()).strip("_")
-        is_text = token.kind == "string" and name.isidentifier() and name not in RESERVED
-        return f"{rule}, such as `{name}`" if is_text else rule
+        if hyphen:
+            name = f"{before.text}_{scene.text_behind}" if scene.text_behind else ""
+        is_text = (token.kind == "string" or hyphen) and name.isidentifier()
+        if is_text and name not in RESERVED:
+            return f"{rule}, such as `{name}`"
+        return f"{rule}; its article is said by `cite`" if before.text == "rule" else rule
     words = (before.text, token.text) if before.kind == token.kind == "word" else ()
     if scene.accepted == {"$END"} and words and not RESERVED.intersection(words):
         lists = scene.first in ITEM_WORDS and scene.at == 2
@@ -240,7 +250,17 @@ def _parentheses(scene: ParseContext) -> str:
         return _closed_before_a_clause(scene)
     if scene.text != ")" or scene.operand or scene.quantity or scene.accepted == {"NAME"}:
         return ""
-    return "delete the `)`, or open it before" if scene.opened("(", ")") is None else ""
+    if scene.opened("(", ")") is not None:
+        return ""
+    if scene.first in ("unless", "when") and _left_open(scene.source.text[: scene.tokens[0].start]):
+        return f"it closes what is open before `{scene.first}`: see there"
+    return "delete the `)`, or open it before"
+
+
+def _left_open(before: str) -> bool:
+    """Tell whether the clause that a text ends with has a parenthesis that is not closed."""
+    clause = before[before.rfind("require") :]
+    return clause.count("(") > clause.count(")")
 
 
 def _closed_before_a_clause(scene: ParseContext) -> str:

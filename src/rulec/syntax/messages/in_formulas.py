@@ -6,6 +6,7 @@ from typing import Final
 
 from rulec.diagnostics import did_you_mean
 from rulec.syntax import keywords
+from rulec.syntax.messages.in_sentences import EGO, advise_on_sentence
 from rulec.syntax.messages.literals import how_hours_are_written
 from rulec.syntax.messages.parse_context import COMPARISONS, ParseContext
 
@@ -62,7 +63,7 @@ def advise_on_formula(scene: ParseContext) -> str:
     """Advice on a mistake in a formula; empty if there is none."""
     if not (scene.operand or scene.operator or scene.quantity or "AND" in scene.accepted):
         return _arguments(scene)
-    for advice in (_conditionals, _numbers, _comparisons, _operators, _joined):
+    for advice in (_conditionals, advise_on_sentence, _numbers, _comparisons, _operators, _joined):
         way_out = advice(scene)
         if way_out:
             return way_out
@@ -75,10 +76,13 @@ def advise_on_aggregate(scene: ParseContext) -> str:
     if scene.operator and before == "at" and scene.text_behind in ("time", "times"):
         return f"for `at {text} {scene.text_behind}` write `always`"
     if scene.operator and before == "no" and scene.is_word():
-        own = scene.text_behind.isidentifier()
-        plain = "" if own else f"`not {text}`, of objects "
-        variable = scene.text_behind if own else "x"
-        return f"for `no {text}` write {plain}`not some {variable}: {text} (…)`"
+        named = scene.text_behind if scene.text_behind.isidentifier() else ""
+        plain = "" if named else f"`not {text}`, of objects "
+        # `no vehicle v`, or `no vehicle beside`
+        said = f"{named}: {text} (…)"
+        if len(named) != 1:
+            said = f"x: {text} ({f'{named}(x)' if named else '…'})"
+        return f"for `no {text}` write {plain}`not some {said}`"
     if text == "every" and scene.operator and scene.is_number(scene.at + 1):
         return "for `p every 4 h` write `always eventually[<= 4 h] p`"
     word = _QUANTIFIERS.get(text) or (_QUANTIFIERS.get(before) if scene.operator else None)
@@ -99,8 +103,14 @@ def advise_on_aggregate(scene: ParseContext) -> str:
         return (
             f"write `every {said} (…)` or `some {said} (…)`, or declare it behind the rule's name"
         )
-    if text in keywords.UNARY_OPERATORS and scene.operator and scene.text_behind in ("", "}"):
-        return f"it stands before what it is about: `{text} p`"
+    if (
+        text in keywords.UNARY_OPERATORS
+        and scene.operator
+        and scene.first not in ("unless", "also")
+    ):
+        if scene.text_behind in ("", "}"):
+            return f"it stands before what it is about: `{text} p`"
+        return f"it stands before what it is about, such as `{text} (speed > 50 km/h)`"
     heads = [index for index in range(scene.at) if scene.text_at(index) in _AGGREGATES]
     if not heads or scene.at - heads[-1] > 4:
         return ""
@@ -140,6 +150,9 @@ def _arguments(scene: ParseContext) -> str:
     if opened and scene.accepted == {"COMMA", "RPAR"} and joins:
         named = "".join(token.text for token in scene.tokens[opened - 1 : scene.at])
         return f"close the parenthesis behind the name: `{named})`"
+    quantifier = _QUANTIFIERS.get(scene.text_before, "")
+    if opened and scene.accepted == {"COMMA", "RPAR"} and scene.is_word() and quantifier:
+        return f"write `{quantifier} x: {scene.text} ({scene.text_at(opened - 1)}(x))`"
     if scene.accepted == {"COMMA", "RPAR"} and scene.is_word():
         return "separate the names by `,`"
     return ""
@@ -197,6 +210,8 @@ def _numbers(scene: ParseContext) -> str:
     ):
         return "a quantity is compared by `<`, `<=`, `=`, `!=`, `>=` or `>`"
     factor = scene.is_word() and text not in keywords.RESERVED
+    if factor and scene.is_number(scene.at - 2) and scene.text_before == "%":
+        return f"write `{scene.text_at(scene.at - 2)} % * {text}` for a product"
     if factor and scene.is_number(scene.at - 2) and scene.before and scene.before.kind == "word":
         return f"write `{scene.text_before} * {text}` for a product"
     return ""
@@ -218,7 +233,9 @@ def _comparisons(scene: ParseContext) -> str:
     if scene.operator and scene.is_number(scene.at + 1) and (sign := _IN_WORDS.get((before, text))):
         return f"how many stands behind what is counted: `count x: vehicle (…) {sign} 3`"
     if scene.operator and text == "==":
-        return "quantities are compared by `=`, formulas by `iff`"
+        value = scene.text_behind if scene.text_behind.isidentifier() else ""
+        alone = f"; one of several values stands alone: `{value}`" if value else ""
+        return f"quantities are compared by `=`, formulas by `iff`{alone}"
     if (scene.operator or scene.quantity) and text in _SIGNS:
         return f"write `{_SIGNS[text]}`"
     if before == "-" and text == ">":
@@ -242,16 +259,6 @@ def _comparisons(scene: ParseContext) -> str:
     return ""
 
 
-_OBLIGATIONS: Final = ("must", "shall", "should", "may", "can")
-_CONJUNCTIONS: Final = {
-    "before": "for `p before q` write `not q weak until p`",
-    "after": "for `q after p` write `not q weak until p`",
-    **dict.fromkeys(("while", "whenever"), "for `q while p` write `p implies q`"),
-    "only": "for `p only if q` write `p implies q`",
-    **dict.fromkeys(("twice", "thrice"), "for `p twice` write `p then not p then p`"),
-}
-
-
 def _operators(scene: ParseContext) -> str:
     if scene.unexpected is None:
         return ""
@@ -260,12 +267,6 @@ def _operators(scene: ParseContext) -> str:
         return f"`{before}` is read as one name; write `{' '.join(before)}`"
     if text == "then" and before == "and":
         return "`then` stands alone between two phases: write `p then q`"
-    if scene.operator and before in _OBLIGATIONS:
-        return f"leave out `{before}`; what a formula says must hold"
-    if scene.operator and text in _OBLIGATIONS:
-        return f"leave out `{text}`: what a formula says must hold, such as `speed <= 50 km/h`"
-    if scene.operator and (meant := _CONJUNCTIONS.get(text)):
-        return meant
     if text == "as" and scene.text_behind == "soon":
         return "for `as soon as p, q` write `always (p implies q)`, or `eventually[<= 2 s] q` in it"
     word = _MEANT.get(text) or (
@@ -302,14 +303,11 @@ def _any_value(scene: ParseContext) -> str:
     return f"each value stands for itself: write `{said}`" if values else ""
 
 
-_EGO: Final = ("ego", "self", "this", "me", "host")
-
-
 def _joined(scene: ParseContext) -> str:
     behind = scene.token(scene.at + 1)
     member = behind is not None and behind.kind == "word" and behind.text not in keywords.RESERVED
     if scene.operator and scene.text == "." and member and scene.before and scene.touches():
-        if scene.text_before in _EGO:
+        if scene.text_before in EGO:
             return f"what is ego's stands alone: write `{scene.text_behind}`"
         return f"what is of an object is written `{scene.text_behind}({scene.text_before})`"
     more = behind is not None and behind.text not in {")", *keywords.CLAUSE_WORDS}

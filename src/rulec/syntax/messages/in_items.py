@@ -17,6 +17,8 @@ FORMS: Final = {
     "semantics": "`stutter` repeats a trace's last state for ever, `finite` (LTLf) ends there",
     "step": "the line is written `step 0.5 s`",
     "priority": "the line is written `priority safety > legal`, the more important one first",
+    "vocabulary": "a rulebook declares its words itself, such as `signal NAME`; a vocabulary is a "
+    "file of its own",
     "type": "a type is declared by `type NAME` or `type NAME is PARENT`",
     "signal": "a signal is declared by `signal NAME`",
     "quantity": "a quantity is declared by `quantity NAME in UNIT default NUMBER`",
@@ -65,6 +67,9 @@ def advise_on_item(scene: ParseContext) -> str:
     asks = text in UNARY_OPERATORS or text in ("if", "every", "some", "no")
     if asks and scene.accepted == {"$END"} and scene.unexpected and scene.unexpected.first:
         return "what must hold stands in a rule: `hard rule NAME { require … }`"
+    is_text = scene.unexpected is not None and scene.unexpected.kind == "string"
+    if first == "provisions" and "SEMICOLON" in scene.accepted and is_text:
+        return "put a `;` between two articles"
     if first == "use" and text == ",":
         return "write a `use` line for each vocabulary"
     if first == "fact" and text == ":" and scene.text_at(1) == "(":
@@ -171,6 +176,8 @@ def advise_on_rule_head(scene: ParseContext) -> str:
     name = text if scene.is_word() and text not in RESERVED else "NAME"
     if scene.at == 0 and text in _REMOVING:
         return f'write `drop rule {scene.text_at(2) or "NAME"} because "…"`'
+    if scene.at == 0 and scene.text_at(1).isidentifier() and text == "rule":
+        return f"write `hard rule {scene.text_at(1)}`, or `soft rule` for one that may yield"
     if scene.at == 0:
         return "a rule begins with `hard rule` or `soft rule`"
     if scene.text_before == "rule" and scene.accepted == {"NAME"}:
@@ -187,8 +194,12 @@ def advise_on_rule_head(scene: ParseContext) -> str:
         return "a variable is written with its type, such as `v: vehicle`"
     if scene.accepted >= {"COMMA", "RPAR"} and scene.is_word() and scene.text_behind == ":":
         return "separate the variables by `,`"
+    if scene.unexpected is None and scene.text_before == "(":
+        return "in parentheses stand a rule's variables; what it says stands between `{` and `}`"
     if scene.unexpected is None and "RPAR" in scene.accepted:
         return "close the list of variables with `)`"
+    if text == "," and scene.text_before != ")" and "RPAR" not in scene.accepted:
+        return "a rule has one name: write a rule for each"
     if text == ":" and "RPAR" not in scene.accepted:
         return "what a rule says stands between `{` and `}`"
     return _HEAD if "RPAR" not in scene.accepted else ""
@@ -199,17 +210,32 @@ def advise_on_clause(scene: ParseContext) -> str:
         return _example_head(scene)
     if scene.kind != "clause":
         return ""
+    behind_text = scene.before is not None and scene.before.kind == "string"
+    said = scene.first in ("cite", "says", "source")
+    if said and behind_text and scene.accepted == {"$END"} and not scene.is_word():
+        return "put all of it between one pair of quotes"
     scoped = scene.first in ("unless", "also")
+    if scoped and scene.operator and scene.text == "always":
+        return "for the whole time write `throughout`, or nothing"
     if scoped and scene.text in ("initially", "throughout", "at") and scene.operand:
         return "the scope stands behind the formula, such as `unless p throughout`"
     if scoped and scene.accepted >= SCOPES and scene.is_word():
         return _SCOPE
+    if scene.operator and scene.text == "at" and scene.text_behind not in ("start", "end", "some"):
+        state = scene.text_behind if scene.text_behind.isidentifier() else "q"
+        return f"for `p at {state}` write `p and {state}`"
+    if scene.first == "when" and scene.operator and scene.text in ("throughout", "at"):
+        return "only an `unless` clause has a scope: a condition has to hold throughout"
     if scene.first == "require" and scene.operator and scene.text in ("throughout", "at"):
         return "only an `unless` clause has a scope; write `always p` for all of the time"
     if scene.operator and scene.text in _NO_OPERATORS:
         return other_clause(scene.text)
     if scene.first == "certainty" and scene.text in _AS_REMEMBERED:
         return "what was written from memory is `unverified`; `source` says in words where from"
+    if scene.first == "certainty":
+        return (
+            "`verified` was read in the law itself, `secondary` elsewhere, else it is `unverified`"
+        )
     return advise_on_dates(scene) if scene.first == "in" else ""
 
 

@@ -128,6 +128,8 @@ def unknown_clause(source: Source, tokens: list[Token], piece: Piece) -> Diagnos
     symbols = any(token.kind == "symbol" for token in (token, *others))
     formula = "a formula stands behind `require`" if symbols else ""
     words = frozenset(token.text for token in others)
+    if token.text == "{":
+        formula = "the states of an example stand between one `{` and `}`, with `;` between them"
     return UNEXPECTED_WORD.at(
         _span(source, token),
         f"no clause begins with `{_short(token.text)}`",

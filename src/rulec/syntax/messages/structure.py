@@ -171,13 +171,16 @@ class StructureMessages:
             labels=(Label(self.place(opened), f"{what} begins here"),),
         )
 
-    def no_open(self, before: int, what: str) -> Diagnostic:
-        """A ``{`` is missing behind token ``before``."""
+    def no_open(self, before: int, what: str, *, confirms: bool = False) -> Diagnostic:
+        """A ``{`` is missing behind token ``before``, perhaps of a confirmation."""
+        way_out = "write `{` before them"
+        if confirms:
+            way_out = 'write which provision confirms it, such as `{ cite "s. 12" }`'
         return UNBALANCED_BRACE.at(
             self._behind(before),
             f"{what} stand between `{{` and `}}`, and the `{{` is missing",
             expected="expected `{`",
-            help="write `{` before them",
+            help=way_out,
         )
 
     def outside(self, index: int, closed: int | None) -> Diagnostic:

@@ -1,0 +1,55 @@
+"""Help where a formula is written as a sentence of everyday language."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from rulec.syntax import keywords
+from rulec.syntax.messages.parse_context import ParseContext
+
+EGO: Final = ("ego", "self", "this", "me", "host")
+
+_OBLIGATIONS: Final = ("must", "shall", "should", "may", "can")
+_CONJUNCTIONS: Final = {
+    "before": "for `p before q` write `not q weak until p`",
+    "after": "for `q after p` write `not q weak until p`",
+    **dict.fromkeys(("while", "whenever"), "for `q while p` write `p implies q`"),
+    "only": "for `p only if q` write `p implies q`",
+    **dict.fromkeys(("twice", "thrice"), "for `p twice` write `p then not p then p`"),
+}
+_COMPARING: Final = {
+    **dict.fromkeys(("exceeds", "exceed", "exceeding", "above", "over"), ">"),
+    **dict.fromkeys(("below", "under"), "<"),
+}
+_SMALL_WORDS: Final = ("is", "at", "in", "on", "the", "a", "an", "not")
+
+
+def advise_on_sentence(scene: ParseContext) -> str:
+    """Advice on words that a formula says otherwise, or not at all; empty if there is none."""
+    if not scene.operator or scene.unexpected is None:
+        return ""
+    text, before, behind = scene.text, scene.text_before, scene.text_behind
+    if before in _OBLIGATIONS:
+        return f"leave out `{before}`; what a formula says must hold"
+    if text in _OBLIGATIONS and behind == "not":
+        return f"for `{text} not p` write `never p`, such as `never (speed > 50 km/h)`"
+    if text in _OBLIGATIONS:
+        return f"leave out `{text}`: what a formula says must hold, such as `speed <= 50 km/h`"
+    if before in EGO and scene.is_word() and (said := _what_is_said(scene)):
+        return f"what is ego's stands alone: write `{said}`"
+    if text in _CONJUNCTIONS:
+        return _CONJUNCTIONS[text]
+    if text in _COMPARING and behind:
+        return f"for `{text}` write `{_COMPARING[text]}`"
+    plural = len(before) > 2 and before.endswith("s") and before not in keywords.RESERVED
+    if scene.is_number(scene.at - 2) and plural and text.isidentifier():
+        number, one = scene.text_at(scene.at - 2), before[:-1]
+        return f"how many is said by `count x: {one} ({text}(x)) >= {number}`"
+    return ""
+
+
+def _what_is_said(scene: ParseContext) -> str:
+    """What is said of ego: `junction` of `ego is at the junction`."""
+    words = (token.text for token in scene.tokens[scene.at :])
+    said = next((word for word in words if word not in _SMALL_WORDS), "")
+    return said if said.isidentifier() and said not in keywords.RESERVED else ""
