@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.logic import formula as ltl
+from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rules.possible_states import may_hold
 from rulec.vocabulary import Enumeration, Quantity, Signal, Vocabulary
 
@@ -98,24 +99,37 @@ def test_what_is_said_of_other_moments_may_be_anything_but_one_thing_only():
     assert not may_hold([later, ltl.Unary(ltl.UnaryOperator.NOT, later)], WORDS)
 
 
+def joined(word, names):
+    """The first with the second, with the third, and so on."""
+    operator = ltl.BinaryOperator(word)
+    formula = ltl.Atom(names[0])
+    for name in names[1:]:
+        formula = ltl.Binary(operator, formula, ltl.Atom(name))
+    return formula
+
+
 def test_what_takes_too_long_is_left_open():
-    """Twelve objects in eleven places, of which nothing shows at once that they do not fit."""
-    names = [f"o{number}_{place}" for number in range(12) for place in range(11)]
+    """Whether their number is odd and even only all 2 to the 40 states show."""
+    names = [f"p{number}" for number in range(40)]
     words = Vocabulary("words", declarations={name: Signal(name) for name in names})
-    atoms = {name: ltl.Atom(name) for name in names}
-    somewhere = []
-    for number in range(12):
-        formula = ltl.Constant(False)
-        for place in range(11):
-            formula = ltl.Binary(ltl.BinaryOperator.OR, formula, atoms[f"o{number}_{place}"])
-        somewhere.append(formula)
-    alone = [
-        ltl.Unary(
-            ltl.UnaryOperator.NOT,
-            ltl.Binary(ltl.BinaryOperator.AND, atoms[f"o{one}_{place}"], atoms[f"o{two}_{place}"]),
-        )
-        for place in range(11)
-        for one in range(12)
-        for two in range(one)
-    ]
-    assert may_hold([*somewhere, *alone], words)
+    odd = joined("xor", names)
+    assert may_hold([odd, ltl.Unary(ltl.UnaryOperator.NOT, odd)], words)
+    few = joined("xor", names[:8])
+    assert not may_hold([few, ltl.Unary(ltl.UnaryOperator.NOT, few)], words)
+
+
+def test_so_is_what_is_too_long():
+    names = [f"p{number}" for number in range(220)]
+    words = Vocabulary("words", declarations={name: Signal(name) for name in names})
+    for number in (100, 101, 220):
+        assert may_hold([joined("or", names[:number])], words)
+
+
+def test_a_long_condition_of_a_rule_is_no_trouble():
+    names = [f"p{number}" for number in range(190)]
+    text = f"rulebook a signal {', '.join(names)}, q default false\nfact not (p1 and q)\n"
+    book = parse_rulebook(
+        f"{text}hard rule r {{ require always ({' or '.join(names)} implies q) }}\n"
+        f"hard rule s {{ require never ({' and '.join(names)}) }}"
+    )
+    assert len(book.rules) == 2

@@ -16,8 +16,10 @@ from rulec.logic import formula as ltl
 from rulec.logic.linear_comparison import stands
 from rulec.vocabulary import Enumeration, Vocabulary
 
-_MOST_LOOKED_AT = 50_000
-"""So often a formula is looked at for one question; what takes more is left to the compiler."""
+_MOST_ATOMS = 100
+_MOST_LOOKED_AT = 200_000
+"""So many atoms there may be in one question, and so often one of them is looked at; what takes
+more is left to the compiler."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,19 +31,22 @@ class _Open:
 
 def may_hold(formulas: Sequence[ltl.Formula], vocabulary: Vocabulary) -> bool:
     """False if no state satisfies all formulas; also true where that takes too long to say."""
-    search = _Search(formulas, _values(formulas, vocabulary))
-    return search.finds({})
+    atoms = [atom for formula in formulas for atom in ltl.atoms_of(formula)]
+    if len(atoms) > _MOST_ATOMS:
+        return True
+    return _Search(formulas, _values(atoms, vocabulary), size=len(formulas) + len(atoms)).finds({})
 
 
 @dataclass(slots=True)
 class _Search:
     formulas: Sequence[ltl.Formula]
     values: Mapping[object, Sequence[object]]
+    size: int
     left: int = field(default=_MOST_LOOKED_AT)
 
     def finds(self, known: Mapping[object, object]) -> bool:
         """Tell whether what is known of a state can be made up so that all formulas hold."""
-        self.left -= len(self.formulas)
+        self.left -= self.size
         if self.left < 0:
             return True
         first: _Open | None = None
@@ -108,12 +113,12 @@ def _joined(
 
 
 def _values(
-    formulas: Iterable[ltl.Formula], vocabulary: Vocabulary
+    atoms: Iterable[ltl.Proposition], vocabulary: Vocabulary
 ) -> dict[object, Sequence[object]]:
-    """The values to be tried of all that formulas speak of, the most usual first."""
+    """The values to be tried of all that atoms speak of, the most usual first."""
     limits: dict[tuple[tuple[Fraction, ltl.Term], ...], set[Fraction]] = {}
     values: dict[object, Sequence[object]] = {}
-    for proposition in (atom for formula in formulas for atom in ltl.atoms_of(formula)):
+    for proposition in atoms:
         if isinstance(proposition, ltl.Comparison):
             limits.setdefault(proposition.terms, set()).add(proposition.limit)
             continue
