@@ -291,6 +291,15 @@ def test_files_that_hold_no_drives_are_named_and_the_others_are_judged(folder_of
     assert f"  2: {why} (as in {tmp_path / 'a.csv'})\n" in as_text(done)
 
 
+def test_of_a_table_that_says_no_files_a_recording_is_named(tmp_path):
+    path, columns = tmp_path / "tracks.parquet", tracks([0])
+    columns["x"][3] = None
+    parquet.write_table(pyarrow.table(columns), path)
+    done = run_fleet([str(path)], fleet_rules(), tmp_path / "out", settings(lanes(tmp_path)))
+    (why,) = done.tally.reasons
+    assert f"not judged  1:\n  1: {why} (r000)\n" in as_text(done)
+
+
 def test_a_table_without_rows_has_no_drives(folder_of, expected, traces, tmp_path):
     empty = tmp_path / "empty.parquet"
     parquet.write_table(traces.slice(0, 0), empty)

@@ -63,8 +63,9 @@ def _drives(run: FleetRun) -> Iterator[str]:
     reasons = tally.reasons.most_common(_MOST_REASONS)
     yield f"not judged  {tally.drives['not_judged']:,}:"
     for why, count in reasons:
-        file = tally.examples[why]
-        yield f"  {count:,}: {why} ({file})" if count == 1 else f"  {count:,}: {why} (as in {file})"
+        where = tally.examples[why]
+        where = where if count == 1 else f"as in {where}"
+        yield f"  {count:,}: {why} ({where})"
     others = len(tally.reasons) - len(reasons)
     if others:
         yield f"  and for {others:,} more reasons"

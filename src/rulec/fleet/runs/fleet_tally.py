@@ -8,7 +8,8 @@ from pathlib import Path
 
 from rulec.trace.formats.arrow.parquet import arrow
 
-_COLUMNS = ("kind", "outcome", "rule", "ego", "because", "file", "duration_s", "distance_m")
+_NAMES = ("file", "recording", "vehicle")
+_COLUMNS = ("kind", "outcome", "rule", "ego", "because", *_NAMES, "duration_s", "distance_m")
 
 _ROWS_AT_ONCE = 1 << 12
 
@@ -18,8 +19,8 @@ class FleetTally:
     """Sums over drives.
 
     ``drives``: outcome -> number. ``rules``: rule and outcome -> number of drives. ``reasons``: why
-    drives were not judged -> number. ``examples``: such a reason -> the first file, by its name,
-    that has such a drive. ``unread`` are files, recordings and traces, not vehicles, that could
+    drives were not judged -> number. ``examples``: such a reason -> the first file that has such a
+    drive, by its name, of a table that does not say files the recording or the trace. ``unread`` are files, recordings and traces, not vehicles, that could
     not be judged. ``lost`` are units whose process was killed twice.
     """
 
@@ -37,8 +38,8 @@ class FleetTally:
         self.drives.update(other.drives)
         self.rules.update(other.rules)
         self.reasons.update(other.reasons)
-        for why, file in other.examples.items():
-            self.examples[why] = min(file, self.examples.get(why, file))
+        for why, where in other.examples.items():
+            self.examples[why] = min(where, self.examples.get(why, where))
         self.unread += other.unread
         self.hours += other.hours
         self.km += other.km
@@ -57,7 +58,7 @@ def tally_of(path: Path) -> FleetTally:
     with parquet.ParquetFile(path) as source:
         for batch in source.iter_batches(_ROWS_AT_ONCE, columns=list(_COLUMNS), use_threads=False):
             for row in zip(*(batch.column(name).to_pylist() for name in _COLUMNS), strict=True):
-                kind, outcome, rule, ego, because, file, duration_s, distance_m = row
+                kind, outcome, rule, ego, because, *names, duration_s, distance_m = row
                 if kind == "rule":
                     tally.rules[rule, outcome] += 1
                 elif kind == "drive":
@@ -66,6 +67,7 @@ def tally_of(path: Path) -> FleetTally:
                     tally.km += (distance_m or 0.0) / 1000
                     if outcome == "not_judged":
                         tally.reasons[because] += 1
-                        tally.examples[because] = min(file, tally.examples.get(because, file))
+                        where = next(filter(None, names), "")
+                        tally.examples[because] = min(where, tally.examples.get(because, where))
                         tally.unread += not ego
     return tally
