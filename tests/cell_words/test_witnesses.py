@@ -16,7 +16,7 @@ from rulec.cell_words.place_words import PlaceWords
 from rulec.cell_words.probe_drives import LaneProbe
 from rulec.scenario import Choice
 from rulec.scenario.recorded.recorded_scene import seen_from_ego
-from rulec.vocabulary.partial_values import Interval
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.recordings import RECORDINGS, recording, straight, vehicle
 from support.generators.driven_motions import driven, paths_of
 from support.oracles.witness_drives import (
@@ -176,6 +176,16 @@ def test_who_reaches_into_the_lane_of_a_wide_vehicle_is_in_its_way(german):
     motion = [(0.0, 10.0, -0.8, 0.0), (5.0, 10.0, -1.0, -0.8), (10.0, 10.0, -1.2, 0.0)]
     states = driven_among([wide], german, motion, 3.2, "bus")
     assert [state["lateral"]["10"] == "left_of" for state in states[1:]] == [False, False]
+
+
+def test_who_comes_into_a_lane_is_behind_a_cycle_at_its_other_edge(german):
+    # Ego's middle gets to y = 1.8 in the lane from -2 to 2 m, in which the cycle keeps to y = -1.6
+    rider = vehicle(
+        10, {k: (90.0 + 2 * k, -1.6) for k in range(13)}, "bicycle", 1.8, 0.6, speed=4.0
+    )
+    motion = [(0.0, 10.0, -1.2, 0.0), (5.0, 10.0, -1.45, -1.0), (10.0, 10.0, -2.2, -2.0)]
+    states = driven_among([rider], german, motion, 2.8)
+    assert [state["precedes"]["10"] for state in states] == [False, False, UNKNOWN]
 
 
 def test_who_passes_a_cycle_may_overtake(german):

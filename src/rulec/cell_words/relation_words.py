@@ -232,11 +232,15 @@ class Relations:
         return np.minimum(shortest, LONGEST_S), np.minimum(longest, LONGEST_S)
 
     def _may_be_ahead(self) -> Flags:
-        """Flags of who may be ahead in ego's lane, as wrong as places and the map may be."""
+        """Flags of who may be ahead in ego's lane, as wrong as places and the map may be.
+
+        At one edge of a wide lane somebody at the other one is farther aside than these are wrong.
+        """
         boxes, others, aside = self._boxes, self._others, _MAP_M + self._frame.place_m
         low, high = column(boxes.d[0]) - aside, column(boxes.d[1]) + aside
         before = self.front[0] <= others.s[0] + self._frame.loose_s
-        ahead: Flags = before & (others.d[0] < high) & (others.d[1] > low)
+        near = (others.d[0] < high) & (others.d[1] > low)
+        ahead: Flags = before & (near | (self.laterals & SAME > 0))
         return ahead
 
     def _safe_distance(self) -> Floats:
