@@ -27,6 +27,17 @@ def test_a_scene(tmp_path, capfd):
     assert [one for one in found if one.endswith(" s")] == [f"{n} s to {n + 1} s" for n in range(5)]
 
 
+@pytest.mark.parametrize("requires", ["CONGESTED", "(CONGESTED or b(v)) and not f(v)"])
+def test_a_maneuver_of_which_a_rule_is_open_may_satisfy(requires, tmp_path, capfd):
+    """Nobody says whether it is congested: that alone judges nothing."""
+    source = tmp_path / "near.rules"
+    rule = f"hard rule A (v: vehicle) {{ require always ({requires}) }}"
+    source.write_text(f"rulebook near\nuse paper\n{rule}\n")
+    file = tmp_path / "s2.svg"
+    assert draw(capfd, "scene", "s2", "-r", source, "--told-only", "-o", file)[0] == 0
+    assert " that may satisfy near; cost 0 1/s" in texts(file)[0]
+
+
 def test_a_scene_without_rules_shows_no_maneuver(tmp_path, capfd):
     file = tmp_path / "s2.svg"
     assert draw(capfd, "scene", "s2", "--layer", 4, "--layer", 1, "-o", file)[0] == 0

@@ -83,13 +83,16 @@ def test_one_who_comes_later_and_leaves_is_there_meanwhile():
 
 
 def test_who_is_there_at_the_end_goes_on():
-    scenario = scene(drive(7, 40, 10, steps=2), drive(8, 100, 4, steps=4))
-    gone, stays = scenario.obstacles
+    """So is who is lost half a second before, but not who is 1.5 s before."""
+    several = drive(7, 40, 10, steps=1), drive(8, 100, 4, steps=4), drive(9, 140, 4, steps=3)
+    scenario = scene(*several)
+    gone, stays, lost = scenario.obstacles
     assert scenario.account.until_s == 2
     assert swept(gone, 1.5, 2) is None
-    body = swept(stays, 4, 4)
-    assert (body.s_min + body.s_max) / 2 == pytest.approx(80 + 4 * 4)
-    assert swept(stays, GOES_ON_S + 3, GOES_ON_S + 4) is None
+    for one, start in ((stays, 80), (lost, 120)):
+        body = swept(one, 4, 4)
+        assert (body.s_min + body.s_max) / 2 == pytest.approx(start + 4 * 4)
+        assert swept(one, GOES_ON_S + 3, GOES_ON_S + 4) is None
 
 
 @pytest.mark.parametrize(

@@ -271,9 +271,6 @@ def _judged(
     scenario: str, rulebook: str | None, number: int | None, at: str, **options: Any
 ) -> Judged:
     """The graph, with a rulebook its maneuvers, and the one shown."""
-    # Maneuvers, 110 ms: not for --help.
-    from rulec.planning.ranking.cheapest import cheapest
-
     if rulebook is None:
         if number is not None:
             raise click.UsageError("`--maneuver` takes a rulebook: give one with `-r R`.")
@@ -291,12 +288,13 @@ def _judged(
     maneuver = None
     legal = maneuvers.satisfying + maneuvers.open
     if place <= min(legal, sys.maxsize):
-        maneuver = next(islice(cheapest(maneuvers.possible), place - 1, None))
+        # As `maneuvers --list` has them: where ego's motion has bounds those that it can drive
+        maneuver = next(islice(maneuvers.cheapest(place, perhaps=True), place - 1, None), None)
     if maneuver is None and number is not None:
-        raise click.UsageError(
-            f"There is no maneuver {number}: "
-            f"{shown_count(legal)} satisfy the rulebook{', or may' if maneuvers.open else ''}."
-        )
+        why = f"{shown_count(legal)} satisfy the rulebook{', or may' if maneuvers.open else ''}"
+        if number <= legal:
+            why += ", and fewer were found that ego can drive"
+        raise click.UsageError(f"There is no maneuver {number}: {why}.")
     return maneuvers.graph, maneuvers, maneuver
 
 

@@ -77,7 +77,10 @@ def scene_title(
     name = graph.scenario.name
     if maneuvers is None:
         return f"{name}: {graph.nodes:,} cells in {len(graph.layers)} layers"
-    by = f"of {shown_count(maneuvers.satisfying)} that satisfy {maneuvers.rules.name}"
+    # Those that are open are among them, and all where no hard rule is judged
+    may = "that may satisfy" if maneuvers.open or not maneuvers.judges else "that satisfy"
+    number_of = shown_count(maneuvers.satisfying + maneuvers.open)
+    by = f"of {number_of} {may} {maneuvers.rules.name}"
     if maneuver is None:
         doubtful = f", {shown_count(maneuvers.open)} are open" if maneuvers.open else ""
         return f"{name}: no maneuver satisfies {maneuvers.rules.name}{doubtful}"

@@ -20,6 +20,9 @@ from rulec.scenario.recorded.route import REACH_M
 GOES_ON_S = 600.0
 """The time (s) for which those present at the end of a recording go on after it."""
 
+_LOST_S = 1.0
+"""Who is lost so shortly before a recording ends is taken to be there at its end."""
+
 _FAR_M = 10.0
 _SPEED_OVER_S = 0.5
 _AT_ONCE = 20_000
@@ -144,9 +147,10 @@ def _motion(
     times = [view.time(step) for step in steps]
     known = list(boxes)
     last = known[-1]
-    if times[-1] == view.until_s and last is not None:
-        along = _speed(times, known) * GOES_ON_S
-        times.append(times[-1] + GOES_ON_S)
+    if times[-1] >= view.until_s - _LOST_S and last is not None:
+        goes_on_s = view.until_s - times[-1] + GOES_ON_S
+        along = _speed(times, known) * goes_on_s
+        times.append(times[-1] + goes_on_s)
         known.append(replace(last, s_min=last.s_min + along, s_max=last.s_max + along))
     return model.Footprints(tuple(times), tuple(known))
 
