@@ -19,9 +19,10 @@ class FleetTally:
     """Sums over drives.
 
     ``drives``: outcome -> number. ``rules``: rule and outcome -> number of drives. ``reasons``: why
-    drives were not judged -> number. ``examples``: such a reason -> the first file that has such a
-    drive, by its name, of a table that does not say files the recording or the trace. ``unread`` are files, recordings and traces, not vehicles, that could
-    not be judged. ``lost`` are units whose process was killed twice.
+    drives were not judged -> number. ``examples``: such a reason -> the first file by its name that
+    has such a drive, in a table that names none the recording or the trace. ``unread`` are files,
+    recordings and traces, not vehicles, that could not be judged. ``lost`` are units whose process
+    was killed twice.
     """
 
     drives: Counter[str] = field(default_factory=Counter)
