@@ -31,6 +31,12 @@ def test_an_obstacle_that_sweeps_the_place_is_named_and_a_step_is_found():
     assert navigation_graph(scenario, step_s=1.0).nodes > 0
 
 
+def test_ego_s_place_is_said_to_the_centimetre():
+    """Where ego was recorded is the result of sums, and 1e-05 m from the middle of its lane."""
+    scenario = Scenario("x", ROAD, Ego(20.0, 1.50001), (car("fast", 3.0, 1.5, 12.0),))
+    assert "(s = 20, d = 1.5)" in complaint(scenario, step_s=2.0).message
+
+
 def test_two_obstacles_are_both_named():
     both = (car("a", 3.0, 1.5, 12.0), car("b", 37.0, 1.5, -12.0))
     problem = complaint(Scenario("x", ROAD, Ego(20.0, 1.5), both), step_s=2.0)

@@ -43,6 +43,14 @@ def test_others_sweep_all_the_room(tmp_path, capsys):
     assert "opened by   `--extent body`\n" in text
 
 
+def test_one_alone_sweeps_all_the_room(tmp_path, capsys):
+    """It is as long as the road, and comes from ahead: between 1 and 2 s it is everywhere."""
+    file = tmp_path / "narrow.toml"
+    file.write_text(ROAD + CAR.format(name="1", s=145, speed=-60).replace("= 4", "= 80"))
+    assert main(["maneuvers", str(file), "-r", "esterle2019", "--step", "1"]) == 1
+    assert "closed by   1: in steps of 1 s it sweeps its lanes" in capsys.readouterr().out
+
+
 def test_nothing_is_said_where_there_is_a_way(tmp_path, capsys):
     status, text = answered(tmp_path, capsys, ("1", 2, 0))
     assert status == 0

@@ -60,8 +60,10 @@ def start_cell(
     if scenario.account is None:
         remedy = "move ego along the road, or that obstacle"
     smaller = f"a smaller step does not help here: {remedy}"
+    # To the centimetre: where ego was recorded is the result of sums
+    at = f"s = {round(s, 2) + 0.0:g}, d = {round(d, 2) + 0.0:g}"
     raise _no_start(
-        f"{blockers} {verb} ego's place (s = {s:g}, d = {d:g}) between 0 s and {step:g} s, "
+        f"{blockers} {verb} ego's place ({at}) between 0 s and {step:g} s, "
         "so ego has no free cell to start from",
         f"a free place; an obstacle takes {_TAKEN[extent]}",
         f"a step of {float(finer.step):g} s would do" if finer else smaller,

@@ -200,9 +200,8 @@ def _shut_in(maneuvers: Maneuvers) -> Iterator[str]:
         yield f"            none leads on from between {low} and {high}{within}"
         if end.closed_by:
             names = first_of(end.closed_by, MOST_DEFAULTS)
-            yield visible(
-                f"closed by   {names}: in steps of {graph.step_s:g} s they sweep its lanes"
-            )
+            sweep = "it sweeps" if len(end.closed_by) == 1 else "they sweep"
+            yield visible(f"closed by   {names}: in steps of {graph.step_s:g} s {sweep} its lanes")
     ways = " or ".join(f"`{option}`" for option in end.opened_by)
     yield f"opened by   {ways or 'no shorter step, narrower extent or other adjacency'}"
 
