@@ -37,6 +37,7 @@ RELATIONS = frozenset(
         "precedes",
         "one_between",
         "parts_soon",
+        "holds_up_oncoming",
     }
 )
 
@@ -169,6 +170,9 @@ class Relations:
         if "parts_soon" in names:
             # What ego does next is what is being chosen: nobody is excused for it beforehand
             found["parts_soon"] = _truths(np.ones(ahead.shape, dtype=bool), False)
+        if "holds_up_oncoming" in names:
+            clear = ~self._others.ever_come | self._within_own_half()[:, None]
+            found["holds_up_oncoming"] = _truths(clear, False)
         if "ahead_for" in names:
             nothing = np.zeros(ahead.shape)
             found["ahead_for"] = _intervals(nothing, np.where(ahead, LONGEST_S, 0.0))
@@ -177,6 +181,16 @@ class Relations:
                 np.where(ahead, 0.0, LONGEST_S), np.full(ahead.shape, LONGEST_S)
             )
         return found
+
+    def _within_own_half(self) -> Flags:
+        """Cells in which no part of ego is beyond the middle of a two-way road."""
+        (low, high), frame = self._boxes.d, self._frame
+        wide = self._boxes.half_width[1] + frame.loose_d - USUAL.touching_m
+        if frame.probes.among.side == "right":
+            own: Flags = high + wide <= self._straight[-1]
+        else:
+            own = low - wide >= self._straight[0]
+        return own | frame.one_way
 
     def flow(self, below_kmh: float) -> list[Any]:
         """Whether traffic around ego is slower than this in the median, by cell.

@@ -37,6 +37,7 @@ class OthersNow:
     ``goes_along`` are vehicles that go ego's way for sure, ``may_go_along`` those that may,
     ``may_ride_along`` cycles that may.
     ``some_come``: does somebody move against ego's direction then, or later?
+    ``ever_come``: who does, whenever that is?
     """
 
     s: tuple[Floats, Floats]
@@ -50,6 +51,7 @@ class OthersNow:
     may_go_along: Flags
     may_ride_along: Flags
     some_come: bool
+    ever_come: Flags
 
 
 class RoadFrame:
@@ -161,6 +163,7 @@ class RoadFrame:
             may_go_along=vehicles & np.any(goes[:, columns], axis=1),
             may_ride_along=tracks.of_type("light_rider") & np.any(goes[:, columns], axis=1),
             some_come=bool(self._come[:, int(columns[0]) :].any()),
+            ever_come=np.any(self._come, axis=1, keepdims=False),
         )
 
     def _straightened(self, left_of: Floats) -> Floats:

@@ -13,7 +13,7 @@ _EITHER = frozenset(
         *("acceleration", "all_way_stop", "distance_to_junction", "distance_to_stop_line"),
         "hazard_lights",
         *("cause_to_brake", "driving_side", "impedes_traffic", "joins_road", "nearest_to_crossing"),
-        *("on_shoulder", "reversing", "turns_in_way_of", "u_turn"),
+        *("holds_up_oncoming", "on_shoulder", "reversing", "turns_in_way_of", "u_turn"),
         *("lane_number", "other_arrived_first", "time_to_collision", "time_to_stop_line"),
         *("CONGESTED", "about_to_overtake", "abreast_at_narrowing", "accelerating", "ahead_for"),
         *("arrived_together", "being_overtaken", "braking_hard", "broken_on_own_side"),

@@ -27,6 +27,7 @@ from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
 from rulec.extraction.signals.conduct.lane_change_signals import lane_change_signals
 from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
 from rulec.extraction.signals.conduct.next_lane_signals import next_lane_signals
+from rulec.extraction.signals.conduct.oncoming_conflicts import oncoming_conflicts
 from rulec.extraction.signals.conduct.overtaking_signals import overtaking_signals
 from rulec.extraction.signals.conduct.reason_signals import reason_signals
 from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
@@ -88,6 +89,7 @@ _SIGNALS: tuple[Callable[[DriveContext, SignalNames], SignalColumns], ...] = (
     lamp_signals,
     reason_signals,
     turning_conflicts,
+    oncoming_conflicts,
 )
 """The signal passes, in the order in which traces name their signals."""
 

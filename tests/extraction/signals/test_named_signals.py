@@ -11,6 +11,7 @@ from rulec.extraction.signals.conduct.lamp_signals import lamp_signals
 from rulec.extraction.signals.conduct.lane_change_signals import lane_change_signals
 from rulec.extraction.signals.conduct.manoeuvre_signals import manoeuvre_signals
 from rulec.extraction.signals.conduct.next_lane_signals import next_lane_signals
+from rulec.extraction.signals.conduct.oncoming_conflicts import oncoming_conflicts
 from rulec.extraction.signals.conduct.overtaking_signals import overtaking_signals
 from rulec.extraction.signals.conduct.reason_signals import reason_signals
 from rulec.extraction.signals.conduct.turning_conflicts import turning_conflicts
@@ -45,6 +46,7 @@ GROUPS = (
     *(flow_signals, overtaking_signals),
     *(lane_change_signals, lane_mark_signals),
     *(manoeuvre_signals, lamp_signals, reason_signals, turning_conflicts, next_lane_signals),
+    oncoming_conflicts,
 )
 LAMPS = frozenset({"left_indicator", "right_indicator", "hazard_lights", "dipped_beam"})
 LAMPS |= frozenset({"main_beam", "front_fog_lamp", "rear_fog_lamp"})

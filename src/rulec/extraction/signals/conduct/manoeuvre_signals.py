@@ -11,6 +11,7 @@ from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.recording import HEADINGS
 from rulec.scenario.recorded.reference_line import turn
@@ -199,20 +200,19 @@ def goes_over_the_middle(context: DriveContext) -> Flags:
 @once
 def on_both_halves(context: DriveContext) -> Flags:
     """Flags of states in which ego's body is on either side of the far edge of its lanes."""
-    low, high = _bounds_beyond_far_edge(context)
+    low, high = (rows[0] for rows in sides_beyond_far_edge(context, context.ego_extents))
     least = context.thresholds.touching_m
     on_both: Flags = (low < -least) & (high > least)
     return on_both
 
 
-def _bounds_beyond_far_edge(context: DriveContext) -> tuple[Floats, Floats]:
-    """How far (m) the nearer and the farther side of ego are beyond that edge."""
-    lanes, own = context.existing_lanes, context.ego_extents
+def sides_beyond_far_edge(context: DriveContext, bodies: RoadExtents) -> tuple[Floats, Floats]:
+    """How far (m) the nearer and the farther side of bodies, by row, are beyond that edge."""
+    lanes = context.existing_lanes
     if context.side == "right":
-        right, left = own.from_bound(lanes.shape[1] - lanes[:, ::-1].argmax(axis=1))
-        return right[0], left[0]
-    right, left = own.from_bound(lanes.argmax(axis=1))
-    return -left[0], -right[0]
+        return bodies.from_bound(lanes.shape[1] - lanes[:, ::-1].argmax(axis=1))
+    right, left = bodies.from_bound(lanes.argmax(axis=1))
+    return -left, -right
 
 
 @once
@@ -222,12 +222,17 @@ def oncoming_side(context: DriveContext) -> tuple[Flags, Flags]:
     Beyond the far edge of the lanes of its direction; nowhere in junctions, nor beyond the map.
     """
     beyond, loose = _beyond_far_edge(context), _loose(context)
+    both_ways, not_told = two_way(context)
+    drives = _along_road(context) & ~at_junctions(context) & _on_map(context)
+    there = drives & both_ways & (beyond > loose)
+    return there, drives & (beyond > 0) & ((both_ways & (beyond <= loose)) | not_told)
+
+
+def two_way(context: DriveContext) -> tuple[Flags, Flags]:
+    """Flags of states on a road with traffic both ways, and of those where the map is silent."""
     directions = context.surroundings.directions
     one_way, not_told = own_lanelets(context).told(lambda lanelet: directions(lanelet)[0])
-    two_way = ~one_way & ~not_told
-    drives = _along_road(context) & ~_at_junctions(context) & _on_map(context)
-    there = drives & two_way & (beyond > loose)
-    return there, drives & (beyond > 0) & ((two_way & (beyond <= loose)) | not_told)
+    return ~one_way & ~not_told, not_told
 
 
 def _loose(context: DriveContext) -> Floats:
@@ -261,7 +266,7 @@ def _along_road(context: DriveContext) -> Flags:
     return along
 
 
-def _at_junctions(context: DriveContext) -> Flags:
+def at_junctions(context: DriveContext) -> Flags:
     """Flags of states in a junction, or so near that ego turns there already or still."""
     front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
     near, reach = np.zeros(context.states, dtype=bool), context.thresholds.side_road_m

@@ -1,0 +1,167 @@
+"""The signal of those who come towards ego, and have to brake as it is over the middle of the road.
+
+What decides is how things are when ego begins to be there, or the other one is first seen: would
+that one, as fast as it is then, meet ego in its way, and could it do without braking harder than
+``disturbing_mps2`` after its reaction time? Who stands already, or is so far away that gentle
+braking is enough, may let ego go first of its own accord.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.signals import relations
+from rulec.extraction.signals.conduct.manoeuvre_signals import (
+    at_junctions,
+    sides_beyond_far_edge,
+    two_way,
+)
+from rulec.extraction.signals.ego_lanelets import own_lanelets
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
+from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.tracks.tracks import Floats
+
+_GOES_FIRST = "PRIORITY_OVER_ONCOMING"
+"""The sign by which ego goes first where the road is narrow."""
+
+_ALONG_RAD = np.pi / 4
+"""Who is turned farther from the road does not drive along it."""
+
+_SLOWED_MPS = 0.5
+"""Who is slower by more afterwards may have had to brake."""
+
+
+class _Stay(NamedTuple):
+    """Ego's states over the middle, from the first to before the end; where its drive ends."""
+
+    first: int
+    end: int
+    drive_end: int
+    sure: bool
+
+
+def oncoming_conflicts(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signal of conflicts with those who come towards ego beyond the middle, if it is named."""
+    return signals_by(_PASSES, context, names)
+
+
+def _holds_up_oncoming(context: DriveContext) -> SignalColumns:
+    held, perhaps = np.zeros((2, *context.relevant.shape), dtype=bool)
+    far = sides_beyond_far_edge(context, context.ego_extents)[1][0]
+    stays = _stays_over_the_middle(context, far)
+    moves = context.tracks.of_type("road_user") & ~context.tracks.of_type("pedestrian")
+    near = sides_beyond_far_edge(context, context.extents)[0] if stays else far
+    for stay in stays:
+        there = context.relevant[:, stay.first : stay.end] & moves[:, None]
+        for row in np.flatnonzero(there.any(axis=1)).tolist():
+            seen = stay.first + int(there[row].argmax())
+            if not _comes_on_its_half(context, row, seen, near):
+                continue
+            in_way = far[seen : stay.end] - near[row, seen]
+            found = _has_to_brake(context, stay, (row, seen), in_way)
+            if found is not None:
+                sure = found and stay.sure and seen == stay.first
+                (held if sure else perhaps)[row, stay.first : stay.end] = True
+    name = "holds_up_oncoming"
+    return SignalColumns(about={name: held}, unknown={name: perhaps & ~held})
+
+
+def _stays_over_the_middle(context: DriveContext, far: Floats) -> list[_Stay]:
+    """Where ego reaches over the middle of a road with traffic both ways, along which it heads.
+
+    Not for sure where the map does not tell of the other direction, in junctions, where ways lead
+    elsewhere, and where ego is there from the start. A sign may let it go first.
+    """
+    both_ways, not_told = two_way(context)
+    over = (far > context.thresholds.touching_m) & (both_ways | not_told)
+    over &= np.abs(context.ego_extents.turned[0]) <= _ALONG_RAD
+    if not over.any():
+        return []
+    signs = own_lanelets(context).flags(lambda lanelet: _GOES_FIRST in lanelet.signs)
+    spans, unsure = context.spans, not_told | at_junctions(context)
+    begins = np.flatnonzero(over & (spans.begins_here | ~spans.before(over)))
+    ends = np.minimum(spans.next_state(~over), spans.end)[begins]
+    return [
+        _Stay(first, end, int(spans.end[first]), sure)
+        for first, end in zip(begins.tolist(), ends.tolist(), strict=True)
+        if not signs[first:end].any()
+        for sure in [not (spans.begins_here[first] or unsure[first:end].any())]
+    ]
+
+
+def _comes_on_its_half(context: DriveContext, row: int, seen: int, near: Floats) -> bool:
+    """Does one come along the other half of the road, ahead of ego, and has not stopped yet?"""
+    others, limits = context.extents, context.thresholds
+    return bool(
+        others.along[row, seen] * KMH < -limits.standing_kmh
+        and np.cos(others.turned[row, seen]) < -np.cos(_ALONG_RAD)
+        and others.s_min[row, seen] > context.ego_extents.s_max[0, seen]
+        and near[row, seen] > -limits.touching_m
+    )
+
+
+def _has_to_brake(
+    context: DriveContext, stay: _Stay, other: tuple[int, int], in_way: Floats
+) -> bool | None:
+    """Does one have to brake hard for ego? None if not, False if only perhaps.
+
+    ``other``: its row, and the state from which it is looked at; ``in_way``: how far (m) ego
+    reaches into its way, by state from there on.
+    """
+    row, seen = other
+    limits, others, own = context.thresholds, context.extents, context.ego_extents
+    passed_s: Floats = np.arange(stay.end - seen, dtype=np.float64)
+    passed_s *= context.recording.step_s
+    speed = -float(others.along[row, seen])
+    room = float(others.s_min[row, seen]) - own.s_max[0, seen : stay.end]
+    meets = _meets(room, speed * passed_s, in_way)
+    if meets is None:
+        still_ahead = stay.end == stay.drive_end and in_way[-1] > 0
+        return False if still_ahead else None
+    braked_s = np.minimum(
+        np.maximum(passed_s - limits.reaction_s, 0.0), speed / limits.disturbing_mps2
+    )
+    at_full = np.minimum(passed_s, limits.reaction_s) * speed
+    way = at_full + speed * braked_s - limits.disturbing_mps2 * braked_s**2 / 2
+    place = context.tolerances.place_m
+    hard = _meets(room + place, way, in_way - place) is not None
+    brakes, slower = _brakes(context, row, slice(seen, seen + meets + 1), speed)
+    if hard and (brakes or _touch(context, row, slice(seen, stay.end))):
+        return _is_passed(context, row, slice(seen, stay.drive_end))
+    return False if hard or slower else None
+
+
+def _meets(room: Floats, way: Floats, in_way: Floats) -> int | None:
+    """The state in which one that has gone so far (m) is where ego's front is, if in its way."""
+    there = way >= room
+    first = int(there.argmax())
+    return first if there[first] and in_way[first] > 0 else None
+
+
+def _brakes(context: DriveContext, row: int, states: slice, speed: float) -> tuple[bool, bool]:
+    """Does one brake harder than ``disturbing_mps2`` for sure, and does it get slower?"""
+    tracks = context.tracks
+    least = tracks.acceleration[row, states] + tracks.acceleration_error[row, states]
+    brakes = bool(np.any(least < -context.thresholds.disturbing_mps2))
+    slowest = float(np.fmin.reduce(tracks.speed[row, states]))
+    return brakes, slowest < speed - _SLOWED_MPS - context.tolerances.speed_mps
+
+
+def _touch(context: DriveContext, row: int, states: slice) -> bool:
+    """Do the fronts of ego and another one meet, one in the other's way?"""
+    others, own = context.extents, context.ego_extents
+    met = np.flatnonzero(others.s_min[row, states] <= own.s_max[0, states])
+    across = relations.way_across(context)[row, states]
+    return bool(len(met)) and bool(across[met[0]] < -context.tolerances.place_m)
+
+
+def _is_passed(context: DriveContext, row: int, states: slice) -> bool:
+    """Does one get past ego in the end, so that it did not brake to turn off before?"""
+    others, own = context.extents, context.ego_extents
+    return bool((others.s_min[row, states] < own.s_max[0, states]).any())
+
+
+_PASSES: Passes = {("holds_up_oncoming",): _holds_up_oncoming}
