@@ -123,7 +123,7 @@ def test_a_drive(tmp_path, capfd):
     [
         (("--ego", "h.0"), "there is no vehicle `h.0` that drives"),
         (("--ego", "f.0#2"), "there is no drive `f.0#2`"),
-        (("--rule", "passing_*"), "de has no rule like `passing_*`"),
+        (("--rule", "parking_*"), "de has no rule like `parking_*`"),
         (("--theme", "blue"), "--theme: there is no `blue`; it is one of auto, light, dark"),
     ],
 )
