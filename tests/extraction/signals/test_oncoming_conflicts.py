@@ -109,3 +109,5 @@ def test_a_recording_that_ends_while_ego_is_over_the_middle():
     until = {k: state for k, state in short.states.items() if k < 20}
     short = replace(short, states=until, outlines={k: short.outlines[k] for k in until})
     assert told(coming(60), short)[16] == "?"
+    # At 9.5 s 90 m are left, of which both together drive 80 m in the 4 s that a way back takes
+    assert told(coming(120), short)[16] == "False"

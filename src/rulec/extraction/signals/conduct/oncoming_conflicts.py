@@ -119,8 +119,9 @@ def _has_to_brake(
     room = float(others.s_min[row, seen]) - own.s_max[0, seen : stay.end]
     meets = _meets(room, speed * passed_s, in_way)
     if meets is None:
-        still_ahead = stay.end == stay.drive_end and in_way[-1] > 0
-        return False if still_ahead else None
+        meets_soon = room[-1] - speed * passed_s[-1] < _closing(context, stay, speed)
+        still_over = stay.end == stay.drive_end and in_way[-1] > 0
+        return False if still_over and meets_soon else None
     braked_s = np.minimum(
         np.maximum(passed_s - limits.reaction_s, 0.0), speed / limits.disturbing_mps2
     )
@@ -132,6 +133,12 @@ def _has_to_brake(
     if hard and (brakes or _touch(context, row, slice(seen, stay.end))):
         return _is_passed(context, row, slice(seen, stay.drive_end))
     return False if hard or slower else None
+
+
+def _closing(context: DriveContext, stay: _Stay, speed: float) -> float:
+    """How much (m) nearer ego and another one are ``parting_s`` after the end of ego's stay."""
+    own = max(float(context.ego_extents.along[0, stay.end - 1]), 0.0)
+    return (own + speed) * context.thresholds.parting_s
 
 
 def _meets(room: Floats, way: Floats, in_way: Floats) -> int | None:
