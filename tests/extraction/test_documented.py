@@ -34,7 +34,7 @@ NOT_IN_THAT = {
     *("marked_lanes", "on_solid_line", "broken_on_own_side", "single_line"),
     *("one_way", "divided", "lane_kind", "tunnel", "tracks_at_kerb"),
     *("on_priority_road", "turn_on_red_sign", "no_turn_on_red_sign"),
-    *("level_crossing_zone", "enters_level_crossing", "guarded"),
+    *("level_crossing_zone", "enters_level_crossing", "guarded", "past_level_crossing_sign"),
     *("wet", "icy", "visibility", "raining", "night", "told_to_stop", "told_to_go"),
     *("headlamps", "front_fog_lamps", "rear_fog_lamps"),
 }

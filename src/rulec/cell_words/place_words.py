@@ -66,6 +66,7 @@ OF_PLACE = frozenset(
         "crossing_zone",
         "crossing_kind",
         "level_crossing_zone",
+        "past_level_crossing_sign",
         "guarded",
         "no_overtaking_sign",
         "give_way_sign",

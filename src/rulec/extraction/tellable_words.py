@@ -60,7 +60,8 @@ _COMMONROAD_ONLY = frozenset(
 _SUMO_ONLY = frozenset(
     (
         *("boarding", "conflict_with_rail", "enters_level_crossing", "guarded", "leaving_stop"),
-        *("level_crossing_zone", "told_to_go", "told_to_stop", "tracks_at_kerb", "tunnel"),
+        *("level_crossing_zone", "past_level_crossing_sign", "told_to_go", "told_to_stop"),
+        *("tracks_at_kerb", "tunnel"),
     )
 )
 _SIGNED = frozenset(
@@ -86,7 +87,8 @@ _NOT_BY_LANE_CENTRES = frozenset(
 _ON_ANY_MAP = frozenset(
     (
         *("no_overtaking_sign", "no_turn_on_red_sign", "conflict_with_rail"),
-        *("enters_level_crossing", "guarded", "level_crossing_zone", "tracks_at_kerb", "tunnel"),
+        *("enters_level_crossing", "guarded", "level_crossing_zone", "past_level_crossing_sign"),
+        *("tracks_at_kerb", "tunnel"),
     )
 )
 """Tables take nets of SUMO's, too, which have every sign and track."""

@@ -39,6 +39,7 @@ from rulec.extraction.signals.intention_signals import intention_signals
 from rulec.extraction.signals.lane_mark_signals import lane_mark_signals
 from rulec.extraction.signals.map.crossing_signals import crossing_signals
 from rulec.extraction.signals.map.junction_signals import junction_signals
+from rulec.extraction.signals.map.level_crossing_signals import level_crossing_signals
 from rulec.extraction.signals.map.line_signals import line_signals
 from rulec.extraction.signals.map.map_signals import map_signals
 from rulec.extraction.signals.map.merge_signals import merge_signals
@@ -75,6 +76,7 @@ _SIGNALS: tuple[Callable[[DriveContext, SignalNames], SignalColumns], ...] = (
     priority_signals,
     crossing_signals,
     roundabout_signals,
+    level_crossing_signals,
     zone_signals,
     intention_signals,
     called_signals,

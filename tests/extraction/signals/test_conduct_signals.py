@@ -358,10 +358,14 @@ def test_who_drives_on_later_has_not_broken_down(fast, expected):
     assert set(found[9:24]) == {expected}
 
 
-def test_who_stands_when_it_is_first_seen_may_have_waited_until_then():
+@pytest.mark.parametrize("hazards_told", [False, True])
+def test_who_stands_when_it_is_first_seen_may_have_waited_until_then(hazards_told):
     speeds = [*[0.0] * 30, *np.linspace(0, 20, 16), *[20.0] * 20]
     x = 50 + np.concatenate(([0.0], np.cumsum(np.array(speeds[:-1]) / 2)))
     ego = vehicle(7, {k: (place, 0) for k, place in enumerate(x)})
+    if hazards_told:
+        dark = dict.fromkeys(range(len(x)), frozenset())
+        ego = replace(ego, lamps=dark, shows=frozenset({"hazard_lights"}))
     found = told(reason_signals, "cause_to_brake", LONG, ego, complete=SIMULATED)
     # It has the time to get going after 5 s
     assert (set(found[:11]), set(found[11:28])) == ({"?"}, {"F"})

@@ -8,7 +8,7 @@ import pytest
 from rulec import build_lanelet, build_participant, build_recording, verify_recording
 from rulec.extraction.signals.ego_signals import ego_signals
 from support.builders.drive_contexts import context_of, steady
-from support.builders.recordings import recording, straight, vehicle
+from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
 
 
@@ -101,6 +101,36 @@ def test_the_number_of_lanes(count, expected):
     assert set(found["lanes"].tolist()) == {expected}
     # An only lane is the one at the kerb
     assert set(found["lane"].tolist()) == {"kerb_lane"}
+
+
+def test_lanes_count_where_most_are_beside_ego():
+    """The left one of two turns off; ego is 4 m long."""
+    road = [
+        straight(1, 0, 100, left_of=4, successors=(2,)),
+        straight(4, 0, 100, 4, right_of=1, successors=(5,)),
+        straight(2, 100, 120, predecessors=(1,), successors=(3,)),
+        straight(3, 120, 300, predecessors=(2,)),
+        lanelet(5, [(100, 4), (110, 8), (112, 30)], predecessors=(4,)),
+    ]
+    ego = vehicle(7, {k: (x, 0) for k, x in enumerate((90, 101, 103, 119, 130))})
+    found = ego_signals(context_of(recording(road, [ego]), ("1", "2", "3")))
+    one, two = (found.texts["lanes"].index(word) for word in ("one_lane", "two_lanes"))
+    assert found.world["lanes"].tolist() == [two, two, one, one, one]
+
+
+@pytest.mark.parametrize("x", np.arange(90.0, 112.0, 0.5))
+def test_a_lane_that_forks_hides_none_beside_it(x):
+    """The right one of two does at 100 m; what was the second lane is the third one from there."""
+    road = [
+        straight(1, 0, 100, left_of=4, successors=(2, 3)),
+        straight(4, 0, 100, 4, right_of=1, successors=(5,)),
+        straight(2, 100, 300, left_of=3, predecessors=(1,)),
+        lanelet(3, [(100, 0), (120, 4), (300, 4)], left_of=5, right_of=2, predecessors=(1,)),
+        lanelet(5, [(100, 4), (120, 8), (300, 8)], right_of=3, predecessors=(4,)),
+    ]
+    ego = vehicle(7, {0: (x, 0.0), 1: (x, 0.0)})
+    found = ego_signals(context_of(recording(road, [ego]), ("1", "2")))
+    assert found.texts["lanes"][found.world["lanes"][0]] != "one_lane"
 
 
 @pytest.mark.parametrize(("y", "lane"), [(0, "kerb_lane"), (4, "kerb_lane"), (8, "far_lane")])

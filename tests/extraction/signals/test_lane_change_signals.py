@@ -40,6 +40,46 @@ def test_who_follows_a_way_of_a_lane_that_forks_may_have_changed_to_none(x, know
     assert found.unknown["lane_change"][change] == (not known)
 
 
+@pytest.mark.parametrize(("y", "known"), [(0.0, False), (-2.5, True)])
+def test_who_follows_a_way_that_parts_slowly_may_have_changed_to_none(y, known):
+    """The ways are 4 m apart 60 m behind the fork, where the road goes on straight.
+
+    Ego is on the one that bends off from the beginning, or comes to it from beside it.
+    """
+    off = [(100, 0), (160, 4), (300, 4)]
+    road = [
+        straight(1, 0, 100, successors=(2, 3)),
+        lanelet(2, [(100, 0), (160, 0), (300, 0)], left_of=3, predecessors=(1,)),
+        lanelet(3, off, right_of=2, predecessors=(1,)),
+    ]
+    xs = np.arange(90.0, 220.0, 5.0)
+    ys = np.interp(xs, *np.array([(0, 0), *off]).T) + np.where(xs < 120, y, 0.0)
+    ego = vehicle(7, dict(enumerate(zip(xs, ys, strict=True))))
+    found = lane_change_signals(context_of(recording(road, [ego]), ("1", "2")))
+    (change,) = np.flatnonzero(found.world["lane_change"])
+    assert xs[change] > 115
+    assert found.unknown["lane_change"][change] == (not known)
+
+
+@pytest.mark.parametrize("ends", [False, True])
+def test_who_comes_from_behind_on_a_lane_that_ends_does_not_come_into_egos(ends):
+    """The left lane goes on at 100 m, or begins there anew. Ego changes to it at 140 m."""
+    road = [
+        straight(1, 0, 90, left_of=2, successors=(3,)),
+        straight(2, 0, 90, 4, right_of=1, successors=() if ends else (4,)),
+        straight(3, 90, 100, left_of=None if ends else 4, predecessors=(1,), successors=(5,)),
+        straight(5, 100, 400, left_of=6, predecessors=(3,)),
+        straight(6, 100, 400, 4, right_of=5, predecessors=() if ends else (4,)),
+    ]
+    if not ends:
+        road.append(straight(4, 90, 100, 4, right_of=3, predecessors=(2,), successors=(6,)))
+    ego = vehicle(7, {k: (120 + 5 * k, 0 if k < 4 else 4) for k in range(8)})
+    other = vehicle(8, {k: (30 + 12.5 * k, 4) for k in range(5)}, speed=25.0)
+    found = lane_change_signals(context_of(recording(road, [ego, other]), ("1", "3", "5")))
+    (change,) = np.flatnonzero(found.world["lane_change"])
+    assert found.world["lane_is_clear"][change] == ends
+
+
 @pytest.mark.parametrize("to_left", [True, False])
 @pytest.mark.parametrize(
     ("goes", "steps", "clear"),

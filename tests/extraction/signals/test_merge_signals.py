@@ -102,10 +102,20 @@ def test_where_a_net_has_all_lanes_that_one_ends():
         ],
         # Both may leave, one alone goes on
         lanes((9,), (3, 9), lanelet(9, [(100, 0), (150, -40)], predecessors=(1, 2))),
+        # The right one is a short way from a lane that goes on beside them
+        [
+            straight(8, 0, 80, 0, left_of=9, successors=(1, 10)),
+            straight(9, 0, 80, 4, right_of=8, successors=(2,)),
+            straight(1, 80, 100, 0, left_of=2, successors=(3,), predecessors=(8,)),
+            straight(2, 80, 100, 4, right_of=1, successors=(3,), predecessors=(9,)),
+            straight(3, 100, 250, 4, predecessors=(1, 2), right_of=11),
+            straight(10, 80, 100, 0, predecessors=(8,), successors=(11,)),
+            straight(11, 100, 250, 0, predecessors=(10,), left_of=3),
+        ],
         lanes(right_types=("accessRamp",)),
         lanes((), right_width=[4.0, 4.0, 0.5], right_types=("exitRamp",)),
     ],
-    ids=["a ramp", "all to all", "an exit from both", "an entry", "an exit that ends"],
+    ids=["a ramp", "all to all", "exits", "a way beside", "an entry", "an exit that ends"],
 )
 def test_no_narrowing(road):
     found = signals(road, y=4.0)

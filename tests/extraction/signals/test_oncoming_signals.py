@@ -105,6 +105,17 @@ def test_a_recording_that_ends_while_both_are_there_tells_that_ego_did_not_wait(
     assert unknown.any()
 
 
+@pytest.mark.parametrize(("comes_s", "known"), [(8.0, True), (18.0, False)])
+def test_ego_that_has_to_stand_may_not_have_seen_who_comes_much_later(comes_s, known):
+    """It stands across the other's lane from 6 s on, until 2 s before that one comes."""
+    times = np.arange(0, 30, STEP_S)
+    stood = np.clip(times - 6, 0, comes_s - 6)
+    ego = 32 + 5 * (times - stood)
+    conflict, unknown = told(82 + 10 * (times - comes_s), ego=ego)
+    assert conflict.any() == known
+    assert unknown.any() == (not known)
+
+
 @pytest.mark.parametrize(("reaches_s", "waits"), [(4.5, True), (5.5, False)])
 def test_where_all_have_to_stop_ego_does_not_wait_for_who_comes_later(reaches_s, waits):
     """Ego gets into the junction at 3.6 s, the other one 0.7 s or 1.7 s later."""

@@ -134,3 +134,35 @@ def test_the_light_of_a_way_is_not_known_where_the_way_is_not(xs, lights):
     assert told("light", xs, lanes) == lights
     crosses = [False, False, False, True, False][: len(xs)]
     assert told("crosses_light_line", xs, lanes) == [str(flag) for flag in crosses]
+
+
+@pytest.mark.parametrize("complete", [True, False])
+def test_a_way_without_a_light_beside_others_with_one_leads_past_it(complete):
+    """There is one for the way to the left, and none for straight on, if the map has all."""
+    red = {"3": Light(0, (("red", 9),))}
+    lanes = road()
+    lanes[0] = replace(lanes[0], lights=tuple(red.values()), lights_to=red)
+    found = recording(lanes, [vehicle(7, {k: (x, 0) for k, x in enumerate((60, 97, 130))})])
+    found = replace(found, complete=frozenset({"light"} if complete else ()))
+    signals = junction_signals(context_of(found, ("1", "2", "5")))
+    light = "no_light" if complete else "red_light"
+    assert signals.world["light"].tolist() == [light] * 3
+
+
+def test_who_follows_a_road_that_bends_may_not_have_turned():
+    """The map calls the way to the left straight on."""
+    lanes = [
+        straight(1, -200, 100, successors=(3,)),
+        lanelet(3, arc(100, 14, 14, -90, 0), predecessors=(1,), successors=(6,), **INSIDE),
+        lanelet(6, [(114, 14), (114, 200)], predecessors=(3,)),
+    ]
+    places = [(60, 0), (98, 0), (110, 4.2), (114, 30)]
+    ego = vehicle(7, dict(enumerate(places)))
+    route = ("1", "3", "6")
+    plain = junction_signals(context_of(recording(lanes, [ego]), route))
+    assert plain.world["turn"].tolist() == ["straight_on", "turn_far", "turn_far", "straight_on"]
+    assert not plain.unknown["turn"].any()
+    lanes[1] = replace(lanes[1], types=lanes[1].types | {"straightOn"})
+    bends = junction_signals(context_of(recording(lanes, [ego]), route))
+    assert bends.unknown["turn"].tolist() == [False, True, True, False]
+    assert not bends.world["preparing_to_leave"].any()

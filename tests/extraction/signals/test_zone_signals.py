@@ -1,4 +1,4 @@
-"""What ego drives through: the room behind it, who directs a crossing, level crossings, tracks.
+"""What ego drives through: the room behind it, and who directs a crossing.
 
 The junction reaches from x = 100 to 120; bodies are 4 m long, so room for ego are 5 m.
 """
@@ -249,29 +249,3 @@ def test_a_crossing_that_lanes_with_lights_lead_over_may_have_lights_for_all_lan
 
 def test_without_a_crossing_the_kind_is_the_usual_one():
     assert kind(road()) == "zebra"
-
-
-def test_level_crossings_are_those_of_the_map():
-    rails = road(None, {"types": frozenset({"level_crossing"})})
-    xs = (92, 94, 97, 99, 118, 123)
-    found = told(rails, going(7, xs)).world
-    # Fronts are at 94, 96, 99, 101, 120 and 125, rears 4 m behind
-    assert found["level_crossing_zone"].tolist() == [False, True, True, True, True, False]
-    assert found["enters_level_crossing"].tolist() == [False, False, False, True, False, False]
-    assert found["guarded"].tolist() == found["level_crossing_zone"].tolist()
-    assert "level_crossing_zone" not in told(road(), going(7, xs)).world
-    free = told(road(), going(7, xs), complete=["rail"]).world
-    assert not free["level_crossing_zone"].any()
-    assert not free["enters_level_crossing"].any()
-
-
-def test_tracks_beside_the_lane_at_the_kerb():
-    rail = frozenset({"rail", "restricted_area"})
-    lanes = road({"right_of": 8})
-    lanes.append(straight(8, 0, 100, -4, left_of=1, types=rail))
-    found = told(lanes, going(7, (90, 105)), complete=["rail"]).world
-    assert found["tracks_at_kerb"].tolist() == [True, False]
-    # On the far side they leave room to pass at the kerb's side
-    lanes = road({"left_of": 8})
-    lanes.append(straight(8, 0, 100, 4, right_of=1, types=rail))
-    assert not told(lanes, going(7, (90, 105)), complete=["rail"]).world["tracks_at_kerb"].any()

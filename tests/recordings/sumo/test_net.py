@@ -158,6 +158,19 @@ def test_only_where_roads_meet_is_a_junction(tmp_path):
     assert "intersection" in lanelets(tmp_path, text)[":x_0_0"].types
 
 
+@pytest.mark.parametrize("letter", ["s", "l"])
+def test_a_way_that_a_net_calls_straight_on(tmp_path, letter):
+    """In a junction; of a way in parts the first one's letter counts, all others being straight."""
+    third = '<edge id="side" from="c" to="x"><lane id="side_0" index="0" speed="9"'
+    text = ROAD_NET.replace("</net>", f'{third} shape="202,90 202,4"/></edge></net>')
+    own = 'via=":x_0_0" dir="s"'
+    assert own in text
+    inner = '<connection from=":x_1" to="out" fromLane="0" toLane="0" via=":x_0_0" dir="s"/></net>'
+    text = text.replace(own, own[:-2] + f'{letter}"').replace("</net>", inner)
+    assert ("straightOn" in lanelets(tmp_path, text)[":x_0_0"].types) == (letter == "s")
+    assert "straightOn" not in lanelets(tmp_path)[":x_0_0"].types
+
+
 @pytest.mark.parametrize(
     ("side_way", "foes", "meets"),
     [

@@ -39,6 +39,27 @@ def test_on_a_circle_they_are_the_angle_and_the_distance(angle, offset):
     assert line.heading_at(s) == pytest.approx(angle, abs=0.02)
 
 
+@pytest.mark.parametrize(
+    ("place", "expected"),
+    [
+        # On the last leg, through which the first one would lead if it went on backwards
+        ((203.0, 0.0), (800, -3)),
+        # Beyond where the line begins, far from all of it
+        ((100.0, 0.5), (-100, -0.5)),
+        # Where it begins, and just before
+        ((-1.0, 3.0), (1, -3)),
+        ((2.0, 3.0), (-2, -3)),
+    ],
+)
+def test_who_is_beside_the_line_is_not_on_what_it_would_be_beyond_its_ends(place, expected):
+    """It leads to the west, 200 m to the south, 400 m to the east, and to the north again."""
+    line = reference_line(
+        np.array([(0.0, 0.0), (-100, 0), (-100, -200), (200, -200), (200, 300)], dtype=float)
+    )
+    ((s, d),) = line.coordinates(np.array([place]))
+    assert (s, d) == pytest.approx(expected, abs=0.1)
+
+
 @given(st.floats(0.1, 3), offsets, st.integers(4, 12))
 def test_they_do_not_jump_at_corners(angle, offset, pieces):
     """Even where the line is coarse: a step of 1 cm is one of a few centimetres at most."""
@@ -88,8 +109,11 @@ def test_what_has_no_foot_has_no_coordinates():
 
 
 def feet_one_by_one(line, place, pieces):
-    """The nearest foot of a place, each piece of the line being tried by itself."""
-    feet = []
+    """The nearest foot of a place, each piece of the line being tried by itself.
+
+    Of those beyond its ends only if none is nearer than 15 m more.
+    """
+    feet, last = [], len(line.arc) - 1
     for k in pieces:
         across_piece = np.array([-line.ahead[k, 1], line.ahead[k, 0]])
         along, across = (
@@ -100,7 +124,9 @@ def feet_one_by_one(line, place, pieces):
         part = (along + across * line.first[k]) / length if length > 0 else np.nan
         if 0 <= part <= 1:
             off = np.hypot(along - part * line.lengths[k], across)
-            feet.append((off, line.arc[k] + part * line.lengths[k], np.copysign(off, across)))
+            more = 15.0 if k in (0, last) else 0.0
+            s = line.arc[k] + part * line.lengths[k]
+            feet.append((off + more, s, np.copysign(off, across)))
     return min(feet)[1:] if feet else (np.nan, np.nan)
 
 

@@ -104,14 +104,18 @@ def travel_lanes(context: DriveContext) -> Flags:
     All that exist but hard shoulders, which are no part of the carriageway, what is beyond these,
     which is another one, as a road beside the main one, and lanes for cycles, unless ego is one.
     """
-    types, travel = map_contents(context).types, context.existing_lanes
+    return travel_lanes_at(context, context.ego_extents.s[0])
+
+
+def travel_lanes_at(context: DriveContext, places: Floats) -> Flags:
+    """The same beside places along the road, one for each state."""
+    types, travel = map_contents(context).types, context.road.lanes.existing_at(places)
     if CYCLE_LANE in types:
-        travel = travel & ~(
-            _lanes_of(context, CYCLE_LANE) & ~context.ego_is("light_rider")[:, None]
-        )
+        cycles = _lanes_of(context, CYCLE_LANE, places)
+        travel = travel & ~(cycles & ~context.ego_is("light_rider")[:, None])
     if SHOULDER not in types:
         return travel
-    shoulders = _lanes_of(context, SHOULDER)
+    shoulders = _lanes_of(context, SHOULDER, places)
     # How many are nearer to the kerb than each lane
     nearer: NDArray[intp] = np.cumsum(shoulders, axis=1) - shoulders
     lanes, own = np.arange(shoulders.shape[1]), context.ego_lane[:, None]
@@ -124,12 +128,10 @@ def travel_lanes(context: DriveContext) -> Flags:
     return travel & ~shoulders & (between <= 0)
 
 
-def _lanes_of(context: DriveContext, kind: str) -> Flags:
-    """Flags of the lanes (second axis) of a type beside ego, by state."""
-    of_states: Flags = lanes_of_type(context.road, kind)[
-        context.road.piece(context.ego_extents.s[0])
-    ]
-    return of_states
+def _lanes_of(context: DriveContext, kind: str, places: Floats) -> Flags:
+    """Flags of the lanes (second axis) of a type, by place along the road."""
+    of_places: Flags = lanes_of_type(context.road, kind)[context.road.piece(places)]
+    return of_places
 
 
 def lanes_of_type(road: DrivenRoad, kind: str) -> Flags:

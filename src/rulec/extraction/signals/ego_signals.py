@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.conduct.manoeuvre_signals import goes_over_the_middle
-from rulec.extraction.signals.ego_lanelets import room_beside, travel_lanes
+from rulec.extraction.signals.ego_lanelets import room_beside, travel_lanes, travel_lanes_at
 from rulec.extraction.signals.measured_numbers import own_speed, speed_bounds
 from rulec.extraction.signals.queues import lanes_that_go_on
 from rulec.extraction.signals.signal_columns import (
@@ -132,7 +132,15 @@ def _lane_number(context: DriveContext) -> SignalColumns:
 
 
 def _lane_count(context: DriveContext) -> SignalColumns:
-    count = travel_lanes(context).sum(axis=1)
+    """How many lanes there are, where most are beside ego's body.
+
+    Who stands beside ego where ways part is not on ego's any more when its middle is past that, and
+    where a lane forks those beside it may be of no width for some metres on the road of ego's way.
+    """
+    own = context.ego_extents
+    places = own.s_min[0], own.s[0], own.s_max[0]
+    counts = [travel_lanes_at(context, at).sum(axis=1) for at in places]
+    count = np.maximum.reduce(counts)
     return SignalColumns({"lanes": np.clip(count - 1, 0, 2)}, texts={"lanes": _COUNTS})
 
 

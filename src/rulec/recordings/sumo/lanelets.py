@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from rulec.recordings.polylines import parallel_line, without_repeats
-from rulec.recordings.recording import CYCLES_TOO, Lanelet, LaneMark, Points
+from rulec.recordings.recording import CYCLES_TOO, STRAIGHT_ON, Lanelet, LaneMark, Points
 from rulec.recordings.sumo.lane_kinds import lane_kinds
 from rulec.recordings.sumo.net import NetConnection, NetEdge, NetLane, SumoNet
 from rulec.recordings.sumo.right_of_way import (
@@ -41,7 +41,7 @@ _KMH = 3.6
 _ROUNDED_KMH = 0.02
 """Nets have limits in m/s with two decimals, which is so far from a whole number of km/h."""
 
-_GIVES_WAY = "m"
+_GIVES_WAY, _STRAIGHT = "m", "s"
 _ARMS = 3
 _CLOSEST_M = 0.01
 
@@ -64,6 +64,9 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
     junctions = _junctions(net)
     lights, ways = net.lane_lights(step_s), net.way_lights(step_s)
     rights, signs = rights_of_ways(net), signs_of_lanes(net)
+    # Not the later ones of the ways through a junction that consist of several lanes
+    entering = [x for x in net.connections if not x.start.startswith(":")]
+    straight = {x.via for x in entering if x.direction == _STRAIGHT}
     links: dict[str, list[NetConnection]] = defaultdict(list)
     entries: dict[str, list[NetConnection]] = defaultdict(list)
     for connection in net.connections:
@@ -91,6 +94,7 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
                     *_types(lane, net, junctions, entries[lane.id]),
                     *_place_types(origin.edge, net, lane),
                     *filter(None, [kinds.get(origin.id)]),
+                    *([STRAIGHT_ON] if lane.id in straight and junction in junctions else ()),
                 )
             ),
             signs=signs.get(lane.id, frozenset()),

@@ -83,13 +83,14 @@ class NetJunction:
 class NetConnection:
     """A connection from a lane to the next one, over ``via`` within a junction.
 
-    ``link`` is its number at its ``light``.
+    ``direction`` is SUMO's letter for where it leads, ``link`` its number at its ``light``.
     """
 
     start: str
     end: str
     via: str
     state: str
+    direction: str
     light: str
     link: int
 
@@ -283,6 +284,7 @@ def _connection(element: XmlElement) -> NetConnection:
         end=f"{element.text('to')}_{element.text('toLane')}",
         via=element.get("via"),
         state=element.get("state"),
+        direction=element.get("dir"),
         light=element.get("tl"),
         link=int(element.number("linkIndex", -1.0)),
     )

@@ -28,6 +28,12 @@ from rulec.trace.plain_arrays import distinct
 BEYOND_M = 2000.0
 """How far the line goes on straight beyond its ends."""
 
+_BESIDE_M = 15.0
+"""Who is so near to the line itself is not on what it would be beyond its ends.
+
+Nobody knows how it goes on there; straight on it comes by its own other parts after a bend or two.
+"""
+
 _CLOSEST_M = 0.05
 _PIECE_M = 5.0
 _SMOOTH_M = 5.0
@@ -140,7 +146,9 @@ class ReferenceLine:
         good = (turned_lengths > 0) & (part >= -_HAIR) & (part <= 1 + _HAIR)
         distance = np.hypot(along - part * lengths, across)
         best = good.nonzero()[0]
-        best = best[_least_of_each(numbers[best], distance[best])]
+        away, own = distance[best], pieces[best]
+        away += np.where((own == 0) | (own == len(self.arc) - 1), _BESIDE_M, 0.0)
+        best = best[_least_of_each(numbers[best], away)]
         found = np.full((len(places), 2), np.nan)
         found[numbers[best], 0] = arc[best] + part[best] * lengths[best]
         found[numbers[best], 1] = np.copysign(distance[best], across[best])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
@@ -21,6 +22,8 @@ from rulec.extraction.signals.conduct.turning_round import has_to_brake_for_turn
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, ids_by_state
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags
+from rulec.scenario.recorded.route import lanelet_area
+from rulec.trace.plain_arrays import distinct
 
 _INDICATORS = frozenset({"left_indicator", "right_indicator"})
 
@@ -57,16 +60,36 @@ def _lane_change(context: DriveContext) -> SignalColumns:
 
 
 def _at_fork(context: DriveContext, change: int) -> bool:
-    """True if the lanes that ego changes between have come of one, less than ``_FORK_M`` ago."""
-    road, s = context.road, context.ego_extents.s[0, change - 1 : change + 1]
-    pieces = {int(piece) for piece in road.piece(s)}
-    lanes = context.steady_lane[change - 1 : change + 1].tolist()
-    for piece in pieces:
-        one, other = (road.rows[piece][lane] for lane in lanes)
-        near = s[1] - float(road.borders[piece]) < _FORK_M
-        if one and other and near and set(one.predecessors) & set(other.predecessors):
-            return True
+    """True if the lanes that ego changes between have come of one, and it may follow one of them.
+
+    That is less than ``_FORK_M`` ago, or ego has been on the one that it comes to ever since.
+    """
+    road, s = context.road, context.ego_extents.s[0]
+    before, after = context.steady_lane[change - 1 : change + 1].tolist()
+    for piece in range(int(road.piece(s[change : change + 1])[0]), -1, -1):
+        one, other = road.rows[piece][before], road.rows[piece][after]
+        if one is None or other is None:
+            return False
+        if set(one.predecessors) & set(other.predecessors):
+            begin = float(road.borders[piece])
+            return bool(s[change] - begin < _FORK_M) or _has_followed(context, after, begin, change)
     return False
+
+
+def _has_followed(context: DriveContext, lane: int, begin_m: float, end: int) -> bool:
+    """True if ego's middle was on a lane's lanelets from a place of the road up to a state."""
+    road, own = context.road, slice(int(context.spans.first[end]), end)
+    states = own.start + np.flatnonzero(context.ego_extents.s[0, own] >= begin_m)
+    points = shapely.points(context.ego.x[0, states], context.ego.y[0, states])
+    pieces = road.piece(context.ego_extents.s[0, states])
+    for piece in distinct(pieces).tolist():
+        lanelet = road.rows[piece][lane]
+        inside = lanelet is not None and shapely.covers(
+            lanelet_area(lanelet), points[pieces == piece]
+        )
+        if not np.all(inside):
+            return False
+    return True
 
 
 def _lane_is_clear(context: DriveContext) -> SignalColumns:

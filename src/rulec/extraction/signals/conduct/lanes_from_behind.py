@@ -30,7 +30,8 @@ class _Ways:
 def comes_into_lane(context: DriveContext, row: int, state: int) -> bool | None:
     """Does a vehicle behind ego come into the lane of ego's middle, by its track if ways part?
 
-    None where its track does not tell. True on the same lane, where none forks between the two.
+    None where its track does not tell. True on the same lane, where none forks between the two;
+    False where it ends there: who comes from such a lane has to change lanes itself.
     """
     extents = context.extents
     own, lane = int(context.ego_lane[state]), int(extents.lane[row, state])
@@ -40,6 +41,8 @@ def comes_into_lane(context: DriveContext, row: int, state: int) -> bool | None:
     if theirs >= egos:
         return same
     ways, fork = _ways(context, theirs, egos, lane)
+    if not ways.lanes:
+        return False
     if not ways.forks or (own not in ways.lanes and not same):
         return same
     later = slice(state, int(context.spans.end[state]))
@@ -79,6 +82,8 @@ def _onward(context: DriveContext) -> Sequence[Mapping[int, _Ways]]:
         ways = {}
         for lane, lanelet in enumerate(row):
             leads = [] if lanelet is None else [x for x in lanelet.successors if x in known]
+            if lanelet is not None and not leads and beyond[lane] is None:
+                ways[lane] = _Ways(frozenset(), leaves=False)
             if leads:
                 lanes = frozenset(numbers[x] for x in leads if x in numbers)
                 ways[lane] = _Ways(lanes, leaves=any(x not in numbers for x in leads))

@@ -64,9 +64,9 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     drives on at ``_DRIVES_KMH`` afterwards; one that stands soon, whose drive ends, that is beside
     somebody, or comes up to one beside its lane who is less than half as fast, and may come into
     it, had perhaps something to do; so has one before or on a lane that joins others, where it
-    looks for a gap, one that has stood for a reason up to ``_MOVES_OFF_S`` ago, and one that brakes
-    hard with nobody near behind, whom it would surprise. Where not all traffic is recorded it is as
-    far as somebody is recorded ahead.
+    looks for a gap, one that has stood for a reason, or since its drive began, up to
+    ``_MOVES_OFF_S`` ago, and one that brakes hard with nobody near behind, whom it would surprise.
+    Where not all traffic is recorded it is as far as somebody is recorded ahead.
     """
     caused = _by_map(context)
     others = _others(context, np.flatnonzero(~caused))
@@ -75,6 +75,7 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     spans, stands = context.spans, ~moves(context)
     broken_down = stands & ~_drives_on(context, stands)
     perhaps = spans.within(broken_down, soon) & ~(stands & _shows_no_hazard(context))
+    perhaps |= stands & spans.begins_here
     perhaps |= spans.columns + soon // 2 >= spans.end
     # Ego may want to get in behind one beside it, or let it in
     beside = (others.away > _IN_WAY_M) & (others.away <= _COMES_M)

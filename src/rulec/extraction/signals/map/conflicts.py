@@ -3,7 +3,8 @@
 Another one is in conflict with ego if ego gets there first although the other one would be there
 within ``yielding_s`` after ego, or does come within ``held_up_s`` although it would have been there
 so soon; and if ego drives into the side of one that is there. Whom ego lets pass is in none, but
-for one that runs into it.
+for one that runs into it. Perhaps one is that comes more than ``_LATE_S`` after ego has got there
+and has had to stand there.
 """
 
 from __future__ import annotations
@@ -37,6 +38,9 @@ _GRAZES_M = 0.15
 
 _BEHIND_S = 0.3
 """Who gets to a place so short a time before another one has left it passes behind it."""
+
+_LATE_S = 10.0
+"""Who comes so long after ego has got to a place need not have been in sight as it drove in."""
 
 Passing: TypeAlias = tuple[Passage, float | None, float | None]
 """A passage, with when, in columns, it enters and leaves where ways meet."""
@@ -163,7 +167,8 @@ def _held_up(
     if (at - until) * step_s < limits.yielding_s:
         drove_on = leaves is not None or _drives_on(context, own, comes)
         drives_in = min(max(passages.front_enters(own), first), last)
-        return first, drove_on and not _stands(context, other, drives_in)
+        late = (at - enters) * step_s > _LATE_S and _stood(context, own, enters, until)
+        return first, drove_on and not late and not _stands(context, other, drives_in)
     if (at - until) * step_s >= limits.held_up_s:
         return None
     travelled = passages.travelled[other.row]
@@ -179,6 +184,12 @@ def _held_up(
         return None
     for_ego = not _bends(context, other, first + decides, comes)
     return int(columns[soon.argmax()]), leaves is not None and for_ego
+
+
+def _stood(context: DriveContext, own: Passage, first: int, last: float) -> bool:
+    """True if ego stood between two columns: who came then it may not have seen as it drove in."""
+    speed = context.surroundings.passages.tracks.speed[own.row, first : int(last) + 1]
+    return bool((speed < SLOWEST_MPS).any())
 
 
 def _stands(context: DriveContext, other: Passage, column: int) -> bool:

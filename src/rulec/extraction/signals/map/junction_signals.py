@@ -19,7 +19,7 @@ from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns,
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.junctions import all_have_to_stop
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.recordings.recording import STOP_SIGNS, Light, ObservedLight
+from rulec.recordings.recording import STOP_SIGNS, STRAIGHT_ON, Light, ObservedLight
 from rulec.trace.plain_arrays import distinct
 
 _SLOWEST_MPS = 5.0
@@ -64,10 +64,15 @@ def _enters_junction(context: DriveContext) -> SignalColumns:
 
 def _turns(context: DriveContext) -> SignalColumns:
     turn = np.full(context.states, "straight_on", dtype="<U11")
+    bends = np.zeros(context.states, dtype=bool)
     for start, end in context.road.junctions:
-        turn[_at_junction(context, start, end)] = turn_at(context, start, end)
-    unknown = _way_not_known(context)
-    leaves, limits = (turn != "straight_on") | _on_exit(context), context.thresholds
+        at_junction = _at_junction(context, start, end)
+        turn[at_junction] = turn_at(context, start, end)
+        bends |= at_junction & _leads_straight_on(context, start, end)
+    bends &= turn != "straight_on"
+    unknown = _way_not_known(context) | bends
+    limits = context.thresholds
+    leaves = ((turn != "straight_on") & ~bends) | _on_exit(context)
     prepares = _within_preparation(context, leaves, limits.standing_kmh)
     # In a queue that creeps nobody knows since when
     perhaps = _within_preparation(context, leaves | unknown, limits.walking_pace_kmh)
@@ -119,6 +124,14 @@ def _traffic_lights(context: DriveContext) -> SignalColumns:
             "crosses_light_line": may_cross,
         },
     )
+
+
+def _leads_straight_on(context: DriveContext, start: float, end: float) -> bool:
+    """True if the map calls ego's way at a junction straight on: with a bend it may be no turn."""
+    road = context.road
+    pieces = np.flatnonzero((road.borders[:-1] >= start - 0.1) & (road.borders[:-1] < end))
+    ways = [road.rows[piece][road.own_lanes[piece]] for piece in pieces.tolist()]
+    return any(way is not None and STRAIGHT_ON in way.types for way in ways)
 
 
 def _on_exit(context: DriveContext) -> Flags:
@@ -297,12 +310,17 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
 
 
 def _own_lights(context: DriveContext, piece: int, lane: int) -> tuple[Light | ObservedLight, ...]:
-    """The lights for ego's way on, as far as the map tells them apart."""
+    """The lights for ego's way on, as far as the map tells them apart.
+
+    A way without any, beside others with lights, is one past them, if the map has all lights.
+    """
     lanelet = context.road.lanelet(piece, lane)
     if lanelet.lights_to and piece + 1 < len(context.road.rows):
         onward = context.road.lanelet(piece + 1, lane).id
         if onward in lanelet.lights_to:
             return (lanelet.lights_to[onward],)
+        if "light" in context.recording.complete and onward in lanelet.successors:
+            return ()
     return lanelet.lights
 
 

@@ -1,7 +1,8 @@
 """Signals of narrowings, where two lanes become one.
 
 Two lanes beside each other become one where both lead to the same lane and to no other, or where
-one of them ends. A lane that merely has no successor on the map may go on beyond it.
+one of them ends. One of several ways on from a lane is no lane that ends. A lane that merely has no
+successor on the map may go on beyond it.
 """
 
 from __future__ import annotations
@@ -18,13 +19,17 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, once_a_road, signals_by
 from rulec.extraction.tracks.tracks import Flags
-from rulec.recordings.recording import Lanelet
+from rulec.recordings.recording import Lanelet, Recording
+from rulec.scenario.recorded.route import lanelet_length
 
 _TAPERED = 0.6
 """A lane that ends is narrower at its end than this part of what it was."""
 
 _JUST_BEFORE_M = 15.0
 """Who is farther from the narrowing when ego gets there need not be let in yet."""
+
+_WAY_M = 30.0
+"""Ways from the lanes before a junction, or where lanes are added, to those behind are shorter."""
 
 _RAMPS = frozenset({"accessRamp", "exitRamp"})
 """Who joins from an acceleration lane gives way, and who leaves a road does not go on beside it."""
@@ -106,11 +111,19 @@ def _merges(context: DriveContext) -> Iterator[tuple[float, int, bool]]:
                 continue
             ways = [set(lanelet.successors) & onward for lanelet in (one, other)]
             if ways[0] == ways[1] and len(ways[0]) == 1:
+                if any(_is_one_of_several(context.recording, x) for x in (one, other)):
+                    continue
                 yield float(borders[piece + 1]), right, True
             elif sum(bool(way) for way in ways) == 1:
                 ends = one if not ways[0] else other
                 if not ends.successors:
                     yield float(borders[piece + 1]), right, whole or _tapers(ends)
+
+
+def _is_one_of_several(recording: Recording, lanelet: Lanelet) -> bool:
+    """True of a short way that comes of a lane from which others lead on, too."""
+    before = [recording.lanelets[x] for x in lanelet.predecessors if x in recording.lanelets]
+    return any(len(x.successors) > 1 for x in before) and lanelet_length(lanelet) < _WAY_M
 
 
 def _tapers(lanelet: Lanelet) -> bool:

@@ -1,8 +1,7 @@
-"""Signals of what ego drives through: level crossings, pedestrian crossings, the room beyond."""
+"""Signals of what ego drives through: pedestrian crossings, and the room beyond."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import map_contents
+from rulec.extraction.signals.map.level_crossing_signals import Stretches, level_crossings
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.map.stop_lines import drawn_lines
 from rulec.extraction.signals.measured_numbers import corner_ahead
@@ -23,7 +23,6 @@ from rulec.extraction.signals.signal_passes import (
     once_a_road,
     signals_by,
 )
-from rulec.extraction.tracks.driven_road import runs_along
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Recording, is_lane, is_there
 from rulec.scenario.recorded.lane_coordinates import crossings_along
@@ -36,58 +35,11 @@ _BEFORE_LINE_M = 10.0
 """On maps without stop lines crossings are up to so far before the ends of lanelets with lights."""
 
 ROOM_M = 1.0
-Stretches = Sequence[tuple[float, float]]
 
 
 def zone_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
     """The signals of crossings and of the room behind what ego enters, those of the names."""
     return signals_by(_PASSES, context, names)
-
-
-def _level_crossings(context: DriveContext) -> SignalColumns:
-    if not _tells_rails(context):
-        return SignalColumns()
-    front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
-    zone, enters = np.zeros((2, context.states), dtype=bool)
-    for start, end in _rail_stretches(context):
-        zone |= (front >= start - context.thresholds.zone_m) & (rear < end)
-        enters |= context.spans.enters(front > start)
-    # Those of a net have gates that close while a train comes
-    return SignalColumns(
-        {"level_crossing_zone": zone, "enters_level_crossing": enters, "guarded": zone}
-    )
-
-
-def _tracks_at_kerb(context: DriveContext) -> SignalColumns:
-    if not _tells_rails(context):
-        return SignalColumns()
-    pieces = context.road.piece(context.ego_extents.s[0])
-    return SignalColumns({"tracks_at_kerb": _pieces_by_rails(context)[pieces]})
-
-
-def _tells_rails(context: DriveContext) -> bool:
-    return "rail" in context.recording.complete or bool(_rail_stretches(context))
-
-
-@once_a_road
-def _rail_stretches(context: DriveContext) -> Stretches:
-    rows = context.road.rows
-    flags = [any("level_crossing" in x.types for x in row if x is not None) for row in rows]
-    return list(runs_along(context.road.borders, flags))
-
-
-@once_a_road
-def _pieces_by_rails(context: DriveContext) -> Flags:
-    """Flags of the pieces of the road beside which the lane at the kerb is for rail vehicles."""
-    lanelets = context.recording.lanelets
-    near = "right_of" if context.side == "right" else "left_of"
-    flags = []
-    for row in context.road.rows:
-        there = [lanelet for lanelet in row if lanelet is not None]
-        outer = there[0] if context.side == "right" else there[-1]
-        beside = lanelets.get(getattr(outer, near) or "")
-        flags.append(beside is not None and "rail" in beside.types)
-    return np.array(flags)
 
 
 def _crossing_kind(context: DriveContext) -> SignalColumns:
@@ -223,7 +175,7 @@ def _exit_clear(context: DriveContext) -> SignalColumns:
     whether it stands there, and of one ahead that stands all the time: ego may wait to drive round
     it. What ego enters is the last place that it has got to, and before any the next one.
     """
-    places = [*context.road.junctions, *context.road.crossings, *_rail_stretches(context)]
+    places = [*context.road.junctions, *context.road.crossings, *level_crossings(context)]
     clear, unknown = np.ones(context.states, dtype=bool), np.zeros(context.states, dtype=bool)
     front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
     stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
@@ -341,8 +293,6 @@ def _entered(front: Floats, rear: Floats, places: Stretches, reach: float) -> ND
 
 
 _PASSES: Passes = {
-    ("level_crossing_zone", "enters_level_crossing", "guarded"): _level_crossings,
-    ("tracks_at_kerb",): _tracks_at_kerb,
     ("crossing_kind",): _crossing_kind,
     ("exit_clear",): _exit_clear,
 }

@@ -1,0 +1,127 @@
+"""Signals of level crossings on ego's road, and of the rails beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from heapq import heappop, heappush
+
+import numpy as np
+
+from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
+from rulec.extraction.signals.signal_passes import Passes, once_a_map, once_a_road, signals_by
+from rulec.extraction.tracks.driven_road import runs_along
+from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.scenario.recorded.route import lanelet_length
+
+_SIGNS_M = 300.0
+"""No sign that warns of a level crossing is farther before it: beacons begin 240 m before."""
+
+Stretches = Sequence[tuple[float, float]]
+
+
+def level_crossing_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
+    """The signals of level crossings and rails, those of the names."""
+    return signals_by(_PASSES, context, names)
+
+
+def _zones(context: DriveContext) -> SignalColumns:
+    if not _tells_rails(context):
+        return SignalColumns()
+    front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
+    zone, enters = np.zeros((2, context.states), dtype=bool)
+    for start, end in level_crossings(context):
+        zone |= (front >= start - context.thresholds.zone_m) & (rear < end)
+        enters |= context.spans.enters(front > start)
+    # Those of a net have gates that close while a train comes
+    return SignalColumns(
+        {"level_crossing_zone": zone, "enters_level_crossing": enters, "guarded": zone}
+    )
+
+
+def _warned(context: DriveContext) -> SignalColumns:
+    """Whether ego is past the sign that warns of a level crossing; unknown where there may be one.
+
+    No map has these signs, but where no level crossing is ahead none warns of it.
+    """
+    if not _tells_rails(context):
+        return SignalColumns()
+    front, nobody = context.ego_extents.s_max[0], np.zeros(context.states, dtype=bool)
+    perhaps = _way_to_next(context, front) <= _SIGNS_M
+    return SignalColumns(
+        {"past_level_crossing_sign": nobody}, unknown={"past_level_crossing_sign": perhaps}
+    )
+
+
+def _way_to_next(context: DriveContext, places: Floats) -> Floats:
+    """How far (m) it is at least from places of the road to a level crossing, infinity for none."""
+    road, ways = context.road, _ways_to_next(context)
+    pieces = road.piece(places)
+    behind = np.array([_least(ways, (x.id for x in row if x is not None)) for row in road.rows])
+    starts = road.borders[pieces]
+    # At the beginning of each lanelet it is known; within one it is less by what has been driven
+    way: Floats = np.maximum(behind[pieces] - (places - starts), 0.0)
+    return way
+
+
+def _least(ways: Mapping[str, float], ids: Iterable[str]) -> float:
+    return min((ways.get(one, np.inf) for one in ids), default=np.inf)
+
+
+@once_a_map
+def _ways_to_next(context: DriveContext) -> Mapping[str, float]:
+    """How far (m) it is from where lanelets begin to a level crossing that they lead to."""
+    lanelets = context.recording.lanelets
+    ways: dict[str, float] = {}
+    waiting = [(0.0, x.id) for x in lanelets.values() if "level_crossing" in x.types]
+    while waiting:
+        way, name = heappop(waiting)
+        if name in ways:
+            continue
+        ways[name] = way
+        if way > _SIGNS_M:
+            continue  # on all that lead there it is farther still
+        for before in lanelets[name].predecessors:
+            if before in lanelets and before not in ways:
+                heappush(waiting, (way + lanelet_length(lanelets[before]), before))
+    return ways
+
+
+def _tracks_at_kerb(context: DriveContext) -> SignalColumns:
+    if not _tells_rails(context):
+        return SignalColumns()
+    pieces = context.road.piece(context.ego_extents.s[0])
+    return SignalColumns({"tracks_at_kerb": _pieces_by_rails(context)[pieces]})
+
+
+def _tells_rails(context: DriveContext) -> bool:
+    return "rail" in context.recording.complete or bool(level_crossings(context))
+
+
+@once_a_road
+def level_crossings(context: DriveContext) -> Stretches:
+    """From where to where (m) along ego's road there are level crossings."""
+    rows = context.road.rows
+    flags = [any("level_crossing" in x.types for x in row if x is not None) for row in rows]
+    return list(runs_along(context.road.borders, flags))
+
+
+@once_a_road
+def _pieces_by_rails(context: DriveContext) -> Flags:
+    """Flags of the pieces of the road beside which the lane at the kerb is for rail vehicles."""
+    lanelets = context.recording.lanelets
+    near = "right_of" if context.side == "right" else "left_of"
+    flags = []
+    for row in context.road.rows:
+        there = [lanelet for lanelet in row if lanelet is not None]
+        outer = there[0] if context.side == "right" else there[-1]
+        beside = lanelets.get(getattr(outer, near) or "")
+        flags.append(beside is not None and "rail" in beside.types)
+    return np.array(flags)
+
+
+_PASSES: Passes = {
+    ("level_crossing_zone", "enters_level_crossing", "guarded"): _zones,
+    ("past_level_crossing_sign",): _warned,
+    ("tracks_at_kerb",): _tracks_at_kerb,
+}
