@@ -1,6 +1,7 @@
 """What trackers of single rules are evaded by does not pay."""
 
 import numpy as np
+import pytest
 
 from rulec.api.rulebook_compilation import machines
 from rulec.recordings.building import build_lanelet, build_recording
@@ -95,13 +96,16 @@ def test_what_the_past_has_violated_is_judged_anew():
     assert found.best == 1
 
 
-def test_a_verge_is_no_way_past_a_slow_vehicle():
+@pytest.mark.parametrize("drawn", ["", "sidewalk", "border", "parking"])
+def test_a_verge_is_no_way_past_a_slow_vehicle(drawn):
     # The right lane ends at y = -1.75; the middle of the last one is 0.85 m beyond it, the body not
-    world = street([car("slow", 4.0, x=45.0)], speed=12.0)
+    line = [(-100, -3.25), (500, -3.25)]
+    beside = [build_lanelet("beside", line, 3.0, types=[drawn])] if drawn else []
+    world = street([car("slow", 4.0, x=45.0)], speed=12.0, beside=beside)
     eased = 12 * AHEAD - 2 * np.clip(AHEAD - 1, 0, 2) ** 2 - 8 * np.clip(AHEAD - 3, 0, None)
     straight = 12 * AHEAD
-    beside = np.column_stack((straight, -2.6 * np.clip(AHEAD - 1, 0, 1)))
-    found = scored(world, on_axis(eased), on_axis(straight), beside)
+    by_it = np.column_stack((straight, -2.6 * np.clip(AHEAD - 1, 0, 1)))
+    found = scored(world, on_axis(eased), on_axis(straight), by_it)
     # It is 2.6 m aside from the fourth of its 20 states on
     assert found.off_road.tolist() == [0, 0, 17]
     assert found.allowed.tolist() == [True, False, False]

@@ -18,7 +18,7 @@ from rulec.extraction.selection import RequestedDrives, chosen_side
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.encodings.speed_units import KMH
 from rulec.recordings.encodings.xml_element import LARGEST
-from rulec.recordings.recording import HEADINGS, Participant, Recording
+from rulec.recordings.recording import HEADINGS, Participant, Recording, is_lane
 from rulec.recordings.recording_messages import NOT_IN_RECORDING
 from rulec.recordings.track import Track, TrackOutlines, TrackStates, rectangles
 from rulec.recordings.tracks.derived_motion import accelerations_of
@@ -201,7 +201,9 @@ class TrafficWorld:
 
     @cached_property
     def _lanes(self) -> shapely.STRtree:
-        return shapely.STRtree([*map(lanelet_area, self.recording.lanelets.values())])
+        # Nobody drives by the sidewalks, verges and parking places that some maps draw
+        lanes = filter(is_lane, self.recording.lanelets.values())
+        return shapely.STRtree([*map(lanelet_area, lanes)])
 
     @cached_property
     def _with_headings(self) -> Recording:

@@ -23,12 +23,16 @@ def along(places, start):
     return np.column_stack((places, headings, np.hypot(*moved.T) / STEP_S))
 
 
-def street(others=(), speed=10.0, past=4, **more):
-    """Two lanes of a town along the x axis, the right one at y = 0; ego at ``speed`` near x = 0."""
+def street(others=(), speed=10.0, past=4, beside=(), **more):
+    """Two lanes of a town along the x axis, the right one at y = 0; ego at ``speed`` near x = 0.
+
+    With what the map draws ``beside`` them.
+    """
     urban = {"types": ["urban"], "limit_mps": 50 / 3.6, **more}
     lanes = [
         build_lanelet("right", [(-100, 0), (500, 0)], left_of="left", **urban),
         build_lanelet("left", [(-100, 3.5), (500, 3.5)], right_of="right", **urban),
+        *beside,
     ]
     return _world(lanes, others, speed, past)
 
