@@ -96,6 +96,26 @@ def test_what_the_past_has_violated_is_judged_anew():
     assert found.best == 1
 
 
+def test_putting_off_what_is_violated_does_not_pay():
+    """At 20 m/s in a town both brake by 4 m/s² to 12 m/s, one 2 s (4 states) later.
+
+    Else whoever plans anew after every step would go on braking later.
+    """
+    world = street(speed=20.0)
+    at_once, later = (
+        20 * AHEAD - 2 * np.minimum(own, 2.0) ** 2 - 8 * np.clip(own - 2, 0, None)
+        for own in (AHEAD, np.maximum(AHEAD - 2, 0))
+    )
+    found = scored(world, on_axis(later), on_axis(at_once))
+    assert found.outcomes("speed_limit") == ["kept", "kept"]
+    assert found.allowed.tolist() == [True, True]
+    after, before = (one.late for one in found.candidates)
+    assert after - before == 4
+    assert found.places.tolist() == [2, 1]
+    # 4 of 20 states, and one more so that the share is below 1
+    assert np.diff(found.reward()).tolist() == pytest.approx([4 / 21])
+
+
 @pytest.mark.parametrize("drawn", ["", "sidewalk", "border", "parking"])
 def test_a_verge_is_no_way_past_a_slow_vehicle(drawn):
     # The right lane ends at y = -1.75; the middle of the last one is 0.85 m beyond it, the body not

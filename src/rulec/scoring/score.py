@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any, TypeAlias
@@ -216,6 +216,7 @@ def _anew(
         if drive.first_step + drive.arrays.n_states > begin
     ]
     answers = agreed_answers([drive.arrays.since(at) for _, at, drive in futures], roundings)
+    late = _mended_after([(number, drive) for number, _, drive in futures], known, roundings, steps)
     violations: dict[int, list[Violation]] = {}
     doubtful: dict[int, list[OpenVerdict]] = {}
     for (number, at, drive), answer in zip(futures, answers, strict=True):
@@ -235,9 +236,45 @@ def _anew(
                 *(one for one in found.open if _key(one) not in known),
                 *doubtful.get(number, ()),
             ),
+            late=late.get(number, 0),
         )
         for number, found in enumerate(scores)
     ]
+
+
+def _mended_after(
+    drives: Sequence[tuple[int, Drive]],
+    known: Collection[_Key],
+    roundings: Sequence[CompiledRulebook],
+    steps: tuple[int, int],
+) -> dict[int, int]:
+    """How many states of candidates, by number, pass before what was violated is kept for good.
+
+    What is kept from some state on is kept from any later one on, so half of them are asked about
+    at a time.
+    """
+    first, begin = steps
+    low, high = np.zeros(len(drives), dtype=int), np.full(len(drives), begin - first)
+    while (low < high).any():
+        middle = (low + high) // 2
+        futures = [
+            drive.arrays.since(max(first + after - drive.first_step, 0))
+            for after, (_, drive) in zip(middle.tolist(), drives, strict=True)
+        ]
+        is_kept = np.array([_keeps(one, known) for one in agreed_answers(futures, roundings)])
+        low, high = np.where(is_kept, low, middle + 1), np.where(is_kept, middle, high)
+        low = np.minimum(low, high)
+    late: dict[int, int] = {}
+    for (number, _), states in zip(drives, low.tolist(), strict=True):
+        late[number] = max(states, late.get(number, 0))
+    return late
+
+
+def _keeps(answer: Verdict | NotJudged, known: Collection[_Key]) -> bool:
+    if not isinstance(answer, Verdict):
+        return True
+    is_open = any(_key(one) in known for one in answer.open)
+    return not is_open and not any(_key(one) in known for one in answer.violations)
 
 
 def _key(found: Violation | OpenVerdict) -> _Key:

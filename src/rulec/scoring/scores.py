@@ -34,7 +34,7 @@ class CandidateScore:
     no drive, because ego is on no lane there that leads its way, so that no rule is judged in
     these, or with ego's middle beside all lanes, or driven backwards; ``why`` says more. ``drives``
     are what ``verify_recording`` gives of past and candidate; of many candidates they are made when
-    they are asked for.
+    they are asked for. ``late`` states pass before what the past has violated is kept for good.
     """
 
     __repr__ = short_repr
@@ -46,6 +46,7 @@ class CandidateScore:
     off_road: int
     why: str
     drives: Sequence[DriveVerdict | NoDrive]
+    late: int = 0
 
     @property
     def satisfied(self) -> bool | None:
@@ -119,12 +120,12 @@ class Scores(Rows):
         """The place of each candidate: 1 if none violates less, else 1 more than those that do.
 
         Fewer states off the road come first, then the order of penalties, what is open counting as
-        violated, then that of what is violated for sure.
+        violated, then that of what is violated for sure, then who is less ``late``.
         """
         places = np.zeros(len(self), dtype=intp)
         kinds = list(zip(*self._comparable, strict=True))
         known: dict[Any, int] = {}
-        for kind in sorted(set(kinds), key=lambda own: (own[0], own[1], own[2])):
+        for kind in sorted(set(kinds)):
             less = [known[other] for other in known if self._is_less(other, kind)]
             known[kind] = max(less, default=0) + 1
         for number, kind in enumerate(kinds):
@@ -141,8 +142,9 @@ class Scores(Rows):
         """A number for each candidate, 0 for one that violates nothing, else less.
 
         Each rank counts ``worth`` times the highest one below it, the lowest 1, and a state off the
-        road ``worth`` times the highest of all; what is open counts as violated. Raises ValueError
-        for a worth by which a rank would count less than one below it.
+        road ``worth`` times the highest of all; what is open counts as violated. It is less by the
+        share of its states, below 1, for which a candidate is ``late``. Raises ValueError for a
+        worth by which a rank would count less than one below it.
         """
         finite("worth", worth)
         if not 1 <= worth <= _MOST_WORTH:
@@ -154,7 +156,9 @@ class Scores(Rows):
             depths[rank] = max(below, default=0)
         factors = np.array([float(worth) ** depth for depth in depths])
         beyond = float(worth) ** (max(depths, default=0) + 1)
-        rewards: NDArray[float64] = -(self.penalties_at_most @ factors + beyond * self.off_road)
+        late = np.array([found.late for found in self.candidates]) / (self.paths.shape[1] + 1)
+        charged = self.penalties_at_most @ factors + beyond * self.off_road + late
+        rewards: NDArray[float64] = -charged
         return rewards + 0.0
 
     def nearest_allowed(self, number: int) -> int | None:
@@ -213,21 +217,22 @@ class Scores(Rows):
 
     @property
     def _comparable(self) -> tuple[Sequence[Any], ...]:
-        """For each candidate its states off the road, its penalty at most, and that for sure."""
+        """For each candidate: states off the road, penalties at most and for sure, late states."""
         unit = float(self._order.unit)
 
         def whole(penalties: NDArray[float64]) -> list[tuple[int, ...]]:
             return [tuple(row) for row in np.rint(penalties / unit).astype(int).tolist()]
 
-        return self.off_road.tolist(), whole(self.penalties_at_most), whole(self.penalties)
+        late = [found.late for found in self.candidates]
+        return self.off_road.tolist(), whole(self.penalties_at_most), whole(self.penalties), late
 
     def _is_less(self, one: Any, other: Any) -> bool:
-        for own, theirs in zip(one[1:], other[1:], strict=True):
-            if one[0] != other[0]:
-                return bool(one[0] < other[0])
+        if one[0] != other[0]:
+            return bool(one[0] < other[0])
+        for own, theirs in zip(one[1:3], other[1:3], strict=True):
             if own != theirs:
                 return self._order.at_most(own, theirs)
-        return False
+        return bool(one[3] < other[3])
 
 
 def _outcome(found: CandidateScore, rule: str) -> str:
