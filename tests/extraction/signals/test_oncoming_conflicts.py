@@ -10,8 +10,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rulec.api.rulebook_compilation import machines
 from rulec.extraction.signals.conduct.oncoming_conflicts import oncoming_conflicts
 from support.builders.drive_contexts import told_on_both_sides
+from support.builders.drive_verdicts import violated
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
 STEP_S = 0.5
@@ -46,10 +48,15 @@ def coming(room_m, brakes=(0.0, 0.0), y=4.0, mps=10.0, kind="car"):
     return driven(8, front + 2, np.full(len(TIMES), y), float(np.pi), kind)
 
 
+def scene(other, own=None, lanes=None):
+    """Both, and a car that stands at the edge, which leaves 2 m of ego's lane."""
+    stands = driven(9, np.full(len(TIMES), 100.0), np.full(len(TIMES), -1.0))
+    return recording(lanes or two_ways(), [own or ego(), other, stands], step_s=STEP_S)
+
+
 def told(other, own=None, lanes=None):
     """Whether it is held up, by state; the same in the mirror."""
-    stands = driven(9, np.full(len(TIMES), 100.0), np.full(len(TIMES), -1.0))
-    found = recording(lanes or two_ways(), [own or ego(), other, stands], step_s=STEP_S)
+    found = scene(other, own, lanes)
     rows = told_on_both_sides(oncoming_conflicts, found, ("1",))["holds_up_oncoming"]
     *of_other, of_parked = [[str(value) for value in row] for row in rows]
     assert set(of_parked) == {"False"}
@@ -111,3 +118,10 @@ def test_a_recording_that_ends_while_ego_is_over_the_middle():
     assert told(coming(60), short)[16] == "?"
     # At 9.5 s 90 m are left, of which both together drive 80 m in the 4 s that a way back takes
     assert told(coming(120), short)[16] == "False"
+
+
+@pytest.mark.parametrize(("room_m", "since"), [(60, 8.0), (110, None)])
+def test_the_law_past_obstacles_is_judged(room_m, since):
+    for book in ("de", "vienna", "us-tx"):
+        found = violated(scene(coming(room_m, (5.0, 8.5))), machines(book), egos=("7",))
+        assert found["7"].get("passing_obstacles") == since
