@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from rulec.logic import formula as ltl
 from rulec.rulebook.loader import parse_rulebook
+from rulec.rulebook.rules.axiom_contradictions import contradictions
 from rulec.rulebook.rules.possible_states import may_hold
 from rulec.vocabulary import Enumeration, Quantity, Signal, Vocabulary
 
@@ -133,3 +134,17 @@ def test_a_long_condition_of_a_rule_is_no_trouble():
         f"hard rule s {{ require never ({' and '.join(names)}) }}"
     )
     assert len(book.rules) == 2
+
+
+def test_facts_about_many_objects_are_left_to_the_compiler():
+    """Of twelve cars five can be chosen in 95,040 ways."""
+    names = "abcdefghijkl"
+    cars = ", ".join(f"{name}: car" for name in names[:5])
+    text = (
+        f"rulebook a type car signal p(a: car), near({cars}) default false\n"
+        "fact not (near(a, b, c, d, e) and near(b, a, c, d, e))\n"
+        f"hard rule r ({', '.join(f'{name}: car' for name in names)}) "
+        f"{{ require never ({' and '.join(f'p({name})' for name in names)}) }}"
+    )
+    book = parse_rulebook(text)
+    assert [*contradictions(book.rules[0].variables, book.axioms, book.vocabulary)] == []

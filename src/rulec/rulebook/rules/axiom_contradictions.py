@@ -21,6 +21,10 @@ from rulec.rulebook.rules.axiom_instances import (
 )
 from rulec.rulebook.rules.possible_states import may_hold
 from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.vocabulary_model import number_of_choices
+
+_MOST_INSTANCES = 200
+"""So many instances of facts are looked at together."""
 
 
 def contradictions(
@@ -30,7 +34,7 @@ def contradictions(
 
     No axiom is in two of them.
     """
-    for group in linked(axiom_instances(variables, axioms, vocabulary)):
+    for group in _groups(variables, axioms, vocabulary):
         rest = list(group)
         while not may_hold([instance.formula for instance in rest], vocabulary):
             needed = _needed(rest, (), vocabulary)
@@ -57,7 +61,7 @@ def impossible_triggers(
     A fact that an option switches on says nothing of the rulebook with another one.
     """
     lasting = [axiom for axiom in axioms if not has_constant(axiom.formula)]
-    groups = [*linked(axiom_instances(rule.variables, lasting, vocabulary))] if lasting else []
+    groups = [*_groups(rule.variables, lasting, vocabulary)]
     for what, trigger in _triggers(rule):
         about = {ltl.subject_of(atom) for atom in ltl.atoms_of(trigger)}
         related = [one for group in groups if subjects_of(group) & about for one in group]
@@ -65,6 +69,17 @@ def impossible_triggers(
             continue
         needed = _needed(related, (trigger,), vocabulary)
         yield say.ruled_out(what, trigger, needed, span)
+
+
+def _groups(
+    variables: Sequence[Variable], axioms: Sequence[Axiom], vocabulary: Vocabulary
+) -> Iterator[tuple[AxiomInstance, ...]]:
+    """Instances of axioms in groups that have nothing to do with each other; none if too many."""
+    objects = {variable.name: variable.type for variable in variables}
+    types = ([variable.type for variable in axiom.variables] for axiom in axioms)
+    number = sum(number_of_choices(own, objects, vocabulary) for own in types)
+    if number <= _MOST_INSTANCES:
+        yield from linked(axiom_instances(variables, axioms, vocabulary))
 
 
 def _triggers(rule: Rule) -> Iterator[tuple[str, ltl.Formula]]:
