@@ -166,3 +166,18 @@ def test_who_follows_a_road_that_bends_may_not_have_turned():
     bends = junction_signals(context_of(recording(lanes, [ego]), route))
     assert bends.unknown["turn"].tolist() == [False, True, True, False]
     assert not bends.world["preparing_to_leave"].any()
+
+
+def test_a_turn_behind_a_way_that_is_straight_on_is_one():
+    """Two junctions without a road between them: straight on at the first, left at the other."""
+    lanes = [
+        straight(1, -200, 90, successors=(2,)),
+        straight(2, 90, 100, predecessors=(1,), successors=(3,), **INSIDE),
+        lanelet(3, arc(100, 14, 14, -90, 0), predecessors=(2,), successors=(6,), **INSIDE),
+        lanelet(6, [(114, 14), (114, 200)], predecessors=(3,)),
+    ]
+    lanes[1] = replace(lanes[1], types=lanes[1].types | {"straightOn"})
+    ego = vehicle(7, dict(enumerate([(60, 0), (92, 0), (110, 4.2), (114, 30)])))
+    found = junction_signals(context_of(recording(lanes, [ego]), ("1", "2", "3", "6")))
+    assert found.world["turn"].tolist() == ["straight_on", "turn_far", "turn_far", "straight_on"]
+    assert not found.unknown["turn"].any()

@@ -68,7 +68,7 @@ def _turns(context: DriveContext) -> SignalColumns:
     for start, end in context.road.junctions:
         at_junction = _at_junction(context, start, end)
         turn[at_junction] = turn_at(context, start, end)
-        bends |= at_junction & _leads_straight_on(context, start, end)
+        bends |= at_junction & _bends_straight_on(context, start, end)
     bends &= turn != "straight_on"
     unknown = _way_not_known(context) | bends
     limits = context.thresholds
@@ -126,12 +126,17 @@ def _traffic_lights(context: DriveContext) -> SignalColumns:
     )
 
 
-def _leads_straight_on(context: DriveContext, start: float, end: float) -> bool:
-    """True if the map calls ego's way at a junction straight on: with a bend it may be no turn."""
-    road = context.road
+def _bends_straight_on(context: DriveContext, start: float, end: float) -> bool:
+    """True if a way that the map calls straight on turns ego's road at a junction: it may bend."""
+    road, least = context.road, np.radians(context.thresholds.turned_deg)
     pieces = np.flatnonzero((road.borders[:-1] >= start - 0.1) & (road.borders[:-1] < end))
-    ways = [road.rows[piece][road.own_lanes[piece]] for piece in pieces.tolist()]
-    return any(way is not None and STRAIGHT_ON in way.types for way in ways)
+    for piece in pieces.tolist():
+        way = road.rows[piece][road.own_lanes[piece]]
+        if way is not None and STRAIGHT_ON in way.types:
+            low, high = road.borders[piece : piece + 2].tolist()
+            if abs(road.turned(low, high, aside_m=1.0)) > least:
+                return True
+    return False
 
 
 def _on_exit(context: DriveContext) -> Flags:
