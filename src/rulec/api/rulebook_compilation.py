@@ -14,15 +14,15 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.argument_kinds import finite
 
-MOST_STEPS = 1000
-"""So many steps a compiled rulebook may be for: each takes time, and a place in its file."""
-
 if TYPE_CHECKING:
     from rulec.automata.outcome_machine import OutcomeMachine
     from rulec.rulebook.rulebook_model import Rulebook
 
     Rules: TypeAlias = str | Path | Rulebook | CompiledRulebook
     """A name, a path of a source or of a compiled file (.json), or what these lead to."""
+
+MOST_STEPS = 1000
+"""So many steps a compiled rulebook may be for: each takes time, and a place in its file."""
 
 
 def machines(

@@ -163,7 +163,7 @@ class RoadFrame:
             may_go_along=vehicles & np.any(goes[:, columns], axis=1),
             may_ride_along=tracks.of_type("light_rider") & np.any(goes[:, columns], axis=1),
             some_come=bool(self._come[:, int(columns[0]) :].any()),
-            ever_come=np.any(self._come, axis=1, keepdims=False),
+            ever_come=np.any(self._come, axis=1),
         )
 
     def _straightened(self, left_of: Floats) -> Floats:
