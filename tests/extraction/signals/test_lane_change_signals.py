@@ -189,6 +189,24 @@ def test_of_who_jumps_to_another_lane_unlit_nobody_knows(y, unknown, lamp):
     assert found.unknown["indicator"].tolist() == [False, False, unknown and not on, False]
 
 
+@pytest.mark.parametrize(
+    ("across", "change", "unknown"),
+    [
+        # The mark is at y = 2: a jump that ends short of it, one from just behind it, and neither
+        ((-1.0, 1.7, 3.0, 3.0, 3.0), 2, True),
+        ((0.0, 1.2, 2.7, 5.3, 5.3), 2, True),
+        ((-1.0, 1.7, 1.8, 3.0, 3.0), 3, False),
+    ],
+)
+def test_who_jumps_just_before_or_behind_the_mark_jumps_over_it(across, change, unknown):
+    path = {k: (5 * k, y) for k, y in enumerate(across)}
+    body = replace(vehicle(7, path), lamps=dict.fromkeys(path, frozenset()), shows=INDICATORS)
+    found = changes(body=body)
+    flags = [k == change for k in path]
+    assert found.world["lane_change"].tolist() == flags
+    assert found.unknown["indicator"][change] == unknown
+
+
 @pytest.mark.parametrize(("y", "unknown"), [(-2.4, False), (-3.0, True)])
 def test_of_who_jumps_off_the_edge_of_the_road_unlit_nobody_knows(y, unknown):
     path = {0: (0, y), 1: (0, y), 2: (5, 0), 3: (10, 0)}

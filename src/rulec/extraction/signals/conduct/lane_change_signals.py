@@ -32,6 +32,9 @@ _INDICATIONS = ("no_indicator", "near_indicator", "far_indicator")
 _JUMP_MPS = 5.0
 """Nobody steers across so fast: simulators change lanes in a step, with or without a signal."""
 
+_JUMP_S = 0.5
+"""So long before or after a jump lanes are changed by it."""
+
 _JUST_STOOD_S = 1.0
 """Who stood so short a time ago has not driven over a mark since: it slid there as it stood."""
 
@@ -187,7 +190,7 @@ def _indicator(context: DriveContext) -> SignalColumns:
     Both at once are no indication, as hazard lights are none; a file that says that these are off
     contradicts itself, and nobody knows what both mean in that drive at other times. Who changes
     lanes has indicated it if it did up to the state before, or while it lay across the mark; of who
-    jumps there, or off the edge of the road, nobody knows.
+    jumps at that time, or off the edge of the road, nobody knows.
     """
     egos = context.ego.participants
     if not context.spans.agreed([ego.lamps and ego.shows >= _INDICATORS for ego in egos]):
@@ -207,10 +210,12 @@ def _indicator(context: DriveContext) -> SignalColumns:
     is_dark = np.array([lamps is not None and not lamps & _INDICATORS for lamps in steps])
     changes = np.flatnonzero(_changes(context) & is_dark)
     codes[changes] = [_shown_across(context, codes, change) for change in changes.tolist()]
-    jumps = _jumps_across(context)
-    unknown[changes] |= (codes[changes] == 0) & jumps[changes]
+    spans, jumps = context.spans, _jumps_across(context)
+    # A jump may end short of the mark, or begin just behind it
+    about = spans.within(jumps, round(_JUMP_S / context.recording.step_s), around=True)
+    unknown[changes] |= (codes[changes] == 0) & about[changes]
     off_the_edge = jumps & ~_changes(context)
-    unknown |= is_dark & (off_the_edge | context.spans.after(off_the_edge))
+    unknown |= is_dark & (off_the_edge | spans.after(off_the_edge))
     return SignalColumns(
         {"indicator": codes},
         unknown={"indicator": unknown},
