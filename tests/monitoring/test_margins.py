@@ -69,6 +69,28 @@ def test_a_count_is_no_measure(rules):
     assert "1 <" not in table
 
 
+def test_what_was_too_little_all_along_is_measured_while_it_counted(tmp_path):
+    """Who passes has to be faster by 10 km/h while beside the other, not when it is past."""
+    book = tmp_path / "passing.rules"
+    book.write_text(
+        "rulebook passing\nuse road\n"
+        "hard rule faster (v: vehicle) {\n"
+        "  require never (behind(v) then beside(v) then in_front_of(v))\n"
+        "  unless beside(v) and speed_difference(v) >= 10 km/h at some point\n}\n"
+    )
+    rules = compile_rulebook(book)
+    passing = [("behind", 12.0), ("beside", 9.0), ("beside", 9.5), ("in_front_of", 10.5)]
+    states = [
+        {"station": {"c": station}, "speed_difference": {"c": faster}}
+        for station, faster in passing
+    ]
+    trace = Trace("t", 1.0, {"c": "car"}, tuple(states))
+    (violation,) = verify(trace, rules).violations
+    assert violation.step == 3
+    (found,) = explain(violation, trace, rules).margins()
+    assert str(found) == "speed_difference(c) 9.5 km/h < 10.0 km/h"
+
+
 def test_numbers_are_told_apart():
     def sides(value, limit):
         return Margin("x", value, "<", limit, "").sides

@@ -63,8 +63,9 @@ class Part:
     """Subformula at a ``depth`` of nesting, with its truth by state.
 
     ``changed``: is its value in the decisive state another than in the one before? ``decides``: is
-    it one of those that, at some instant, make the formula come out as it does? ``margins`` are a
-    comparison's by state.
+    it one of those that, at some instant, make the formula come out as it does? ``decides_at`` is
+    the place among the states of the last such one up to the decisive one, and of this if none of
+    them is shown. ``margins`` are a comparison's by state.
     """
 
     formula: ltl.Formula
@@ -73,6 +74,7 @@ class Part:
     values: tuple[bool, ...]
     changed: bool
     decides: bool
+    decides_at: int
     margins: tuple[Margin | None, ...] = ()
 
 
@@ -105,24 +107,28 @@ class Explanation:
     looked_at: tuple[int, int] | None = None
 
     def margins(self) -> list[Margin]:
-        """By how much: the comparisons of quantities that decide, in the decisive state.
+        """By how much: the comparisons of quantities that decide, where they do so last.
 
         What only says when the rule asks for anything, such as that ego drives at all, is none, nor
         what chooses what it asks for, such as that a sign tells a limit, where others are left.
         """
-        at = self.states.index(self.decisive)
         when = set() if self.rule.trigger is None else set(ltl.atoms_of(self.rule.trigger))
         asked = [part for part in self.parts if part.decides and part.formula not in when]
-        names = {part.formula.name for part in asked if isinstance(part.formula, ltl.Atom)}
+        places = {
+            part.formula.name: part.decides_at
+            for part in asked
+            if isinstance(part.formula, ltl.Atom)
+        }
         margins = [
             fact.margins[at]
             for fact in self.facts
-            if fact.decides and fact.margins and fact.text.partition("(")[0] in names
+            if fact.decides and fact.margins
+            if (at := places.get(fact.text.partition("(")[0])) is not None
         ]
         choosing = choosing_comparisons(self.rule.formula)
         compared = [part for part in asked if part.margins]
         asks = [part for part in compared if part.formula not in choosing] or compared
-        margins += [part.margins[at] for part in asks]
+        margins += [part.margins[part.decides_at] for part in asks]
         return [margin for margin in dict.fromkeys(margins) if margin is not None]
 
     def __str__(self) -> str:
@@ -236,7 +242,7 @@ def explanation_of(
     known = extended_by_columns(formula, truths, n_states, semantics)
     values = {part: column[:n_states] for part, column in known.items()}
     instants = instants_among(known, formula, n_states, semantics)
-    deciding = {part for part, at in instants.items() if True in at}
+    deciding = {part: _decides_at(at, observed) for part, at in instants.items() if True in at}
     first, last = broken_stretch(formula, values, truths, place, numbers)
     states = tuple([numbers[index] for index in observed.shown])
     return Explanation(
@@ -245,13 +251,24 @@ def explanation_of(
         states=states,
         decisive=numbers[place],
         facts=tuple(
-            _with_margins(fact, decided_by, states) for fact in _facts(truths, deciding, observed)
+            _with_margins(fact, decided_by, states)
+            for fact in _facts(truths, deciding.keys(), observed)
         ),
         parts=tuple(_parts((rule.formula, formula), values, deciding, observed)),
         repair=None,
         vocabulary=subject.vocabulary,
         lasts=(numbers[first], numbers[last]),
     )
+
+
+def _decides_at(instants: Sequence[bool], observed: ObservedStates) -> int:
+    """The place of the last shown state up to the decisive one that is among the instants.
+
+    If none is, that of the decisive one.
+    """
+    decisive = observed.shown.index(observed.decisive)
+    places = [place for place in range(decisive + 1) if instants[observed.shown[place]]]
+    return places[-1] if places else decisive
 
 
 def _looked_at(
@@ -352,7 +369,7 @@ def _facts(
 def _parts(
     formulas: tuple[ltl.Formula, ltl.Formula],
     truths: Mapping[ltl.Formula, list[bool]],
-    deciding: Set[ltl.Formula],
+    deciding: Mapping[ltl.Formula, int],
     observed: ObservedStates,
     depth: int = 0,
 ) -> Iterator[Part]:
@@ -364,6 +381,7 @@ def _parts(
         values=tuple(truths[stepped][n] for n in observed.shown),
         changed=observed.changes(truths[stepped]),
         decides=stepped in deciding,
+        decides_at=deciding.get(stepped, 0),
         margins=observed.margins(written) if isinstance(written, ltl.Comparison) else (),
     )
     match formulas:
