@@ -21,7 +21,7 @@ def either(left, right):
 
 def parts_of(formula, without=(), depth=0):
     """The parts of a formula; all decide but those in ``without``."""
-    found = [Part(formula, formula_text(formula), depth, (True,), False, formula not in without)]
+    found = [Part(formula, formula_text(formula), depth, (True,), False, formula not in without, 0)]
     match formula:
         case Unary(_, operand):
             found += parts_of(operand, without, depth + 1)

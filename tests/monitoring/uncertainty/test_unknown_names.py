@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from rulec import compile_rulebook
 from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.batch.batch_verify import verify_chunk
 from rulec.monitoring.explain.explanation import explain
@@ -87,6 +88,29 @@ def test_an_explanation_shows_one_completion():
     lost = trace(gap=UNKNOWN, near=UNKNOWN, rain=True)
     (violation,) = verify(lost, RULES).violations
     assert explain(violation, lost, RULES).decisive == 0
+
+
+def test_what_is_known_decides_in_an_explanation(tmp_path):
+    """Lit or not, ego cut in. That it changed lanes before is no reason: it may have been lit."""
+    book = tmp_path / "lanes.rules"
+    book.write_text(
+        "rulebook lanes\nuse road\n"
+        "hard rule changing {\n"
+        "  require never (lane_change and not lane_is_clear or lane_change and no_indicator)\n}\n"
+    )
+    rules = compile_rulebook(book)
+    clear, cuts_in = ({"lane_change": True, "lane_is_clear": own} for own in (True, False))
+    none = {"lane_change": False, "lane_is_clear": True}
+    for indicator in ({}, {"indicator": UNKNOWN}):
+        states = tuple(state | indicator for state in (none, clear, none, cuts_in, none))
+        told = frozenset(states[0])
+        lost = Trace("t", 1.0, {}, states, ends="cut", told=told)
+        (violation,) = verify(lost, rules).violations
+        found = explain(violation, lost, rules)
+        assert found.decisive == 3
+        decides = {fact.text for fact in found.facts if fact.decides}
+        assert decides == {"lane_change", "lane_is_clear"}
+        assert [change.place for change in found.repair] == [3]
 
 
 def test_assumptions_are_about_what_is_not_told():

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import partial
 from typing import Any, NamedTuple
@@ -18,6 +18,7 @@ from rulec.logic.kleene import alias_of
 from rulec.logic.linear_comparison import stands
 from rulec.monitoring.bindings import Binding
 from rulec.monitoring.uncertainty.one_completion import any_value
+from rulec.trace import Value
 from rulec.trace.trace_arrays import Flags, TraceArrays
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import Interval
@@ -27,14 +28,22 @@ _HAIR = 1e-8
 
 
 class _Column(NamedTuple):
-    """Values in the states of a stretch; ``open`` where they are unknown or not said.
+    """Values in the states of a stretch, and where they are unknown, or not said.
 
     Of a number that has bounds they are the lower ones, and ``high`` are the others.
     """
 
     values: NDArray[Any]
-    open: Flags | None
+    unknown: Flags | None
+    unsaid: Flags | None
     high: NDArray[Any] | None
+
+    @property
+    def open(self) -> Flags | None:
+        """Where they are unknown or not said."""
+        if self.unknown is None or self.unsaid is None:
+            return self.unsaid if self.unknown is None else self.unknown
+        return self.unknown | self.unsaid
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,11 +51,15 @@ class ColumnTruths:
     """Truths of propositions in the states of a ``binding``.
 
     What is unknown or not said has its default or least value, of bounds the middle counts.
+    ``supposed`` has other values for what is unknown; those of names that are not ``told`` stand
+    for what is not said, too.
     """
 
     arrays: TraceArrays
     vocabulary: Vocabulary
     binding: Binding
+    supposed: Mapping[str, Value] = field(default_factory=dict)
+    untold: frozenset[str] = frozenset()
 
     @property
     def n_states(self) -> int:
@@ -57,17 +70,23 @@ class ColumnTruths:
         """The truth in each state."""
         if isinstance(proposition, ltl.Comparison):
             return self._compared(proposition)
-        declared = any_value(self.vocabulary.declarations[proposition.name])
-        wanted = proposition.value or True
-        column = self._column(proposition.name, proposition.arguments)
+        name, wanted = proposition.name, proposition.value or True
+        declared = any_value(self.vocabulary.declarations[name])
+        supposed = self.supposed.get(name, declared)
+        unsaid = supposed if name in self.untold else declared
+        column = self._column(name, proposition.arguments)
         if column is None:
-            return np.full(self.n_states, declared == wanted)
-        texts = self.arrays.texts.get(proposition.name)
+            return np.full(self.n_states, unsaid == wanted)
+        texts = self.arrays.texts.get(name)
         code: object = wanted
         if texts is not None:
             code = texts.index(str(wanted)) if wanted in texts else len(texts)
         found: Flags = column.values == code
-        return found if column.open is None else np.where(column.open, declared == wanted, found)
+        if column.unsaid is not None:
+            found = np.where(column.unsaid, unsaid == wanted, found)
+        if column.unknown is not None:
+            found = np.where(column.unknown, supposed == wanted, found)
+        return found
 
     def of_counted(self, count: ltl.Count) -> Iterator[tuple[slice, ColumnTruths]]:
         """For each object that may count where it is among the states, and the truths there."""
@@ -148,8 +167,10 @@ class ColumnTruths:
         values = (arrays.world if name in arrays.world else arrays.about)[name][cells]
         if name in arrays.bounds and name not in arrays.texts:
             values, high = (bound[cells] for bound in arrays.bounds[name])
-        flags = [own[name][cells] for own in (arrays.unknown, arrays.absent) if name in own]
-        return _Column(values, flags[0] | flags[-1] if flags else None, high)
+        unknown, unsaid = (
+            own[name][cells] if name in own else None for own in (arrays.unknown, arrays.absent)
+        )
+        return _Column(values, unknown, unsaid, high)
 
     def _compared(self, comparison: ltl.Comparison) -> Flags:
         """Decided by floats, but where rounding, which is far below a hair, could matter."""
@@ -206,16 +227,16 @@ class _Numbers:
         """As floats, to a billionth."""
         if self._column is None:
             return np.full(self._n_states, float(self._default))
-        values, unsaid, high = self._column
+        values, high, is_open = self._column.values, self._column.high, self._column.open
         middle = values.astype(float) if high is None else (values + high) / 2
-        return middle if unsaid is None else np.where(unsaid, float(self._default), middle)
+        return middle if is_open is None else np.where(is_open, float(self._default), middle)
 
     def exactly(self, state: int) -> Fraction:
         """The number that its decimal says."""
         if self._column is None:
             return exact(self._default)
-        values, unsaid, high = self._column
-        if unsaid is not None and unsaid[state]:
+        values, high, is_open = self._column.values, self._column.high, self._column.open
+        if is_open is not None and is_open[state]:
             return exact(self._default)
         value = values[state].item()
         if high is not None and (most := high[state].item()) != value:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from typing import overload
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
 from rulec.monitoring.bindings import Binding, binding_of
@@ -23,9 +23,15 @@ from rulec.monitoring.implied_values import with_implied_values
 from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_view import StateView
-from rulec.monitoring.uncertainty.one_completion import completed, with_all_defaults
+from rulec.monitoring.uncertainty.one_completion import (
+    completed,
+    kindest_values,
+    with_all_defaults,
+    with_defaults,
+)
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import Violation
+from rulec.trace import Value
 from rulec.trace.trace_arrays import Flags, TraceArrays
 from rulec.vocabulary import Vocabulary
 
@@ -46,11 +52,11 @@ def explain_arrays(
     present = {item: (first, last) for item, (first, last) in spans}
     binding = binding_of(violation.binding, present, arrays.n_states)
     stretch = range(binding.first, binding.last + 1)
-    truths = ColumnTruths(arrays, rulebook.vocabulary, binding)
+    told = _Vocabularies.of(rulebook, rule, arrays.told)
+    truths = ColumnTruths(arrays, rulebook.vocabulary, binding, told.supposed, told.untold)
     is_long = len(stretch) > 2 * LIMITS.states_explained
     if is_long or arrays.ends != "cut" or not _is_plain(rule.formula, truths):
         return None
-    told = _Vocabularies.of(rulebook, arrays.told)
     decisive = binding.last if violation.step is None else violation.step
     shown = [number - binding.first for number in shown_states(stretch, decisive)]
     views = _Views(arrays, binding, rule.formula, told)
@@ -101,21 +107,39 @@ def _read_by(
 
 @dataclass(frozen=True, slots=True)
 class _Vocabularies:
-    """A rulebook's words where all are known, and where what nobody tells is unknown."""
+    """A rulebook's words for one rule: as declared, as completed, and as they are given.
+
+    What is unknown has its ``supposed`` values: by default as ``kindest`` says, in states that do
+    not say it as ``completed`` says. What is ``untold`` is unknown as ``given`` says.
+    """
 
     declared: Vocabulary
+    kindest: Vocabulary
     completed: Vocabulary
     given: Vocabulary
+    supposed: Mapping[str, Value]
+    untold: frozenset[str]
 
     @staticmethod
-    def of(rulebook: CompiledRulebook, told: frozenset[str] | None) -> _Vocabularies:
+    def of(
+        rulebook: CompiledRulebook, rule: CompiledRule, told: frozenset[str] | None
+    ) -> _Vocabularies:
         """Those of traces from sources that tell the same."""
-        key = _Vocabularies, told
+        key = _Vocabularies, rule.name, told
         found: _Vocabularies | None = rulebook.prepared.get(key)
         if found is None:
-            declared = rulebook.vocabulary
-            given = with_untold(declared, untold_names(declared, told))
-            found = _Vocabularies(declared, with_all_defaults(declared), given)
+            declared, untold = rulebook.vocabulary, untold_names(rulebook.vocabulary, told)
+            facts = [axiom.formula for axiom in rulebook.axioms]
+            supposed = kindest_values(rule.formula, declared, facts)
+            unsaid = {name: supposed[name] for name in supposed.keys() & untold}
+            found = _Vocabularies(
+                declared,
+                kindest=with_defaults(declared, supposed),
+                completed=with_all_defaults(with_defaults(declared, unsaid)),
+                given=with_untold(declared, untold),
+                supposed=supposed,
+                untold=untold,
+            )
             rulebook.prepared[key] = found
         return found
 
@@ -150,7 +174,7 @@ class _Views(Sequence[StateView]):
         chosen, told = sorted(indices), self._told
         part = self._arrays.at([self._binding.first + index for index in chosen])
         given = with_implied_values(part.trace(), told.declared)
-        known = completed(given, told.declared)
+        known = completed(given, told.kindest)
         for number, index in enumerate(chosen):
             present = present_in(number, known.objects, known.present)
             self._made[index] = (

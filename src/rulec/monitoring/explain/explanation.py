@@ -28,7 +28,12 @@ from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import has_partial_values
 from rulec.monitoring.state_view import StateView
-from rulec.monitoring.uncertainty.one_completion import completed, with_all_defaults
+from rulec.monitoring.uncertainty.one_completion import (
+    completed,
+    kindest_values,
+    with_all_defaults,
+    with_defaults,
+)
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import Violation
 from rulec.monitoring.verify import letter_reader_of
@@ -174,20 +179,26 @@ def explain(
 ) -> Explanation:
     """Explain a violation that ``verify`` reported for this trace and rulebook.
 
-    What is unknown is shown as such; as every completion violates the rule, one stands for all.
+    What is unknown is shown as such; as every completion violates the rule, one stands for all:
+    that by which the rule is most likely kept, so that known values are seen to decide.
     Numbers have their middles there. ``decided_by``: signal -> the numbers behind it, for those
     that were decided by any. A repair is looked for only if it is to be ``repaired``, and
     never in a trace of which a window is looked at.
     """
     declared = rulebook.vocabulary
     given = trace = with_all_said(trace, declared)
-    untold = untold_names(declared, trace.told)
-    if untold or trace.ends == "cut" or any(map(has_partial_values, trace.states)):
-        trace = completed(trace, declared)
-        rulebook = replace(rulebook, vocabulary=with_all_defaults(declared))
     rule = next((rule for rule in rulebook.rules if rule.name == violation.rule), None)
     if rule is None:
         raise ValueError(f"{rulebook.name} has no rule `{violation.rule}`, which was violated")
+    untold = untold_names(declared, trace.told)
+    if untold or trace.ends == "cut" or any(map(has_partial_values, trace.states)):
+        facts = [axiom.formula for axiom in rulebook.axioms]
+        kindest = kindest_values(rule.formula, declared, facts)
+        trace = completed(trace, with_defaults(declared, kindest))
+        supposed = {name: kindest[name] for name in kindest.keys() & untold}
+        rulebook = replace(
+            rulebook, vocabulary=with_all_defaults(with_defaults(declared, supposed))
+        )
     binding = binding_of(violation.binding, trace.present, len(trace.states))
     reader = letter_reader_of(trace, rulebook)
     stretch = range(binding.first, binding.last + 1)
