@@ -40,15 +40,40 @@ def test_marks_that_nobody_knows():
         (1.2, "solid", "solid", False, False),  # 0.2 m over it
         (1.4, "solid", "solid", True, False),
         (1.4, "broken", "broken", False, False),
-        (1.4, "broken", "solid", True, True),  # ego comes from the right
-        (2.6, "broken", "solid", True, False),  # and here from the left
-        (2.6, "solid", "broken", True, True),
+        # Nobody has seen from which side ego came
+        (1.4, "broken", "solid", True, UNKNOWN),
+        (2.6, "broken", "solid", True, UNKNOWN),
         (-1.4, "broken", "broken", UNKNOWN, UNKNOWN),  # the edge of the road
     ],
 )
 def test_on_a_line(y, right, left, solid, broken_here):
     found = state(y, right, left)
     assert (found["on_solid_line"], found["broken_on_own_side"]) == (solid, broken_here)
+
+
+@pytest.mark.parametrize("y", [1.4, 2.6])
+@pytest.mark.parametrize(
+    ("comes_from", "right", "left", "broken_here"),
+    [
+        (0.0, "broken", "solid", True),
+        (0.0, "solid", "broken", False),
+        (4.0, "broken", "solid", False),
+        (4.0, "solid", "broken", True),
+    ],
+)
+def test_the_side_from_which_ego_comes_counts_until_it_is_across(
+    y, comes_from, right, left, broken_here
+):
+    """However far over the line, at y = 2, its middle is."""
+    lanes = [
+        straight(1, 0, 100, left_of=2, left_mark=right, right_mark="solid"),
+        straight(2, 0, 100, y=4, right_of=1, right_mark=left, left_mark="solid"),
+    ]
+    ego = vehicle(7, {0: (40, comes_from), 1: (50, comes_from), 2: (60, y), 3: (70, y)})
+    (drive,) = Drives(recording(lanes, [ego]), "right").of("7")
+    found = [(own["on_solid_line"], own["broken_on_own_side"]) for own in drive.trace.states]
+    assert found[0][0] is False
+    assert found[2:] == [(True, broken_here)] * 2
 
 
 @pytest.mark.parametrize(("y", "told"), [(0.9, False), (1.4, UNKNOWN), (1.7, True)])

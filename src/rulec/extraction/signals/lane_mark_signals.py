@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise, product
 
@@ -88,12 +89,13 @@ def _marked_lanes(context: DriveContext) -> SignalColumns:
 
 
 def _lines_under_ego(context: DriveContext) -> SignalColumns:
-    """Whether ego is on a solid line, breaks one on its own side, and is that a single one.
+    """Whether ego is on a solid line, is one broken on the side it comes from, and a single one.
 
     Unknown where places, or the map, decide it, or marks are not told, and of the line at the
     road's edge: what is beyond it no map tells, and laws on it differ. Who stands all through its
     drive crosses none: it is parked on the one at the edge. Nor has anybody seen who stands from
-    the drive's beginning on cross the line that it stands on, until it moves off.
+    the drive's beginning on cross the line that it stands on, until it moves off; nor who comes
+    first into view on one from which side it came.
     """
     names = ("on_solid_line", "broken_on_own_side", "single_line")
     stays = context.spans.all(context.ego.speed[0] * KMH < context.thresholds.standing_kmh)
@@ -130,9 +132,25 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     not_told[states[differs]] = True
     not_told |= found[:, 0] & _not_moved_yet(context)
     found[stays], not_told[stays] = False, False
-    return SignalColumns(
-        dict(zip(names, found.T, strict=False)), unknown=dict.fromkeys(names, not_told)
-    )
+    unknown = {**dict.fromkeys(names, not_told), "broken_on_own_side": not_told | found[:, 3]}
+    return SignalColumns(dict(zip(names, found.T, strict=False)), unknown=unknown)
+
+
+@once
+def _comes_from(context: DriveContext) -> tuple[NDArray[intp], NDArray[intp]]:
+    """Bits of the lines that ego comes to from their left, by state, and of those nobody knows of.
+
+    The side is that on which its body last was clear of the line. Of who has not been so yet it is
+    that of its middle in the drive's first state.
+    """
+    own, spans = context.ego_extents, context.spans
+    left, right = (own.left_of_min[0] > 0.0).T, (own.left_of_max[0] < 0.0).T
+    latest = spans.latest(left | right)
+    seen = latest >= spans.first
+    at_first = (own.left_of[0][spans.first] >= 0.0).T
+    from_left = np.where(seen, np.take_along_axis(left, np.maximum(latest, 0), axis=1), at_first)
+    bits = 1 << np.arange(len(left))
+    return bits @ from_left, bits @ ~seen
 
 
 def _not_moved_yet(context: DriveContext) -> Flags:
@@ -210,32 +228,33 @@ def _across(context: DriveContext, low: Floats, high: Floats, other: tuple[float
 
 
 def _under(context: DriveContext, crossed: Flags, states: NDArray[intp] | slice) -> Flags:
-    """What ``_solid_lines`` says of the lines crossed in these states, and are marks not told?
-
-    A row of flags each.
-    """
-    number, lane = _marked_rows(context).number[states], context.steady_lane[states]
+    """What ``_judged`` says of the lines crossed in these states, a row of flags each."""
     bits = crossed @ (1 << np.arange(crossed.shape[1]))
-    found = np.zeros((len(crossed), 4), dtype=bool)
+    from_left, unseen = (own[states] & bits for own in _comes_from(context))
+    found = np.zeros((len(crossed), 5), dtype=bool)
     somewhere = np.flatnonzero(bits)
-    keys = np.stack((number, lane, bits), axis=1)[somewhere].tolist()
+    number = _marked_rows(context).number[states]
+    keys = np.stack((number, bits, from_left, unseen), axis=1)[somewhere].tolist()
     judged = {key: _judged(context, *key) for key in set(map(tuple, keys))}
-    found[somewhere] = np.array([judged[tuple(key)] for key in keys], dtype=bool).reshape(-1, 4)
+    found[somewhere] = np.array([judged[tuple(key)] for key in keys], dtype=bool).reshape(-1, 5)
     return found
 
 
 def _judged(
-    context: DriveContext, number: int, lane: int, bits: int
-) -> tuple[bool, bool, bool, bool]:
-    """The same of a row of lanelets, with ego in a lane of it; bit ``k`` is for line ``k``."""
+    context: DriveContext, number: int, bits: int, from_left: int, unseen: int
+) -> tuple[bool, bool, bool, bool, bool]:
+    """What ``_solid_lines`` says of a row of lanelets, and are there marks that are not told?
+
+    Bit ``k`` is for line ``k``: whether ego is on it, comes from its left, or has not been seen to.
+    """
     row = _marked_rows(context).rows[number]
-    marks = [
-        # Those at ego's side first
-        _turned(_between(*pair)) if lane >= line else _between(*pair)
-        for line, pair in enumerate(pairwise([None, *row, None]))
-        if bits >> line & 1
+    lines = [
+        # The mark at ego's side first
+        (_turned(_between(*pair)) if from_left >> k & 1 else _between(*pair), bool(unseen >> k & 1))
+        for k, pair in enumerate(pairwise([None, *row, None]))
+        if bits >> k & 1
     ]
-    return *_solid_lines(marks), any(not any(pair) for pair in marks)
+    return *_solid_lines(lines), any(not any(marks) for marks, _ in lines)
 
 
 def _between(right: Lanelet | None, left: Lanelet | None) -> _Marks:
@@ -246,11 +265,15 @@ def _turned(marks: _Marks) -> _Marks:
     return marks[1], marks[0]
 
 
-def _solid_lines(crossed: list[_Marks]) -> tuple[bool, bool, bool]:
-    """Is ego on a solid line, is one broken on its own side, and is it a single one?"""
-    solid = [marks for marks in crossed if _SOLID & set(marks)]
-    broken = any(marks[0] == "broken" for marks in solid)
-    return bool(solid), broken, len(solid) == 1 and solid[0] in _SINGLE
+def _solid_lines(crossed: Sequence[tuple[_Marks, bool]]) -> tuple[bool, bool, bool, bool]:
+    """Is ego on a solid line, is one broken on its own side, and is it a single one?
+
+    And is one broken on one side alone, and has nobody seen from which one ego came?
+    """
+    solid = [(marks, unseen) for marks, unseen in crossed if _SOLID & set(marks)]
+    broken = any(marks[0] == "broken" for marks, _ in solid)
+    single = len(solid) == 1 and solid[0][0] in _SINGLE
+    return bool(solid), broken, single, any(unseen and "broken" in own for own, unseen in solid)
 
 
 def _near_a_line(context: DriveContext, margin_m: Floats) -> Flags:
