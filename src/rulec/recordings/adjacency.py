@@ -1,4 +1,7 @@
-"""Lanelets side by side, as their borders lie, whether or not the file says so."""
+"""Lanelets side by side, as their borders lie, whether or not the file says so.
+
+And the side on which traffic keeps, which they tell where no country does.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ import shapely
 from numpy import float64
 from numpy.typing import NDArray
 
-from rulec.recordings.recording import Lanelet, Points, Recording, is_lane
+from rulec.recordings.recording import Lanelet, Points, Recording, Side, is_lane
 
 BORDER_M = 0.5
 """Borders that are no farther apart are one."""
@@ -21,6 +24,15 @@ WHOLE = 0.9
 
 LONG_M = 30.0
 """Shorter ones side by side, as where turning lanes begin, may lead different ways."""
+
+_RESERVED = frozenset({"busLane", "bicycleLane", "rail"})
+"""Lanes for others may lead against the road's traffic at its far side."""
+
+_LEAST_M = 10.0
+"""Shorter stretches of border are those of ways that meet in a junction."""
+
+_CLEARLY = 4.0
+"""Where lanes lie so many times as long on one side of those that lead the other way."""
 
 _EVERY_M = 2.0
 _LIKE = cos(radians(30))
@@ -64,6 +76,25 @@ def bordering(lanelets: Iterable[Lanelet], *, alone: bool = False) -> Iterator[B
         yield Bordering(right[own], left[other], part, length)
 
 
+def _oncoming_length(borders: Sequence[Points], least_m: float) -> float:
+    """How long (m) borders lie at others that lead the other way, all together.
+
+    Those count that do for at least ``least_m``.
+    """
+    if not borders:
+        return 0.0
+    lines = _Borders(borders)
+    owns, others = shapely.STRtree(lines.lines).query(
+        lines.lines, predicate="dwithin", distance=BORDER_M
+    )
+    apart = owns != others
+    owns, others = owns[apart], others[apart]
+    if not len(owns):
+        return 0.0
+    lengths = _near(lines, owns, lines, others, sense=-1) * lines.lengths[owns]
+    return float(lengths[lengths >= least_m].sum())
+
+
 class _Borders:
     """Many lines, with places along them by arc length (m)."""
 
@@ -98,8 +129,13 @@ class _Borders:
         return directions
 
 
-def _near(lines: _Borders, ones: _Indices, others: _Borders, second: _Indices) -> NDArray[float64]:
-    """For which part of each line its other one lies at it, and leads the same way there."""
+def _near(
+    lines: _Borders, ones: _Indices, others: _Borders, second: _Indices, *, sense: int = 1
+) -> NDArray[float64]:
+    """For which part of each line its other one lies at it, and leads the same way there.
+
+    With ``sense`` -1 the other way.
+    """
     lengths = lines.lengths[ones]
     counts = np.maximum(2, np.round(lengths / _EVERY_M)).astype(int) + 1
     ends = np.cumsum(counts)
@@ -109,7 +145,8 @@ def _near(lines: _Borders, ones: _Indices, others: _Borders, second: _Indices) -
     points = shapely.points(lines.points(ones, at))
     near = shapely.distance(others.lines[second], points) <= BORDER_M
     along = shapely.line_locate_point(others.lines[second], points)
-    like = (lines.directions(ones, at) * others.directions(second, along)).sum(axis=1) >= _LIKE
+    cosines = (lines.directions(ones, at) * others.directions(second, along)).sum(axis=1)
+    like = sense * cosines >= _LIKE
     shares: NDArray[float64] = np.add.reduceat(near & like, ends - counts, dtype=float) / counts
     return shares
 
@@ -161,3 +198,26 @@ def with_neighbours(recording: Recording) -> Recording:
         + more
     )
     return replace(recording, lanelets=lanelets, remarks=(*recording.remarks, remark))
+
+
+def with_side(recording: Recording) -> Recording:
+    """The recording, with the side of traffic that its lanes tell if nothing else does."""
+    if recording.side is not None:
+        return recording
+    return replace(recording, side=side_by_lanes(recording.lanelets.values()))
+
+
+def side_by_lanes(lanelets: Iterable[Lanelet]) -> Side | None:
+    """The side that most lanes keep to which border on others that lead the other way.
+
+    They have their left borders in common where traffic keeps right, their right ones where it
+    keeps left. None without such lanes, or where there are both kinds.
+    """
+    lanes = [one for one in lanelets if is_lane(one) and not one.types & _RESERVED]
+    keeps_right, keeps_left = (
+        _oncoming_length([getattr(one, border) for one in lanes], _LEAST_M)
+        for border in ("left", "right")
+    )
+    if keeps_right > _CLEARLY * keeps_left:
+        return "right"
+    return "left" if keeps_left > _CLEARLY * keeps_right else None

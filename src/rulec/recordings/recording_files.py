@@ -67,6 +67,7 @@ def read_recordings(source: RecordingSource) -> Iterator[Recording]:
     or wrong one, R0701 if a file cannot be opened.
     """
     # NumPy, only for those who have recordings.
+    from rulec.recordings.adjacency import with_side
     from rulec.recordings.doubts.motion_doubts import with_doubts
     from rulec.recordings.doubts.road_doubts import check_near
 
@@ -75,7 +76,7 @@ def read_recordings(source: RecordingSource) -> Iterator[Recording]:
     def looked_at(recording: Recording) -> Recording:
         if form.takes_map:
             check_near(recording, source.path)
-        return with_doubts(recording, partial(RECORDING.refused, source.path))
+        return with_doubts(with_side(recording), partial(RECORDING.refused, source.path))
 
     if source.map_path is not None and not form.takes_map:
         raise OTHER_CHOICE.error(

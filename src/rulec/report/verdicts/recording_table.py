@@ -39,6 +39,8 @@ def as_text(verdicts: RecordingVerdicts, tally: ViolationTally, width: int) -> s
             f"mirrored    recorded where traffic keeps to the {before}, "
             f"judged as if it kept to the {recording.side}"
         )
+    elif recording.side is None and verdicts.rules.traffic == "left":
+        lines.append("side        nothing tells on which side traffic keeps: taken to be the left")
     defaults = defaulted_names(verdicts, tally.words or frozenset())
     if defaults:
         lines.append(f"by default  {first_of(defaults, MOST_DEFAULTS)}: the recording does not say")
