@@ -12,7 +12,7 @@ from rulec.monitoring.verify import verify
 from rulec.rulebook.loader import parse_rulebook
 from rulec.trace import Trace
 from rulec.vocabulary import Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN
+from rulec.vocabulary.partial_values import UNKNOWN, Interval
 from support.builders.rulebooks import compile_here
 
 BOOK = parse_rulebook(
@@ -111,6 +111,41 @@ def test_what_is_known_decides_in_an_explanation(tmp_path):
         decides = {fact.text for fact in found.facts if fact.decides}
         assert decides == {"lane_change", "lane_is_clear"}
         assert [change.place for change in found.repair] == [3]
+
+
+@pytest.mark.parametrize(
+    ("require", "interval", "shown"),
+    [
+        # What may have been kept was, so that the first state that surely breaks it decides
+        ("always gap(v) >= 5 m", Interval(4.0, 7.0), True),
+        ("always not gap(v) < 5 m", Interval(4.0, 7.0), True),
+        ("always gap(v) <= 5 m", Interval(4.0, 7.0), True),
+        ("never gap(v) > 5 m", Interval(3.0, 16.0), True),
+        # Neither end suits both, and the middle does not
+        ("always (gap(v) <= 5 m or gap(v) >= 8 m)", Interval(4.0, 9.0), False),
+    ],
+)
+def test_of_bounds_the_end_counts_by_which_a_rule_is_rather_kept(
+    tmp_path, require, interval, shown
+):
+    book = tmp_path / "gaps.rules"
+    book.write_text(
+        "rulebook gaps\ntype car\nquantity gap(v: car) in m\n"
+        f"hard rule far (v: car) {{ require {require} }}\n"
+    )
+    rules = compile_rulebook(book)
+    broken = 6.0 if "<= 5" in require or "> 5" in require else 3.0
+    states = tuple({"gap": {"a": own}} for own in (interval, broken))
+    lost = Trace("t", 1.0, {"a": "car"}, states, ends="cut")
+    (violation,) = verify(lost, rules).violations
+    assert violation.step == 1
+    found = explain(violation, lost, rules)
+    (always, inside, *_) = found.parts
+    assert always.values == (False, False)
+    kept = (
+        inside.values if always.text.startswith("always") else tuple(not x for x in inside.values)
+    )
+    assert kept == (shown, False)
 
 
 def test_assumptions_are_about_what_is_not_told():

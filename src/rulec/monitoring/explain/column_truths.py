@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from typing import Any, NamedTuple
@@ -17,8 +17,12 @@ from rulec.logic.fold import Algebra, fold
 from rulec.logic.kleene import alias_of
 from rulec.logic.linear_comparison import stands
 from rulec.monitoring.bindings import Binding
-from rulec.monitoring.uncertainty.one_completion import any_value
-from rulec.trace import Value
+from rulec.monitoring.uncertainty.one_completion import (
+    NOTHING_SUPPOSED,
+    Supposed,
+    any_value,
+    one_of,
+)
 from rulec.trace.trace_arrays import Flags, TraceArrays
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import Interval
@@ -50,15 +54,14 @@ class _Column(NamedTuple):
 class ColumnTruths:
     """Truths of propositions in the states of a ``binding``.
 
-    What is unknown or not said has its default or least value, of bounds the middle counts.
-    ``supposed`` has other values for what is unknown; those of names that are not ``told`` stand
-    for what is not said, too.
+    What is ``supposed`` stands for the unknown, and of names that are ``untold`` for what is not
+    said, too. Else that has its default or least value.
     """
 
     arrays: TraceArrays
     vocabulary: Vocabulary
     binding: Binding
-    supposed: Mapping[str, Value] = field(default_factory=dict)
+    supposed: Supposed = NOTHING_SUPPOSED
     untold: frozenset[str] = frozenset()
 
     @property
@@ -72,7 +75,7 @@ class ColumnTruths:
             return self._compared(proposition)
         name, wanted = proposition.name, proposition.value or True
         declared = any_value(self.vocabulary.declarations[name])
-        supposed = self.supposed.get(name, declared)
+        supposed = self.supposed.values.get(name, declared)
         unsaid = supposed if name in self.untold else declared
         column = self._column(name, proposition.arguments)
         if column is None:
@@ -218,6 +221,7 @@ class _Numbers:
 
     def __init__(self, truths: ColumnTruths, term: ltl.QuantityTerm) -> None:
         self._column = truths._column(term.name, term.arguments)
+        self._end = truths.supposed.ends.get(term.name)
         declared = any_value(truths.vocabulary.declarations[term.name])
         assert not isinstance(declared, str), "it is a quantity"
         self._default = declared
@@ -228,8 +232,10 @@ class _Numbers:
         if self._column is None:
             return np.full(self._n_states, float(self._default))
         values, high, is_open = self._column.values, self._column.high, self._column.open
-        middle = values.astype(float) if high is None else (values + high) / 2
-        return middle if is_open is None else np.where(is_open, float(self._default), middle)
+        own = values.astype(float)
+        if high is not None and self._end != "low":
+            own = high.astype(float) if self._end == "high" else (values + high) / 2
+        return own if is_open is None else np.where(is_open, float(self._default), own)
 
     def exactly(self, state: int) -> Fraction:
         """The number that its decimal says."""
@@ -240,5 +246,5 @@ class _Numbers:
             return exact(self._default)
         value = values[state].item()
         if high is not None and (most := high[state].item()) != value:
-            value = Interval(value, most).middle
+            value = one_of(Interval(value, most), self._end)
         return exact(value)

@@ -24,14 +24,14 @@ from rulec.monitoring.letter_reader import present_in
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.one_completion import (
+    Supposed,
     completed,
-    kindest_values,
+    kindest,
     with_all_defaults,
     with_defaults,
 )
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import Violation
-from rulec.trace import Value
 from rulec.trace.trace_arrays import Flags, TraceArrays
 from rulec.vocabulary import Vocabulary
 
@@ -109,15 +109,14 @@ def _read_by(
 class _Vocabularies:
     """A rulebook's words for one rule: as declared, as completed, and as they are given.
 
-    What is unknown has its ``supposed`` values: by default as ``kindest`` says, in states that do
-    not say it as ``completed`` says. What is ``untold`` is unknown as ``given`` says.
+    What is ``untold`` is unknown as ``given`` says. As ``completed`` says it has what is
+    ``supposed`` of the unknown.
     """
 
     declared: Vocabulary
-    kindest: Vocabulary
     completed: Vocabulary
     given: Vocabulary
-    supposed: Mapping[str, Value]
+    supposed: Supposed
     untold: frozenset[str]
 
     @staticmethod
@@ -130,11 +129,10 @@ class _Vocabularies:
         if found is None:
             declared, untold = rulebook.vocabulary, untold_names(rulebook.vocabulary, told)
             facts = [axiom.formula for axiom in rulebook.axioms]
-            supposed = kindest_values(rule.formula, declared, facts)
-            unsaid = {name: supposed[name] for name in supposed.keys() & untold}
+            supposed = kindest(rule.formula, declared, facts)
+            unsaid = {name: supposed.values[name] for name in supposed.values.keys() & untold}
             found = _Vocabularies(
                 declared,
-                kindest=with_defaults(declared, supposed),
                 completed=with_all_defaults(with_defaults(declared, unsaid)),
                 given=with_untold(declared, untold),
                 supposed=supposed,
@@ -174,7 +172,7 @@ class _Views(Sequence[StateView]):
         chosen, told = sorted(indices), self._told
         part = self._arrays.at([self._binding.first + index for index in chosen])
         given = with_implied_values(part.trace(), told.declared)
-        known = completed(given, told.kindest)
+        known = completed(given, told.declared, told.supposed)
         for number, index in enumerate(chosen):
             present = present_in(number, known.objects, known.present)
             self._made[index] = (

@@ -30,7 +30,7 @@ from rulec.monitoring.state_validation import has_partial_values
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.one_completion import (
     completed,
-    kindest_values,
+    kindest,
     with_all_defaults,
     with_defaults,
 )
@@ -181,7 +181,7 @@ def explain(
 
     What is unknown is shown as such; as every completion violates the rule, one stands for all:
     that by which the rule is most likely kept, so that known values are seen to decide.
-    Numbers have their middles there. ``decided_by``: signal -> the numbers behind it, for those
+    ``decided_by``: signal -> the numbers behind it, for those
     that were decided by any. A repair is looked for only if it is to be ``repaired``, and
     never in a trace of which a window is looked at.
     """
@@ -193,12 +193,10 @@ def explain(
     untold = untold_names(declared, trace.told)
     if untold or trace.ends == "cut" or any(map(has_partial_values, trace.states)):
         facts = [axiom.formula for axiom in rulebook.axioms]
-        kindest = kindest_values(rule.formula, declared, facts)
-        trace = completed(trace, with_defaults(declared, kindest))
-        supposed = {name: kindest[name] for name in kindest.keys() & untold}
-        rulebook = replace(
-            rulebook, vocabulary=with_all_defaults(with_defaults(declared, supposed))
-        )
+        supposed = kindest(rule.formula, declared, facts)
+        trace = completed(trace, declared, supposed)
+        unsaid = {name: supposed.values[name] for name in supposed.values.keys() & untold}
+        rulebook = replace(rulebook, vocabulary=with_all_defaults(with_defaults(declared, unsaid)))
     binding = binding_of(violation.binding, trace.present, len(trace.states))
     reader = letter_reader_of(trace, rulebook)
     stretch = range(binding.first, binding.last + 1)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import replace
-from typing import Any
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal, TypeAlias
 
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
@@ -13,16 +13,32 @@ from rulec.trace import Trace, Value
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval, OneOf
 
+End: TypeAlias = Literal["low", "high"]
+
 _PLAIN = frozenset((bool, float, int, str))
 """Types of most values that are known."""
 
 
-def completed(trace: Trace, vocabulary: Vocabulary) -> Trace:
-    """The trace with defaults, or least values, for what is unknown, and the middles of bounds."""
+@dataclass(frozen=True, slots=True)
+class Supposed:
+    """What stands for the unknown: values by name, and of names with bounds the end that does.
+
+    Of other names the default does, or the least value, and the middle of bounds.
+    """
+
+    values: Mapping[str, Value] = field(default_factory=dict)
+    ends: Mapping[str, End] = field(default_factory=dict)
+
+
+NOTHING_SUPPOSED = Supposed()
+
+
+def completed(trace: Trace, vocabulary: Vocabulary, supposed: Supposed) -> Trace:
+    """The trace with what is supposed in place of what is unknown."""
     declarations = vocabulary.declarations
     states = tuple(
         {
-            name: _known(value, declarations[name], len(declarations[name].parameters))
+            name: _known(value, declarations[name], len(declarations[name].parameters), supposed)
             for name, value in state.items()
         }
         if has_partial_values(state)
@@ -32,31 +48,45 @@ def completed(trace: Trace, vocabulary: Vocabulary) -> Trace:
     return replace(trace, states=states, ends="complete", told=None)
 
 
-def kindest_values(
+def kindest(
     formula: ltl.Formula, vocabulary: Vocabulary, facts: Collection[ltl.Formula]
-) -> dict[str, Value]:
-    """By name, the value by which a formula is most likely to hold, for those that have one.
+) -> Supposed:
+    """By name, that by which a formula is most likely to hold, where it is the same for all atoms.
 
-    Where it is violated nevertheless that rests on what is known. Words in facts have none, which
-    might be contradicted; nor have those that a count reads, whose objects are many.
+    Where the formula is violated nevertheless that rests on what is known. Nothing is supposed of
+    words in facts, which might be contradicted, nor of those that a count reads, whose objects are
+    many.
     """
     signs: dict[str, dict[str | None, set[bool]]] = {}
+    ends: dict[str, set[End | None]] = {}
     excluded = {name for fact in facts for name in names_in(fact)}
     for proposition, sign in _signed(formula):
         if isinstance(proposition, ltl.Atom):
             own = signs.setdefault(proposition.name, {})
             own.setdefault(proposition.value, set()).add(sign)
-        else:
-            excluded.update(names_in(proposition))
-    found: dict[str, Value] = {}
+            continue
+        for factor, term in proposition.terms:
+            if isinstance(term, ltl.Count):
+                excluded.update(names_in(term))
+            else:
+                is_more = (proposition.relation in (">", ">=")) == (sign == (factor > 0))
+                is_equation = proposition.relation in ("=", "==", "!=")
+                ends.setdefault(term.name, set()).add(
+                    None if is_equation else "high" if is_more else "low"
+                )
+    values: dict[str, Value] = {}
     for name in signs.keys() - excluded:
         declaration = vocabulary.declarations[name]
-        values = declaration.values if isinstance(declaration, Enumeration) else (False, True)
-        kind = [value for value in values if _is_kind(value, signs[name])]
+        known = declaration.values if isinstance(declaration, Enumeration) else (False, True)
+        kind = [value for value in known if _is_kind(value, signs[name])]
         if kind:
             default = any_value(declaration)
-            found[name] = default if default in kind else kind[0]
-    return found
+            values[name] = default if default in kind else kind[0]
+    agreed = {name: own.pop() for name, own in ends.items() if len(own) == 1}
+    return Supposed(
+        values,
+        {name: end for name, end in agreed.items() if end is not None and name not in excluded},
+    )
 
 
 def _signed(formula: ltl.Formula) -> Iterator[tuple[ltl.Proposition, bool]]:
@@ -103,21 +133,32 @@ def with_all_defaults(vocabulary: Vocabulary) -> Vocabulary:
     return replace(vocabulary, declarations=declarations)
 
 
-def _known(value: Any, declaration: Declaration, depth: int) -> Any:
+def _known(value: Any, declaration: Declaration, depth: int, supposed: Supposed) -> Any:
     kind = type(value)
     if kind in _PLAIN and not depth:
         return value
     if kind is dict and depth == 1 and UNKNOWN_TYPES.isdisjoint(map(type, value.values())):
         return value
     if kind is dict or isinstance(value, Mapping):
-        return {name: _known(inner, declaration, depth - 1) for name, inner in value.items()}
+        return {
+            name: _known(inner, declaration, depth - 1, supposed) for name, inner in value.items()
+        }
     if depth:
         return {}  # unknown of all objects
     if isinstance(value, Interval):
-        return value.middle
+        return one_of(value, supposed.ends.get(declaration.name))
     if isinstance(value, OneOf):
         return min(value.values)
-    return any_value(declaration) if value is UNKNOWN else value
+    if value is not UNKNOWN:
+        return value
+    return supposed.values.get(declaration.name, any_value(declaration))
+
+
+def one_of(bounds: Interval, end: End | None) -> float:
+    """The number at an end of bounds, or their middle."""
+    if end is None:
+        return bounds.middle
+    return bounds.low if end == "low" else bounds.high
 
 
 def any_value(declaration: Declaration) -> Value:
