@@ -318,29 +318,24 @@ def once(compute: Callable[[DriveContext], Found]) -> Callable[[DriveContext], F
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PairStates:
-    """All states of pairs of a drive and a participant, end to end.
+    """All states of pairs of a drive and a participant, end to end: ``spans`` are the pairs'."""
 
-    ``rows`` and ``columns`` say where each is in a context's arrays, ``spans`` are the pairs'.
-    """
-
-    rows: NDArray[intp]
-    columns: NDArray[intp]
+    cells: Cells
     spans: EndToEnd
 
 
-def pair_states(
-    context: DriveContext, cells: tuple[NDArray[intp], ...]
-) -> tuple[PairStates, NDArray[intp]]:
-    """The pairs of which some cells, rows and columns, are states; and the cells' places there."""
-    (rows, columns), spans = cells, context.spans
-    keys = rows * spans.n_drives + spans.number[columns]
+def pair_states(context: DriveContext, cells: Cells) -> tuple[PairStates, NDArray[intp]]:
+    """The pairs of which some cells are states, and the cells' places among all their states."""
+    spans = context.spans
+    keys = cells.rows * spans.n_drives + spans.number[cells.columns]
     there = np.zeros(len(context.relevant) * spans.n_drives, dtype=bool)
     there[keys] = True
     pairs = np.flatnonzero(there)
-    begins, lengths = spans.begins, np.diff(spans.bounds)
-    drives = pairs % spans.n_drives
-    bounds = np.append(0, np.cumsum(lengths[drives]))
+    rows, drives = pairs // spans.n_drives, pairs % spans.n_drives
+    first = spans.begins[drives]
+    last = first + spans.lengths[drives] - 1
+    bounds = np.append(0, np.cumsum(spans.lengths[drives]))
     own = EndToEnd(bounds.tolist())
-    shift = begins[drives] - bounds[:-1]
-    states = PairStates(own.spread(pairs // spans.n_drives), own.columns + own.spread(shift), own)
-    return states, columns - shift[np.cumsum(there)[keys] - 1]
+    states = PairStates(Cells.of_runs(context.relevant.shape, rows, first, last), own)
+    shift = first - bounds[:-1]
+    return states, cells.columns - shift[np.cumsum(there)[keys] - 1]

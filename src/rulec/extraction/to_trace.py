@@ -331,9 +331,10 @@ def _decided_by(
     if "safe_gap" not in chosen.columns.about:
         return [{} for _ in present]
     followed, place = safe_gaps(context), context.tolerances.place_m
-    gap, safe, error = np.full((3, *context.relevant.shape), np.nan)
-    gap[followed.cells], safe[followed.cells] = followed.gap, followed.safe
-    error[followed.cells] = followed.safe_error
+    gap, safe, error = (
+        followed.cells.laid(values, np.nan)
+        for values in (followed.gap, followed.safe, followed.safe_error)
+    )
     found = []
     for own, columns in zip(present, context.spans.slices, strict=True):
         rows = {presence.name: presence.row for presence in own}

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rulec.extraction.signals.measured_numbers import LONGEST_S, safe_distance
+from rulec.extraction.signals.measured_numbers import LONGEST_S, safe_distances
 from rulec.extraction.signals.participant_signals import participant_signals
+from rulec.trace.cells import Cells
 from support.builders.drive_contexts import along, context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
@@ -23,6 +24,12 @@ def about(*others, **more):
     """The first state of each signal, of the first of the others."""
     signals = participant_signals(context(*others, **more))
     return {name: signals.values(name).flat[0] for name in signals.about}
+
+
+def safe_distance(drive):
+    """The safe distances (m) from the first of the others, by state."""
+    found, _ = safe_distances(drive, Cells.at(np.ones_like(drive.relevant)))
+    return found.reshape(drive.relevant.shape)[0]
 
 
 def test_relations_and_distances():
@@ -55,9 +62,9 @@ def test_speed_difference_is_positive_for_a_faster_ego():
 
 def test_the_safe_distance_is_that_of_two_emergency_brakings():
     # 10 m in the second of reaction, and (100 - 25) / 16 m
-    assert safe_distance(context(steady(8, 30, 0, speed=5)))[0, 0] == pytest.approx(14.6875)
+    assert safe_distance(context(steady(8, 30, 0, speed=5)))[0] == pytest.approx(14.6875)
     # Somebody oncoming counts as standing: 10 + 100 / 16
-    assert safe_distance(context(steady(8, 30, 0, speed=-5)))[0, 0] == pytest.approx(16.25)
+    assert safe_distance(context(steady(8, 30, 0, speed=-5)))[0] == pytest.approx(16.25)
     assert about(steady(8, 18.7, 0, speed=5))["safe_gap"]  # 14.7 m
     assert not about(steady(8, 18.5, 0, speed=5))["safe_gap"]  # 14.5 m
     assert not about(steady(8, 18.7, 0, speed=5), reaction_s=1.1)["safe_gap"]
@@ -66,11 +73,11 @@ def test_the_safe_distance_is_that_of_two_emergency_brakings():
 def test_a_tram_ahead_brakes_less_hard():
     # 10 m in the second of reaction, and 100 / 16 - 25 / 6 m
     tram = steady(8, 30, 0, speed=5, kind="train")
-    assert safe_distance(context(tram))[0, 0] == pytest.approx(12.083333)
+    assert safe_distance(context(tram))[0] == pytest.approx(12.083333)
     soft = {"rail_braking_mps2": 2.0}
-    assert safe_distance(context(tram, **soft))[0, 0] == pytest.approx(10.0)
+    assert safe_distance(context(tram, **soft))[0] == pytest.approx(10.0)
     car = steady(8, 30, 0, speed=5)
-    assert safe_distance(context(car, **soft))[0, 0] == pytest.approx(14.6875)
+    assert safe_distance(context(car, **soft))[0] == pytest.approx(14.6875)
 
 
 @pytest.mark.parametrize(("degrees", "needed"), [(0, 10.0), (45, 10.0), (70, 10.0), (90, 16.25)])
@@ -81,7 +88,7 @@ def test_who_turns_off_is_as_fast_as_it_is(degrees, needed):
         k: (30 + 10 * STEP_S * k * np.cos(way), 10 * STEP_S * k * np.sin(way)) for k in range(4)
     }
     other = vehicle(8, places, speed=10.0, heading=float(way))
-    assert safe_distance(context(other))[0, 0] == pytest.approx(needed)
+    assert safe_distance(context(other))[0] == pytest.approx(needed)
 
 
 def test_a_safe_gap_is_asked_for_in_egos_lane_only():

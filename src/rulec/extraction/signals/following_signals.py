@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, PairStates, once, pair_states
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.measured_numbers import LONGEST_S, safe_distance, safe_distance_error
+from rulec.extraction.signals.measured_numbers import LONGEST_S, joint_error, safe_distances
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,
     SignalNames,
@@ -51,8 +51,8 @@ def following_signals(context: DriveContext, names: SignalNames = None) -> Signa
 
 def _ahead_for(context: DriveContext) -> SignalColumns:
     """Times (s) for which ego has been behind others in one lane, with their bounds."""
-    _, surely, perhaps = relations.ahead_in_lane(context)
-    cells, step_s = Cells.at(perhaps), context.recording.step_s
+    _, surely, _ = relations.ahead_in_lane(context)
+    cells, step_s = relations.perhaps_ahead(context), context.recording.step_s
     since, seen = _since(context, cells)
     most = np.where(seen, (cells.columns - since + 1) * step_s, LONGEST_S)
     sure = np.flatnonzero(surely.ravel().take(cells.places))
@@ -113,13 +113,12 @@ def parts_soon(context: DriveContext) -> Flags:
     ``_DRIFT_MPS``, and a change of lanes may have them clear. Where ways part in a junction nobody
     is clear of one that stops before.
     """
-    _, _, follows = relations.ahead_in_lane(context)
-    cells = follows.nonzero()
+    cells = relations.perhaps_ahead(context)
     horizon = round(context.thresholds.parting_s / context.recording.step_s)
-    (pairs, places), others, own = pair_states(context, cells), context.extents, context.ego_extents
-    spans, at, columns = pairs.spans, (pairs.rows, pairs.columns), pairs.columns
-    seen, way_across = context.relevant[at], relations.way_across(context)[at]
-    apart = others.lane[at] != own.lane[0, columns]
+    pairs, places = pair_states(context, cells)
+    spans, at = pairs.spans, pairs.cells
+    seen, way_across = at.of(context.relevant), at.of(relations.way_across(context))
+    apart = at.of(context.extents.lane) != at.of(context.ego_extents.lane[0])
     apart |= way_across > context.thresholds.touching_m
     apart &= seen
     until = spans.columns + horizon
@@ -129,21 +128,43 @@ def parts_soon(context: DriveContext) -> Flags:
     if inside.any():
         stopped = _would_stand(context, pairs)
         parts |= spans.next_state(apart & inside, horizon) <= np.minimum(stopped, until)
-    middles = others.d_min[at] + others.d_max[at], own.d_min[0, columns] + own.d_max[0, columns]
-    side = np.sign(middles[0] - middles[1])
     gone = spans.next_state(~seen)
     last = np.clip(gone - 1, spans.first, spans.end - 1)
-    away = ((others.across[at] - own.across[0, columns]) * side)[last]
-    still, left_s = way_across[last], (until - last) * context.recording.step_s
-    swings_out = (away >= _AWAY_MPS) & (still + away * left_s > -context.tolerances.place_m)
-    closes_in = (own.along[0, columns] - others.along[at])[last] > context.tolerances.speed_mps
-    moved = still + away * left_s + _MOVES_OFF_MPS2 / 2 * left_s**2
-    swings_out |= closes_in & (away > _DRIFT_MPS) & (moved > context.thresholds.touching_m)
-    lost = gone <= np.minimum(np.where(inside[last], stopped, until), until)
-    parts |= seen & lost & ((others.across[at] * side >= _AWAY_MPS) | swings_out)
-    found = np.zeros(context.relevant.shape, dtype=bool)
-    found[cells] = parts[places]
+    lost = seen & (gone <= np.minimum(np.where(inside[last], stopped, until), until))
+    found = parts.take(places)
+    asked = np.flatnonzero(~found & lost.take(places))
+    own = places.take(asked)
+    since = last.take(own)
+    left_s = (until.take(own) - since) * context.recording.step_s
+    found[asked] = _go_aside(context, at.part(own), at.part(since), left_s)
+    return cells.laid(found)
+
+
+def _go_aside(context: DriveContext, cells: Cells, seen_last: Cells, left_s: Floats) -> Flags:
+    """Flags of cells in which one goes aside, or does so from ego in that where it is ``seen_last``.
+
+    Such that it may be clear of ego ``left_s`` after that.
+    """
+    limits, known, others = context.thresholds, context.tolerances, context.extents
+    own = context.ego_extents
+    aside = cells.of(others.across) * _side(context, cells) >= _AWAY_MPS
+    across = seen_last.of(others.across) - seen_last.of(own.across[0])
+    away, still = across * _side(context, seen_last), seen_last.of(relations.way_across(context))
+    clear = still + away * left_s
+    aside |= (away >= _AWAY_MPS) & (clear > -known.place_m)
+    faster = seen_last.of(own.along[0]) - seen_last.of(others.along)
+    moved = clear + _MOVES_OFF_MPS2 / 2 * left_s**2
+    swings = (faster > known.speed_mps) & (away > _DRIFT_MPS) & (moved > limits.touching_m)
+    found: Flags = aside | swings
     return found
+
+
+def _side(context: DriveContext, cells: Cells) -> Floats:
+    """1 where others are left of ego, -1 where they are right of it."""
+    others, own = context.extents, context.ego_extents
+    theirs, egos = cells.of(others.d_min) + cells.of(others.d_max), own.d_min[0] + own.d_max[0]
+    side: Floats = np.sign(theirs - cells.of(egos))
+    return side
 
 
 def may_part(context: DriveContext) -> SignalColumns:
@@ -159,9 +180,11 @@ def may_part(context: DriveContext) -> SignalColumns:
 
 def _in_junctions(context: DriveContext, pairs: PairStates) -> Flags:
     """Flags of bodies in the junctions of ego's road."""
-    inside, at = np.zeros(len(pairs.rows), dtype=bool), (pairs.rows, pairs.columns)
-    for start, end in context.road.junctions:
-        inside |= (context.extents.s_max[at] >= start) & (context.extents.s_min[at] < end)
+    inside, junctions = np.zeros(len(pairs.cells), dtype=bool), context.road.junctions
+    if junctions:
+        s_min, s_max = map(pairs.cells.of, (context.extents.s_min, context.extents.s_max))
+        for start, end in junctions:
+            inside |= (s_max >= start) & (s_min < end)
     return inside
 
 
@@ -170,9 +193,9 @@ def _would_stand(context: DriveContext, pairs: PairStates) -> NDArray[intp]:
 
     One past the last where they do not get there while they are seen.
     """
-    tracks, at, spans = context.tracks, (pairs.rows, pairs.columns), pairs.spans
-    x, y = tracks.x[at], tracks.y[at]
-    fastest = np.nan_to_num(tracks.speed[at] + tracks.speed_error[at])
+    tracks, at, spans = context.tracks, pairs.cells, pairs.spans
+    x, y = at.of(tracks.x), at.of(tracks.y)
+    fastest = np.nan_to_num(at.of(tracks.speed) + at.of(tracks.speed_error))
     braking = fastest**2 / (2 * context.thresholds.braking_mps2)
 
     def of_pair(own: slice) -> NDArray[intp]:
@@ -193,78 +216,69 @@ def keeps_safe_gap(context: DriveContext) -> SignalColumns:
     more than ``_OUTLIERS`` tolerances: that may be what boxes err.
     """
     place, limits, followed = context.tolerances.place_m, context.thresholds, safe_gaps(context)
-    short, wrong = followed.safe - followed.gap, np.hypot(followed.safe_error, place)
+    short, wrong = followed.safe - followed.gap, joint_error(followed.safe_error, place)
     # Elsewhere the distance is long enough, whoever that is
     perhaps_short = np.flatnonzero(short > -wrong)
     short, wrong = short.take(perhaps_short), wrong.take(perhaps_short)
-    rows, states = (places.take(perhaps_short) for places in followed.cells)
-    cells = rows, states
-    stands = context.tracks.speed[cells] * KMH < limits.standing_kmh
+    cells = followed.cells.part(perhaps_short)
+    stands = cells.of(context.tracks.speed) * KMH < limits.standing_kmh
     # One that stands, and that ego drives by, does not drive ahead
-    aside = relations.way_across(context)[cells] - limits.touching_m
+    aside = cells.of(relations.way_across(context)) - limits.touching_m
     room = np.where(stands, aside, -np.inf)
     moot, follows = np.abs(room) < place, room <= 0
     asked = np.flatnonzero(follows)
-    moot[asked] |= _need_not_follow(context, (rows[asked], states[asked]), short[asked])
-    shape = context.relevant.shape
-    safe, unknown = np.ones(shape, dtype=bool), np.zeros(shape, dtype=bool)
-    safe[cells] = ~follows | (short <= 0)
-    unknown[cells] = (follows & (np.abs(short) < wrong)) | moot
-    late, far_too_late = np.zeros((2, *shape), dtype=bool)
-    late[cells] = follows & (short >= wrong)
-    far_too_late[cells] = follows & (short > _OUTLIERS * wrong)
-    unknown |= _brief_and_slight(context, late, far_too_late)
-    return SignalColumns(about={"safe_gap": safe}, unknown={"safe_gap": unknown})
+    moot[asked] |= _need_not_follow(context, cells.part(asked), short.take(asked))
+    late = np.flatnonzero(follows & (short >= wrong))
+    far_too_late = short.take(late) > _OUTLIERS * wrong.take(late)
+    moot[late] |= _brief_and_slight(context, cells.part(late), far_too_late)
+    safe, unknown = ~follows | (short <= 0), (follows & (np.abs(short) < wrong)) | moot
+    return SignalColumns(
+        about={"safe_gap": cells.laid(safe, True)}, unknown={"safe_gap": cells.laid(unknown)}
+    )
 
 
-def _need_not_follow(
-    context: DriveContext, cells: tuple[NDArray[intp], ...], short: Floats
-) -> Flags:
+def _need_not_follow(context: DriveContext, cells: Cells, short: Floats) -> Flags:
     """Flags of cells in which who is ahead parts soon, or has stood for long enough to be seen.
 
     ``short`` is by how much (m) the distance is too short if ego reacts first.
     """
     speed = np.maximum(context.ego_extents.along[0], 0.0)
-    react_m = speed[cells[1]] * context.thresholds.reaction_s
-    stood = _stood_before(context, distinct(cells[0]))[cells]
-    moot: Flags = parts_soon(context)[cells] | (stood & (short - react_m <= 0))
+    react_m = cells.of(speed) * context.thresholds.reaction_s
+    moot: Flags = cells.of(parts_soon(context))
+    asked = np.flatnonzero(~moot & (short - react_m <= 0))
+    moot[asked] = _stood_before(context, cells.part(asked))
     return moot
 
 
-def _brief_and_slight(context: DriveContext, late: Flags, far_too_late: Flags) -> Flags:
-    """Flags of runs of late states that last for less than ``_BRIEF_S`` and are nowhere far too."""
-    places = np.flatnonzero(late)
-    if not len(places):
-        return late
-    is_first = np.diff(places, prepend=-1) > 1
-    is_first |= context.spans.begins_here.take(places % context.states)
+def _brief_and_slight(context: DriveContext, late: Cells, far_too_late: Flags) -> Flags:
+    """Flags of late cells in runs that last for less than ``_BRIEF_S``, and are nowhere far too."""
+    if not len(late):
+        return far_too_late
+    is_first = np.diff(late.places, prepend=-1) > 1
+    is_first |= context.spans.begins_here.take(late.columns)
     begins = np.flatnonzero(is_first)
-    lengths = np.diff(begins, append=len(places))
+    lengths = np.diff(begins, append=len(late))
     brief = lengths * context.recording.step_s < _BRIEF_S - _HAIR_S
-    slight = ~np.logical_or.reduceat(far_too_late.ravel().take(places), begins)
-    found = np.zeros_like(late)
-    found.ravel()[places] = np.repeat(brief & slight, lengths)
-    return found
+    slight = ~np.logical_or.reduceat(far_too_late, begins)
+    return np.repeat(brief & slight, lengths)
 
 
-def _stood_before(context: DriveContext, rows: NDArray[intp]) -> Flags:
-    """Flags of those who stand, and have for ``reaction_s`` or since they were seen first.
-
-    Of these rows, False in all others.
-    """
+def _stood_before(context: DriveContext, cells: Cells) -> Flags:
+    """Flags of cells of those who stand, and have for ``reaction_s`` or since they were seen."""
+    rows = distinct(cells.rows)
     stands = context.tracks.speed[rows] * KMH < context.thresholds.standing_kmh
     steps = round(context.thresholds.reaction_s / context.recording.step_s)
-    spans, stood = context.spans, np.zeros(context.relevant.shape, dtype=bool)
     moves_there = ~stands & ~np.isnan(context.extents.s_min[rows])
-    stood[rows] = stands & ~spans.within_last(moves_there, steps)
-    return stood
+    stood = stands & ~context.spans.within_last(moves_there, steps)
+    found: Flags = stood[np.searchsorted(rows, cells.rows), cells.columns]
+    return found
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SafeGaps:
-    """The distances (m) that ``safe_gap`` compares: where ego may follow, rows and states."""
+    """The distances (m) that ``safe_gap`` compares, by cell of those whom ego may follow."""
 
-    cells: tuple[NDArray[intp], ...]
+    cells: Cells
     gap: Floats
     safe: Floats
     safe_error: Floats
@@ -273,10 +287,8 @@ class SafeGaps:
 @once
 def safe_gaps(context: DriveContext) -> SafeGaps:
     """The distances that ``safe_gap`` compares."""
-    _, _, follows = relations.ahead_in_lane(context)
-    cells = follows.nonzero()
-    safe, error = safe_distance(context, cells), safe_distance_error(context, cells)
-    return SafeGaps(cells, relations.gap(context)[cells], safe, error)
+    cells = relations.perhaps_ahead(context)
+    return SafeGaps(cells, cells.of(relations.gap(context)), *safe_distances(context, cells))
 
 
 _PASSES: Passes = {("ahead_for",): _ahead_for}

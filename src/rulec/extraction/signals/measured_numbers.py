@@ -6,8 +6,6 @@ have nothing to do with each other.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
@@ -15,12 +13,16 @@ from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import Bounds, rounded_outward
 from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.trace.cells import Cells
 
 LONGEST_S = 1000.0
 """The longest headway (s), also that of an ego that stands."""
 
 _ALIKE = 0.17
 """The cosine of the angle to the road up to which one goes about ego's way."""
+
+_SURELY_ALIKE_RAD = 1.39
+"""An angle that is less than that; cosines take long."""
 
 _AT_LIMIT_MPS = 0.01
 """Limits are written to a hundredth: a simulated speed so near to one is at it."""
@@ -95,7 +97,7 @@ def difference_bounds(context: DriveContext) -> Bounds:
     difference, speeds = speed_differences(context)
     cells = presence_cells(context)
     their_error = np.where(speeds == 0, 0.0, cells.of(context.tracks.speed_error))
-    wrong = np.hypot(cells.of(context.ego.speed_error[0]), their_error) * KMH
+    wrong = joint_error(cells.of(context.ego.speed_error[0]), their_error) * KMH
     return rounded_outward(difference - wrong, difference + wrong)
 
 
@@ -108,55 +110,45 @@ def speed_differences(context: DriveContext) -> tuple[Floats, Floats]:
     return difference, speeds
 
 
-def safe_distance(context: DriveContext, cells: Any = ...) -> Floats:
-    """The distance (m) for ego to stop behind a participant braking fully, at some cells, or all.
+def safe_distances(context: DriveContext, cells: Cells) -> tuple[Floats, Floats]:
+    """The distances (m) for ego to stop behind others braking fully, and how far they may be wrong.
 
-    Ego brakes as hard after its reaction time: v t + (v² - u²) / 2a, as in RSS (Shalev-Shwartz,
-    Shammah, Shashua 2017). An oncoming participant counts as standing, and what runs on rails does
-    not brake as hard. Cells are rows and states.
+    At some cells. Ego brakes as hard after its reaction time: v t + (v² - u²) / 2a, as in RSS
+    (Shalev-Shwartz, Shammah, Shashua 2017). An oncoming participant counts as standing, and what
+    runs on rails does not brake as hard.
     """
     limits = context.thresholds
     own, other = _ahead(context, cells)
-    stops = own**2 / (2 * limits.braking_mps2) - other**2 / (2 * _braking(context, cells))
+    on_rails = context.tracks.of_type("rail_vehicle")[cells.rows]
+    braking = np.where(on_rails, limits.rail_braking_mps2, limits.braking_mps2)
+    stops = own**2 / (2 * limits.braking_mps2) - other**2 / (2 * braking)
     distance: Floats = limits.reaction_s * own + stops
-    return distance
-
-
-def safe_distance_error(context: DriveContext, cells: Any = ...) -> Floats:
-    """How far the safe distance (m) may be wrong, as speeds are."""
-    limits = context.thresholds
-    own, other = _ahead(context, cells)
-    error = _of_ego(context.ego.speed_error, cells)
+    error = cells.of(context.ego.speed_error[0])
     of_own = (limits.reaction_s + own / limits.braking_mps2) * error
-    of_other = other / _braking(context, cells) * context.tracks.speed_error[cells]
-    found: Floats = np.hypot(of_own, of_other)
-    return found
+    of_other = other / braking * cells.of(context.tracks.speed_error)
+    return distance, joint_error(of_own, of_other)
 
 
-def _braking(context: DriveContext, cells: Any) -> Floats:
-    """As hard (m/s²) as others brake at these cells."""
-    limits = context.thresholds
-    on_rails = context.tracks.of_type("rail_vehicle")[:, None]
-    shape = context.tracks.speed.shape
-    hard = np.broadcast_to(np.where(on_rails, limits.rail_braking_mps2, limits.braking_mps2), shape)
-    of_cells: Floats = hard[cells]
-    return of_cells
-
-
-def _ahead(context: DriveContext, cells: Any) -> tuple[Floats, Floats]:
-    """The speeds (m/s) of ego and of others, from which they brake.
+def _ahead(context: DriveContext, cells: Cells) -> tuple[Floats, Floats]:
+    """The speeds (m/s) of ego and of others, from which they brake, at some cells.
 
     Who turns off brakes on its own way, so its whole speed counts while it still goes about ego's.
     """
-    others = np.maximum(context.extents.along[cells], 0.0)
-    alike = np.cos(context.extents.turned[cells]) > _ALIKE
-    others = np.where(alike & (others > 0), np.maximum(context.tracks.speed[cells], others), others)
-    return np.maximum(_of_ego(context.ego_extents.along, cells), 0.0), others
+    others = np.maximum(cells.of(context.extents.along), 0.0)
+    turned = cells.of(context.extents.turned)
+    alike = np.abs(turned) < _SURELY_ALIKE_RAD
+    rest = np.flatnonzero(~alike)
+    alike[rest] = np.cos(turned.take(rest)) > _ALIKE
+    alike &= others > 0
+    others = np.where(alike, np.maximum(cells.of(context.tracks.speed), others), others)
+    return np.maximum(cells.of(context.ego_extents.along[0]), 0.0), others
 
 
-def _of_ego(values: Floats, cells: Any) -> Floats:
-    """Ego's values at cells of others."""
-    return values if cells is ... else values[0, cells[1]]
+def joint_error(one: Floats | float, other: Floats | float) -> Floats:
+    """How far a sum may be wrong by two errors that have nothing to do with each other."""
+    # What hypot does beyond this, for numbers near the largest, takes ten times as long
+    found: Floats = np.sqrt(np.square(one) + np.square(other))
+    return found
 
 
 def own_widths(context: DriveContext) -> Floats:

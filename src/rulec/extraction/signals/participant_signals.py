@@ -18,6 +18,7 @@ from rulec.extraction.signals.measured_numbers import (
     difference_bounds,
     gap_bounds,
     headway_bounds,
+    joint_error,
     lateral_gap_bounds,
     moves,
     own_speed,
@@ -136,9 +137,10 @@ def _time_to_collision(context: DriveContext) -> SignalColumns:
     """How long ego takes to who is ahead in its lane, both as fast as they are."""
     measured, surely, perhaps = relations.ahead_in_lane(context)
     # Ego runs into nobody else
-    cells, place = Cells.at(perhaps), context.tolerances.place_m
+    cells, place = relations.perhaps_ahead(context), context.tolerances.place_m
     closing = cells.of(context.ego_extents.along[0]) - cells.of(context.extents.along)
-    wrong = np.hypot(cells.of(context.ego.speed_error[0]), cells.of(context.tracks.speed_error))
+    errors = context.ego.speed_error[0], context.tracks.speed_error
+    wrong = joint_error(*map(cells.of, errors))
     way = cells.of(relations.way_along(context))
 
     def seconds(counts: Flags, more_m: float, faster: Floats) -> Floats:
@@ -197,9 +199,8 @@ def _comes_towards(context: DriveContext) -> Flags:
     """Flags of participants that move against ego's direction, or wait on lanes of that way."""
     along = context.extents.along
     moves_against: Flags = (along < 0) & (np.abs(along) * KMH >= context.thresholds.standing_kmh)
-    comes: Flags = moves_against | _waits_elsewhere(context)
-    comes[comes] = np.cos(context.extents.turned[comes]) < -0.5
-    return comes
+    cells = Cells.at(moves_against | _waits_elsewhere(context))
+    return cells.laid(np.cos(cells.of(context.extents.turned)) < -0.5)
 
 
 def _waits_elsewhere(context: DriveContext) -> Flags:
@@ -214,9 +215,9 @@ def _waits_elsewhere(context: DriveContext) -> Flags:
     vehicles = context.tracks.of_type("vehicle")[:, None]
     moves_elsewhere = context.elsewhere & ~context.spans.all(stands)
     waits: Flags = vehicles & (moves_elsewhere | ~context.on_lanes)
-    backs = (waits & ~stands & (along > 0)).nonzero()
+    backs = Cells.at(waits & ~stands & (along > 0))
     waits &= stands
-    waits[backs] = np.cos(context.extents.turned[backs]) < -0.5
+    waits.ravel()[backs.places] = np.cos(backs.of(context.extents.turned)) < -0.5
     return waits
 
 

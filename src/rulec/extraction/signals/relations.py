@@ -157,6 +157,13 @@ def ahead_in_lane(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     return measured, ahead & sides.surely, ahead & sides.perhaps
 
 
+@once
+def perhaps_ahead(context: DriveContext) -> Cells:
+    """The cells of who is perhaps ahead in ego's lane."""
+    _, _, perhaps = ahead_in_lane(context)
+    return Cells.at(perhaps)
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class _BesideLane:
     """Where others are beside ego's lane: how far (m) they reach in it and beyond its bounds.
