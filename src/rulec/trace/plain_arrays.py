@@ -130,7 +130,7 @@ def medians_hold(
     It ``holds`` of all numbers below one, so that it is enough to count those of which it does.
     """
     sizes = np.bincount(groups, minlength=count)
-    twice = 2 * np.bincount(groups[holds(values)], minlength=count)
+    twice = 2 * np.bincount(groups.take(np.flatnonzero(holds(values))), minlength=count)
     found = twice > sizes
     # Where it holds of one half the median is between that and the other one
     halves = (twice == sizes) & (sizes > 0)

@@ -107,6 +107,12 @@ def travel_lanes(context: DriveContext) -> Flags:
     return travel_lanes_at(context, context.ego_extents.s[0])
 
 
+@once
+def travel_lanes_first(context: DriveContext) -> Flags:
+    """The same with lanes as the first axis, along which they are sooner counted."""
+    return np.ascontiguousarray(travel_lanes(context).T)
+
+
 def travel_lanes_at(context: DriveContext, places: Floats) -> Flags:
     """The same beside places along the road, one for each state."""
     types, travel = map_contents(context).types, context.road.lanes.existing_at(places)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.conduct.manoeuvre_signals import goes_over_the_middle
-from rulec.extraction.signals.ego_lanelets import room_beside, travel_lanes, travel_lanes_at
+from rulec.extraction.signals.ego_lanelets import room_beside, travel_lanes_at, travel_lanes_first
 from rulec.extraction.signals.measured_numbers import own_speed, speed_bounds
 from rulec.extraction.signals.queues import lanes_that_go_on
 from rulec.extraction.signals.signal_columns import (
@@ -112,10 +112,10 @@ def _lane(context: DriveContext) -> SignalColumns:
 
 def _nearer_goes_on(context: DriveContext) -> Flags:
     """Flags of states in which a lane nearer to the kerb than ego's goes on."""
-    lanes, own = np.arange(context.existing_lanes.shape[1]), context.steady_lane[:, None]
-    nearer = lanes < own if context.side == "right" else lanes > own
-    goes_on = travel_lanes(context) & lanes_that_go_on(context) & nearer
-    found: Flags = np.any(goes_on, axis=1)
+    lanes = travel_lanes_first(context)
+    number, own = np.arange(len(lanes))[:, None], context.steady_lane
+    nearer = number < own if context.side == "right" else number > own
+    found: Flags = np.any(lanes & lanes_that_go_on(context).T & nearer, axis=0)
     return found
 
 
@@ -151,15 +151,15 @@ def _lane_position(context: DriveContext) -> SignalColumns:
 
 def _from_kerb(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
     """Indices into ``_LANES`` of lanes by state: 0 at the kerb, 2 farthest, 1 between."""
-    rank, count = _rank(context, lane), travel_lanes(context).sum(axis=1)
+    rank, count = _rank(context, lane), travel_lanes_first(context).sum(axis=0)
     return np.where(rank <= 0, 0, np.where(rank >= count - 1, 2, 1))
 
 
 def _rank(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
     """How many lanes lie between lanes by state and the kerb."""
-    lanes, state = travel_lanes(context), np.arange(len(lane))
-    right: NDArray[intp] = np.cumsum(lanes, axis=1)[state, lane] - lanes[state, lane]
-    return right if context.side == "right" else lanes.sum(axis=1) - 1 - right
+    lanes, states = travel_lanes_first(context), context.spans.columns
+    right: NDArray[intp] = np.cumsum(lanes, axis=0)[lane, states] - lanes[lane, states]
+    return right if context.side == "right" else lanes.sum(axis=0) - 1 - right
 
 
 def _straddling(context: DriveContext) -> SignalColumns:

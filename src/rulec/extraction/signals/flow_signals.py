@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.ego_lanelets import travel_lanes
+from rulec.extraction.signals.ego_lanelets import travel_lanes_first
 from rulec.extraction.signals.queues import (
     LOOSE,
     MEASURED,
@@ -49,25 +49,24 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
     wait for. Nor is it a jam yet that came up less than ``_JAM_S`` ago.
     """
     around, limits, states = vehicles_around(context), context.thresholds, context.states
-    existing = travel_lanes(context)
-    shape, several = existing.shape[::-1], existing.sum(axis=1)
-    enough = np.bincount(around.state, minlength=states) >= limits.fewest
-    crosses = np.zeros(len(around.state), dtype=bool)
-    for start, end in context.road.junctions:
-        crosses |= (around.s_max > start) & (around.s_min < end)
+    existing = travel_lanes_first(context)
+    several = existing.sum(axis=0)
+    enough = around.counts.sum(axis=0) >= limits.fewest
 
-    def used_by(own: Flags) -> NDArray[intp]:
-        on_lanes = np.bincount(around.place[own], minlength=existing.size).reshape(shape) > 0
-        used: NDArray[intp] = (on_lanes.T & existing).sum(axis=1)
+    def used_by(own: NDArray[intp]) -> NDArray[intp]:
+        on_lanes = np.zeros(existing.size, dtype=bool)
+        on_lanes[around.place.take(own)] = True
+        used: NDArray[intp] = (on_lanes.reshape(existing.shape) & existing).sum(axis=0)
         return used
 
     def slow(below_kmh: float) -> tuple[Flags, Flags]:
-        own = around.speed * KMH < below_kmh
+        own = np.flatnonzero(around.speed * KMH < below_kmh)
         called: Flags = enough & (2 * used_by(own) >= several)
-        asked = np.flatnonzero(called[around.state])
-        if len(asked):
-            called &= _is_slow(context, around, asked, below_kmh)
-        return called, called & (several > 1) & (2 * used_by(own & ~crosses) <= several)
+        if not called.any():
+            return called, called
+        called &= _is_slow(context, around, np.flatnonzero(called.take(around.state)), below_kmh)
+        aside = own[~_in_junctions(context, around, own)]
+        return called, called & (several > 1) & (2 * used_by(aside) <= several)
 
     (congested, part), (walking, part_walks) = (
         slow(below) for below in (limits.congested_kmh, limits.walking_pace_kmh)
@@ -84,6 +83,15 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
             "walking_pace_flow": walking & (part_walks | moot),
         },
     )
+
+
+def _in_junctions(context: DriveContext, around: VehiclesAround, chosen: NDArray[intp]) -> Flags:
+    """Flags of the chosen ones who are in junctions of ego's road."""
+    s_min, s_max = around.s_min.take(chosen), around.s_max.take(chosen)
+    inside = np.zeros(len(chosen), dtype=bool)
+    for start, end in context.road.junctions:
+        inside |= (s_max > start) & (s_min < end)
+    return inside
 
 
 def _comes_up(context: DriveContext, slow: Flags) -> Flags:
@@ -141,23 +149,23 @@ def _own_lane_queue(context: DriveContext) -> SignalColumns:
     queues, are_slow = queues_by_lane(context)
     slow = queues & are_slow
     queue, fewer, more = (
-        slow[reading][np.arange(context.states), context.ego_lane] for reading in READINGS
+        slow[reading, context.ego_lane, context.spans.columns] for reading in READINGS
     )
     return SignalColumns({"own_lane_queue": queue}, unknown={"own_lane_queue": more & ~fewer})
 
 
 def _at_far_side(context: DriveContext, lanes: Flags) -> Flags:
-    """Whether a lane of those flagged lies at ego's far side, by state."""
-    number, own = np.arange(lanes.shape[1]), context.ego_lane[:, None]
+    """Whether a lane (first axis) of those flagged lies at ego's far side, by state."""
+    number, own = np.arange(len(lanes))[:, None], context.ego_lane
     far = number > own if context.side == "right" else number < own
-    there: Flags = np.any(lanes & far, axis=1)
+    there: Flags = np.any(lanes & far, axis=0)
     return there
 
 
 def _beside(context: DriveContext, lanes: Flags) -> Flags:
     lane = context.ego_lane + (1 if context.side == "right" else -1)
-    inside = (lane >= 0) & (lane < lanes.shape[1])
-    beside: Flags = inside & lanes[np.arange(context.states), np.clip(lane, 0, lanes.shape[1] - 1)]
+    inside = (lane >= 0) & (lane < len(lanes))
+    beside: Flags = inside & lanes[np.clip(lane, 0, len(lanes) - 1), context.spans.columns]
     return beside
 
 

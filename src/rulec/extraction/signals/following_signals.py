@@ -135,18 +135,19 @@ def parts_soon(context: DriveContext) -> Flags:
     asked = np.flatnonzero(~found & lost.take(places))
     own = places.take(asked)
     since = last.take(own)
-    left_s = (until.take(own) - since) * context.recording.step_s
-    found[asked] = _go_aside(context, at.part(own), at.part(since), left_s)
+    left = until.take(own) - since
+    found[asked] = _go_aside(context, at.part(own), at.part(since), left)
     return cells.laid(found)
 
 
-def _go_aside(context: DriveContext, cells: Cells, seen_last: Cells, left_s: Floats) -> Flags:
-    """Flags of cells in which one goes aside, or does so from ego in that where it is ``seen_last``.
+def _go_aside(context: DriveContext, cells: Cells, seen_last: Cells, left: NDArray[intp]) -> Flags:
+    """Flags of cells in which one goes aside, such that it may be clear of ego later.
 
-    Such that it may be clear of ego ``left_s`` after that.
+    That is so many states after it is ``seen_last``, when it goes aside from ego.
     """
     limits, known, others = context.thresholds, context.tolerances, context.extents
     own = context.ego_extents
+    left_s = left * context.recording.step_s
     aside = cells.of(others.across) * _side(context, cells) >= _AWAY_MPS
     across = seen_last.of(others.across) - seen_last.of(own.across[0])
     away, still = across * _side(context, seen_last), seen_last.of(relations.way_across(context))

@@ -7,6 +7,7 @@ queue at ego's speed have room. A lane's vehicles are those whose middle is in i
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -15,11 +16,12 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.ego_lanelets import travel_lanes
+from rulec.extraction.signals.ego_lanelets import travel_lanes_first
 from rulec.extraction.signals.measured_numbers import joint_error
 from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.trace.plain_arrays import medians_hold, sorted_in
+from rulec.trace.cells import Cells
+from rulec.trace.plain_arrays import medians_hold
 
 _BODY_M = 5.0
 """About how long a vehicle is."""
@@ -80,8 +82,12 @@ def _length_near(context: DriveContext, lengths: Floats, reach_m: Floats) -> Flo
     """How much (m) of each lane (second axis) is near ego, up to so far from it, by state."""
     s, own = context.road.lanes.s, context.ego_extents.s[0]
     places = np.concatenate((own + reach_m, own - reach_m))
-    up_to: Floats = np.stack([np.interp(places, s, up) for up in lengths], axis=1)
-    return up_to[: len(own)] - up_to[len(own) :]
+    near: Floats = np.zeros((len(lengths), len(own)))
+    for lane in np.flatnonzero(lengths.any(axis=1)).tolist():
+        up_to = np.interp(places, s, lengths[lane])
+        near[lane] = up_to[: len(own)] - up_to[len(own) :]
+    by_state: Floats = near.T
+    return by_state
 
 
 def _shortest_queue(context: DriveContext) -> Floats:
@@ -121,13 +127,16 @@ def close_by(context: DriveContext) -> Flags:
 class VehiclesAround:
     """Ego and the vehicles around it that go its way, an entry for each in each state.
 
-    ``lane`` is that of the middle, ``speed`` (m/s) that along the road, 0 of who drives back;
-    ``place`` numbers the lanes and in each of them the states.
+    ``place`` numbers the lanes, of their middles, and in each of them the states; there are so many
+    ``counts`` (lane x state) of them, and ``number`` is an entry's among these. ``speed`` (m/s) is
+    that along the road, 0 of who drives back.
     """
 
     state: NDArray[intp]
     lane: NDArray[intp]
     place: NDArray[intp]
+    number: NDArray[intp]
+    counts: NDArray[intp]
     s_min: Floats
     s_max: Floats
     speed: Floats
@@ -136,82 +145,112 @@ class VehiclesAround:
 
 @once
 def vehicles_around(context: DriveContext) -> VehiclesAround:
-    """The traffic around ego, by lane and state, ego first in each."""
-    own, others = context.ego_extents, context.extents
-    there = np.concatenate((np.ones((1, context.states), dtype=bool), close_by(context)))
-    state, row = np.ascontiguousarray(there.T).nonzero()
-    at = row * context.states + state
+    """The traffic around ego, which is first."""
+    own, others, there = context.ego_extents, context.extents, close_by(context)
+    cells, n_lanes = Cells.at(there), context.existing_lanes.shape[1]
+    numbers, counts = np.zeros(there.shape, dtype=np.int16), []
+    for number in range(n_lanes):
+        inside, egos = there & (others.lane == number), own.lane[0] == number
+        up_to = np.concatenate((egos[None], inside)).astype(np.int16)
+        # Whole rows are sooner added than by cumsum
+        for earlier, later in pairwise(up_to):
+            later += earlier
+        numbers += (up_to[1:] - 1) * inside
+        counts.append(up_to[-1].astype(intp))
 
-    def taken(of_ego: NDArray[Any], of_others: NDArray[Any]) -> NDArray[Any]:
-        return np.concatenate((of_ego, of_others)).ravel().take(at)
+    def of_all(of_ego: NDArray[Any], of_others: NDArray[Any]) -> NDArray[Any]:
+        return np.concatenate((of_ego[0], cells.of(of_others)))
 
-    lane = taken(own.lane, others.lane)
-    # Lanes are few, so that they are soon in order; states and rows stay so within each
-    order = np.argsort(lane.astype(np.uint16), kind="stable")
-    lane, state, at = (values.take(order) for values in (lane, state, at))
-    s_min, s_max, along = (
-        taken(getattr(own, name), getattr(others, name)) for name in ("s_min", "s_max", "along")
-    )
+    lane: NDArray[intp] = of_all(own.lane, others.lane)
+    state = np.concatenate((context.spans.columns, cells.columns))
     return VehiclesAround(
         state=state,
         lane=lane,
         place=lane * context.states + state,
-        s_min=s_min,
-        s_max=s_max,
-        speed=np.maximum(along, 0.0),
-        speed_error=taken(context.ego.speed_error, context.tracks.speed_error),
+        number=of_all(np.zeros_like(own.lane), numbers),
+        counts=np.array(counts),
+        s_min=of_all(own.s_min, others.s_min),
+        s_max=of_all(own.s_max, others.s_max),
+        speed=np.maximum(of_all(own.along, others.along), 0.0),
+        speed_error=of_all(context.ego.speed_error, context.tracks.speed_error),
     )
 
 
 @once
 def queues_by_lane(context: DriveContext) -> tuple[Flags, Flags]:
-    """Flags of queues, and of lanes whose median speed is that of slow ones, by state and lane.
+    """Flags of queues, and of lanes whose median speed is that of slow ones, by lane and state.
 
     In a queue more than half of the gaps are short. Its flags are by what counts as short, a first
     axis.
     """
-    lanes = context.existing_lanes.shape[1]
-    shape, around = (lanes, context.states), vehicles_around(context)
-    place = around.place
-    enough = np.bincount(place, minlength=context.states * lanes) >= context.thresholds.fewest
-    several = np.flatnonzero(enough[place])
-    place = place[several]
+    around = vehicles_around(context)
+    n_places, shape = around.counts.size, around.counts.shape
+    enough = around.counts.ravel() >= context.thresholds.fewest
+    several = np.flatnonzero(enough.take(around.place))
+    place = around.place.take(several)
     slow = medians_hold(
         place,
-        around.speed[several],
-        context.states * lanes,
+        around.speed.take(several),
+        n_places,
         lambda speed: speed * KMH < context.thresholds.slow_queue_kmh,
     )
-    order = sorted_in(place, around.s_min[several])
-    several, place = several[order], place[order]
-    next_to = np.flatnonzero(place[1:] == place[:-1])
-    behind, ahead, place = several[next_to], several[next_to + 1], place[next_to]
-    longest = longest_gaps(context, around.speed[behind], around.speed_error[behind])
-    short = around.s_min[ahead] - around.s_max[behind] <= longest
-    queues = np.zeros((len(READINGS), context.states * lanes), dtype=bool)
-    if len(place):
-        # All of a lane and state stand together
-        begins = np.flatnonzero(np.diff(place, prepend=-1))
-        n_short = np.add.reduceat(short, begins, axis=1, dtype=np.intp)
-        queues[:, place[begins]] = n_short > _MOST * np.diff(begins, append=len(place))
-    return queues.reshape(len(READINGS), *shape).swapaxes(1, 2), slow.reshape(shape).T
+    queues = np.zeros((len(READINGS), n_places), dtype=bool)
+    if len(several):
+        places = np.flatnonzero(enough)
+        counts = around.counts.ravel().take(places)
+        n_short = _short_gaps(context, several, np.cumsum(enough).take(place) - 1, counts)
+        queues[:, places] = n_short > _MOST * (counts - 1)
+    return queues.reshape(len(READINGS), *shape), slow.reshape(shape)
+
+
+def _short_gaps(
+    context: DriveContext, chosen: NDArray[intp], rows: NDArray[intp], counts: NDArray[intp]
+) -> NDArray[intp]:
+    """How many of the gaps between vehicles in a lane are short, by reading and row.
+
+    The chosen ones of all around are in these rows, so many in each.
+    """
+    around, longest = vehicles_around(context), int(counts.max())
+    # A row for each lane and state, which ends in NaN
+    at = rows * longest + around.number.take(chosen)
+    s_min = np.full(len(counts) * longest, np.nan)
+    s_min[at] = around.s_min.take(chosen)
+    within = np.argsort(s_min.reshape(-1, longest), axis=1, kind="stable")
+    # One behind the other in the first axis, in which they are sooner added
+    order = np.ascontiguousarray(within.T)
+    order += np.arange(len(counts)) * longest
+    entries = np.zeros(len(s_min), dtype=intp)
+    entries[at] = chosen
+    behind = entries.take(order[:-1])
+    gaps = s_min.take(order[1:]) - around.s_max.take(behind)
+    # So near one another are vehicles of a queue whatever their speeds are
+    most_wrong = np.fmax.reduce(around.speed_error, initial=0.0)
+    near = longest_gaps(context, np.zeros(1), most_wrong)[STRICT]
+    short = np.repeat((gaps <= near)[None], len(READINGS), axis=0)
+    rest = np.flatnonzero(gaps > near)
+    behind, gaps = behind.ravel().take(rest), gaps.ravel().take(rest)
+    longest_m = longest_gaps(context, around.speed.take(behind), around.speed_error.take(behind))
+    for flags, limit in zip(short, longest_m, strict=True):
+        flags.ravel()[rest] = gaps <= limit
+    found: NDArray[intp] = short.sum(axis=1)
+    return found
 
 
 @once
 def dense_lines(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     """Flags of states with queues on all lanes, surely so, and of those where nobody knows."""
     queues, _ = queues_by_lane(context)
-    lanes = travel_lanes(context)
-    decides = lanes & (lanes_that_decide(context) | queues)
-    all_queue = np.logical_and((queues | ~decides).all(axis=-1), decides.any(axis=-1))
+    lanes = travel_lanes_first(context)
+    decides = lanes & (lanes_that_decide(context).T | queues)
+    all_queue = np.logical_and((queues | ~decides).all(axis=1), decides.any(axis=1))
     # What a few lanes are is not told of the others, but where the world of all of them ends
-    few = 2 * decides.sum(axis=-1) < lanes.sum(axis=-1)
+    few = 2 * decides.sum(axis=1) < lanes.sum(axis=0)
     whole = "arrivals" in context.recording.complete
     all_queue &= ~(few & whole)
     # Whom nobody is ahead of goes as fast as it likes, unless that one is not recorded any more:
     # it is first of a line, and half of the lanes have one
-    every, loose = decides[LOOSE].sum(axis=-1), queues[LOOSE] & decides[LOOSE]
-    lines = loose[np.arange(context.states), context.ego_lane] & (2 * loose.sum(axis=-1) >= every)
+    every, loose = decides[LOOSE].sum(axis=0), queues[LOOSE] & decides[LOOSE]
+    lines = loose[context.ego_lane, context.spans.columns] & (2 * loose.sum(axis=0) >= every)
     gap, gap_behind = (
         gap_in_lane(context, side) for side in (relations.BEHIND, relations.IN_FRONT_OF)
     )
@@ -222,7 +261,7 @@ def dense_lines(context: DriveContext) -> tuple[Flags, Flags, Flags]:
         all_queue[reading] & (gap <= longest[reading]) for reading in READINGS
     )
     # Nor is there a queue where the world ends, whose traffic is all recorded
-    nobody_knows = ~decides[MEASURED].any(axis=-1) & (not whole)
+    nobody_knows = ~decides[MEASURED].any(axis=0) & (not whole)
     # And who is last behind a queue may be in it or not
     surely &= ~few[MEASURED] & (gap_behind <= longest[LOOSE])
     return dense, surely, (perhaps | dense) & ~surely | cut_off | nobody_knows

@@ -158,11 +158,11 @@ def _of_no_use(context: DriveContext) -> Flags:
     knows beyond the map's end.
     """
     lane, there = _next_lane(context, context.side)
-    states = np.arange(context.states)
+    states = context.spans.columns
     side_lane = ~lanes_that_go_on(context)[states, lane]
     queues, are_slow = queues_by_lane(context)
-    full, own = (queues[LOOSE, states, number] for number in (lane, context.ego_lane))
-    slow = are_slow[states, context.ego_lane]
+    full, own = (queues[LOOSE, number, states] for number in (lane, context.ego_lane))
+    slow = are_slow[context.ego_lane, states]
     _, sorting = _sorted_ahead(context)
     map_ends = (
         context.road.borders[-1] - context.ego_extents.s_max[0] < context.thresholds.approach_m
