@@ -314,28 +314,3 @@ def once(compute: Callable[[DriveContext], Found]) -> Callable[[DriveContext], F
         return cast("Found", context.computed[compute])
 
     return found
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class PairStates:
-    """All states of pairs of a drive and a participant, end to end: ``spans`` are the pairs'."""
-
-    cells: Cells
-    spans: EndToEnd
-
-
-def pair_states(context: DriveContext, cells: Cells) -> tuple[PairStates, NDArray[intp]]:
-    """The pairs of which some cells are states, and the cells' places among all their states."""
-    spans = context.spans
-    keys = cells.rows * spans.n_drives + spans.number[cells.columns]
-    there = np.zeros(len(context.relevant) * spans.n_drives, dtype=bool)
-    there[keys] = True
-    pairs = np.flatnonzero(there)
-    rows, drives = pairs // spans.n_drives, pairs % spans.n_drives
-    first = spans.begins[drives]
-    last = first + spans.lengths[drives] - 1
-    bounds = np.append(0, np.cumsum(spans.lengths[drives]))
-    own = EndToEnd(bounds.tolist())
-    states = PairStates(Cells.of_runs(context.relevant.shape, rows, first, last), own)
-    shift = first - bounds[:-1]
-    return states, cells.columns - shift[np.cumsum(there)[keys] - 1]

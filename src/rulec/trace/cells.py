@@ -9,6 +9,8 @@ import numpy as np
 from numpy import bool_, intp
 from numpy.typing import NDArray
 
+from rulec.trace.end_to_end import EndToEnd
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Cells:
@@ -39,6 +41,14 @@ class Cells:
         columns = np.arange(lengths.sum()) + np.repeat(first - ends + lengths, lengths)
         own = np.repeat(rows, lengths)
         return Cells(shape, own, columns, own * shape[1] + columns)
+
+    @staticmethod
+    def of_drives(flags: NDArray[bool_], spans: EndToEnd) -> tuple[Cells, EndToEnd]:
+        """Those of whole drives in which a row has a flag, end to end, with where each is."""
+        rows, drives = np.nonzero(np.logical_or.reduceat(flags, spans.begins, axis=1))
+        first, lengths = spans.begins[drives], spans.lengths[drives]
+        own = EndToEnd(np.append(0, np.cumsum(lengths)).tolist())
+        return Cells.of_runs(flags.shape, rows, first, first + lengths - 1), own
 
     def __len__(self) -> int:
         return len(self.places)

@@ -25,7 +25,7 @@ from rulec.extraction.signals.queues import (
 )
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
-from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.extraction.tracks.tracks import Flags
 from rulec.trace.plain_arrays import medians_hold
 
 TIMES_AS_FAST = 2.0
@@ -114,20 +114,23 @@ def _is_slow(
     By all vehicles in states that are asked about, at places among all. Nobody is on no lane, nor
     one alone where traffic flows freely.
     """
-    states, lanes = context.states, context.existing_lanes.shape[1]
-    state, speed = around.state[asked], around.speed[asked]
 
-    def are_below(limit_kmh: float, groups: NDArray[intp], speed: Floats, count: int) -> Flags:
-        return medians_hold(groups, speed, count, lambda own: own * KMH < limit_kmh)
+    def are_below(limit_kmh: float, groups: NDArray[intp], own: NDArray[intp], count: int) -> Flags:
+        return medians_hold(
+            groups.take(own), around.speed.take(own), count, lambda mps: mps * KMH < limit_kmh
+        )
 
-    fast_kmh, place = TIMES_AS_FAST * below_kmh, around.place[asked]
-    few = np.bincount(place, minlength=states * lanes) <= 1
-    on_lanes = (few | are_below(fast_kmh, place, speed, len(few))).reshape(lanes, states)
-    aside = np.flatnonzero(around.lane[asked] != context.ego_lane[state])
-    alone = np.bincount(state[aside], minlength=states) <= 1
-    beside = alone | are_below(fast_kmh, state[aside], speed[aside], states)
-    slow: Flags = are_below(below_kmh, state, speed, states) & on_lanes.all(axis=0) & beside
-    return slow
+    state, place, fast_kmh = around.state, around.place, TIMES_AS_FAST * below_kmh
+    slow = are_below(below_kmh, state, asked, context.states)
+    asked = asked[slow[state.take(asked)]]
+    if not len(asked):
+        return slow
+    few = around.counts <= 1
+    on_lanes = few | are_below(fast_kmh, place, asked, few.size).reshape(few.shape)
+    aside = asked[around.lane.take(asked) != context.ego_lane[state.take(asked)]]
+    alone = np.bincount(state.take(aside), minlength=context.states) <= 1
+    beside = alone | are_below(fast_kmh, state, aside, context.states)
+    return slow & on_lanes.all(axis=0) & beside
 
 
 def _dense_all_lanes(context: DriveContext) -> SignalColumns:

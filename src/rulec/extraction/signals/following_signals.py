@@ -14,7 +14,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.drive_context import KMH, DriveContext, PairStates, once, pair_states
+from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.measured_numbers import LONGEST_S, joint_error, safe_distances
 from rulec.extraction.signals.signal_columns import (
@@ -26,6 +26,7 @@ from rulec.extraction.signals.signal_columns import (
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.cells import Cells
+from rulec.trace.end_to_end import EndToEnd
 from rulec.trace.plain_arrays import distinct
 
 _AWAY_MPS = 0.3
@@ -113,31 +114,29 @@ def parts_soon(context: DriveContext) -> Flags:
     ``_DRIFT_MPS``, and a change of lanes may have them clear. Where ways part in a junction nobody
     is clear of one that stops before.
     """
-    cells = relations.perhaps_ahead(context)
+    _, _, follows = relations.ahead_in_lane(context)
     horizon = round(context.thresholds.parting_s / context.recording.step_s)
-    pairs, places = pair_states(context, cells)
-    spans, at = pairs.spans, pairs.cells
+    at, spans = Cells.of_drives(follows, context.spans)
     seen, way_across = at.of(context.relevant), at.of(relations.way_across(context))
     apart = at.of(context.extents.lane) != at.of(context.ego_extents.lane[0])
     apart |= way_across > context.thresholds.touching_m
     apart &= seen
     until = spans.columns + horizon
-    inside = _in_junctions(context, pairs)
+    inside = _in_junctions(context, at)
     parts = spans.within(apart & ~inside, horizon)
     stopped = until
     if inside.any():
-        stopped = _would_stand(context, pairs)
+        stopped = _would_stand(context, at, spans)
         parts |= spans.next_state(apart & inside, horizon) <= np.minimum(stopped, until)
     gone = spans.next_state(~seen)
     last = np.clip(gone - 1, spans.first, spans.end - 1)
     lost = seen & (gone <= np.minimum(np.where(inside[last], stopped, until), until))
-    found = parts.take(places)
-    asked = np.flatnonzero(~found & lost.take(places))
-    own = places.take(asked)
-    since = last.take(own)
-    left = until.take(own) - since
-    found[asked] = _go_aside(context, at.part(own), at.part(since), left)
-    return cells.laid(found)
+    asked = np.flatnonzero(~parts & lost & at.of(follows))
+    since = last.take(asked)
+    left = until.take(asked) - since
+    parts[asked] = _go_aside(context, at.part(asked), at.part(since), left)
+    found: Flags = follows & at.laid(parts)
+    return found
 
 
 def _go_aside(context: DriveContext, cells: Cells, seen_last: Cells, left: NDArray[intp]) -> Flags:
@@ -179,22 +178,22 @@ def may_part(context: DriveContext) -> SignalColumns:
     )
 
 
-def _in_junctions(context: DriveContext, pairs: PairStates) -> Flags:
+def _in_junctions(context: DriveContext, cells: Cells) -> Flags:
     """Flags of bodies in the junctions of ego's road."""
-    inside, junctions = np.zeros(len(pairs.cells), dtype=bool), context.road.junctions
+    inside, junctions = np.zeros(len(cells), dtype=bool), context.road.junctions
     if junctions:
-        s_min, s_max = map(pairs.cells.of, (context.extents.s_min, context.extents.s_max))
+        s_min, s_max = map(cells.of, (context.extents.s_min, context.extents.s_max))
         for start, end in junctions:
             inside |= (s_max >= start) & (s_min < end)
     return inside
 
 
-def _would_stand(context: DriveContext, pairs: PairStates) -> NDArray[intp]:
+def _would_stand(context: DriveContext, at: Cells, spans: EndToEnd) -> NDArray[intp]:
     """The state in which they get to where they would stop, did they brake from now on.
 
     One past the last where they do not get there while they are seen.
     """
-    tracks, at, spans = context.tracks, pairs.cells, pairs.spans
+    tracks = context.tracks
     x, y = at.of(tracks.x), at.of(tracks.y)
     fastest = np.nan_to_num(at.of(tracks.speed) + at.of(tracks.speed_error))
     braking = fastest**2 / (2 * context.thresholds.braking_mps2)

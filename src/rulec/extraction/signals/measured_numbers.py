@@ -59,12 +59,13 @@ def speed_bounds(context: DriveContext) -> Bounds:
 
 def gap_bounds(context: DriveContext) -> Bounds:
     """The bounds of gaps (m), of the ``presence_cells``, as all that follow."""
-    return rounded_outward(*_gaps(context))
+    _, least, most = gaps(context)
+    return rounded_outward(least, most)
 
 
 def headway_bounds(context: DriveContext) -> Bounds:
     """The bounds of headways (s)."""
-    near, far = _gaps(context)
+    _, near, far = gaps(context)
     of_ego = presence_cells(context).of
     speed, error = map(of_ego, own_speed(context))
     drives = of_ego(moves(context))
@@ -78,11 +79,12 @@ def headway_bounds(context: DriveContext) -> Bounds:
     return rounded_outward(low, high)
 
 
-def _gaps(context: DriveContext) -> tuple[Floats, Floats]:
-    """The least and the greatest gaps (m) that there may be."""
+@once
+def gaps(context: DriveContext) -> tuple[Floats, Floats, Floats]:
+    """Gaps (m), and the least and the greatest that they may be."""
     along = presence_cells(context).of(relations.way_along(context))
     place = context.tolerances.place_m
-    return np.maximum(along - place, 0.0), np.maximum(along + place, 0.0)
+    return np.maximum(along, 0.0), np.maximum(along - place, 0.0), np.maximum(along + place, 0.0)
 
 
 def lateral_gap_bounds(context: DriveContext) -> Bounds:

@@ -17,6 +17,7 @@ from rulec.extraction.signals.measured_numbers import (
     LONGEST_S,
     difference_bounds,
     gap_bounds,
+    gaps,
     headway_bounds,
     joint_error,
     lateral_gap_bounds,
@@ -84,6 +85,8 @@ def _passed_unseen(context: DriveContext) -> Flags:
     """
     passed, spans = np.zeros(context.relevant.shape, dtype=bool), context.spans
     rows = np.flatnonzero(context.tracks.of_type("vulnerable_user"))
+    if not len(rows):
+        return passed
     station = relations.station(context)[rows]
     near = (relations.way_across(context)[rows] < _ASKED_FOR_M) & context.relevant[rows]
     ahead = near & (station == relations.BEHIND)
@@ -110,15 +113,14 @@ def _lateral(context: DriveContext) -> SignalColumns:
 
 
 def _gap(context: DriveContext) -> SignalColumns:
-    gap = presence_cells(context).of(relations.gap(context))
-    return _measured("gap", gap, gap_bounds(context))
+    return _measured("gap", gaps(context)[0], gap_bounds(context))
 
 
 def _time_headway(context: DriveContext) -> SignalColumns:
     # The speed that the word `speed` says
     cells = presence_cells(context)
     speed, drives = cells.of(own_speed(context)[0]), cells.of(moves(context))
-    seconds = cells.of(relations.gap(context)) / np.where(drives, speed, 1.0)
+    seconds = gaps(context)[0] / np.where(drives, speed, 1.0)
     headway = np.where(drives, np.minimum(seconds, LONGEST_S), LONGEST_S)
     return _measured("time_headway", headway, headway_bounds(context))
 

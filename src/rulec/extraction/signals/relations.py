@@ -106,10 +106,10 @@ def laterals(context: DriveContext) -> Laterals:
     cells, beside = known_places(context), _beside_lane(context)
     touched, *both = [cells.of(sets) for sets in context.lanes_within]
     codes = beside.sides(touched, 0.0)
-    behind = np.flatnonzero(cells.of(station(context)) == BEHIND)
+    behind = np.flatnonzero((cells.of(station(context)) == BEHIND) & (codes != beside.ego_at))
     at_side = behind[~_in_the_way(context, cells.part(behind), beside.clear.take(behind))]
     doubtful, perhaps = np.zeros(len(codes), dtype=bool), codes == SAME_LANE
-    doubtful[at_side] = beside.ego_at.take(at_side) != codes.take(at_side)
+    doubtful[at_side] = True
     surely = perhaps.copy()
     surely[at_side] = False
     maps = [(beside.wavering(both, place), beside, both)]

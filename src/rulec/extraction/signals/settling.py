@@ -10,6 +10,7 @@ import numpy as np
 
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.tracks.tracks import Flags
+from rulec.trace.cells import Cells
 from rulec.trace.end_to_end import EndToEnd
 from rulec.trace.plain_arrays import distinct
 
@@ -162,22 +163,20 @@ def only_when(
     Rows with a column per state. That is so of ``most`` states at a time, in all of which one is
     ``there``, and whose codes do not go to and fro.
     """
-    in_doubt = np.flatnonzero(doubtful.any(axis=1))
-    codes, there, flags = codes[in_doubt], there[in_doubt], doubtful[in_doubt]
-    sure, cells = there & ~flags, flags.nonzero()
-    before, behind = spans.latest(sure)[cells], spans.next_state(sure)[cells]
-    begin, end = spans.first[cells[1]], spans.end[cells[1]]
-    between = (before >= begin) & (behind < end) & (behind - before - 1 <= most)
-    rows, columns, first, last = (
-        values[between]
-        for values in (*cells, np.maximum(before, begin), np.minimum(behind, end - 1))
-    )
-    away = np.cumsum(~there, axis=-1)
-    changes = np.cumsum(spans.changes(codes), axis=-1)
-    kept = away[rows, last] == away[rows, first]
+    found = np.zeros_like(doubtful)
+    if not doubtful.any():
+        return found
+    cells, own = Cells.of_drives(doubtful, spans)
+    codes, there, doubts = map(cells.of, (codes, there, doubtful))
+    sure, states = there & ~doubts, np.flatnonzero(doubts)
+    before, behind = own.latest(sure).take(states), own.next_state(sure).take(states)
+    between = (before >= own.first.take(states)) & (behind < own.end.take(states))
+    between &= behind - before - 1 <= most
+    states, before, behind = (values[between] for values in (states, before, behind))
+    away, changes = np.cumsum(~there), np.cumsum(own.changes(codes))
+    kept = away.take(behind) == away.take(before)
     # Codes that differ at the ends are all different, or go to and fro
-    one_way = changes[rows, last] - changes[rows, first] <= _MOST_CHANGES
-    found = kept & one_way & (codes[rows, first] != codes[rows, last])
-    only = np.zeros_like(doubtful)
-    only[in_doubt[rows[found]], columns[found]] = True
-    return only
+    one_way = changes.take(behind) - changes.take(before) <= _MOST_CHANGES
+    only = kept & one_way & (codes.take(before) != codes.take(behind))
+    found.ravel()[cells.places.take(states[only])] = True
+    return found
