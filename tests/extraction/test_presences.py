@@ -7,7 +7,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.extraction.presences import presences
+from rulec.extraction.presences import presence_names, presence_runs
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording, straight
 
@@ -27,8 +27,8 @@ def found(flags, away_s=1.0, nowhere=(), others=("8",)):
     rows[1:] = True
     extents = replace(context.extents, s_min=s_min)
     context = replace(context, relevant=rows, extents=extents)
-    (own,) = presences(context)
-    return [(one.name, one.first, one.last) for one in own]
+    runs = presence_runs(context)
+    return list(zip(presence_names(context), runs.first, runs.last, strict=True))
 
 
 def flags(text):

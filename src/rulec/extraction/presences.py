@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import count, pairwise
-from typing import NamedTuple
+from itertools import count
 
 import numpy as np
 from numpy import intp
@@ -14,15 +13,6 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import DriveContext, once
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import distinct, in_order
-
-
-class Presence(NamedTuple):
-    """An object of a trace: a participant's row, first and last column of its presence."""
-
-    name: str
-    row: int
-    first: int
-    last: int
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -72,33 +62,29 @@ def presence_cells(context: DriveContext) -> Cells:
     return Cells.of_runs(shape, runs.rows, runs.first + shift, runs.last + shift)
 
 
-def presences(context: DriveContext) -> list[list[Presence]]:
-    """The contiguous presences of all participants in each drive.
+def presence_names(context: DriveContext) -> list[str]:
+    """What the objects of the presence runs are called in their drives.
 
-    Absences up to ``away_s`` are bridged. Those in which one is not beside the road never are: its
-    extents are not known then.
+    Who comes again after it was away, or not beside the road, has a name of its own.
     """
     runs = presence_runs(context)
-    of_row = runs.rows.tolist()
-    own = list(map(context.ids.__getitem__, of_row)), of_row, runs.first.tolist()
-    every = list(map(Presence._make, zip(*own, runs.last.tolist(), strict=True)))
-    ends = np.searchsorted(runs.drives, np.arange(context.spans.n_drives + 1)).tolist()
-    found = [every[begin:end] for begin, end in pairwise(ends)]
+    names = list(map(context.ids.__getitem__, runs.rows.tolist()))
     again = (runs.drives[1:] == runs.drives[:-1]) & (runs.rows[1:] == runs.rows[:-1])
     for drive in distinct(runs.drives[1:][again]).tolist():
-        found[drive] = _renamed(found[drive], _ids_in(context, drive))
-    return found
+        begin, end = np.searchsorted(runs.drives, (drive, drive + 1)).tolist()
+        comes_again = again[begin : end - 1].tolist()
+        names[begin:end] = _renamed(names[begin:end], comes_again, _ids_in(context, drive))
+    return names
 
 
-def _renamed(presences: Sequence[Presence], ids: frozenset[str]) -> list[Presence]:
-    """The presences of a drive, with names of their own for who comes again."""
-    found: list[Presence] = []
-    for one in presences:
-        if found and found[-1].row == one.row:
-            taken = ids.union(other.name for other in found)
-            name = next(free for k in count(2) if (free := f"{one.name}_{k}") not in taken)
-            one = one._replace(name=name)
-        found.append(one)
+def _renamed(names: Sequence[str], comes_again: Sequence[bool], ids: frozenset[str]) -> list[str]:
+    """The names in a drive, in which each but the first may be that of the one before again."""
+    found = list(names[:1])
+    for name, again in zip(names[1:], comes_again, strict=True):
+        if again:
+            taken = ids.union(found)
+            name = next(free for k in count(2) if (free := f"{name}_{k}") not in taken)
+        found.append(name)
     return found
 
 

@@ -4,20 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.presences import Presence
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.tracks.tracks import Flags
 from rulec.scenario.paper_words import PAPER_SURFACE
 from rulec.trace import Value
 from rulec.trace.end_to_end import EndToEnd, UnlikeDrivesError
 from rulec.trace.shared_columns import SharedColumns
-from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_columns import smallest_unsigned
 from rulec.trace.vocabulary_projection import fits, is_about, known_type
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
@@ -25,10 +23,19 @@ from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 _KINDS: Mapping[str, type] = {"b": bool, "f": float, "i": float, "u": float}
 
 
-class WrittenCells(NamedTuple):
-    """Where presences stand in rows of all states, and which are written, None for all of them."""
+@dataclass(frozen=True, eq=False, slots=True)
+class WrittenPresences:
+    """The presences that traces tell of, drive by drive, and of these where each begins and ends.
 
-    places: NDArray[intp]
+    ``bounds`` are where those of each drive begin, and where the last ones end. Each has its row,
+    and its first and last state in its drive as ``ranges``. ``cells`` are where all of them stand
+    in rows of all states, ``kept`` which these are of the ``presence_cells``, None for all.
+    """
+
+    bounds: Sequence[int]
+    rows: NDArray[intp]
+    ranges: NDArray[intp]
+    cells: NDArray[intp]
     kept: NDArray[intp] | None
 
 
@@ -201,39 +208,27 @@ def with_likeliest(signals: WrittenSignals, vocabulary: Vocabulary) -> WrittenSi
     return replace(signals, columns=replace(signals.columns, unknown=unknown))
 
 
-def with_signals(
-    traces: Sequence[TraceArrays],
-    signals: WrittenSignals,
-    present: Sequence[Sequence[Presence]],
-    spans: EndToEnd,
-    own_cells: WrittenCells,
-    *,
-    defaults: bool,
-) -> list[TraceArrays]:
-    """The traces of drives, in whose objects' order each ``present`` is, with their signals.
+def signal_parts(
+    signals: WrittenSignals, present: WrittenPresences, spans: EndToEnd, *, defaults: bool
+) -> list[dict[str, Any]]:
+    """What traces in arrays have of signals, a part for each drive.
 
-    ``own_cells`` are the cells of presences, of which those of ``present`` are written.
     With ``defaults`` what is unknown is left out, and numbers are as measured.
     """
-    columns = signals.columns
-    counts = [0, *np.cumsum([len(own) for own in present]).tolist()]
-    rows = np.array([presence.row for own in present for presence in own], dtype=intp)
-    ranges = [(x.first, x.last) for own in present for x in own]
-    every = np.array(ranges, dtype=intp).reshape(-1, 2)
-    cells = own_cells.places if own_cells.kept is None else own_cells.places.take(own_cells.kept)
-    ends = np.append(0, np.cumsum(every[:, 1] - every[:, 0] + 1))
-    bounds = ends[counts].tolist()
-    never = np.zeros(len(cells), dtype=bool)
+    columns, ranges = signals.columns, present.ranges
+    lengths = ranges[:, 1] - ranges[:, 0] + 1
+    bounds = np.append(0, np.cumsum(lengths))[np.array(present.bounds)].tolist()
+    never = np.zeros(len(present.cells), dtype=bool)
 
     def gathered(name: str, column: SignalColumn) -> SignalColumn:
         """A signal's values end to end: of the world, or of who is present."""
         if name in columns.world:
             return column
         if column.ndim == 1:
-            return column if own_cells.kept is None else column.take(own_cells.kept)
+            return column if present.kept is None else column.take(present.kept)
         # Much is true of nobody, which is seen sooner than it is gathered
         is_never = column.dtype == bool and not column.any()
-        return never if is_never else column.ravel().take(cells)
+        return never if is_never else column.ravel().take(present.cells)
 
     world = {name: gathered(name, own) for name, own in columns.world.items()}
     about = {name: gathered(name, own) for name, own in columns.about.items()}
@@ -244,7 +239,7 @@ def with_signals(
         for x, (low, high) in columns.bounds.items()
         if x in names
     }
-    only = {name: flags[rows] for name, flags in columns.only.items() if name in about}
+    only = {name: flags[present.rows] for name, flags in columns.only.items() if name in about}
     about_names = frozenset(name for name in names if name not in columns.world)
     nothing: dict[str, SignalColumn] = {}
 
@@ -252,20 +247,17 @@ def with_signals(
         cells_of = slice(bounds[k], bounds[k + 1])
         return SharedColumns(values, about_names, spans.slices[k], cells_of)
 
-    found = []
-    for k, trace in enumerate(traces):
-        own = slice(counts[k], counts[k + 1])
-        found.append(
-            replace(
-                trace,
-                spans=every[own],
-                world=part(world, k),
-                about=part(about, k),
-                texts=signals.texts,
-                unknown=nothing if defaults else part(unknown, k),
-                absent=part(unknown, k) if defaults else nothing,
-                bounds={} if defaults else part(intervals, k),
-                only=SharedColumns(only, about_names, own, own),
-            )
-        )
-    return found
+    own_objects = list(map(slice, present.bounds[:-1], present.bounds[1:]))
+    return [
+        {
+            "spans": ranges[own],
+            "world": part(world, k),
+            "about": part(about, k),
+            "texts": signals.texts,
+            "unknown": nothing if defaults else part(unknown, k),
+            "absent": part(unknown, k) if defaults else nothing,
+            "bounds": {} if defaults else part(intervals, k),
+            "only": SharedColumns(only, about_names, own, own),
+        }
+        for k, own in enumerate(own_objects)
+    ]

@@ -5,20 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from math import hypot
-from typing import NamedTuple, overload
+from typing import Any, NamedTuple, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.presences import Presence, presence_cells, presences
+from rulec.extraction.presences import presence_cells, presence_names, presence_runs
 from rulec.extraction.signal_arrays import (
-    WrittenCells,
+    WrittenPresences,
     WrittenSignals,
+    signal_parts,
     with_assumed,
     with_likeliest,
-    with_signals,
     written,
 )
 from rulec.extraction.signals.clearance_signals import clearance_signals
@@ -61,6 +62,7 @@ from rulec.logic.formula import Relation
 from rulec.monitoring.explain.margins import Margin
 from rulec.trace import Trace, Value
 from rulec.trace.trace_arrays import TraceArrays
+from rulec.trace.trace_model import Ending
 from rulec.trace.vocabulary_projection import known_type, values_lacking, with_told_values
 from rulec.value_display import short_repr
 from rulec.vocabulary import Vocabulary
@@ -273,7 +275,6 @@ def to_traces(
     if writer.defaults and writer.vocabulary is not None:
         chosen = with_likeliest(chosen, writer.vocabulary)
     kinds = chosen.kinds()
-    traces, present = [], []
     vocabulary = writer.vocabulary
     told: frozenset[str] | None = None
     if not writer.defaults:
@@ -282,66 +283,78 @@ def to_traces(
             lacking = values_lacking(map_contents(context).types)
             told |= with_told_values(told - writer.assumed.keys(), vocabulary, lacking)
     kind_of = [kind[0] if vocabulary is None else known_type(kind, vocabulary) for kind in types]
-    for name, columns, own in zip(names, spans.slices, presences(context), strict=True):
-        known = [(x, kind) for x in own if (kind := kind_of[x.row]) is not None]
-        objects = {presence.name: kind for presence, kind in known}
-        present.append([presence for presence, _ in known])
-        empty = TraceArrays(
-            name,
-            context.recording.step_s,
-            columns.stop - columns.start,
-            objects,
-            ends="complete" if writer.defaults else "cut",
-            told=told,
-        )
-        traces.append(empty)
-    cells = presence_cells(context)
-    are_known = np.array([kind is not None for kind in kind_of], dtype=bool)
-    kept = None if are_known.all() else np.flatnonzero(are_known[cells.rows])
-    own_cells = WrittenCells(cells.places, kept)
-    arrays = with_signals(traces, chosen, present, spans, own_cells, defaults=writer.defaults)
+    present, objects = _objects(context, kind_of)
+    parts = signal_parts(chosen, present, spans, defaults=writer.defaults)
+    step_s = context.recording.step_s
+    ends: Ending = "complete" if writer.defaults else "cut"
+    arrays = [
+        TraceArrays(name, step_s, columns.stop - columns.start, own, ends=ends, told=told, **part)
+        for name, columns, own, part in zip(names, spans.slices, objects, parts, strict=True)
+    ]
+    starts = [round(start * step_s, 9) for start in context.steps[spans.begins].tolist()]
     if writer.bare:
-        starts = context.steps[spans.begins].tolist()
-        return [
-            Drive(ego, round(start * context.recording.step_s, 9), own, kinds)
-            for ego, start, own in zip(egos, starts, arrays, strict=True)
-        ]
-    decided_by = _decided_by(context, chosen, present)
-    places, starts = _places(context), context.steps[spans.begins].tolist()
+        return [Drive(*own, kinds) for own in zip(egos, starts, arrays, strict=True)]
+    decided_by = _decided_by(context, chosen, present, objects)
+    places = _places(context)
     return [
         Drive(
             ego,
-            round(start * context.recording.step_s, 9),
+            start_s,
             own,
             kinds,
             decided_by=decided,
             places=places.part(columns),
             whom={name: ids[columns].tolist() for name, ids in signals.whom.items()},
         )
-        for ego, start, own, decided, columns in zip(
+        for ego, start_s, own, decided, columns in zip(
             egos, starts, arrays, decided_by, spans.slices, strict=True
         )
     ]
 
 
+def _objects(
+    context: DriveContext, kind_of: Sequence[str | None]
+) -> tuple[WrittenPresences, list[dict[str, str]]]:
+    """The presences of those that have a kind, and the objects of each drive with theirs."""
+    runs, cells, kept = presence_runs(context), presence_cells(context), None
+    drives, rows, ranges = runs.drives, runs.rows, np.stack((runs.first, runs.last), axis=1)
+    names = presence_names(context)
+    are_known = np.array([kind is not None for kind in kind_of], dtype=bool)
+    if not are_known.all():
+        known = np.flatnonzero(are_known[rows])
+        drives, rows, ranges = drives[known], rows[known], ranges[known]
+        names = [names[number] for number in known.tolist()]
+        kept = np.flatnonzero(are_known[cells.rows])
+    bounds = np.searchsorted(drives, np.arange(context.spans.n_drives + 1)).tolist()
+    own_places = cells.places if kept is None else cells.places.take(kept)
+    kinds: list[Any] = [kind_of[row] for row in rows.tolist()]
+    named = list(zip(names, kinds, strict=True))
+    objects = [dict(named[begin:end]) for begin, end in pairwise(bounds)]
+    return WrittenPresences(bounds, rows, ranges, own_places, kept), objects
+
+
 def _decided_by(
-    context: DriveContext, chosen: WrittenSignals, present: Sequence[Sequence[Presence]]
+    context: DriveContext,
+    chosen: WrittenSignals,
+    present: WrittenPresences,
+    objects: Sequence[Mapping[str, str]],
 ) -> list[dict[str, DecidedBy]]:
     """The numbers by which signals of each drive were decided."""
     if "safe_gap" not in chosen.columns.about:
-        return [{} for _ in present]
+        return [{} for _ in objects]
     followed, place = safe_gaps(context), context.tolerances.place_m
     gap, safe, error = (
         followed.cells.laid(values, np.nan)
         for values in (followed.gap, followed.safe, followed.safe_error)
     )
-    found = []
-    for own, columns in zip(present, context.spans.slices, strict=True):
-        rows = {presence.name: presence.row for presence in own}
+    found, every = [], present.rows.tolist()
+    for own, (begin, end), columns in zip(
+        objects, pairwise(present.bounds), context.spans.slices, strict=True
+    ):
         numbers = DecidedBy(
             "gap",
             "m",
-            rows,
+            dict(zip(own, every[begin:end], strict=True)),
             values=gap[:, columns],
             limits=safe[:, columns],
             value_error=place,

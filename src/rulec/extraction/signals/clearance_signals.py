@@ -15,6 +15,7 @@ from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
 from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.lane_sets import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import distinct
 
 _BESIDE_M = 0.5
@@ -129,13 +130,18 @@ def _obstructed(context: DriveContext) -> Flags:
     used = own.inside[0] > 0
     used[np.arange(context.states), context.ego_lane] = True
     blocked, present = np.zeros(context.states, dtype=bool), presence_cells(context)
-    near = present.part(np.flatnonzero(_near_obstacle(context)))
-    stands = near.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
-    walks = context.tracks.of_type("pedestrian")[near.rows]
-    walks &= np.abs(np.cos(near.of(context.extents.turned))) >= _ALONG
+    stands = present.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
+    walking = context.tracks.of_type("pedestrian")
+    maybe = present.part(np.flatnonzero(stands | walking[present.rows]))
+    maybe = maybe.part(np.flatnonzero(_near_obstacle(context, maybe)))
+    if not len(maybe):
+        return blocked
+    stands = maybe.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
+    walks = walking[maybe.rows]
+    walks &= np.abs(np.cos(maybe.of(context.extents.turned))) >= _ALONG
     needed = np.where(walks, _BESIDE_WALKERS_M, _BESIDE_M)
-    chosen = np.flatnonzero((stands | walks) & near.of(context.relevant))
-    cells, needed = near.part(chosen), needed[chosen]
+    chosen = np.flatnonzero((stands | walks) & maybe.of(context.relevant))
+    cells, needed = maybe.part(chosen), needed[chosen]
     sets, columns = cells.of(context.lanes_within[0]), cells.columns
     for lane in range(used.shape[1]):
         there = np.flatnonzero(is_in(sets, lane) & used[columns, lane])
@@ -149,19 +155,21 @@ def _obstructed(context: DriveContext) -> Flags:
     return blocked
 
 
-def _near_obstacle(context: DriveContext) -> Flags:
-    """Flags of presences that ego goes round now: for one that never moves it goes out earlier."""
-    present = presence_cells(context)
-    gap, along = present.of(relations.gap(context)), context.ego_extents.along[0]
+def _near_obstacle(context: DriveContext, cells: Cells) -> Flags:
+    """Flags of cells of who stands or walks, whom ego goes round now.
+
+    For one that never moves it goes out earlier.
+    """
+    gap, along = cells.of(relations.gap(context)), context.ego_extents.along[0]
     near: Flags = gap <= context.thresholds.obstacle_m
-    reach = along[present.columns] * context.thresholds.parting_s
-    early = ~near & (gap <= reach) & (present.of(relations.station(context)) == relations.BEHIND)
-    walks = context.tracks.of_type("pedestrian")[present.rows]
+    reach = along[cells.columns] * context.thresholds.parting_s
+    early = ~near & (gap <= reach) & (cells.of(relations.station(context)) == relations.BEHIND)
+    walks = context.tracks.of_type("pedestrian")[cells.rows]
     near |= early & walks
-    early &= present.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
-    rows, never_moves = distinct(present.rows[early]), np.zeros(len(context.relevant), dtype=bool)
+    early &= cells.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
+    rows, never_moves = distinct(cells.rows[early]), np.zeros(len(context.relevant), dtype=bool)
     never_moves[rows] = relations.stays(context, rows)
-    near |= early & never_moves[present.rows]
+    near |= early & never_moves[cells.rows]
     return near
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
-from rulec.extraction.signals.conduct.lanes_from_behind import comes_into_lane
+from rulec.extraction.signals.conduct.lanes_from_behind import come_into_lane
 from rulec.extraction.signals.conduct.manoeuvre_signals import (
     beyond_near_edge,
     comes_back_over_middle,
@@ -262,9 +262,10 @@ def _disturbed(context: DriveContext, states: NDArray[intp]) -> tuple[Flags, Fla
     behind = (station == relations.IN_FRONT_OF) & too_near
     brakes = context.going_along[:, states] & (behind | (station == relations.BESIDE))
     disturbed, perhaps = np.zeros((2, *brakes.shape), dtype=bool)
-    for row, number in zip(*(places.tolist() for places in brakes.nonzero()), strict=True):
-        comes = comes_into_lane(context, row, int(states[number]))
-        disturbed[row, number], perhaps[row, number] = comes is True, comes is None
+    rows, numbers = brakes.nonzero()
+    disturbed[rows, numbers], perhaps[rows, numbers] = come_into_lane(
+        context, rows, states[numbers]
+    )
     return disturbed, perhaps
 
 

@@ -7,9 +7,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.signal_passes import once_a_road
+from rulec.extraction.tracks.tracks import Flags
 
 _BEYOND_M = 15.0
 """So far behind where a lane has forked its ways lie over each other no more."""
@@ -27,20 +30,32 @@ class _Ways:
         return self.leaves or len(self.lanes) > 1
 
 
-def comes_into_lane(context: DriveContext, row: int, state: int) -> bool | None:
-    """Does a vehicle behind ego come into the lane of ego's middle, by its track if ways part?
+def come_into_lane(
+    context: DriveContext, rows: NDArray[intp], states: NDArray[intp]
+) -> tuple[Flags, Flags]:
+    """Which vehicles behind ego come into the lane of its middle, and which perhaps do.
 
-    None where its track does not tell. True on the same lane, where none forks between the two;
-    False where it ends there: who comes from such a lane has to change lanes itself.
+    Each of a row in a state, by its track if ways part, which may not tell. Those on the same lane
+    do where none forks between the two; those do not whose lane ends there: they have to change
+    lanes themselves.
     """
-    extents = context.extents
+    s, own = context.extents.s[rows, states], context.ego_extents.s[0, states]
+    theirs, egos = (context.road.piece(np.nan_to_num(places)) for places in (s, own))
+    comes, perhaps = context.in_ego_lane[rows, states], np.zeros(len(rows), dtype=bool)
+    for number in np.flatnonzero(theirs < egos).tolist():
+        pieces = int(theirs[number]), int(egos[number])
+        found = _comes_by_its_way(context, int(rows[number]), int(states[number]), pieces)
+        comes[number], perhaps[number] = found is True, found is None
+    return comes, perhaps
+
+
+def _comes_by_its_way(
+    context: DriveContext, row: int, state: int, pieces: tuple[int, int]
+) -> bool | None:
+    """Does one in an earlier piece of the road than ego come into its lane? None if not known."""
+    extents, same = context.extents, bool(context.in_ego_lane[row, state])
     own, lane = int(context.ego_lane[state]), int(extents.lane[row, state])
-    places = np.array([extents.s[row, state], context.ego_extents.s[0, state]])
-    theirs, egos = context.road.piece(np.nan_to_num(places)).tolist()
-    same = bool(context.in_ego_lane[row, state])
-    if theirs >= egos:
-        return same
-    ways, fork = _ways(context, theirs, egos, lane)
+    ways, fork = _ways(context, *pieces, lane)
     if not ways.lanes:
         return False
     if not ways.forks or (own not in ways.lanes and not same):

@@ -23,6 +23,7 @@ from rulec.extraction.signals.signal_passes import Passes, signals_by
 from rulec.extraction.tracks.lane_sets import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import JOINING
+from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import distinct
 
 _DRIFT_MPS = 0.2
@@ -226,12 +227,12 @@ def _overtakes(context: DriveContext, whom: Flags | bool) -> tuple[Flags, Flags]
     far, _ = _sides(context)
     slower: Flags = (context.extents.along < context.ego_extents.along) & whom
     slower &= (relations.lateral(context) == far) & (context.driving_along | _ride_along(context))
-    cells = slower.nonzero()
-    beside = relations.station(context)[cells] == relations.BESIDE
+    cells = Cells.at(slower)
+    beside = cells.of(relations.station(context)) == relations.BESIDE
     surely, perhaps = (_ahead_and_past(context, cells, tolerances) for tolerances in (0.0, 1.0))
     overtakes, unsure = np.zeros((2, context.states), dtype=bool)
-    overtakes[cells[1][surely | beside]] = True
-    unsure[cells[1][perhaps]] = True
+    overtakes[cells.columns[surely | beside]] = True
+    unsure[cells.columns[perhaps]] = True
     return overtakes, unsure
 
 
@@ -259,18 +260,15 @@ def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
     comes: Flags = (faster_mps * KMH >= limits.clearly_faster_kmh) & (station != relations.BEHIND)
     comes &= (relations.lateral(context) == near) & context.going_along
     closing = relations.gap(context) <= faster_mps * limits.passed_s
-    rows, states = (comes & (closing | (station == relations.BESIDE))).nonzero()
-    outcomes = _gets_past(context, distinct(rows), faster_mps)
-    gets_past, unsure = (flags[rows, states] for flags in outcomes)
-    next_lane, lanes = _next_lane(context)[states], context.existing_lanes.shape[1]
+    cells = Cells.at(comes & (closing | (station == relations.BESIDE)))
+    gets_past, unsure = map(cells.of, _gets_past(context, distinct(cells.rows), faster_mps))
+    next_lane, lanes = cells.of(_next_lane(context)), context.existing_lanes.shape[1]
     there = (next_lane >= 0) & (next_lane < lanes)
-    reaches = there & is_in(context.lanes_within[0][rows, states], np.clip(next_lane, 0, lanes - 1))
-    inside = reaches & (context.extents.lane[rows, states] == next_lane)
-    overtaken, open_end = np.zeros_like(comes), np.zeros(context.states, dtype=bool)
-    past = inside & gets_past
-    overtaken[rows[past], states[past]] = True
-    open_end[states[reaches & (unsure | (~inside & gets_past))]] = True
-    return overtaken, open_end
+    reaches = there & is_in(cells.of(context.lanes_within[0]), np.clip(next_lane, 0, lanes - 1))
+    inside = reaches & (cells.of(context.extents.lane) == next_lane)
+    open_end = np.zeros(context.states, dtype=bool)
+    open_end[cells.columns[reaches & (unsure | (~inside & gets_past))]] = True
+    return cells.laid(inside & gets_past), open_end
 
 
 def _sides(context: DriveContext) -> tuple[int, int]:
@@ -279,17 +277,14 @@ def _sides(context: DriveContext) -> tuple[int, int]:
     return sides if context.side == "right" else sides[::-1]
 
 
-def _ahead_and_past(
-    context: DriveContext, cells: tuple[NDArray[intp], ...], tolerances: float
-) -> Flags:
+def _ahead_and_past(context: DriveContext, cells: Cells, tolerances: float) -> Flags:
     """Flags of cells in which ego will be beside another soon, or has just been, if it overtakes.
 
-    With so many tolerances of places and speeds added to what is as far as that. The cells are rows
-    and states.
+    With so many tolerances of places and speeds added to what is as far as that.
     """
     limits, known = context.thresholds, context.tolerances
-    station, gap = relations.station(context)[cells], relations.gap(context)[cells]
-    own, other = context.ego_extents.along[0, cells[1]], context.extents.along[cells]
+    station, gap = cells.of(relations.station(context)), cells.of(relations.gap(context))
+    own, other = cells.of(context.ego_extents.along[0]), cells.of(context.extents.along)
     far_ahead = (own - other + 2 * tolerances * known.speed_mps) * limits.catching_up_s
     far_behind = (own + tolerances * known.speed_mps) * limits.passed_s
     reach = np.where(station == relations.BEHIND, far_ahead, far_behind)
