@@ -32,6 +32,11 @@ class Cells:
         return Cells(flags.shape, rows, places - rows * n_columns, places)
 
     @staticmethod
+    def in_shape(shape: tuple[int, ...], rows: NDArray[intp], columns: NDArray[intp]) -> Cells:
+        """Those in these rows and columns."""
+        return Cells(shape, rows, columns, rows * shape[1] + columns)
+
+    @staticmethod
     def of_runs(
         shape: tuple[int, ...], rows: NDArray[intp], first: NDArray[intp], last: NDArray[intp]
     ) -> Cells:
@@ -39,8 +44,7 @@ class Cells:
         lengths = last - first + 1
         ends = np.cumsum(lengths)
         columns = np.arange(lengths.sum()) + np.repeat(first - ends + lengths, lengths)
-        own = np.repeat(rows, lengths)
-        return Cells(shape, own, columns, own * shape[1] + columns)
+        return Cells.in_shape(shape, np.repeat(rows, lengths), columns)
 
     @staticmethod
     def of_drives(flags: NDArray[bool_], spans: EndToEnd) -> tuple[Cells, EndToEnd]:
@@ -60,8 +64,7 @@ class Cells:
 
     def in_rows(self, rows: NDArray[intp], n_rows: int) -> Cells:
         """The same cells in arrays of more rows, of which these have only some."""
-        n_columns, own = self.shape[1], rows.take(self.rows)
-        return Cells((n_rows, n_columns), own, self.columns, own * n_columns + self.columns)
+        return Cells.in_shape((n_rows, self.shape[1]), rows.take(self.rows), self.columns)
 
     def of(self, values: NDArray[Any]) -> NDArray[Any]:
         """The cells of an array, or of one with a value for each column only."""

@@ -71,6 +71,9 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     caused = _by_map(context)
     others = _others(context, np.flatnonzero(~caused))
     caused[others.states] = _by_others(context, others)
+    others = others.part(np.flatnonzero(~caused[others.states]))
+    caused[others.states] = _by_road(context, others.states)
+    others = others.part(np.flatnonzero(~caused[others.states]))
     soon = round(context.thresholds.preparing_s / context.recording.step_s)
     spans, stands = context.spans, ~moves(context)
     broken_down = stands & ~_drives_on(context, stands)
@@ -109,7 +112,8 @@ def _drives_on(context: DriveContext, stands: Flags) -> Flags:
 def _slow_beside(context: DriveContext, others: _Others) -> Flags:
     """Flags of the others' states with one ahead beside ego's lane, less than half as fast."""
     near = (others.ahead > 0) & (others.ahead <= _reach(context)[others.states])
-    rows, columns = (near & (others.away <= _COMES_M)).nonzero()
+    cells = Cells.at(near & (others.away <= _COMES_M))
+    rows, columns = cells.rows, cells.columns
     motion = _motion(context, others.rows[rows], others.states[columns])
     ego_mps = context.ego.speed[0, others.states[columns]]
     slow = (np.abs(motion.turned) < _ACROSS_RAD) & (motion.along < _HALF * ego_mps)
@@ -152,7 +156,7 @@ def reach_at(speed: Floats) -> Floats:
 
 
 def _by_map(context: DriveContext) -> Flags:
-    """Flags of states with a junction, crossing, bend, lower limit or an end of the lane ahead."""
+    """Flags of states with a junction, crossing or the map's end ahead, or ego far too fast."""
     road, front, reach = context.road, context.ego_extents.s_max[0], _reach(context)
     rear, speed = context.ego_extents.s_min[0], context.ego.speed[0]
     crossing, _ = next_crossing(context)
@@ -162,14 +166,12 @@ def _by_map(context: DriveContext) -> Flags:
     # Beyond its map nobody knows the road
     caused |= (front + reach > road.borders[-1]) | (rear < road.borders[0])
     caused |= speed * KMH > context.limit_mps * KMH + _SLOWER_KMH
-    rest = np.flatnonzero(~caused)
-    caused[rest] = _by_road(context, rest, reach[rest])
     return caused
 
 
-def _by_road(context: DriveContext, states: NDArray[intp], reach: Floats) -> Flags:
-    """Flags of these states with a bend, a lower limit or an end of the lane so far (m) ahead."""
-    road, width = context.road, context.existing_lanes.shape[1]
+def _by_road(context: DriveContext, states: NDArray[intp]) -> Flags:
+    """Flags of these states with a bend, a lower limit or an end of the lane ahead."""
+    road, width, reach = context.road, context.existing_lanes.shape[1], _reach(context)[states]
     front, speed = context.ego_extents.s_max[0, states], context.ego.speed[0, states]
     lanes, turned = context.ego_lane[states], np.radians(context.thresholds.turned_deg)
     before = road.line.headings_at(np.nan_to_num(context.ego_extents.s[0, states]))
@@ -193,8 +195,9 @@ def _by_others(context: DriveContext, others: _Others) -> Flags:
     states, reach = others.states, _reach(context)[others.states]
     near = (others.ahead > -_REACH_M / 4) & (others.ahead <= reach + _REACH_M)
     found: Flags = np.any(near & (others.away <= _IN_WAY_M), axis=0)
-    rows, columns = (near & (others.away <= _CROSSES_M) & ~found).nonzero()
-    left, away = others.left[rows, columns], others.away[rows, columns]
+    cells = Cells.at(near & (others.away <= _CROSSES_M) & ~found)
+    rows, columns = cells.rows, cells.columns
+    left, away = cells.of(others.left), cells.of(others.away)
     motion = _motion(context, others.rows[rows], states[columns])
     comes = (away <= _COMES_M) & (-motion.sideways * np.sign(left) > _SIDEWAYS_MPS)
     angle = np.abs(motion.turned)
@@ -227,6 +230,11 @@ class _Others:
     ahead: Floats
     left: Floats
     away: Floats
+
+    def part(self, chosen: NDArray[intp]) -> _Others:
+        """The same in some of the states."""
+        ahead, left, away = (own.take(chosen, axis=1) for own in (self.ahead, self.left, self.away))
+        return _Others(self.states.take(chosen), self.rows, ahead=ahead, left=left, away=away)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

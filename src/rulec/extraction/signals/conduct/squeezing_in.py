@@ -16,7 +16,8 @@ from rulec.extraction.signals.ego_lanelets import own_lanelets
 from rulec.extraction.signals.queues import lanes_that_go_on
 from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import JOINING
-from rulec.trace.plain_arrays import ranges
+from rulec.trace.cells import Cells
+from rulec.trace.plain_arrays import distinct, ranges
 
 _NO_ROOM_S, _DRAWS_AWAY_MPS = 0.3, 1.0
 """One so near behind ego has no room to react in, unless ego draws away from it."""
@@ -93,9 +94,12 @@ def _gives_way(
     lanes, went_s = context.steady_lane[changes], (changes - begins) * context.recording.step_s
     there = context.going_along[:, begins] & context.going_along[:, changes]
     there &= others.lane[:, begins] == lanes
-    there &= ~_drifts(context, begins, lanes)
+    there &= ~_drifts(context, there, begins, lanes)
     # Who takes another way where the lane forks brakes for that
-    there &= ~_any_between(context, begins, changes, lambda states: context.elsewhere[:, states])
+    rows = np.flatnonzero(there.any(axis=1))
+    there[rows] &= ~_any_between(
+        context, begins, changes, lambda states: context.elsewhere[rows[:, None], states]
+    )
     on = others.along[:, begins] * went_s
     low, high = others.s_min[:, begins] + on, others.s_max[:, begins] + on
     would: Flags = np.asarray(
@@ -109,7 +113,6 @@ def _gives_way(
     slower = others.along[:, begins] - others.along[:, changes]
     aside = np.abs(others.d_min[:, changes] + others.d_max[:, changes] - right - left)
     would &= (slower > _SLOWED_MPS + context.tolerances.speed_mps) | (aside / 2 > _ASIDE_M + place)
-    hard, may_be_hard = _brakes(context, reaches, changes)
     beside = relations.station(context)[:, reaches] == relations.BESIDE
     # Who comes from behind has to see that ego comes
     comes_s = (changes - reaches) * context.recording.step_s
@@ -118,42 +121,56 @@ def _gives_way(
     left = own.s_min[0, changes] - high - faster * context.thresholds.reaction_s
     too_near = faster**2 > 2 * context.thresholds.disturbing_mps2 * np.maximum(left, 0.0)
     too_near &= there & (faster > 0) & (high <= own.s_min[0, changes])
-    sure = (would & (beside | hard)) | (too_near & hard)
+    hard, may_be_hard = _brake(context, would | too_near, reaches, changes)
+    sure = (would & beside) | hard
     for way in np.flatnonzero(sure.any(axis=0)).tolist():
         sure[:, way] &= ~_held_up(context, int(begins[way]), int(lanes[way]))
-    return sure, would | (too_near & may_be_hard)
+    return sure, would | may_be_hard
 
 
-def _drifts(context: DriveContext, states: NDArray[intp], lanes: NDArray[intp]) -> Flags:
+def _drifts(
+    context: DriveContext, whom: Flags, states: NDArray[intp], lanes: NDArray[intp]
+) -> Flags:
     """Flags of those who move sideways in a lane: the road's own line may bend from one to another.
 
-    By state and lane, over half of ``smoothing_s``, as far as the drive goes back.
+    Of some, by state and lane, over half of ``smoothing_s``, as far as the drive goes back.
     """
     steps = max(round(context.thresholds.smoothing_s / 2 / context.recording.step_s), 1)
     before = np.maximum(states - steps, context.spans.first[states])
     went_s = (states - before) * context.recording.step_s
-    low, high = context.extents.left_of_min, context.extents.left_of_max
-    now, then = (low[:, at, lanes] + high[:, at, lanes] for at in (states, before))
-    moved = np.abs(now - then) / 2
-    drifts: Flags = moved > _DRIFT_MPS * went_s + context.tolerances.place_m
+    drifts, whole = np.zeros(whom.shape, dtype=bool), context.relevant.shape
+    for lane in distinct(lanes).tolist():
+        rows, ways = (whom & (lanes == lane)).nonzero()
+        bound = np.full(context.states, lane)
+        now, then = (
+            context.extents.cells_from_bound(Cells.in_shape(whole, rows, at[ways]), bound)
+            for at in (states, before)
+        )
+        moved = np.abs((now[0] + now[1]) - (then[0] + then[1])) / 2
+        drifts[rows, ways] = moved > _DRIFT_MPS * went_s[ways] + context.tolerances.place_m
     return drifts
 
 
-def _brakes(
-    context: DriveContext, begins: NDArray[intp], changes: NDArray[intp]
+def _brake(
+    context: DriveContext, whom: Flags, begins: NDArray[intp], changes: NDArray[intp]
 ) -> tuple[Flags, Flags]:
-    """Flags of those who brake harder than ``disturbing_mps2`` then, by way, and perhaps do.
+    """Flags of some who brake harder than ``disturbing_mps2`` then, by way, and perhaps do.
 
     Or up to ``reaction_s`` later.
     """
     limit, tracks = -context.thresholds.disturbing_mps2, context.tracks
+    rows = np.flatnonzero(whom.any(axis=1))
 
     def brake(states: NDArray[intp], sign: int) -> Flags:
-        gained, wrong = tracks.acceleration[:, states], tracks.acceleration_error[:, states]
-        return np.asarray(gained + sign * wrong < limit)
+        at = rows[:, None], states
+        return np.asarray(tracks.acceleration[at] + sign * tracks.acceleration_error[at] < limit)
 
-    hard = _any_between(context, begins, changes, partial(brake, sign=1))
-    return hard, _any_between(context, begins, changes, partial(brake, sign=-1))
+    found = []
+    for sign in (1, -1):
+        flags = np.zeros(whom.shape, dtype=bool)
+        flags[rows] = _any_between(context, begins, changes, partial(brake, sign=sign))
+        found.append(flags & whom)
+    return found[0], found[1]
 
 
 def _any_between(
@@ -164,7 +181,7 @@ def _any_between(
 ) -> Flags:
     """For each way whether flags of states are true in any until others have reacted to it."""
     if not len(changes):
-        return np.zeros((len(context.relevant), 0), dtype=bool)
+        return flags_of(changes)
     reacts = round(context.thresholds.reaction_s / context.recording.step_s) + 1
     ends = np.minimum(changes + reacts, context.spans.end[changes])
     states, first = ranges(begins, ends - begins)
