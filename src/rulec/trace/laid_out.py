@@ -40,10 +40,10 @@ class LaidOut:
                 np.copyto(found, none, where=self.absent)
         else:
             found, begin = np.empty((len(by_lane), *self.absent.shape), dtype=values.dtype), 0
-            for own, (there, whole) in zip(self.ranges, self._there, strict=True):
+            for own, (there, whole, gone) in zip(self.ranges, self._there, strict=True):
                 end = begin + own.stop - own.start
-                if len(there) < len(self.rows):
-                    found[:, :, begin:end] = none
+                if len(gone):
+                    found[:, gone, begin:end] = none
                 found[:, there, begin:end] = by_lane[:, whole, own]
                 begin = end
         return np.moveaxis(found, 0, -1) if values.ndim > 2 else found[0]
@@ -78,8 +78,12 @@ class LaidOut:
         return bool(self.absent.any())
 
     @cached_property
-    def _there(self) -> list[tuple[NDArray[intp], NDArray[intp]]]:
-        """For each range who is not absent, and their rows in arrays."""
+    def _there(self) -> list[tuple[NDArray[intp], NDArray[intp], NDArray[intp]]]:
+        """For each range who is not absent, their rows in arrays, and who is."""
         begins = np.cumsum([0, *(own.stop - own.start for own in self.ranges)])[:-1]
-        there = [np.flatnonzero(~self.absent[:, begin]) for begin in begins.tolist()]
-        return [(own, self.rows[own]) for own in there]
+        absent = [self.absent[:, begin] for begin in begins.tolist()]
+        there = map(np.flatnonzero, np.logical_not(absent))
+        return [
+            (own, self.rows[own], np.flatnonzero(gone))
+            for own, gone in zip(there, absent, strict=True)
+        ]

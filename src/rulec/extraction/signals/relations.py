@@ -112,17 +112,22 @@ def laterals(context: DriveContext) -> Laterals:
     doubtful[at_side] = True
     surely = perhaps.copy()
     surely[at_side] = False
-    maps = [(beside.wavering(both, place), beside, both)]
+    wavers = beside.wavering(both, place)
+    tries = [(wavers, beside.part(wavers), [own.take(wavers) for own in both])]
     if offset.any():
-        reach = context.thresholds.touching_m
-        least = reach + place, reach - place
-        sets = lanes_touched(context.extents, context.lanes_there, least, -offset)
-        shifted = _beside_lane_shifted(context, offset)
-        maps.append((np.arange(len(codes)), shifted, [cells.of(own) for own in sets]))
-    for chosen, lane, both in maps:
-        own, part = codes.take(chosen), lane.part(chosen)
+        chosen = _beside_elsewhere(context, offset)
+        part, reach = cells.part(chosen), context.thresholds.touching_m
+        sets = lanes_touched(
+            context.extents.at(part.rows, part.columns),
+            part.of(context.lanes_there),
+            (reach + place, reach - place),
+            -part.of(offset),
+        )
+        tries.append((chosen, _beside_lane_shifted(context, chosen, offset), list(sets)))
+    for chosen, lane, both in tries:
+        own = codes.take(chosen)
         for way, touched in zip((-1, 1), both, strict=True):
-            others = part.sides(touched.take(chosen), way * place)
+            others = lane.sides(touched, way * place)
             doubtful[chosen] |= others != own
             surely[chosen] &= others == SAME_LANE
             perhaps[chosen] |= others == SAME_LANE
@@ -237,12 +242,17 @@ _HAIR_M = 1e-6
 
 @once
 def _beside_lane(context: DriveContext) -> _BesideLane:
-    return _beside_lane_shifted(context, np.zeros(context.states))
-
-
-def _beside_lane_shifted(context: DriveContext, shift: Floats) -> _BesideLane:
-    """The same with all so much (m), by state, farther right on the map; of ``known_places``."""
     cells = known_places(context)
+    return _beside_lane_shifted(context, np.arange(len(cells)), np.zeros(context.states))
+
+
+def _beside_lane_shifted(
+    context: DriveContext, chosen: NDArray[intp], shift: Floats
+) -> _BesideLane:
+    """The same with all so much (m), by state, farther right on the map; of some known places."""
+    cells = known_places(context)
+    if len(chosen) < len(cells):
+        cells = cells.part(chosen)
     own, others = context.ego_extents.moved(-shift), context.extents
     # How far left of the two bounds of ego's lane they begin and end
     low_r, high_r, low_l, high_l = (
@@ -256,7 +266,8 @@ def _beside_lane_shifted(context: DriveContext, shift: Floats) -> _BesideLane:
     own_low, own_high = own.from_middle(own.lane)
     low, high = (low_r + low_l) / 2, (high_r + high_l) / 2
     if shift.any():
-        clear, ego_at = _beside_lane(context).clear, _beside_lane(context).ego_at
+        beside = _beside_lane(context)
+        clear, ego_at = beside.clear.take(chosen), beside.ego_at.take(chosen)
     else:
         on_left, on_right = low - cells.of(own_high), cells.of(own_low) - high
         clear, ego_at = np.maximum(on_left, on_right), (~(on_left > on_right)).view(int8) * LEFT_OF
@@ -273,6 +284,20 @@ def _beside_lane_shifted(context: DriveContext, shift: Floats) -> _BesideLane:
         clear=clear,
         ego_at=ego_at,
     )
+
+
+def _beside_elsewhere(context: DriveContext, offset: Floats) -> NDArray[intp]:
+    """Those of the known places whose sides may be others with the map so much (m) off, by state.
+
+    It is another matter with who stays beside ego's lane, and at its side, while ego stays in it.
+    """
+    cells, beside, away = known_places(context), _beside_lane(context), np.abs(offset)
+    keeps_lane = np.abs(context.ego_extents.left_of[0]).min(axis=1) > away + _HAIR_M
+    room = beside.reach + context.tolerances.place_m + cells.of(away) + _HAIR_M
+    on_left = beside.low > np.maximum(beside.middle + _HAIR_M, 0.0)
+    on_right = beside.high < np.minimum(beside.middle - _HAIR_M, 0.0)
+    stays = cells.of(keeps_lane) & (beside.into < -room) & (on_left | on_right)
+    return np.flatnonzero(~stays)
 
 
 @once
