@@ -185,16 +185,17 @@ class DriveContext:
         changes = self.spans.changes(self.ego_lane)
         if not changes.any():
             return self.ego_lane
+        left_of, lanes = self.ego_extents.left_of[0], np.arange(self.existing_lanes.shape[1])
+        beyond = np.maximum(-left_of[:, :-1], left_of[:, 1:])
+        stays = (beyond < self.thresholds.changed_m) & self.existing_lanes
+        # For each lane the first state from each on in which ego has left it
+        leaves = self.spans.next_state(((self.ego_lane[:, None] != lanes) & ~stays).T)
         steady: NDArray[intp] = self.ego_lane.copy()
-        left_of = self.ego_extents.left_of[0]
         for _, columns in self.spans.those(self.spans.any(changes)):
-            state = columns.start
-            while state < columns.stop:
-                own, later = int(steady[state]), slice(state + 1, columns.stop)
-                beyond = np.maximum(-left_of[later, own], left_of[later, own + 1])
-                stays = (beyond < self.thresholds.changed_m) & self.existing_lanes[later, own]
-                left = np.flatnonzero((steady[later] != own) & ~stays)
-                end = state + 1 + int(left[0]) if len(left) else columns.stop
+            state, last = columns.start, columns.stop - 1
+            while state <= last:
+                own = int(steady[state])
+                end = int(leaves[own, state + 1]) if state < last else columns.stop
                 steady[state:end], state = own, end
         return steady
 

@@ -57,19 +57,22 @@ def _lane_change(context: DriveContext) -> SignalColumns:
     unknown = _within_tolerance(context, changes)
     if changes.any():
         unknown |= changes & swings_round(context)
-        for change in np.flatnonzero(changes & ~unknown).tolist():
-            unknown[change] = _at_fork(context, change)
+        states = np.flatnonzero(changes & ~unknown)
+        pieces = context.road.piece(context.ego_extents.s[0, states])
+        for change, piece in zip(states.tolist(), pieces.tolist(), strict=True):
+            unknown[change] = _at_fork(context, change, piece)
     return SignalColumns({"lane_change": changes}, unknown={"lane_change": unknown})
 
 
-def _at_fork(context: DriveContext, change: int) -> bool:
+def _at_fork(context: DriveContext, change: int, last: int) -> bool:
     """True if the lanes that ego changes between have come of one, and it may follow one of them.
 
-    That is less than ``_FORK_M`` ago, or ego has been on the one that it comes to ever since.
+    That is less than ``_FORK_M`` ago, or ego has been on the one that it comes to ever since. The
+    ``last`` piece of the road is the one that it is in.
     """
     road, s = context.road, context.ego_extents.s[0]
     before, after = context.steady_lane[change - 1 : change + 1].tolist()
-    for piece in range(int(road.piece(s[change : change + 1])[0]), -1, -1):
+    for piece in range(last, -1, -1):
         one, other = road.rows[piece][before], road.rows[piece][after]
         if one is None or other is None:
             return False

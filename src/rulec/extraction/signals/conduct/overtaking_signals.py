@@ -224,13 +224,15 @@ def _overtakes(context: DriveContext, whom: Flags | bool) -> tuple[Flags, Flags]
     Who overtakes is at the far side, from shortly before it is beside the other until it is just
     past. ``whom``: flags of the others by state.
     """
+    overtakes, unsure = np.zeros((2, context.states), dtype=bool)
+    if not np.any(whom):
+        return overtakes, unsure
     far, _ = _sides(context)
     slower: Flags = (context.extents.along < context.ego_extents.along) & whom
     slower &= (relations.lateral(context) == far) & (context.driving_along | _ride_along(context))
     cells = Cells.at(slower)
     beside = cells.of(relations.station(context)) == relations.BESIDE
     surely, perhaps = (_ahead_and_past(context, cells, tolerances) for tolerances in (0.0, 1.0))
-    overtakes, unsure = np.zeros((2, context.states), dtype=bool)
     overtakes[cells.columns[surely | beside]] = True
     unsure[cells.columns[perhaps]] = True
     return overtakes, unsure

@@ -54,25 +54,30 @@ def squeezed(context: DriveContext, ways: Sequence[WayIn]) -> tuple[Flags, Flags
     who would have had to brake so hard, and did before ego was in their lane. Perhaps, too, where
     ego's lane ends: there they let each other in.
     """
-    moves = [_moves_over(context, way) for way in ways]
-    begins, reaches = np.array(moves, dtype=intp).reshape(-1, 2).T
     changes = np.array([way.state for way in ways], dtype=intp)
+    begins, reaches = _moves_over(context, ways, changes)
     close = _close_behind(context, changes)
     gave_way, unsure = _gives_way(context, begins, reaches, changes)
     sure = (close | gave_way) & ~_lane_ends(context, begins)
     return sure, (unsure | close | gave_way) & ~sure
 
 
-def _moves_over(context: DriveContext, way: WayIn) -> tuple[int, int]:
-    """The states from which ego moves to the other lane, and its body is across the mark."""
-    own, first = context.ego_extents, int(context.spans.first[way.state])
-    first = max(first, way.state - round(_LONGEST_S / context.recording.step_s))
-    across = own.across[0, first : way.state] * (1 if way.to_left else -1)
-    stays = np.flatnonzero(across < _DRIFT_MPS)
-    begins = first + int(stays[-1]) if len(stays) else first
-    beyond = own.left_of_max[0] if way.to_left else -own.left_of_min[0]
-    over = np.flatnonzero(beyond[begins : way.state, way.line] > context.thresholds.touching_m)
-    return begins, begins + int(over[0]) if len(over) else way.state
+def _moves_over(
+    context: DriveContext, ways: Sequence[WayIn], changes: NDArray[intp]
+) -> tuple[NDArray[intp], NDArray[intp]]:
+    """The states from which on ego moves over, and its body is across the mark, by way."""
+    own, spans = context.ego_extents, context.spans
+    begins, reaches = changes.copy(), changes.copy()
+    longest = round(_LONGEST_S / context.recording.step_s)
+    for line, to_left in {(way.line, way.to_left) for way in ways}:
+        alike = [(way.line, way.to_left) == (line, to_left) for way in ways]
+        states, side = changes[alike], 1 if to_left else -1
+        stays = spans.latest(side * own.across[0] < _DRIFT_MPS)[np.maximum(states - 1, 0)]
+        moves = np.maximum(stays, np.maximum(spans.first[states], states - longest))
+        beyond = own.left_of_max[0, :, line] if to_left else -own.left_of_min[0, :, line]
+        is_over = spans.next_state(beyond > context.thresholds.touching_m)
+        begins[alike], reaches[alike] = moves, np.minimum(is_over[moves], states)
+    return begins, reaches
 
 
 def _close_behind(context: DriveContext, changes: NDArray[intp]) -> Flags:
