@@ -62,10 +62,9 @@ class JoinedOutlines:
     @cached_property
     def reach(self) -> NDArray[float64]:
         """How far (m) along a line the feet of corners may be from their middle's, for each."""
-        away = np.hypot(*(self.corners - np.repeat(self.middles, self.counts, axis=0)).T)
-        reach: NDArray[float64] = (
-            np.maximum.reduceat(away, self.starts) * _REACH_FACTOR + _REACH_MORE_M
-        )
+        x, y = self.corners.T - np.repeat(self.middles.T, self.counts, axis=1)
+        farthest = np.sqrt(np.maximum.reduceat(x * x + y * y, self.starts))
+        reach: NDArray[float64] = farthest * _REACH_FACTOR + _REACH_MORE_M
         return reach
 
     def least_and_greatest(
