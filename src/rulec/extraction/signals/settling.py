@@ -88,10 +88,13 @@ def _changed(
 def _alike(
     columns: Mapping[str, SignalColumn], least: Mapping[str, int]
 ) -> Iterable[Sequence[str]]:
-    """The names of columns with a least number of states, those of one kind and number together."""
+    """The names of columns with a least number of states, those of one kind and number together.
+
+    Without those of what is never so, which no value interrupts.
+    """
     groups: dict[object, list[str]] = {}
     for name, column in columns.items():
-        if least.get(name, 1) > 1 and column.size:
+        if least.get(name, 1) > 1 and column.any():
             groups.setdefault((column.dtype, least[name]), []).append(name)
     return groups.values()
 
