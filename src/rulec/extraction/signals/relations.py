@@ -46,11 +46,8 @@ def station(context: DriveContext) -> Codes:
 @once
 def possible_stations(context: DriveContext) -> tuple[Codes, Codes]:
     """The same with others so much longer and shorter at both ends as places may be wrong."""
-    ends, place = context.extents, context.tolerances.place_m
-    longer, shorter = (
-        _along(context.ego_extents, ends.s_min - more, ends.s_max + more)
-        for more in (place, -place)
-    )
+    own, ends, place = context.ego_extents, context.extents, context.tolerances.place_m
+    longer, shorter = (_along(own, ends.s_min - x, ends.s_max + x) for x in (place, -place))
     return longer, shorter
 
 
@@ -117,12 +114,8 @@ def laterals(context: DriveContext) -> Laterals:
     if offset.any():
         chosen = _beside_elsewhere(context, offset)
         part, reach = cells.part(chosen), context.thresholds.touching_m
-        sets = lanes_touched(
-            context.extents.at(part.rows, part.columns),
-            part.of(context.lanes_there),
-            (reach + place, reach - place),
-            -part.of(offset),
-        )
+        bodies, least = _left_of_bounds(context, part), (reach + place, reach - place)
+        sets = lanes_touched(bodies, part.of(context.lanes_there), least, -part.of(offset))
         tries.append((chosen, _beside_lane_shifted(context, chosen, offset), list(sets)))
     for chosen, lane, both in tries:
         own = codes.take(chosen)
@@ -137,6 +130,14 @@ def laterals(context: DriveContext) -> Laterals:
         surely=cells.laid(surely, True),
         perhaps=cells.laid(perhaps, True),
     )
+
+
+def _left_of_bounds(context: DriveContext, cells: Cells) -> RoadExtents:
+    """How far (m) left of each bound of the lanes bodies begin and end, by cell."""
+    bounds = [np.full(context.states, k) for k in range(context.existing_lanes.shape[1] + 1)]
+    ends = np.array([context.extents.cells_from_bound(cells, bound) for bound in bounds])
+    low, high = np.moveaxis(ends, 0, -1)
+    return replace(context.ego_extents, left_of_min=low, left_of_max=high)
 
 
 def _in_the_way(context: DriveContext, cells: Cells, clear: Floats) -> Flags:
