@@ -199,7 +199,7 @@ def queues_by_lane(context: DriveContext) -> tuple[Flags, Flags]:
         places = np.flatnonzero(enough)
         counts = around.counts.ravel().take(places)
         n_short = _short_gaps(context, several, np.cumsum(enough).take(place) - 1, counts)
-        queues[:, places] = n_short > _MOST * (counts - 1)
+        queues[:, places] = n_short > _MOST * np.maximum(counts - 1, 0)
     return queues.reshape(len(READINGS), *shape), slow.reshape(shape)
 
 
