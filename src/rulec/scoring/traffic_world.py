@@ -125,13 +125,17 @@ class TrafficWorld:
 
     def beside_lanes(self, paths: NDArray[float64]) -> NDArray[bool_]:
         """Flags of states in which ego's middle is clearly beside all lanes, as on a verge."""
-        states = paths.reshape(-1, paths.shape[-1])
-        points = shapely.points(states[:, 0], states[:, 1])
-        beside = np.ones(len(states), dtype=bool)
-        beside[self._lanes.query(points, predicate="intersects")[0]] = False
+        x, y = paths[..., 0].ravel(), paths[..., 1].ravel()
+        beside = np.ones(len(x), dtype=bool)
+        for number in self._lanes.query(shapely.box(x.min(), y.min(), x.max(), y.max())).tolist():
+            area = self._lanes.geometries[number]
+            left, low, right, high = area.bounds
+            own = np.flatnonzero(beside & (x >= left) & (x <= right) & (y >= low) & (y <= high))
+            beside[own] = ~shapely.intersects_xy(area, x[own], y[own])
         # Distances take ten times as long
         off = np.flatnonzero(beside)
-        near, _ = self._lanes.query(points[off], predicate="dwithin", distance=_BESIDE_M)
+        points = shapely.points(x[off], y[off])
+        near, _ = self._lanes.query(points, predicate="dwithin", distance=_BESIDE_M)
         beside[off[near]] = False
         return beside.reshape(paths.shape[:-1])
 
@@ -203,7 +207,9 @@ class TrafficWorld:
     def _lanes(self) -> shapely.STRtree:
         # Nobody drives by the sidewalks, verges and parking places that some maps draw
         lanes = filter(is_lane, self.recording.lanelets.values())
-        return shapely.STRtree([*map(lanelet_area, lanes)])
+        areas = [*map(lanelet_area, lanes)]
+        shapely.prepare(areas)
+        return shapely.STRtree(areas)
 
     @cached_property
     def _with_headings(self) -> Recording:

@@ -254,31 +254,36 @@ class _PartOfTracks(_LaidTracks):
 
 
 def _bodies(tracks: Tracks, *, repeated: bool) -> Bodies:
-    rows: list[NDArray[intp]] = []
     columns: list[NDArray[intp]] = []
     outlines: list[Sequence[Points] | Floats] = []
-    for row, body in enumerate(tracks.participants):
-        at, own = _outlines_of(body, tracks.first, tracks.present[row], repeated=repeated)
-        rows.append(np.full(len(at), row, dtype=intp))
+    there = tracks.present.sum(axis=1).tolist()
+    for body, present, count in zip(tracks.participants, tracks.present, there, strict=True):
+        at, own = _outlines_of(body, tracks.first, (present, count), repeated=repeated)
         columns.append(at)
         outlines.append(own)
-    if not any(map(len, outlines)):
+    counts = [len(at) for at in columns]
+    if not any(counts):
         none = np.empty(0, dtype=intp)
         return Bodies(none, none, JoinedOutlines(np.empty((0, 2)), none))
-    return Bodies(np.concatenate(rows), np.concatenate(columns), JoinedOutlines.of_bodies(outlines))
+    rows = np.repeat(np.arange(len(counts)), counts)
+    return Bodies(rows, np.concatenate(columns), JoinedOutlines.of_bodies(outlines))
 
 
 def _outlines_of(
-    body: Participant, first: int, present: Flags, *, repeated: bool
+    body: Participant, first: int, there: tuple[Flags, int], *, repeated: bool
 ) -> tuple[NDArray[intp], Sequence[Points] | Floats]:
-    """The columns of a participant's outlines, and these."""
+    """The columns of a participant's outlines, and these; ``there`` in so many of the columns."""
+    present, count = there
     if body.standing:
         columns = np.arange(len(present) if repeated else 1)
         return columns, [next(iter(body.outlines.values()))] * len(columns)
-    columns = np.flatnonzero(present)
     if isinstance(body.outlines, TrackOutlines):
-        at = np.searchsorted(body.outlines.track.steps, columns + first)
-        return columns, body.outlines.laid_out[at]
+        steps = body.outlines.track.steps
+        if len(steps) == count:
+            return steps - first, body.outlines.laid_out
+        columns = np.flatnonzero(present)
+        return columns, body.outlines.laid_out[np.searchsorted(steps, columns + first)]
+    columns = np.flatnonzero(present)
     return columns, [body.outlines[first + column] for column in columns.tolist()]
 
 
@@ -303,13 +308,16 @@ def tracks_of(
     looked = recording if participants is None else replace(recording, participants=bodies)
     first, last = span or looked_at(looked)
     shape = len(bodies), last - first + 1
-    x, y, heading, stated = (np.full(shape, np.nan) for _ in range(4))
-    for row, (body, (own, poses)) in enumerate(zip(bodies, laid_out, strict=True)):
+    every = np.full((4, *shape), np.nan)
+    moving = [row for row, body in enumerate(bodies) if not body.standing]
+    if moving:
+        steps, poses = zip(*[laid_out[row] for row in moving], strict=True)
+        rows = np.repeat(moving, [len(own) for own in steps])
+        every[:, rows, np.concatenate(steps) - first] = np.concatenate(poses).T
+    for row, body in enumerate(bodies):
         if body.standing:
-            x[row], y[row], heading[row], stated[row] = poses[0]
-            continue
-        at = own - first
-        x[row, at], y[row, at], heading[row, at], stated[row, at] = poses.T
+            every[:, row] = laid_out[row][1][0][:, None]
+    x, y, heading, stated = every
     present = ~np.isnan(x)
     steers = np.array([bool(_STEERED.intersection(body.object_types)) for body in bodies], bool)
     motion = motion_of(

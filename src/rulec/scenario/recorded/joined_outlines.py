@@ -33,15 +33,19 @@ class JoinedOutlines:
 
         Those of a rigid body may be one array (axes: moment, corner, and x and y).
         """
-        joined = [
-            cls(own.reshape(-1, 2), np.full(len(own), own.shape[1]))
-            if isinstance(own, np.ndarray)
-            else cls.of(own)
-            for own in bodies
-            if len(own)
-        ]
-        corners, counts = ([own.corners for own in joined], [own.counts for own in joined])
-        return cls(np.concatenate(corners), np.concatenate(counts))
+        corners: list[Points] = []
+        counts: list[int] = []
+        repeats: list[int] = []
+        for own in bodies:
+            if isinstance(own, np.ndarray):
+                corners.append(own.reshape(-1, 2))
+                counts.append(own.shape[1])
+                repeats.append(len(own))
+            else:
+                corners += own
+                counts += map(len, own)
+                repeats += [1] * len(own)
+        return cls(np.concatenate(corners), np.repeat(counts, repeats))
 
     @cached_property
     def regular(self) -> bool:
