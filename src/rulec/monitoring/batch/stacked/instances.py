@@ -50,6 +50,16 @@ class NumbersAt(Sequence[Numbers]):
             self._known[place] = self._reader.numbers(self._rule.reads[place], self._spots)
         return self._known[place]
 
+    def part(self, spots: Spots, at: Places) -> NumbersAt:
+        """The numbers at some of the spots, whose places ``at`` says."""
+        part = NumbersAt(self._rule, self._reader, spots)
+        # A sum need not be computed again
+        part._known |= {
+            place: own.take(at) if isinstance(own, np.ndarray) and own.ndim else own
+            for place, own in self._known.items()
+        }
+        return part
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Instances:
@@ -144,7 +154,8 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
 def _doubtful_objects(rule: StackedRule, reader: StackReader, busy: Mask) -> Places:
     """The objects for the only variable whose letters alone do not show that the rule is kept.
 
-    They are there in some ``busy`` state. Letters are found where some read changes: seldom.
+    They are there in some ``busy`` state. Letters are found where some read changes: seldom. Sums,
+    which change all the time, may be anything.
     """
     stack, (variable,), (kind,) = reader.stack, rule.variables, rule.types
     suits = stack.of_type(kind)
@@ -155,7 +166,7 @@ def _doubtful_objects(rule: StackedRule, reader: StackReader, busy: Mask) -> Pla
         return _NONE
     changes = stack.are_first.copy()
     for read in rule.reads:
-        own = reader.changes(read)
+        own = None if read.is_sum else reader.changes(read)
         if own is not None:
             changes |= own
     cells = changes.nonzero()[0]
@@ -164,7 +175,10 @@ def _doubtful_objects(rule: StackedRule, reader: StackReader, busy: Mask) -> Pla
     if not len(cells):
         return _NONE
     spots = Spots(stack.state_of[cells], {variable: cells})
-    letters = rule.letters.numbers(numbers_at(rule, reader, spots, (variable,)))
+    numbers = [
+        read.unknown if read.is_sum else reader.numbers(read, spots) for read in rule.reads
+    ]
+    letters = rule.letters.numbers(numbers)
     begins = stack.are_first[cells].nonzero()[0]
     objects: Places = stack.object_of[cells[begins]]
     return objects[~rule.are_surely_kept(letters, begins)]

@@ -77,7 +77,7 @@ class StackReader:
         """
         found = self._numbers.get(read.key)
         if found is None:
-            if len(read.variables) > 1:
+            if len(read.variables) > 1 or (read.is_sum and read.variables):
                 assert spots is not None, "it is about objects"
                 return self._of(read, spots)
             found = self._numbers[read.key] = self._everywhere(read)
@@ -119,7 +119,10 @@ class StackReader:
         return known
 
     def _digits_met(self, read: StackedRead) -> int:
-        if read.count is not None or len(read.names) > 1:
+        if read.count is not None:
+            is_none = bool(self.met_values.truth_anywhere(read.count.body).false)
+            return 1 << read.read.digit(Fraction(0)) if is_none else read.every
+        if len(read.names) > 1:
             return read.every
         (name,) = read.names
         ready = read.ready
@@ -146,10 +149,9 @@ class StackReader:
     def _everywhere(self, read: StackedRead) -> Array | int:
         """The numbers in all states, or cells."""
         stack = self.stack
-        if len(read.names) == 1:
-            digits = self.digits(read)
-            if digits & (digits - 1) == 0 and read.meanings.count(digits) == 1:
-                return read.meanings.index(digits)
+        digits = self.digits(read)
+        if digits & (digits - 1) == 0 and read.meanings.count(digits) == 1:
+            return read.meanings.index(digits)
         every = Spots(self._every_state, {}, whole=True)
         if read.variables:
             every = Spots(stack.state_of, {read.variables[0]: self._every_cell}, whole=True)

@@ -27,7 +27,7 @@ from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.monitoring.uncertainty.uncertain_machine import Answer
 from rulec.trace import Value
-from rulec.trace.plain_arrays import distinct
+from rulec.trace.plain_arrays import distinct, ranges
 from rulec.vocabulary.partial_values import UNKNOWN
 
 _FEW_WORDS = 1 << 5
@@ -178,7 +178,7 @@ class _Chosen:
     instances: Instances
     bounds: NDArray[np.intp]
     spots: Spots
-    numbers: Sequence[Numbers]
+    numbers: NumbersAt
     unknown: Sequence[int] = ()
     supposed: Sequence[Mapping[Subject, Value]] = ({},)
     is_exact: bool = True
@@ -195,7 +195,8 @@ class _Chosen:
             return self
         instances = self.instances.part(members)
         bounds, spots = instances.spots(rule, reader.stack)
-        numbers = NumbersAt(rule, reader, spots)
+        at, _ = ranges(self.bounds[members], np.diff(bounds))
+        numbers = self.numbers.part(spots, at)
         return replace(self, instances=instances, bounds=bounds, spots=spots, numbers=numbers)
 
 
@@ -252,7 +253,7 @@ def _alternatives(
             if value is not None:
                 read = rule.reads[place].read
                 instead[place] = number_of_value(read, value, reader.stack.vocabulary)[1]
-        own = chosen.numbers
+        own: Sequence[Numbers] = chosen.numbers
         if instead:
             own = [instead.get(n, x) for n, x in enumerate(own)]
         if instead or chosen.instances.letters is None:

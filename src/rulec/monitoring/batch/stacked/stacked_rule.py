@@ -83,6 +83,11 @@ class StackedRead:
         return (1 << self.read.size) - 1
 
     @property
+    def is_sum(self) -> bool:
+        """Whether it is a number that is computed of several ones."""
+        return self.ready is not None and self.ready.quantity is None and self.count is None
+
+    @property
     def counts_itself(self) -> bool:
         """Whether only the object that it is asked of may count."""
         return self.count is not None and bool(self.variables)
@@ -138,6 +143,7 @@ class StackedRule:
         self.counts_everywhere = any(read.count and not read.variables for read in self.reads)
         self.is_simple = _is_simple(self)
         self._busy_flags: NDArray[np.bool_] = np.zeros(0, dtype=bool)
+        self._class_bits: NDArray[np.uint64] = np.zeros(0, dtype=np.uint64)
         self.letters = self._no_letters()
         self.words_together = WordsTogether(machine.monitor, self.letters)
         self._answers: dict[bytes, Answer] = {}
@@ -188,6 +194,7 @@ class StackedRule:
         if len(self.letters.sets) > MOST_SETS:
             self.letters, self._answers, self._words = self._no_letters(), {}, {}
             self._busy_flags = np.zeros(0, dtype=bool)
+            self._class_bits = np.zeros(0, dtype=np.uint64)
             self.words_together = WordsTogether(self.machine.monitor, self.letters)
 
     def does_nothing(self, digits: Sequence[int]) -> bool:
@@ -217,10 +224,13 @@ class StackedRule:
         if not isinstance(letters, np.ndarray):
             classes = self.letters.sets[letters]
             return np.full(len(begins), self.machine.is_surely_kept(classes, classes))
-        sets = self.letters.sets
         if self.machine.machine.n_classes > _MOST_BITS:
             return ~np.logical_or.reduceat(self.busy_flags().take(letters), begins)
-        own = np.array([classes or _NO_CLASS for classes in sets], dtype=np.uint64).take(letters)
+        known = len(self._class_bits)
+        more = [classes or _NO_CLASS for classes in self.letters.sets[known:]]
+        if more:
+            self._class_bits = np.append(self._class_bits, np.array(more, dtype=np.uint64))
+        own = self._class_bits.take(letters)
         every = np.bitwise_or.reduceat(own, begins)
         last = own[np.append(begins[1:], len(letters)) - 1]
         # Words are mostly kept, and so are all of whose letters any word is
