@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,7 +62,9 @@ class CrowdedStates:
         self._about = [name for name in names if declared[name].parameters]
         self._counted = sorted({count.type for count in map(count_in, reads) if count is not None})
         self._known: tuple[Places, _AlikeStates | None] | None = None
+        self._told: dict[tuple[Value | None, ...], tuple[EntangledReads, list[int]]] = {}
 
+    @cached_property
     def are_entangled(self) -> Flags:
         """The states of the stack in which unknown values may have to do with each other."""
         stack = self._stack
@@ -91,14 +94,19 @@ class CrowdedStates:
         alike = self._alike(states)
         if alike is None:
             return None
-        firsts = alike.firsts
-        reads, found = self._found(states[firsts], alike.often[firsts], alike.examples, supposed)
-        return reads, np.array(found, dtype=np.intp)[alike.groups].tolist()
+        # Much of what is supposed is of what these reads do not read
+        own = tuple([supposed.get((name, ())) for name in self._world])
+        if own not in self._told:
+            often = alike.often[alike.firsts]
+            reads, found = self._found(states[alike.firsts], often, alike.examples, own)
+            self._told[own] = reads, np.array(found, dtype=np.intp)[alike.groups].tolist()
+        return self._told[own]
 
     def _alike(self, states: Places) -> _AlikeStates | None:
         """States in groups that are alike; the same ones are mostly asked about again."""
         if self._known is None or not np.array_equal(self._known[0], states):
             self._known = states, self._grouped(states)
+            self._told = {}
         return self._known[1]
 
     def _grouped(self, states: Places) -> _AlikeStates | None:
@@ -145,18 +153,19 @@ class CrowdedStates:
         states: Places,
         often: NDArray[np.intp],
         examples: Places,
-        supposed: Mapping[Subject, Value],
+        supposed: Sequence[Value | None],
     ) -> tuple[EntangledReads, list[int]]:
-        """What is found in states in which there are objects like these examples so often."""
+        """What is found in states in which there are objects like these examples so often.
+
+        ``supposed`` has what is, of the world's names, or None.
+        """
         stack, reader = self._stack, self._reader
         types = [stack.types[item] for item in stack.object_of[examples].tolist()]
         spots = Spots(stack.state_of[examples], {"": examples})
         about = {name: reader.values_at(name, ("",), spots) for name in self._about}
         world = {
-            name: supposed_instead(
-                reader.values_at(name, (), Spots(states, {})), supposed.get((name, ()))
-            )
-            for name in self._world
+            name: supposed_instead(reader.values_at(name, (), Spots(states, {})), value)
+            for name, value in zip(self._world, supposed, strict=True)
         }
         there: list[dict[str, int]] = []
         for row in often.tolist():

@@ -69,7 +69,7 @@ def entangled_letters(
     else:
         if not crowd.is_known:
             return None
-        places = np.flatnonzero(partial & crowd.are_entangled()[spots.states])
+        places = np.flatnonzero(partial & crowd.are_entangled[spots.states])
         told = crowd.numbers(spots.states[places], supposed)
         if told is None:
             return None

@@ -53,7 +53,7 @@ class NumbersAt(Sequence[Numbers]):
     def part(self, spots: Spots, at: Places) -> NumbersAt:
         """The numbers at some of the spots, whose places ``at`` says."""
         part = NumbersAt(self._rule, self._reader, spots)
-        # A sum need not be computed again
+        # What is computed of several values need not be so again
         part._known |= {
             place: own.take(at) if isinstance(own, np.ndarray) and own.ndim else own
             for place, own in self._known.items()
@@ -154,8 +154,8 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
 def _doubtful_objects(rule: StackedRule, reader: StackReader, busy: Mask) -> Places:
     """The objects for the only variable whose letters alone do not show that the rule is kept.
 
-    They are there in some ``busy`` state. Letters are found where some read changes: seldom. Sums,
-    which change all the time, may be anything.
+    They are there in some ``busy`` state. Letters are found where some read changes: seldom. Reads
+    that take long to find, as they are computed of several values, may be anything.
     """
     stack, (variable,), (kind,) = reader.stack, rule.variables, rule.types
     suits = stack.of_type(kind)
@@ -166,7 +166,7 @@ def _doubtful_objects(rule: StackedRule, reader: StackReader, busy: Mask) -> Pla
         return _NONE
     changes = stack.are_first.copy()
     for read in rule.reads:
-        own = None if read.is_sum else reader.changes(read)
+        own = None if read.is_composed else reader.changes(read)
         if own is not None:
             changes |= own
     cells = changes.nonzero()[0]
@@ -176,7 +176,7 @@ def _doubtful_objects(rule: StackedRule, reader: StackReader, busy: Mask) -> Pla
         return _NONE
     spots = Spots(stack.state_of[cells], {variable: cells})
     numbers = [
-        read.unknown if read.is_sum else reader.numbers(read, spots) for read in rule.reads
+        read.unknown if read.is_composed else reader.numbers(read, spots) for read in rule.reads
     ]
     letters = rule.letters.numbers(numbers)
     begins = stack.are_first[cells].nonzero()[0]

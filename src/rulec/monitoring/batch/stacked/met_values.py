@@ -36,7 +36,7 @@ class MetValues:
 
     def ends(self, name: str) -> tuple[float, float] | None:
         """The least and the greatest number of a quantity; None if some are unknown."""
-        return self._ends.get(name)
+        return self._stack.ends(name)
 
     def with_default(self, name: str) -> int | None:
         """The values that a signal has anywhere, as bits, 0 if some are not known.
@@ -90,7 +90,7 @@ class MetValues:
     @cached_property
     def _values(self) -> dict[str, int]:
         found: dict[str, int] = {}
-        for names, columns in self._known(numbers=False):
+        for names, columns in self._known_signals():
             only = columns[0].values
             if len(columns) == 1 and only.dtype == bool:
                 found[names[0]] = 2 * int(only.any()) + int(not only.all())
@@ -102,24 +102,13 @@ class MetValues:
                 found.update(zip(names, np.bitwise_or.reduce(bits, axis=1).tolist(), strict=True))
         return found
 
-    @cached_property
-    def _ends(self) -> dict[str, tuple[float, float]]:
-        found: dict[str, tuple[float, float]] = {}
-        for names, columns in self._known(numbers=True):
-            lows = _laid_out([column.values for column in columns])
-            uppers = [x.values if x.upper is None else x.upper for x in columns]
-            highs = lows if all(x.upper is None for x in columns) else _laid_out(uppers)
-            ends = zip(lows.min(axis=1).tolist(), highs.max(axis=1).tolist(), strict=True)
-            found.update(zip(names, ends, strict=True))
-        return found
-
-    def _known(self, *, numbers: bool) -> Iterator[tuple[list[str], list[StackColumn]]]:
-        """The columns in which all is known, as many together as may be, with their names."""
+    def _known_signals(self) -> Iterator[tuple[list[str], list[StackColumn]]]:
+        """The columns of signals in which all is known, as many together as may be, with their names."""
         declarations = self._stack.vocabulary.declarations
         groups: dict[int | str, tuple[list[str], list[StackColumn]]] = {}
         for name in self._stack.said:
             column = self._stack.column(name)
-            if column is None or isinstance(declarations[name], Quantity) != numbers:
+            if column is None or isinstance(declarations[name], Quantity):
                 continue
             size = len(column.values)
             if column.unknown is None and size:

@@ -86,6 +86,7 @@ class Stack:
         about = dict.fromkeys(traces[0].about, True)
         self.said = {**dict.fromkeys(traces[0].world, False), **about}
         self._columns: dict[str, StackColumn | None] = {}
+        self._ends: dict[str, tuple[float, float]] = {}
         self._of_type: dict[str, Flags] = {}
         self._whole_types: dict[str, bool] = {}
         self._cells_of_type: dict[str, Places] = {}
@@ -169,6 +170,18 @@ class Stack:
             self._columns[name] = self._column(name) if name in self.said else None
         return self._columns[name]
 
+    def ends(self, name: str) -> tuple[float, float] | None:
+        """The least and the greatest number of a quantity; None if some are unknown, or none said.
+
+        Raises UnencodableError.
+        """
+        column = self.column(name)
+        if column is None or column.unknown is not None or not len(column.values):
+            return None
+        if name not in self._ends:
+            self._ends[name] = _ends(column.values, column.upper)
+        return self._ends[name]
+
     @cached_property
     def _flagged(self) -> tuple[set[str], set[str]]:
         """The names of which something is unknown, or absent, if all is in one piece."""
@@ -214,9 +227,14 @@ class Stack:
             unfit = _NOWHERE
         else:
             values, upper = self._numbers(name, parts)
-            unfit = _NOWHERE if _are_fit(values, upper) else ~np.isfinite(values)
-            if upper is not None and unfit is not _NOWHERE:
-                unfit |= ~(values <= upper) | ~np.isfinite(upper)
+            unfit = _NOWHERE
+            ends = _ends(values, upper)
+            if not all(map(isfinite, ends)) or (upper is not None and (values > upper).any()):
+                unfit = ~np.isfinite(values)
+                if upper is not None:
+                    unfit |= ~(values <= upper) | ~np.isfinite(upper)
+            elif unsaid is None and len(values):
+                self._ends[name] = ends
         if unfit is not _NOWHERE and unfit.any():
             nowhere = _either(unknown, unsaid)
             if nowhere is None or (unfit & ~nowhere).any():
@@ -324,12 +342,10 @@ def _end_to_end(parts: Sequence[Array]) -> Array:
     return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
 
-def _are_fit(low: Array, high: Array | None) -> bool:
-    """Whether all numbers are finite, each no greater than the other one."""
+def _ends(low: Array, high: Array | None) -> tuple[float, float]:
+    """The least and the greatest number; NaN if one is."""
     most = low if high is None else high
-    # A NaN is the least one and the greatest
-    finite = isfinite(low.min(initial=0.0)) and isfinite(most.max(initial=0.0))
-    return finite and (high is None or bool((low <= high).all()))
+    return (low.min().item(), most.max().item()) if len(low) else (0.0, 0.0)
 
 
 def _either(one: Flags | None, other: Flags | None) -> Flags | None:

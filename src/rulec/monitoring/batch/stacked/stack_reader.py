@@ -77,7 +77,8 @@ class StackReader:
         """
         found = self._numbers.get(read.key)
         if found is None:
-            if len(read.variables) > 1 or (read.is_sum and read.variables):
+            are_few = spots is not None and len(spots.states) < len(self._every_cell)
+            if len(read.variables) > 1 or (read.is_composed and are_few):
                 assert spots is not None, "it is about objects"
                 return self._of(read, spots)
             found = self._numbers[read.key] = self._everywhere(read)
@@ -239,7 +240,7 @@ class StackReader:
         most: Array
         if read.counts_itself:
             truth = self.truth(count.body, spots, read.variables[0])
-            suits = stack.of_type(count.type)[stack.object_of]
+            suits = self._taken(stack.of_type(count.type)[stack.object_of], read.variables, spots)
             least = (suits & truth.true).astype(np.uint8)
             most = (suits & ~truth.false).astype(np.uint8)
         else:

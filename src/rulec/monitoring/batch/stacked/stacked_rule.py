@@ -83,14 +83,15 @@ class StackedRead:
         return (1 << self.read.size) - 1
 
     @property
-    def is_sum(self) -> bool:
-        """Whether it is a number that is computed of several ones."""
-        return self.ready is not None and self.ready.quantity is None and self.count is None
-
-    @property
     def counts_itself(self) -> bool:
         """Whether only the object that it is asked of may count."""
         return self.count is not None and bool(self.variables)
+
+    @property
+    def is_composed(self) -> bool:
+        """Whether it is computed of several values of an object: a sum, or if it counts itself."""
+        is_one = self.ready is None or self.ready.quantity is not None
+        return bool(self.variables) and not is_one
 
 
 class StackedRule:
