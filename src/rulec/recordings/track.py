@@ -100,6 +100,14 @@ class TrackOutlines(Mapping[int, Points]):
         return len(self.track.steps)
 
 
+def outlines_on_track(body: Participant) -> TrackOutlines | None:
+    """The outlines of a participant whose states are on the same track; else None."""
+    states, outlines = body.states, body.outlines
+    if not isinstance(states, TrackStates) or not isinstance(outlines, TrackOutlines):
+        return None
+    return outlines if states.track is outlines.track else None
+
+
 def tracked(
     identifier: str,
     kind: str,

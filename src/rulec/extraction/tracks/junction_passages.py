@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from rulec.extraction.tracks.junctions import Interval, Junction, JunctionWay, junctions_of
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.recording import Recording
+from rulec.recordings.track import TrackOutlines, outlines_on_track
 from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.plain_arrays import distinct
 
@@ -72,7 +73,22 @@ class JunctionPassages:
     @cached_property
     def lengths(self) -> Floats:
         """The participants' lengths (m)."""
-        return np.array([_length(body.outlines, body.states) for body in self.tracks.participants])
+        bodies = self.tracks.participants
+        found = np.empty(len(bodies))
+        rigid: dict[int, TrackOutlines] = {}
+        for row, body in enumerate(bodies):
+            outlines = outlines_on_track(body)
+            if outlines is None:
+                found[row] = _length(body.outlines, body.states)
+            else:
+                rigid[row] = outlines
+        if rigid:
+            # One by one they take ten times as long
+            way = np.array([own.track.rows[0, 2] for own in rigid.values()])
+            corners = np.stack([own.laid_out[0] for own in rigid.values()])
+            ahead = corners @ np.stack((np.cos(way), np.sin(way)), axis=-1)[:, :, None]
+            found[list(rigid)] = np.ptp(ahead[:, :, 0], axis=1)
+        return found
 
     @cached_property
     def travelled(self) -> Floats:

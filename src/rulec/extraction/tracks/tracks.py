@@ -22,7 +22,7 @@ from rulec.extraction.tracks.source_tolerances import Tolerances, tolerances_of
 from rulec.extraction.tracks.track_motion import Poses, motion_of
 from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Lanelet, Participant, Points, Recording, is_lane
-from rulec.recordings.track import TrackOutlines, TrackStates
+from rulec.recordings.track import TrackOutlines, outlines_on_track
 from rulec.scenario.recorded.joined_outlines import JoinedOutlines
 from rulec.scenario.recorded.route import lanelet_area
 from rulec.trace.laid_out import LaidOut
@@ -357,14 +357,10 @@ def _inside(flags: Flags, x: Floats, y: Floats, lanelets: Iterable[Lanelet]) -> 
 
 def _poses(body: Participant) -> tuple[NDArray[intp], Floats]:
     """The steps of a participant, and its place, heading and stated speed in each, a row."""
-    states, outlines = body.states, body.outlines
-    if (
-        isinstance(states, TrackStates)
-        and isinstance(outlines, TrackOutlines)
-        and states.track is outlines.track
-    ):
-        return states.track.steps, states.track.rows[:, :4]
-    poses = []
+    on_track = outlines_on_track(body)
+    if on_track is not None:
+        return on_track.track.steps, on_track.track.rows[:, :4]
+    states, outlines, poses = body.states, body.outlines, []
     for step, outline in outlines.items():
         state = states.get(step)
         if state is None:

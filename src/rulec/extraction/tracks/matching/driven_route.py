@@ -46,16 +46,14 @@ class RouteStretch:
 
 @dataclass(frozen=True, slots=True)
 class _Row:
-    """Lanes beside each other, how many states were in each, and how long each is (m)."""
+    """Lanes beside each other, and how long each is (m).
+
+    ``away`` is how many lanes the states are away from each, in sum.
+    """
 
     lanes: tuple[str, ...]
-    states: tuple[int, ...]
+    away: tuple[int, ...]
     lengths: tuple[float, ...]
-
-    def away(self, lane: str) -> int:
-        """How many lanes the states are away from one, in sum."""
-        own = self.lanes.index(lane)
-        return sum(count * abs(k - own) for k, count in enumerate(self.states))
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,10 +88,12 @@ def route_stretches(
     """The roads of a matched stretch, which is one as far as the map is consistent."""
     pieces = pieces_of(recording, matched.chain, graph.beside)
     piece_of = [k for k, piece in enumerate(pieces) for _ in piece]
-    at = [piece_of[place] for place in matched.places]
+    at = matched.places
+    if len(pieces) < len(piece_of):
+        at = tuple([piece_of[place] for place in at])
     if len(set(at)) == len(pieces) and _leads_on(recording, pieces):
         # Who is in each of them, and changes no lanes, has driven nowhere else
-        yield RouteStretch(matched.columns, matched.chain, tuple(at))
+        yield RouteStretch(matched.columns, matched.chain, at)
         return
     counts: Counter[tuple[int, str]] = Counter()
     for place, count in Counter(matched.places).items():
@@ -101,15 +101,21 @@ def route_stretches(
     rows = []
     for number, piece in enumerate(pieces):
         lanes = graph.row(piece[0])
-        states = tuple(counts[number, lane] for lane in lanes)
-        rows.append(_Row(lanes, states, tuple(map(graph.length, lanes))))
+        states = [counts[number, lane] for lane in lanes]
+        away = [
+            sum([count * abs(k - own) for k, count in enumerate(states)])
+            for own in range(len(lanes))
+        ]
+        rows.append(_Row(lanes, tuple(away), tuple(map(graph.length, lanes))))
     start = 0
     while start < len(rows):
         stop, route = _cheapest(recording, rows, start)
         own = [k for k, piece in enumerate(at) if start <= piece < stop]
-        if own:
-            columns = tuple(matched.columns[k] for k in own)
-            yield RouteStretch(columns, route, tuple(at[k] - start for k in own))
+        if start == 0 and len(own) == len(at):
+            yield RouteStretch(matched.columns, route, at)
+        elif own:
+            columns = tuple([matched.columns[k] for k in own])
+            yield RouteStretch(columns, route, tuple([at[k] - start for k in own]))
         start = stop
 
 
@@ -159,10 +165,10 @@ def _entry(
 
 
 def _through(row: _Row, entry: str, lane: str, choice: _Choice) -> _Choice:
+    own, other = row.lanes.index(entry), row.lanes.index(lane)
     if entry == lane:
-        return _Choice(choice.cost + row.away(lane), (*choice.lanelets, lane))
-    own = row.lanes.index(entry)
-    changes, length = abs(own - row.lanes.index(lane)), row.lengths[own]
+        return _Choice(choice.cost + row.away[own], (*choice.lanelets, lane))
+    changes, length = abs(own - other), row.lengths[own]
     shift = changes * (_SHIFT_COST + _SHORT_COST / max(length, 1.0))
-    away = min(row.away(entry), row.away(lane))
+    away = min(row.away[own], row.away[other])
     return _Choice(choice.cost + shift + away, (*choice.lanelets, entry, lane))

@@ -15,6 +15,7 @@ recording jumps or somebody leaves a lanelet sideways, the drive breaks for a hi
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -95,17 +96,23 @@ class MapMatching:
         return [*starts.tolist(), len(rows)], of_row.tolist()
 
     def _stretch(self, start: int, end: int, lanes: NDArray[intp]) -> MatchedStretch:
-        names, own = self._candidates.names, lanes[start:end]
-        columns = tuple(self._candidates.columns[start:end].tolist())
-        if (own == own[0]).all():
-            return MatchedStretch(columns, (names[own[0]],), (0,) * len(columns))
-        chain, added = [names[own[0]]], np.zeros(end - start, dtype=intp)
-        for change in (np.flatnonzero(np.diff(own)) + 1).tolist():
-            way = self._graph.way(names[own[change - 1]], names[own[change]])
+        names, (every_column, changes) = self._candidates.names, self._columns_and_changes
+        chain, begin = [names[lanes[start]]], start
+        places: list[int] = []
+        for change in changes[bisect_right(changes, start) : bisect_left(changes, end)]:
+            places += [len(chain) - 1] * (change - begin)
+            way = self._graph.way(names[lanes[change - 1]], names[lanes[change]])
             assert way is not None, "a stretch goes on only along ways"
             chain += way.lanelets
-            added[change] = len(way.lanelets)
-        return MatchedStretch(columns, tuple(chain), tuple(np.cumsum(added).tolist()))
+            begin = change
+        places += [len(chain) - 1] * (end - begin)
+        return MatchedStretch(tuple(every_column[start:end]), tuple(chain), tuple(places))
+
+    @cached_property
+    def _columns_and_changes(self) -> tuple[list[int], list[int]]:
+        """The column of each state, and the states whose lane is not that of the one before."""
+        lanes, _ = self._paths
+        return self._candidates.columns.tolist(), (np.flatnonzero(np.diff(lanes)) + 1).tolist()
 
     @cached_property
     def lanelets(self) -> NDArray[intp]:
