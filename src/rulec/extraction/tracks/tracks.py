@@ -120,21 +120,24 @@ class Tracks:
 
         Of those that stand for good in the first column only.
         """
-        return self._sizes(lambda x, y, way: y * np.cos(way) - x * np.sin(way))
+        return self._sizes(lambda x, y, cos, sin: y * cos - x * sin)
 
     @cached_property
     def lengths(self) -> Floats:
         """The greatest length (m) of each participant's body along its headings."""
-        along = self._sizes(lambda x, y, way: x * np.cos(way) + y * np.sin(way))
+        along = self._sizes(lambda x, y, cos, sin: x * cos + y * sin)
         longest: Floats = along.max(axis=1, initial=0.0)
         return longest
 
-    def _sizes(self, along: Callable[[Floats, Floats, Floats], Floats]) -> Floats:
-        """How long bodies are along a line, which each corner's place and heading tell."""
+    def _sizes(self, along: Callable[[Floats, Floats, Floats, Floats], Floats]) -> Floats:
+        """How long bodies are along a line, which each corner's place and heading tell.
+
+        Of the heading these are the cosine and the sine.
+        """
         bodies, sizes = self.bodies, np.zeros(self.present.shape)
         outlines, way = bodies.outlines, self.heading[bodies.rows, bodies.columns]
         x, y = outlines.corners.T
-        at = along(x, y, np.repeat(way, outlines.counts))
+        at = along(x, y, *(np.repeat(own, outlines.counts) for own in (np.cos(way), np.sin(way))))
         most, least = (
             extreme.reduceat(at, outlines.starts) for extreme in (np.maximum, np.minimum)
         )
