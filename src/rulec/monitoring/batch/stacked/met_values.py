@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from rulec.logic import formula as ltl
-from rulec.logic.fold import fold
+from rulec.logic.fold import Algebra, fold
 from rulec.monitoring.batch.columns.column_reader import KLEENE_COLUMNS, UNKNOWN, Truth, known
 from rulec.monitoring.batch.stacked.stack import FEW, Stack, StackColumn
 from rulec.trace.trace_columns import Array
@@ -19,6 +19,8 @@ from rulec.vocabulary.partial_values import PartialValue
 
 _BITS = {bits: 1 << np.arange(bits, dtype=f"u{bits // 8}") for bits in (8, 64)}
 """For each number the bit in its place."""
+
+_TRUE, _FALSE = known(np.True_), known(np.False_)
 
 
 class MetValues:
@@ -66,26 +68,25 @@ class MetValues:
 
         Any variable names the same object.
         """
+        return fold(formula, self._anywhere)
 
-        def proposition(part: ltl.Proposition) -> Truth:
-            if isinstance(part, ltl.Comparison):
-                return UNKNOWN
-            declaration, met = (
-                self._stack.vocabulary.declarations[part.name],
-                self.with_default(part.name),
-            )
-            if not met:
-                return UNKNOWN
-            holds = 1 << 1
-            if isinstance(declaration, Enumeration):
-                assert part.value is not None, "the rulebook has been checked"
-                holds = 1 << declaration.values.index(part.value)
-            return Truth(np.bool_(met == holds), np.bool_(not met & holds))
+    @cached_property
+    def _anywhere(self) -> Algebra[Truth]:
+        return replace(KLEENE_COLUMNS, proposition=self._truth, identity=lambda _: _TRUE)
 
-        def identity(_: ltl.Same) -> Truth:
-            return known(np.True_)
-
-        return fold(formula, replace(KLEENE_COLUMNS, proposition=proposition, identity=identity))
+    def _truth(self, part: ltl.Proposition) -> Truth:
+        if isinstance(part, ltl.Comparison):
+            return UNKNOWN
+        met = self.with_default(part.name)
+        if not met:
+            return UNKNOWN
+        declaration, holds = self._stack.vocabulary.declarations[part.name], 1 << 1
+        if isinstance(declaration, Enumeration):
+            assert part.value is not None, "the rulebook has been checked"
+            holds = 1 << declaration.values.index(part.value)
+        if met == holds:
+            return _TRUE
+        return UNKNOWN if met & holds else _FALSE
 
     @cached_property
     def _values(self) -> dict[str, int]:

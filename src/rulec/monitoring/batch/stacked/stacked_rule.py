@@ -64,7 +64,8 @@ class StackedRead:
     is what is counted, if it is a count: objects that any variable may stand for, or, if it
     ``counts_itself``, none but the one that the only variable stands for. Reads with the same
     ``key`` have the same numbers, those with the same ``digits_key`` the same digits, too;
-    ``ready`` are the thresholds of a number.
+    ``ready`` are the thresholds of a number. What ``is_composed`` is computed of several values of
+    an object: it is a sum, or counts itself.
     """
 
     read: Read | NumberRead
@@ -76,6 +77,7 @@ class StackedRead:
     ready: ThresholdScale | None
     key: int
     digits_key: int
+    is_composed: bool
 
     @property
     def every(self) -> int:
@@ -86,12 +88,6 @@ class StackedRead:
     def counts_itself(self) -> bool:
         """Whether only the object that it is asked of may count."""
         return self.count is not None and bool(self.variables)
-
-    @property
-    def is_composed(self) -> bool:
-        """Whether it is computed of several values of an object: a sum, or if it counts itself."""
-        is_one = self.ready is None or self.ready.quantity is not None
-        return bool(self.variables) and not is_one
 
 
 class StackedRule:
@@ -344,6 +340,7 @@ def _stacked(read: Read | NumberRead, vocabulary: Vocabulary, keys: ReadKeys) ->
         ready=ready,
         key=keys.setdefault(key, len(keys)),
         digits_key=keys.setdefault((key, meanings), len(keys)),
+        is_composed=bool(variables) and ready is not None and ready.quantity is None,
     )
 
 
