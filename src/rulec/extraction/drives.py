@@ -328,7 +328,8 @@ class Drives:
         rows = np.flatnonzero(np.logical_or.reduce(reached))
         near = near_road(tracks, road, (rows, columns), limits, step_s)
         near[np.searchsorted(rows, [row for row, _ in egos])] = True
-        if np.count_nonzero(near) >= MOST_OF_ALL * tracks.present.size:
+        n_near = np.count_nonzero(near & tracks.present[rows, columns])
+        if n_near >= MOST_OF_ALL * np.count_nonzero(tracks.present):
             return self.places_of(road, np.arange(len(tracks.participants)))
         is_near = near.any(axis=1)
         rows, near = rows[is_near], near[is_near]
