@@ -114,9 +114,10 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     slips = np.maximum(_slips(poses, steps, step_s), _seams(poses, step_s))
     slips = np.where(poses.steers[:, None], slips, 0.0)
     off = slips.any(axis=1)
-    error[off] += np.where(
-        single[off], 0.0, _most_around(slips[off], window.reach + steps) / seconds[off]
-    )
+    if off.any():
+        error[off] += np.where(
+            single[off], 0.0, _most_around(slips[off], window.reach + steps) / seconds[off]
+        )
     error = np.where(own[:, None], known.stated_mps or 0.0, error)
     gained_error = np.hypot(*window.of(error)) / apart
     return Motion(

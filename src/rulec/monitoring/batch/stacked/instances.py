@@ -102,6 +102,9 @@ class Instances:
         return bounds, Spots(states, cells)
 
 
+_NO_INSTANCES = Instances(_NONE, (), _NONE, _NONE)
+
+
 def numbers_at(
     rule: StackedRule, reader: StackReader, spots: Spots | None, variables: Sequence[str] = ()
 ) -> list[Numbers]:
@@ -120,7 +123,7 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
     """All choices that may not be kept, and perhaps others that are."""
     stack = reader.stack
     if rule.does_nothing([reader.digits(read) for read in rule.reads]):
-        return Instances(_NONE, (_NONE,) * len(rule.variables), _NONE, _NONE)
+        return _NO_INSTANCES
     # To count takes longest, and is seldom needed to see that nothing happens
     if rule.counts_everywhere:
         uncounted = [
@@ -128,11 +131,11 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
             for read in rule.reads
         ]
         if not _are_busy(rule, rule.letters.numbers(uncounted)).any():
-            return Instances(_NONE, (_NONE,) * len(rule.variables), _NONE, _NONE)
+            return _NO_INSTANCES
     every = rule.letters.numbers(numbers_at(rule, reader, None))
     busy = _are_busy(rule, every)
     if not busy.any():
-        return Instances(_NONE, (_NONE,) * len(rule.variables), _NONE, _NONE)
+        return _NO_INSTANCES
     if not rule.variables:
         traces = np.flatnonzero(~rule.are_surely_kept(every, stack.begins[:-1]))
         firsts, lasts = stack.begins[traces], stack.begins[traces + 1] - 1

@@ -104,7 +104,7 @@ class MetValues:
         return found
 
     def _known_signals(self) -> Iterator[tuple[list[str], list[StackColumn]]]:
-        """The columns of signals in which all is known, as many together as may be, with their names."""
+        """The names and columns of signals of which all is known, as many together as may be."""
         declarations = self._stack.vocabulary.declarations
         groups: dict[int | str, tuple[list[str], list[StackColumn]]] = {}
         for name in self._stack.said:

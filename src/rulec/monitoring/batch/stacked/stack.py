@@ -6,7 +6,7 @@ stands in *cells*, one for each state in which an object is there, object by obj
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence, Set
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite
@@ -184,9 +184,7 @@ class Stack:
 
     @cached_property
     def _flagged(self) -> tuple[set[str], set[str]]:
-        """The names of which something is unknown, or absent, if all is in one piece."""
-        if len(self._pieces) != 1:
-            return set(), set()
+        """The names of which something is unknown, or absent, in the only piece."""
         (piece,) = self._pieces
         return _names(piece.unknown, np.any), _names(piece.absent, np.any)
 
@@ -210,9 +208,7 @@ class Stack:
         if declaration is None or len(declaration.parameters) != is_about:
             raise UnencodableError
         parts = [piece.about[name] if is_about else piece.world[name] for piece in self._pieces]
-        dark, absent = self._flagged
-        unknown = _joined(name, [piece.unknown for piece in self._pieces], parts, dark)
-        unsaid = _joined(name, [piece.absent for piece in self._pieces], parts, absent)
+        unknown, unsaid = self._unknown_and_unsaid(name, parts)
         if is_about:
             unsaid = _either(unsaid, self._not_about(name, declaration))
         upper = None
@@ -243,6 +239,20 @@ class Stack:
             upper = None if upper is None else np.where(unfit, values, upper)
         column = StackColumn(values, upper, unknown, None)
         return column if unsaid is None else self._with_default(name, column, unsaid)
+
+    def _unknown_and_unsaid(
+        self, name: str, parts: Sequence[Array]
+    ) -> tuple[Flags | None, Flags | None]:
+        if len(self._pieces) == 1:
+            (piece,), (dark, absent) = self._pieces, self._flagged
+            return (
+                piece.unknown[name] if name in dark else None,
+                piece.absent[name] if name in absent else None,
+            )
+        return (
+            _joined(name, [piece.unknown for piece in self._pieces], parts),
+            _joined(name, [piece.absent for piece in self._pieces], parts),
+        )
 
     def _with_default(self, name: str, column: StackColumn, unsaid: Flags) -> StackColumn:
         """The column with the default where nothing is said."""
@@ -311,11 +321,9 @@ class Stack:
 
 
 def _joined(
-    name: str, flags: Sequence[Mapping[str, Flags]], parts: Sequence[Array], flagged: Set[str]
+    name: str, flags: Sequence[Mapping[str, Flags]], parts: Sequence[Array]
 ) -> Flags | None:
-    """The flags of all pieces, None if there are none; ``flagged`` are the names in one alone."""
-    if len(flags) == 1:
-        return flags[0][name] if name in flagged else None
+    """The flags of all pieces, None if there are none."""
     if not any(name in own for own in flags):
         return None
     nowhere = [np.zeros(len(part), dtype=bool) for part in parts]

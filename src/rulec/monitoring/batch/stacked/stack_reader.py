@@ -121,8 +121,9 @@ class StackReader:
 
     def _digits_met(self, read: StackedRead) -> int:
         if read.count is not None:
-            is_none = bool(self.met_values.truth_anywhere(read.count.body).false)
-            return 1 << read.read.digit(Fraction(0)) if is_none else read.every
+            assert isinstance(read.read, NumberRead), "it counts"
+            is_nobody = bool(self.met_values.truth_anywhere(read.count.body).false)
+            return 1 << read.read.digit(Fraction(0)) if is_nobody else read.every
         if len(read.names) > 1:
             return read.every
         (name,) = read.names

@@ -141,6 +141,7 @@ class StackedRule:
         self.is_simple = _is_simple(self)
         self._busy_flags: NDArray[np.bool_] = np.zeros(0, dtype=bool)
         self._class_bits: NDArray[np.uint64] = np.zeros(0, dtype=np.uint64)
+        self._fit_bits = machine.machine.n_classes <= _MOST_BITS
         self.letters = self._no_letters()
         self.words_together = WordsTogether(machine.monitor, self.letters)
         self._answers: dict[bytes, Answer] = {}
@@ -221,7 +222,7 @@ class StackedRule:
         if not isinstance(letters, np.ndarray):
             classes = self.letters.sets[letters]
             return np.full(len(begins), self.machine.is_surely_kept(classes, classes))
-        if self.machine.machine.n_classes > _MOST_BITS:
+        if not self._fit_bits:
             return ~np.logical_or.reduceat(self.busy_flags().take(letters), begins)
         known = len(self._class_bits)
         more = [classes or _NO_CLASS for classes in self.letters.sets[known:]]

@@ -78,21 +78,19 @@ class LetterSets:
 
     def numbers(self, columns: Sequence[Numbers]) -> Numbers:
         """The number of each letter, for columns of the reads' numbers, or one for all."""
-        numbers: list[Numbers] = []
-        given: list[int | None] = []
+        numbers = list(columns)
         varying: list[tuple[int, NDArray[np.intp]]] = []
         width, n_letters = 1, 1
-        for read, own in enumerate(columns):
-            if isinstance(own, np.ndarray):
+        for read, own in enumerate(numbers):
+            if isinstance(own, int):
+                continue
+            if own.ndim:
+                width *= len(self._meanings[read])
+                n_letters = len(own)
+                varying.append((read, own))
+            else:
                 # One number for all letters may be in an array without an axis, too
-                if own.ndim:
-                    width *= len(self._meanings[read])
-                    n_letters = len(own)
-                    varying.append((read, own))
-                else:
-                    own = own.item()
-            numbers.append(own)
-            given.append(None if isinstance(own, np.ndarray) else own)
+                numbers[read] = own.item()
         if width > MOST_CODES or width > max(_FEW_CODES, n_letters):
             return self._one_by_one(numbers)
         codes: Numbers = 0
@@ -102,6 +100,7 @@ class LetterSets:
             else:
                 codes *= np.uint16(len(self._meanings[read]))
                 np.add(codes, column, out=codes, casting="unsafe")
+        given: list[int | None] = [own if isinstance(own, int) else None for own in numbers]
         key = tuple(given)
         table = self._together.get(key)
         if table is None:
