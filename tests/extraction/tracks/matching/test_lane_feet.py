@@ -4,8 +4,15 @@ import numpy as np
 import pytest
 import shapely
 
-from rulec.extraction.tracks.matching.lane_candidates import feet_on, leading_on
+from rulec.extraction.tracks.matching.lane_candidates import (
+    NEAR_M,
+    are_near,
+    feet_on,
+    leading_on,
+)
 from rulec.scenario.recorded.reference_line import turn
+from rulec.scenario.recorded.route import lanelet_area
+from support.builders.recordings import lanelet
 
 
 def winding(random, n):
@@ -61,3 +68,19 @@ def test_who_leads_on_somewhere_is_not_left_out(shape):
         assert leading[fits].all()
         left_out += int((~leading).sum())
     assert left_out
+
+
+@pytest.mark.parametrize("shape", [winding, along_x, round_a_circle])
+@pytest.mark.parametrize("width", [0.2, 2.0, 3.5, 12.0])
+def test_who_is_near_a_lane_is_as_near_as_shapely_says(shape, width):
+    random = np.random.default_rng(13)
+    near = 0
+    for far in (1.0, 3.0, 6.0) * 20:
+        line = shape(random, int(random.integers(2, 12)))
+        lane = lanelet(1, line, width)
+        area = lanelet_area(lane)
+        x, y = (line[random.integers(0, len(line), 50)] + random.normal(size=(50, 2)) * far).T
+        told = shapely.dwithin(area, shapely.points(x, y), NEAR_M)
+        assert (are_near(lane, area, x, y) == told).all()
+        near += int(told.sum())
+    assert 0 < near < 60 * 50

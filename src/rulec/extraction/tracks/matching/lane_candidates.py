@@ -87,7 +87,7 @@ def candidates(graph: LaneletGraph, tracks: Tracks) -> LaneCandidates:
         if len(own):
             own = own[leading_on(lanes[number].centre, headings[own])]
             own = own[_beside(lanes[number], areas[number], x[own], y[own])]
-            own = own[_are_near(lanes[number], areas[number], x[own], y[own])]
+            own = own[are_near(lanes[number], areas[number], x[own], y[own])]
         if len(own):
             near[number] = own
     if not near:
@@ -156,7 +156,7 @@ def _beside(lanelet: Lanelet, area: shapely.Polygon, x: Floats, y: Floats) -> Fl
     return beside
 
 
-def _are_near(lanelet: Lanelet, area: shapely.Polygon, x: Floats, y: Floats) -> Flags:
+def are_near(lanelet: Lanelet, area: shapely.Polygon, x: Floats, y: Floats) -> Flags:
     """Flags of places within ``NEAR_M`` of a lanelet's area.
 
     Most are in it, or are so if they move a little sideways, which takes a tenth as long to tell.
