@@ -91,24 +91,33 @@ class EndToEnd:
 
     def latest(self, flags: _Flags) -> _Columns:
         """The last state up to each in which a flag holds; the one before the drive for none."""
-        if self.n_drives == 1:
-            return np.maximum.accumulate(np.where(flags, self.columns, -1), axis=-1)
-        return np.maximum.accumulate(
-            np.where(flags, self.columns, np.where(self.begins_here, self.columns - 1, -1)), axis=-1
-        )
+        # What is between two flags is sooner laid out than found state by state
+        edges = np.concatenate(((-1,), np.flatnonzero(flags), (flags.size,)))
+        lengths = edges[1:] - edges[:-1]
+        lengths[0] -= 1
+        found = self._in_rows(np.repeat(edges[:-1], lengths), flags)
+        return np.maximum(found, self.first - 1, out=found)
 
     def next_state(self, flags: _Flags, beyond: int = 0) -> _Columns:
         """The first state from each on in which a flag holds.
 
         For none it is the one behind the drive, and so many ``beyond``.
         """
-        never = self.n_states + beyond
-        if self.n_drives == 1:
-            states = np.where(flags, self.columns, never)
-            return np.minimum.accumulate(states[..., ::-1], axis=-1)[..., ::-1]
-        states = np.where(flags, self.columns, never)
-        found = np.minimum.accumulate(states[..., ::-1], axis=-1)[..., ::-1]
-        return np.where(found < self.end, found, self.end + beyond)
+        edges = np.concatenate(((-1,), np.flatnonzero(flags), (flags.size - 1,)))
+        lengths = edges[1:] - edges[:-1]
+        # Behind the last flag none is before any end
+        edges[-1] += self.n_states + 1
+        found = self._in_rows(np.repeat(edges[1:], lengths), flags)
+        if beyond:
+            return np.where(found < self.end, found, self.end + beyond)
+        return np.minimum(found, self.end, out=found)
+
+    def _in_rows(self, places: NDArray[intp], flags: _Flags) -> _Columns:
+        """Columns in each row, of places in all rows laid flat."""
+        if flags.ndim == 1:
+            return places
+        begins = np.arange(0, flags.size, self.n_states).reshape(*flags.shape[:-1], 1)
+        return places.reshape(flags.shape) - begins
 
     def within(self, flags: _Flags, steps: int, *, around: bool = False) -> _Flags:
         """Flags that hold at a state or at most ``steps`` states later, or also earlier."""
