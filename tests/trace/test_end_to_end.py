@@ -52,6 +52,9 @@ def test_states_are_those_of_each_drive(several, n):
     )
     assert (spans.latest(row) - spans.first).tolist() == latest
     assert (spans.next_state(row, n) - spans.first).tolist() == following
+    rows = np.stack((row, ~row))
+    for found_of in (spans.latest, spans.next_state):
+        assert found_of(rows).tolist() == [found_of(own).tolist() for own in rows]
 
 
 def test_by_hand():

@@ -86,18 +86,6 @@ def in_order(groups: NDArray[np.intp]) -> NDArray[np.intp]:
     return np.argsort(numbers, kind="stable")
 
 
-def sorted_in(groups: NDArray[np.intp], values: NDArray[np.float64]) -> NDArray[np.intp]:
-    """The order by groups, and by values in each of them; equal ones stay in theirs."""
-    order, begins, rows = _in_rows(groups, values)
-    if rows is None:
-        return np.lexsort((values, groups))
-    within = np.argsort(rows, axis=1, kind="stable")
-    sizes = _sizes(begins, len(order))
-    there = np.arange(rows.shape[1]) < sizes[:, None]
-    own: NDArray[np.intp] = order[(within + begins[:, None])[there]]
-    return own
-
-
 def medians(
     groups: NDArray[np.intp], values: NDArray[np.float64], count: int
 ) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
