@@ -274,6 +274,9 @@ def _at_bound(left_of: Floats, bound: NDArray[intp]) -> Floats:
     is_new = of_column[1:] != of_column[:-1]
     if not is_new.any():
         return left_of[:, :, int(of_column[0])]
+    if rows == 1:
+        places = of_column * columns + np.arange(columns)
+        return np.moveaxis(left_of, -1, 0).ravel().take(places)[None]
     changes = (is_new.nonzero()[0] + 1).tolist()
     starts, ends = [0, *changes], [*changes, columns]
     parts = [
