@@ -96,6 +96,20 @@ def test_who_stands_before_a_line_behind_which_its_way_turns_round():
     assert not junction_signals(stands).world["crosses_stop_line"].any()
 
 
+def test_a_line_before_a_junction_in_which_no_way_crosses():
+    """Two roads meet in a corner: the line is not as far away as where others join the road."""
+    lanes = road(None, ["STOP"])
+    lanes[2] = straight(3, 120, 130, predecessors=(2,), successors=(4,))
+    inside = {"types": INSIDE, "junction": "z"}
+    lanes += [
+        straight(4, 130, 150, predecessors=(3,), successors=(5,), **inside),
+        straight(5, 150, 300, predecessors=(4,)),
+        lanelet(6, [(135, -30), (135, 30)], **inside),
+    ]
+    ego = context(lanes, 90, 96, 99, 110, route=("1", "2", "3", "4", "5"))
+    assert stop_line(ego, 0, 0) == pytest.approx((100.0, 100.3), abs=0.05)
+
+
 @pytest.mark.parametrize(
     ("xs", "unknown"),
     [

@@ -76,7 +76,7 @@ def stop_line(context: DriveContext, piece: int, lane: int) -> tuple[float, floa
 
     Who is beyond a line by less than ``touching_m`` stands at it. Where the map has no line it is
     somewhere between the lanelet's end and the first place in the junction beyond where other ways
-    cross or join ego's.
+    cross or join ego's; no farther than where that junction ends.
     """
     lanelet, road = context.road.lanelet(piece, lane), context.road
     end, touching = float(road.borders[piece + 1]), context.thresholds.touching_m
@@ -85,13 +85,15 @@ def stop_line(context: DriveContext, piece: int, lane: int) -> tuple[float, floa
         if abs(place - end) <= _LINE_REACH_M:
             return place, place + touching
     begins, passages = 0.0, context.surroundings.passages
+    ends = [high for low, high in road.junctions if low <= end + _LINE_REACH_M and high > end]
+    edge = None
     for further in range(piece + 1, len(road.rows)):
-        edge = passages.first_meeting(road.lanelet(further, lane).id)
         begins = float(road.borders[further])
+        if ends and begins >= ends[0]:
+            break  # no way crosses in that junction, as where two roads meet in a corner
+        edge = passages.first_meeting(road.lanelet(further, lane).id)
         if edge is not None or begins - end > _LINE_REACH_M:
             break
-    else:
-        edge = None
     if edge is None:
         return end, end + touching
     return end, max(min(begins + edge, end + _LINE_REACH_M), end + touching)
