@@ -83,7 +83,8 @@ def test_amber_lights_whose_line_may_be_where_ego_could_not_stop(drawn, xs, unkn
     ]
 
 
-def test_who_stands_before_a_line_behind_which_its_way_turns_round():
+@pytest.mark.parametrize(("kind", "length", "width"), [("car", 4, 2), ("truck", 7.1, 2.4)])
+def test_who_stands_before_a_line_behind_which_its_way_turns_round(kind, length, width):
     """Its front is at the line; a corner is nearest to a place farther round the bend."""
     back = [(100, 0), (101, 0.8), (101.2, 2), (101, 3.2), (100, 4)]
     lanes = [
@@ -91,7 +92,9 @@ def test_who_stands_before_a_line_behind_which_its_way_turns_round():
         lanelet(2, back, predecessors=(1,), successors=(3,), types=INSIDE, junction="x"),
         lanelet(3, [(100, 4), (0, 4)], predecessors=(2,)),
     ]
-    stands = context(lanes, 90, 94, 97.8, 97.8)
+    places = {k: (front - length / 2, 0) for k, front in enumerate((92, 96, 99.8, 99.9))}
+    ego = vehicle(7, places, kind, length=length, width=width)
+    stands = context_of(recording(lanes, [ego]), ("1", "2", "3"))
     assert stands.ego_extents.s_max[0, -1] > stop_line(stands, 0, 0)[1]
     assert not junction_signals(stands).world["crosses_stop_line"].any()
 

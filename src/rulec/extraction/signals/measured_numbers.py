@@ -24,6 +24,9 @@ _ALIKE = 0.17
 _SURELY_ALIKE_RAD = 1.39
 """An angle that is less than that; cosines take long."""
 
+_CORNER_M = 0.2
+"""How far a corner reaches along the road beyond the middle of the front before that matters."""
+
 _AT_LIMIT_MPS = 0.01
 """Limits are written to a hundredth: a simulated speed so near to one is at it."""
 
@@ -170,6 +173,18 @@ def own_front(context: DriveContext) -> Floats:
     lengths = context.spans.spread(context.own.passages.lengths[context.ego.rows])
     own = context.ego_extents
     front: Floats = np.minimum(own.s_max[0], own.s[0] + lengths / 2)
+    # Where a corner reaches that far, the middle is looked for by itself
+    (far,) = np.nonzero(own.s_max[0] - own.s_min[0] > lengths + _CORNER_M)
+    half, heading = lengths[far] / 2, context.ego.heading[0, far]
+    middles = np.stack(
+        (
+            context.ego.x[0, far] + half * np.cos(heading),
+            context.ego.y[0, far] + half * np.sin(heading),
+        ),
+        axis=-1,
+    )
+    found = context.road.line.coordinates_near(middles, own.s[0, far], lengths[far])[:, 0]
+    front[far] = np.fmin(front[far], found)
     return front
 
 
