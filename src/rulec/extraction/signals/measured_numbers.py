@@ -15,6 +15,8 @@ from rulec.extraction.signals.signal_columns import Bounds, rounded_outward
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.cells import Cells
 
+from rulec.scenario.recorded.reference_line import turn
+
 LONGEST_S = 1000.0
 """The longest headway (s), also that of an ego that stands."""
 
@@ -26,6 +28,9 @@ _SURELY_ALIKE_RAD = 1.39
 
 _CORNER_M = 0.2
 """How far a corner reaches along the road beyond the middle of the front before that matters."""
+
+_STRAIGHT_RAD = 0.1
+"""The angle to the road behind its rear up to which ego has not begun to turn."""
 
 _AT_LIMIT_MPS = 0.01
 """Limits are written to a hundredth: a simulated speed so near to one is at it."""
@@ -173,8 +178,10 @@ def own_front(context: DriveContext) -> Floats:
     lengths = context.spans.spread(context.own.passages.lengths[context.ego.rows])
     own = context.ego_extents
     front: Floats = np.minimum(own.s_max[0], own.s[0] + lengths / 2)
-    # Where a corner reaches that far, the middle is looked for by itself
+    # Where it has not begun to turn, but the road ahead has, the middle is looked for by itself
     (far,) = np.nonzero(own.s_max[0] - own.s_min[0] > lengths + _CORNER_M)
+    behind = context.road.line.headings_at(own.s_min[0, far])
+    far = far[np.abs(turn(behind, context.ego.heading[0, far])) < _STRAIGHT_RAD]
     half, heading = lengths[far] / 2, context.ego.heading[0, far]
     middles = np.stack(
         (
