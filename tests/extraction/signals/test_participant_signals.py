@@ -207,20 +207,6 @@ def test_oncoming_moves_against_ego_or_waits_beside_its_lanes():
     waiting = {"speed": -0.01, "heading": float(np.pi)}
     # On ego's own lanes one that stands the wrong way round is an obstacle
     assert not about(steady(8, 60, 4, **waiting))["oncoming"]
-    # One that has come on another road waits in a junction for its turn: nobody follows it
-    elsewhere = np.array([[False] * 4, [True] * 4])
-    ego, turning = steady(7, 0, 0, speed=10), steady(8, 60, 0, **waiting)
-    comes = steady(8, 65, 0, speed=-10, steps=2)
-    turning = replace(
-        turning,
-        states={**turning.states, **comes.states},
-        outlines={**turning.outlines, **comes.outlines},
-    )
-    junction = participant_signals(
-        context_of(recording(lanes(2), [ego, turning]), elsewhere=elsewhere)
-    )
-    assert junction.about["oncoming"].all()
-    assert not junction.about["precedes"].any()
     # It has moved at some time, so that it is relevant beside the road
     places = steady(8, 60, 8, speed=-5, steps=3)
     stopped = steady(8, 40, 8, **waiting)
@@ -234,6 +220,25 @@ def test_oncoming_moves_against_ego_or_waits_beside_its_lanes():
     assert participant_signals(backs).about["oncoming"][0].all()
     # Reversing is not coming: it faces ego's way
     assert not about(steady(8, 60, 4, speed=-5, heading=0.0))["oncoming"]
+
+
+@pytest.mark.parametrize("kind", ["car", "bicycle"])
+def test_one_that_has_come_on_another_road_waits_for_its_turn(kind):
+    """It stands in a junction, facing ego: nobody follows it."""
+    elsewhere = np.array([[False] * 4, [True] * 4])
+    ego = steady(7, 0, 0, speed=10)
+    turning = steady(8, 60, 0, speed=-0.01, heading=float(np.pi), kind=kind)
+    comes = steady(8, 65, 0, speed=-10, steps=2)
+    turning = replace(
+        turning,
+        states={**turning.states, **comes.states},
+        outlines={**turning.outlines, **comes.outlines},
+    )
+    junction = participant_signals(
+        context_of(recording(lanes(2), [ego, turning]), elsewhere=elsewhere)
+    )
+    assert junction.about["oncoming"].all()
+    assert not junction.about["precedes"].any()
 
 
 def test_what_holds_for_good():

@@ -206,7 +206,7 @@ def _comes_towards(context: DriveContext) -> Flags:
 
 
 def _waits_elsewhere(context: DriveContext) -> Flags:
-    """Flags of vehicles that stand on lanes that are not of ego's way, in a queue for example.
+    """Flags of who drives or rides and stands on lanes not of ego's way, in a queue for example.
 
     Ego does not overtake those that face it, no more than ones that move, nor follow one that waits
     in a junction for its turn. What only stands there, the wrong way round, is an obstacle in ego's
@@ -214,9 +214,9 @@ def _waits_elsewhere(context: DriveContext) -> Flags:
     """
     along = context.extents.along
     stands = np.abs(along) * KMH < context.thresholds.standing_kmh
-    vehicles = context.tracks.of_type("vehicle")[:, None]
+    drivers = context.tracks.of_type("vehicle") | context.tracks.of_type("light_rider")
     moves_elsewhere = context.elsewhere & ~context.spans.all(stands)
-    waits: Flags = vehicles & (moves_elsewhere | ~context.on_lanes)
+    waits: Flags = drivers[:, None] & (moves_elsewhere | ~context.on_lanes)
     backs = Cells.at(waits & ~stands & (along > 0))
     waits &= stands
     waits.ravel()[backs.places] = np.cos(backs.of(context.extents.turned)) < -0.5
