@@ -65,6 +65,21 @@ def test_a_crossing_beside_ego_s_lane_is_another_road_s():
     assert (start, end) == (pytest.approx(120, abs=0.1), pytest.approx(160, abs=0.1))
 
 
+def test_a_crossing_that_a_road_meets_again_as_it_comes_back():
+    """A hundred metres on, beside itself: in between nobody is on the crossing."""
+    around = [(100, 0), (103, 3), (103, 7), (100, 10)]
+    lanes = [
+        straight(1, 0, 100, successors=(2,)),
+        lanelet(2, around, predecessors=(1,), successors=(3,)),
+        lanelet(3, [(100, 10), (0, 10)], predecessors=(2,)),
+    ]
+    zebra = lanelet(9, [(40, -5), (40, 15)], width=4, types=frozenset({"crosswalk"}))
+    out, back = road([*lanes, zebra], ("1", "2", "3")).crossings
+    assert out == pytest.approx((38, 42), abs=0.1)
+    round_m = road(lanes, ("1", "2", "3")).borders[2] - 100
+    assert back == pytest.approx((158 + round_m, 162 + round_m), abs=0.5)
+
+
 def test_a_road_without_lanes_is_refused():
     with pytest.raises(ValueError, match="no lane of the road is as wide as 1 m"):
         road([straight(1, 0, 100, width=0.5)], ("1",))

@@ -36,6 +36,9 @@ NARROWEST_LANE_M = 1.0
 TOUCHING_M = 0.3
 """Who reaches into a lane by less is not in it: positions are no better than that."""
 
+_WIDEST_M = 20.0
+"""How far apart along a road (m) two edges of one pedestrian crossing may be at most."""
+
 _NARROWEST_M = 0.1
 _BESIDE_LINE_M = 0.5
 _EDGE_EVERY_M = 0.5
@@ -326,7 +329,8 @@ def crossings_along(
 ) -> Iterator[tuple[float, float]]:
     """The stretches (``s``) that crosswalks take up on the lanes, within ``start`` and ``end``.
 
-    They lie across the line; one beside it is another road's, onto which a lane turns off.
+    They lie across the line; one beside it is another road's, onto which a lane turns off. A road
+    that turns round and comes back beside itself may meet one twice, far apart along it.
     """
     for lanelet in recording.lanelets.values():
         if "crosswalk" not in lanelet.types:
@@ -334,9 +338,12 @@ def crossings_along(
         outline = np.concatenate((lanelet.right, lanelet.left[::-1], lanelet.right[:1]))
         places = line.coordinates(densified(outline, _EDGE_EVERY_M))
         left_of = lanes.from_bounds(places)
-        on_road = places[(left_of[:, 0] > 0) & (left_of[:, -1] < 0), 0]
         across = places[:, 1].min() < _BESIDE_LINE_M and places[:, 1].max() > -_BESIDE_LINE_M
-        if across and len(on_road):
-            low, high = max(float(on_road.min()), start), min(float(on_road.max()), end)
+        on_road = np.sort(places[(left_of[:, 0] > 0) & (left_of[:, -1] < 0), 0])
+        if not across or not len(on_road):
+            continue
+        again = np.flatnonzero(np.diff(on_road) > _WIDEST_M) + 1
+        for met in np.split(on_road, again):
+            low, high = max(float(met[0]), start), min(float(met[-1]), end)
             if high - low >= _NARROWEST_M:
                 yield low, high
