@@ -99,15 +99,19 @@ def test_who_stands_before_a_line_behind_which_its_way_turns_round(kind, length,
     assert not junction_signals(stands).world["crosses_stop_line"].any()
 
 
-def test_a_line_before_a_junction_in_which_no_way_crosses():
+@pytest.mark.parametrize(("marked", "length"), [(True, 10), (False, 10 + 40)])
+def test_a_line_before_a_junction_in_which_no_way_crosses(marked, length):
     """Two roads meet in a corner: the line is not as far away as where others join the road."""
     lanes = road(None, ["STOP"])
-    lanes[2] = straight(3, 120, 130, predecessors=(2,), successors=(4,))
+    if not marked:
+        lanes[1] = replace(lanes[1], types=frozenset(), junction=None)
+    begins = 120 + length
+    lanes[2] = straight(3, 120, begins, predecessors=(2,), successors=(4,))
     inside = {"types": INSIDE, "junction": "z"}
     lanes += [
-        straight(4, 130, 150, predecessors=(3,), successors=(5,), **inside),
-        straight(5, 150, 300, predecessors=(4,)),
-        lanelet(6, [(135, -30), (135, 30)], **inside),
+        straight(4, begins, begins + 20, predecessors=(3,), successors=(5,), **inside),
+        straight(5, begins + 20, 300, predecessors=(4,)),
+        lanelet(6, [(begins + 5, -30), (begins + 5, 30)], **inside),
     ]
     ego = context(lanes, 90, 96, 99, 110, route=("1", "2", "3", "4", "5"))
     assert stop_line(ego, 0, 0) == pytest.approx((100.0, 100.3), abs=0.05)

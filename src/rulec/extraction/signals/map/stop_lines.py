@@ -76,7 +76,7 @@ def stop_line(context: DriveContext, piece: int, lane: int) -> tuple[float, floa
 
     Who is beyond a line by less than ``touching_m`` stands at it. Where the map has no line it is
     somewhere between the lanelet's end and the first place in the junction beyond where other ways
-    cross or join ego's; no farther than where that junction ends.
+    cross or join ego's, if they do before that junction ends and within ``_LINE_REACH_M``.
     """
     lanelet, road = context.road.lanelet(piece, lane), context.road
     end, touching = float(road.borders[piece + 1]), context.thresholds.touching_m
@@ -89,10 +89,10 @@ def stop_line(context: DriveContext, piece: int, lane: int) -> tuple[float, floa
     edge = None
     for further in range(piece + 1, len(road.rows)):
         begins = float(road.borders[further])
-        if ends and begins >= ends[0]:
-            break  # no way crosses in that junction, as where two roads meet in a corner
+        if begins - end > _LINE_REACH_M or (ends and begins >= ends[0]):
+            break  # no way crosses there, as where two roads meet in a corner
         edge = passages.first_meeting(road.lanelet(further, lane).id)
-        if edge is not None or begins - end > _LINE_REACH_M:
+        if edge is not None:
             break
     if edge is None:
         return end, end + touching
