@@ -425,6 +425,22 @@ def test_who_turns_across_the_way_of_a_rider_beside_it():
     assert "?" not in turns_before(75, 5)
 
 
+def test_who_rides_behind_one_that_turns_back_is_not_beside_it():
+    """Ego has turned by 7° when it is first seen in the junction: to that, 25 m behind is aside."""
+    turn = [(x, y) for x, y, _ in arc(100, 4, 4, -90, 30)]
+    back = turn[-1][0] - 100, turn[-1][1] + 173
+    lanes = [
+        straight(1, 0, 100, successors=(3,)),
+        lanelet(3, turn, predecessors=(1,), successors=(5,), **INSIDE),
+        lanelet(5, [turn[-1], back], predecessors=(3,)),
+        lanelet(6, [(110, -20), (110, 30)], **INSIDE),
+    ]
+    ego = along(7, np.array([(0, 0), *turn, back]), 96.5 + np.arange(40))
+    rider = steady(8, 70, 0, 5, 40, kind="bicycle", length=1.8, width=0.6)
+    route = ("1", "3", "5")
+    assert set(told(turning_conflicts, "turns_in_way_of", lanes, ego, rider, route=route)) == {"F"}
+
+
 @pytest.mark.parametrize(
     ("start", "mps", "more"),
     [

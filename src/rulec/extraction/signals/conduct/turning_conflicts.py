@@ -1,9 +1,9 @@
 """The signal of who goes straight on beside a turning ego, and is in conflict with it there.
 
-In the frame of the direction in which ego comes to the junction: ego's body is across the other
-one's line while it drives over it. That one is in conflict with ego if ego gets there first though
-the other one would be there, as fast as it was, less than ``yielding_s`` after ego has left, and
-does come less than ``held_up_s`` after it, as at junctions' crossing ways.
+In the frame of the direction in which ego comes to the junction, before it begins to turn: ego's
+body is across the other one's line while it drives over it. That one is in conflict with ego if ego
+gets there first though the other one would be there, as fast as it was, less than ``yielding_s``
+after ego has left, and does come less than ``held_up_s`` after it, as at junctions' crossing ways.
 """
 
 from __future__ import annotations
@@ -63,17 +63,18 @@ def _conflict(
         return None
     came = _came(context, own, begin)
     origin = float(tracks.x[own.row, came]), float(tracks.y[own.row, came])
-    along, left = _in_frame(context, row, origin, own.heading)
-    angle = np.angle(np.exp(1j * (tracks.heading[row] - own.heading)))
+    heading = float(tracks.heading[own.row, came])
+    along, left = _in_frame(context, row, origin, heading)
+    angle = np.angle(np.exp(1j * (tracks.heading[row] - heading)))
     # Clear of ego's way before it turned: who follows it is behind it
-    to_right, to_left = _clear(context, (own.row, came), (row, begin), origin, own.heading)
+    to_right, to_left = _clear(context, (own.row, came), (row, begin), origin, heading)
     clear = to_left if towards > 0 else to_right
-    behind = float(_in_frame(context, own.row, origin, own.heading)[0][begin] - along[begin])
+    behind = float(_in_frame(context, own.row, origin, heading)[0][begin] - along[begin])
     half = float(passages.lengths[own.row]) / 2
     beside = place < clear <= _ASIDE_M and -half <= behind <= _BEHIND_M
     if not beside or abs(float(angle[begin])) > _STRAIGHT_RAD:
         return None
-    crosses = _crossed(context, own, begin, origin, float(left[begin]))
+    crosses = _crossed(context, own, begin, (*origin, heading), float(left[begin]))
     if crosses is None:
         return None
     enters, leaves, low, high = crosses
@@ -126,11 +127,15 @@ def _clear(
 
 
 def _crossed(
-    context: DriveContext, own: Passage, begin: int, origin: tuple[float, float], line: float
+    context: DriveContext, own: Passage, begin: int, frame: tuple[float, float, float], line: float
 ) -> tuple[int, int, float, float] | None:
-    """From which column to which ego's body is across a line along its old way, and where (m)."""
+    """From which column to which ego's body is across a line along its old way, and where (m).
+
+    ``frame``: x and y of where it came from, and its heading there.
+    """
     tracks = context.surroundings.passages.tracks
-    cos, sin = np.cos(own.heading), np.sin(own.heading)
+    *origin, heading = frame
+    cos, sin = np.cos(heading), np.sin(heading)
     columns, lows, highs = [], [], []
     outlines = tracks.participants[own.row].outlines
     for column in np.flatnonzero(tracks.present[own.row, begin:]) + begin:
