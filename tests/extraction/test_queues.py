@@ -37,3 +37,34 @@ def queue_on_the_left(gaps, mps=0.0):
 )
 def test_most_of_the_gaps_are_short(gaps, mps, queue):
     assert queue_on_the_left(gaps, mps) is queue
+
+
+@pytest.mark.parametrize("on_main", [0, 3], ids=["free lanes", "queues on all"])
+def test_the_lanes_of_the_road_that_ego_joins_do_not_begin_there(on_main):
+    """From a ramp ego gets beside three lanes that come from elsewhere: all of them count."""
+    lanes = [
+        straight(1, -150, 0, successors=(2,)),
+        straight(2, 0, 200, predecessors=(1,), left_of=12),
+    ]
+    for k in (1, 2, 3):
+        more = {} if k == 3 else {"left_of": 10 * k + 12}
+        before = {"right_of": 10 * k - 9} if k > 1 else {}
+        further = {} if k == 3 else {"left_of": 10 * k + 11}
+        y = 4.0 * k
+        lanes.append(
+            straight(10 * k + 1, -300, 0, y=y, successors=(10 * k + 2,), **before, **further)
+        )
+        lanes.append(
+            straight(
+                10 * k + 2, 0, 400, y=y, predecessors=(10 * k + 1,), right_of=10 * k - 8, **more
+            )
+        )
+    bodies = (
+        [(10.0 * j, 4.0) for j in (2, 3, 4)] + [(3.0, 4.0)] + [(10.0 * j, 0.0) for j in range(1, 4)]
+    )
+    bodies += [(10.0 * j, y) for y in (8.0, 12.0) for j in range(on_main)]
+    places = [[(-30, 0), (0, 0), (10.0, 4.0), (10.0, 4.0)], *[[body] * 4 for body in bodies]]
+    cars = [vehicle(k, dict(enumerate(way))) for k, way in enumerate(places, 1)]
+    (drive,) = Drives(recording(lanes, cars), "right").of("1")
+    told = drive.trace.states[3]["dense_all_lanes"]
+    assert (told is False) is (on_main == 0)

@@ -1,10 +1,12 @@
 """When somebody is where ways through a junction meet."""
 
+import numpy as np
 import pytest
 
 from rulec.extraction.tracks.junction_passages import junction_passages
 from rulec.extraction.tracks.tracks import tracks_of
 from rulec.extraction.traffic_thresholds import USUAL
+from support.builders.drive_contexts import along
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
 INSIDE = {"junction": "j", "types": frozenset({"intersection"})}
@@ -37,3 +39,21 @@ def test_who_is_in_a_junction_after_its_way_has_ended(end):
     across = lanelet(2, [(6, -20), (6, 20)], width=12.0, **INSIDE)
     passages, passage = passage_of_a_car(straight(1, -12, end, **INSIDE), across)
     assert passages.occupied(passage, (9.0, 12.0)) == pytest.approx((2.0, 5.5))
+
+
+def test_the_direction_in_which_one_comes_that_turns_round_at_once():
+    """It has turned by 57° when its middle is in the junction; its front was there before that."""
+    angles = np.radians(np.arange(-90, 91, 15))
+    line = [(3 * np.cos(a), 3 + 3 * np.sin(a)) for a in angles]
+    ways = [
+        straight(1, -50, 0, successors=(2,)),
+        lanelet(2, line, predecessors=(1,), successors=(3,), **INSIDE),
+        lanelet(3, [(0, 6), (-50, 6)], predecessors=(2,)),
+        lanelet(4, [(2, -20), (2, 20)], **INSIDE),
+    ]
+    car = along(7, np.array([(-50, 0), *line, (-50, 6)]), 42.5 + 3.5 * np.arange(7))
+    found = recording(ways, [car])
+    passages = junction_passages(found, tracks_of(found, USUAL))
+    (passage,) = passages.of_row[0]
+    assert abs(passages.tracks.heading[0, passage.first]) > 0.5
+    assert passage.heading == pytest.approx(0.0, abs=0.01)

@@ -6,6 +6,7 @@ queue at ego's speed have room. A lane's vehicles are those whose middle is in i
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -19,6 +20,7 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import travel_lanes_first
 from rulec.extraction.signals.measured_numbers import joint_error
 from rulec.extraction.signals.signal_passes import once_a_road
+from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import medians_hold
@@ -72,10 +74,30 @@ def _lane_lengths(context: DriveContext) -> tuple[Floats, Floats]:
     """
     lanes = context.road.lanes
     only_others = np.any(lanes.there, axis=1, keepdims=True) & ~lanes.there
+    for nearer, lane in _other_roads(context.road):
+        only_others[nearer, lane] = False
     parts = np.diff(lanes.s)
     sums = (np.cumsum(where.T * parts, axis=1) for where in (lanes.there, only_others))
     there, without = (np.pad(rows, ((0, 0), (1, 0))) for rows in sums)
     return there, without
+
+
+def _other_roads(road: DrivenRoad) -> Iterator[tuple[slice, list[int]]]:
+    """The lanes of a road that ego's own joins, or leaves, and where in the lanes that is not yet.
+
+    They neither begin nor end there: more of them than of ego's go on beyond, on the map.
+    """
+    for piece, (before, after) in enumerate(pairwise(road.rows), 1):
+        border = int(np.searchsorted(road.lanes.s, road.borders[piece]))
+        both = [
+            one is not None and other is not None for one, other in zip(before, after, strict=True)
+        ]
+        come = [k for k, lane in enumerate(after) if lane and not before[k] and lane.predecessors]
+        leave = [k for k, lane in enumerate(before) if lane and not after[k] and lane.successors]
+        if len(come) > sum(both):
+            yield slice(border), come
+        if len(leave) > sum(both):
+            yield slice(border, None), leave
 
 
 def _length_near(context: DriveContext, lengths: Floats, reach_m: Floats) -> Floats:

@@ -44,7 +44,8 @@ class Passage:
     """A participant's passage of a junction, in columns ``first`` to ``last`` inclusive.
 
     ``way`` is the number of the way; ``sure`` is False if it may be another one. ``heading`` is the
-    direction (rad) in which it came. ``whole``: it was recorded on its way in and out.
+    direction (rad) in which it came, when its front got there: it may have turned by the time its
+    middle is in the junction. ``whole``: it was recorded on its way in and out.
     """
 
     row: int
@@ -326,6 +327,17 @@ def _touches(tracks: Tracks, row: int, columns: tuple[int, int]) -> bool:
     return float(np.hypot(np.diff(x), np.diff(y)).sum()) < _length(body.outlines, body.states) / 2
 
 
+def _came(tracks: Tracks, row: int, first: int) -> int:
+    """The column in which a participant was half its length before its place in another one."""
+    body, x, y = tracks.participants[row], tracks.x[row], tracks.y[row]
+    half, column = _length(body.outlines, body.states) / 2, first
+    while column > 0 and tracks.present[row, column - 1]:
+        if np.hypot(x[column] - x[first], y[column] - y[first]) >= half:
+            break
+        column -= 1
+    return column
+
+
 def _passage(
     ways: Sequence[JunctionWay], tracks: Tracks, row: int, columns: tuple[int, int], junction: int
 ) -> Passage | None:
@@ -354,6 +366,6 @@ def _passage(
         sure=sure,
         first=first,
         last=last,
-        heading=begins,
+        heading=float(tracks.heading[row, _came(tracks, row, first)]),
         whole=whole,
     )

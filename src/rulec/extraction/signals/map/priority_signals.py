@@ -289,8 +289,7 @@ def _kinds(context: DriveContext, own: Passage, other: Passage) -> tuple[str, ..
     if "rail_vehicle" in passages.tracks.participants[other.row].object_types:
         return (_RAIL,)
     way = passages.way(other)
-    angle = float(np.degrees(turn(own.heading, passages.tracks.heading[other.row, other.first])))
-    side = _side(angle)
+    side = _side(float(np.degrees(turn(own.heading, other.heading))))
     if not side or (side == _ONCOMING and not gives_way_to(context, own, other)):
         return ()
     own_way = passages.way(own)
