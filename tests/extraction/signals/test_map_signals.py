@@ -140,6 +140,14 @@ def test_a_lane_for_buses_that_cycles_may_use(kind, last):
     assert surfaces(ego, [LANES[0], shared]) == ["carriageway", last]
 
 
+@pytest.mark.parametrize(("front", "word"), [(41.5, "carriageway"), (43, "crossing")])
+def test_a_crossing_that_lies_askew_begins_later_at_one_edge_of_a_lane(front, word):
+    """It begins at x = 40 at the right edge, and at 42.2 where the cycle is."""
+    askew = lanelet(8, [(40, -6), (52, 14)], width=4, types=frozenset({"crosswalk"}))
+    ego = vehicle(7, dict.fromkeys(range(4), (front - 0.9, 1.5)), "bicycle", 1.8, 0.6)
+    assert surfaces(ego, [*LANES, askew]) == [word] * 4
+
+
 def surfaces(bodies, lanes, route=("1", "2")):
     found = map_signals(context_of(recording(lanes, [bodies]), route))
     unknown = found.unknown["surface"].tolist()

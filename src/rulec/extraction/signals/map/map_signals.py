@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Set
 
 import numpy as np
+import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
@@ -17,7 +18,7 @@ from rulec.extraction.signals.ego_lanelets import (
 )
 from rulec.extraction.signals.map.junction_signals import own_light
 from rulec.extraction.signals.map.stop_lines import stop_line
-from rulec.extraction.signals.measured_numbers import corner_ahead, own_front
+from rulec.extraction.signals.measured_numbers import corner_ahead, own_front, own_widths
 from rulec.extraction.signals.settling import only_when
 from rulec.extraction.signals.signal_columns import (
     SignalColumn,
@@ -26,9 +27,10 @@ from rulec.extraction.signals.signal_columns import (
     rounded,
     rounded_outward,
 )
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_passes import Passes, once_a_recording, signals_by
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import CROSSWALK, CYCLES_TOO, STOP_SIGNS, Lanelet
+from rulec.scenario.recorded.route import lanelet_area
 from rulec.trace.plain_arrays import distinct
 
 NO_LIMIT_KMH = 1000.0
@@ -42,6 +44,9 @@ _SIGNS: Mapping[str, tuple[Set[str], bool]] = {
     "no_turn_on_red_sign": ({"NO_TURN_ON_RED"}, True),
 }
 """Signal -> its signs, and whether they are for the line at the lanelet's end."""
+
+_CORNERS = ((1, 1), (1, -1), (-1, -1), (-1, 1))
+"""Those of a body, ahead and to the left of its middle."""
 
 _SIGN_REACH_M = 20.0
 """The junction whose ways a sign is about begins so near behind its line."""
@@ -239,15 +244,45 @@ def _below_middle(context: DriveContext, middle: Floats, lane: NDArray[intp]) ->
 
 
 def _on_crossing(context: DriveContext) -> tuple[Flags, Flags, Flags]:
-    """Flags of states in which a part of ego is on a crossing: as measured, surely and perhaps."""
+    """Flags of states in which a part of ego is on a crossing: as measured, surely and perhaps.
+
+    A crossing that lies askew begins farther along the road for one lane than for another: its area
+    decides where it is drawn there.
+    """
     own, place = context.ego_extents, context.tolerances.place_m
     front, rear = own.s_max[0], own.s_min[0]
     found = np.zeros((3, context.states), dtype=bool)
     for start, end in context.road.crossings:
         for flags, less in zip(found, (0.0, corner_ahead(context) + place, -place), strict=True):
             flags |= (front - less >= start) & (rear + less < end)
-    on_it, surely, perhaps = found
+    on_it, surely, perhaps = found & _meets_crossing(context, found.any(axis=0))
     return on_it, surely, perhaps
+
+
+def _meets_crossing(context: DriveContext, states: Flags) -> Flags:
+    """Flags of those of some states in which ego's body is on the area of a crossing, or may be."""
+    found = np.zeros(context.states, dtype=bool)
+    (there,) = np.nonzero(states)
+    if not len(there):
+        return found
+    ego, widths = context.ego, own_widths(context)[there] / 2
+    heading = ego.heading[0, there]
+    lengths = context.spans.spread(context.own.passages.lengths[ego.rows])[there] / 2
+    ahead = np.stack((np.cos(heading), np.sin(heading)), axis=-1)
+    left = np.stack((-ahead[:, 1], ahead[:, 0]), axis=-1) * widths[:, None]
+    ahead *= lengths[:, None]
+    middle = np.stack((ego.x[0, there], ego.y[0, there]), axis=-1)
+    corners = np.stack([middle + i * ahead + k * left for i, k in _CORNERS], axis=1)
+    away = shapely.distance(shapely.polygons(corners), _crossing_areas(context))
+    found[there] = away <= context.tolerances.place_m
+    return found
+
+
+@once_a_recording
+def _crossing_areas(context: DriveContext) -> shapely.Geometry:
+    """The area of all pedestrian crossings on the map."""
+    lanelets = context.recording.lanelets.values()
+    return shapely.union_all([lanelet_area(x) for x in lanelets if CROSSWALK in x.types])
 
 
 _PASSES: Passes = {
