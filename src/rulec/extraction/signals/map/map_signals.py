@@ -255,7 +255,8 @@ def _on_crossing(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     for start, end in context.road.crossings:
         for flags, less in zip(found, (0.0, corner_ahead(context) + place, -place), strict=True):
             flags |= (front - less >= start) & (rear + less < end)
-    on_it, surely, perhaps = found & _meets_crossing(context, found.any(axis=0))
+    at_one: Flags = found.any(axis=0)
+    on_it, surely, perhaps = found & _meets_crossing(context, at_one)
     return on_it, surely, perhaps
 
 
