@@ -267,6 +267,26 @@ def test_people_wait_at_the_outer_edges_of_lanes_which_are_at_2_m_and_6_m(y, tol
 
 
 @pytest.mark.parametrize(
+    ("kind", "types", "told"),
+    [
+        ("bicycle", {"bicycleLane"}, "?"),
+        ("bicycle", set(), "T"),
+        ("pedestrian", {"bicycleLane"}, "T"),
+    ],
+)
+def test_a_lane_for_cycles_alone_may_be_a_path_beside_the_road(kind, types, told):
+    both = [
+        straight(1, 0, 200, left_of=2, types=frozenset(types)),
+        straight(2, 0, 200, y=4, right_of=1),
+    ]
+    rider = steady(8, 30, 0, kind=kind, length=0.6, width=0.6)
+    ego = steady(7, 0, 4)
+    signals = participant_signals(context_of(recording(both, [ego, rider]), ("2",)))
+    unknown = signals.unknown["in_the_road"][0, 0]
+    assert told == ("?" if unknown else "FT"[int(signals.about["in_the_road"][0, 0])])
+
+
+@pytest.mark.parametrize(
     ("along", "across", "goes"), [(0, 1.5, True), (1, -1.5, True), (1.5, 1, False), (0, 0, False)]
 )
 def test_who_goes_across_the_road(along, across, goes):

@@ -9,7 +9,12 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.ego_lanelets import SHOULDER, lanes_of_type
+from rulec.extraction.signals.ego_lanelets import (
+    CYCLE_LANE,
+    SHOULDER,
+    lanes_of_type,
+    map_contents,
+)
 from rulec.extraction.signals.following_signals import keeps_safe_gap, may_part
 from rulec.extraction.signals.intention_signals import may_have_broken_down
 from rulec.extraction.signals.map.lanes_ahead import leads_elsewhere
@@ -329,7 +334,10 @@ def _constant(context: DriveContext, flags: list[bool]) -> Flags:
 
 
 def _in_the_road(context: DriveContext) -> SignalColumns:
-    """Whether people are on a lane; unknown at outermost edges of ego's, where they may wait."""
+    """Whether people are on a lane; unknown at outermost edges of ego's, where they may wait.
+
+    Unknown, too, of those who ride on a lane for cycles alone: it may be a path beside the road.
+    """
     unsure, users = np.zeros_like(context.relevant), context.tracks.of_type("vulnerable_user")
     if len(rows := np.flatnonzero(users)):
         error = context.tolerances.place_m + np.abs(context.map_offset_m)
@@ -338,6 +346,10 @@ def _in_the_road(context: DriveContext) -> SignalColumns:
         for edge in (lanes.argmax(axis=1), lanes.shape[1] - lanes[:, ::-1].argmax(axis=1)):
             low, high = others.from_bound(edge)
             unsure[rows] |= np.abs(low + high) / 2 <= least
+    if CYCLE_LANE in map_contents(context).types:
+        rides, others = context.tracks.of_type("light_rider")[:, None], context.extents
+        lanes = lanes_of_type(context.road, CYCLE_LANE)
+        unsure |= rides & lanes[context.road.piece(np.nan_to_num(others.s)), others.lane]
     return SignalColumns(
         about={"in_the_road": context.tracks.on_lane},
         only={"in_the_road": users},
