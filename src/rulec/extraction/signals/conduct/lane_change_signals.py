@@ -41,6 +41,8 @@ _JUST_STOOD_S = 1.0
 _FORK_M = 15.0
 """So far behind where a lane has forked its ways lie over each other."""
 
+_HAIR_M = 0.01
+
 
 def lane_change_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
     """The signals of ego's lane changes, those of the names."""
@@ -253,8 +255,9 @@ def _disturbed(context: DriveContext, states: NDArray[intp]) -> tuple[Flags, Fla
     """Flags of the vehicles in ego's lane that must brake for ego, in these states, and perhaps so.
 
     One beside ego has to, and one behind it that would have to brake harder than
-    ``disturbing_mps2`` after its reaction time not to run into it. Perhaps those whose lane forks
-    in between, of whom nobody knows whether they come into ego's.
+    ``disturbing_mps2`` after its reaction time not to run into it, but for who has to brake as hard
+    for one in between. Perhaps those whose lane forks in between, of whom nobody knows whether they
+    come into ego's.
     """
     limits = context.thresholds
     station, gap = relations.station(context)[:, states], relations.gap(context)[:, states]
@@ -263,6 +266,7 @@ def _disturbed(context: DriveContext, states: NDArray[intp]) -> tuple[Flags, Fla
     braking_distance = gap - faster * limits.reaction_s
     too_near = faster**2 > 2 * limits.disturbing_mps2 * np.maximum(braking_distance, 0.0)
     behind = (station == relations.IN_FRONT_OF) & too_near
+    behind &= ~_brakes_for_another(context, states, behind)
     brakes = context.going_along[:, states] & (behind | (station == relations.BESIDE))
     disturbed, perhaps = np.zeros((2, *brakes.shape), dtype=bool)
     rows, numbers = brakes.nonzero()
@@ -270,6 +274,23 @@ def _disturbed(context: DriveContext, states: NDArray[intp]) -> tuple[Flags, Fla
         context, rows, states[numbers]
     )
     return disturbed, perhaps
+
+
+def _brakes_for_another(context: DriveContext, states: NDArray[intp], behind: Flags) -> Flags:
+    """Flags of those behind ego who have to brake as hard for one between them, in these states."""
+    found = np.zeros_like(behind)
+    others, own, reaction_s = context.extents, context.ego_extents, context.thresholds.reaction_s
+    for row, number in zip(*(places.tolist() for places in behind.nonzero()), strict=True):
+        state = int(states[number])
+        speed, front = float(others.along[row, state]), float(others.s_max[row, state])
+        between = context.in_ego_lane[:, state] & context.going_along[:, state]
+        between &= (others.s_min[:, state] > front) & (others.s_max[:, state] < own.s_min[0, state])
+        rears = np.append(others.s_min[between, state], own.s_min[0, state]) - front
+        faster = np.maximum(speed - np.append(others.along[between, state], own.along[0, state]), 0)
+        left = np.maximum(rears - faster * reaction_s, _HAIR_M)
+        hard = faster**2 / left
+        found[row, number] = bool((hard[:-1] >= hard[-1]).any())
+    return found
 
 
 def _pulls_away(context: DriveContext, states: NDArray[intp]) -> Flags:
