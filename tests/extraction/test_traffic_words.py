@@ -85,7 +85,7 @@ def test_who_has_to_brake_for_a_change_of_lanes(behind_mps, gap_m, clear):
 
 @pytest.mark.parametrize(("between_mps", "clear"), [(20, True), (27, False)])
 def test_who_has_to_brake_for_another_one_in_between(between_mps, clear):
-    """It comes at 28 m/s, 18 m behind ego; behind the other one it has 4 m left, and brakes first."""
+    """It comes at 28 m/s, 18 m behind ego, and has 4 m to the other one: for that it brakes."""
     ego = going(7, 0, 1, 20, count=8, across=1.0)
     between = going(8, 50 - 4 - 10 - between_mps * 2.5, 2, between_mps, count=8)
     comes = going(9, 50 - 4 - 18 - 28 * 2.5, 2, 28, count=8)

@@ -41,7 +41,8 @@ def test_who_is_in_a_junction_after_its_way_has_ended(end):
     assert passages.occupied(passage, (9.0, 12.0)) == pytest.approx((2.0, 5.5))
 
 
-def test_the_direction_in_which_one_comes_that_turns_round_at_once():
+@pytest.mark.parametrize("seen_from", [0, 3], ids=["before", "in the junction"])
+def test_the_direction_in_which_one_comes_that_turns_round_at_once(seen_from):
     """It has turned by 57° when its middle is in the junction; its front was there before that."""
     angles = np.radians(np.arange(-90, 91, 15))
     line = [(3 * np.cos(a), 3 + 3 * np.sin(a)) for a in angles]
@@ -51,9 +52,10 @@ def test_the_direction_in_which_one_comes_that_turns_round_at_once():
         lanelet(3, [(0, 6), (-50, 6)], predecessors=(2,)),
         lanelet(4, [(2, -20), (2, 20)], **INSIDE),
     ]
-    car = along(7, np.array([(-50, 0), *line, (-50, 6)]), 42.5 + 3.5 * np.arange(7))
+    places = 42.5 + 3.5 * np.arange(seen_from, 7)
+    car = along(7, np.array([(-50, 0), *line, (-50, 6)]), places)
     found = recording(ways, [car])
     passages = junction_passages(found, tracks_of(found, USUAL))
     (passage,) = passages.of_row[0]
     assert abs(passages.tracks.heading[0, passage.first]) > 0.5
-    assert passage.heading == pytest.approx(0.0, abs=0.01)
+    assert passage.heading == pytest.approx(0.0, abs=0.2)

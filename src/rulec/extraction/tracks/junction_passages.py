@@ -327,15 +327,19 @@ def _touches(tracks: Tracks, row: int, columns: tuple[int, int]) -> bool:
     return float(np.hypot(np.diff(x), np.diff(y)).sum()) < _length(body.outlines, body.states) / 2
 
 
-def _came(tracks: Tracks, row: int, first: int) -> int:
-    """The column in which a participant was half its length before its place in another one."""
+def _heading(tracks: Tracks, row: int, first: int, way: JunctionWay) -> float:
+    """The direction of a participant half its length before its place in a column.
+
+    That in which its way begins, if it was not seen there.
+    """
     body, x, y = tracks.participants[row], tracks.x[row], tracks.y[row]
-    half, column = _length(body.outlines, body.states) / 2, first
-    while column > 0 and tracks.present[row, column - 1]:
-        if np.hypot(x[column] - x[first], y[column] - y[first]) >= half:
+    half = _length(body.outlines, body.states) / 2
+    for column in range(first, -1, -1):
+        if not tracks.present[row, column]:
             break
-        column -= 1
-    return column
+        if np.hypot(x[column] - x[first], y[column] - y[first]) >= half:
+            return float(tracks.heading[row, column])
+    return way.headings[0]
 
 
 def _passage(
@@ -366,6 +370,6 @@ def _passage(
         sure=sure,
         first=first,
         last=last,
-        heading=float(tracks.heading[row, _came(tracks, row, first)]),
+        heading=_heading(tracks, row, first, ways[best]),
         whole=whole,
     )
