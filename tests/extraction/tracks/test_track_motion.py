@@ -33,6 +33,16 @@ def test_stated_speeds_that_agree_with_places_are_taken():
     assert motion(x, v, known=OTHERS).speed[0, 0] == pytest.approx(20 - 1.25)
 
 
+def test_stated_speeds_of_a_front_that_turns_are_taken():
+    """Its middle makes less way in the bend than the front: where it goes straight they agree."""
+    x = np.array([[0.0, 1.0, 2.0, 3.0, 3.6, 3.9, 3.9, 3.3, 2.3, 1.3, 0.3, -0.7]])
+    y = np.array([[0.0, 0.0, 0.0, 0.0, 0.2, 0.7, 1.3, 1.8, 2.0, 2.0, 2.0, 2.0]])
+    heading = np.radians([[0.0, 0, 0, 0, 40, 80, 120, 160, 180, 180, 180, 180]])
+    stated = np.full(x.shape, 10.0)
+    found = motion_of(Poses(x, y, heading, stated, np.array([True])), 0.2, 0.1, EXACT)
+    assert found.speed[0].tolist() == pytest.approx([10.0] * 12)
+
+
 def test_who_backs_up_does_so_whatever_speed_is_stated():
     x, v = braking()
     found = motion(-x, v)

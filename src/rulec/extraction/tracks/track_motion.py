@@ -18,6 +18,9 @@ _AGREES, _STANDS_MPS = 0.05, 0.1
 """Stated speeds count if they make the way that places do, to a twentieth, or so much in the mean.
 """
 
+_TURNS = 0.1
+"""By how much a heading turns (rad) over a window that what turns does."""
+
 _CONTRADICTS = 0.1
 """Up to such a part stated speeds that differ from places mean the same, and one of both is off."""
 
@@ -93,6 +96,10 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     if known.stated_mps is None:
         contradicts = np.where(poses.steers & (differ <= _CONTRADICTS * told), differ, 0.0)
     else:
+        # A middle cuts corners: it is slower there than the front, of which files state speeds
+        turns = np.hypot(window.gained(cos), window.gained(sin)) > _TURNS
+        straight = np.where(turns & ~turns.all(axis=1, keepdims=True), np.nan, (speed, stated))
+        differ, told = _differ(*straight)
         own = poses.steers & (differ <= np.maximum(_AGREES * told, _STANDS_MPS))
         # Stated speeds do not say which way
         way = np.where(forward < 0, -stated, stated)
