@@ -255,8 +255,7 @@ def _on_crossing(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     for start, end in context.road.crossings:
         for flags, less in zip(found, (0.0, corner_ahead(context) + place, -place), strict=True):
             flags |= (front - less >= start) & (rear + less < end)
-    at_one: Flags = found.any(axis=0)
-    on_it, surely, perhaps = found & _meets_crossing(context, at_one)
+    on_it, surely, perhaps = found & _meets_crossing(context, np.logical_or.reduce(found))
     return on_it, surely, perhaps
 
 
