@@ -13,9 +13,8 @@ from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import Bounds, rounded_outward
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.trace.cells import Cells
-
 from rulec.scenario.recorded.reference_line import turn
+from rulec.trace.cells import Cells
 
 LONGEST_S = 1000.0
 """The longest headway (s), also that of an ego that stands."""

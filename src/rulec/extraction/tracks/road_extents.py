@@ -276,7 +276,8 @@ def _at_bound(left_of: Floats, bound: NDArray[intp]) -> Floats:
         return left_of[:, :, int(of_column[0])]
     if rows == 1:
         places = of_column * columns + np.arange(columns)
-        return np.moveaxis(left_of, -1, 0).ravel().take(places)[None]
+        own: Floats = np.moveaxis(left_of, -1, 0).ravel().take(places)[None]
+        return own
     changes = (is_new.nonzero()[0] + 1).tolist()
     starts, ends = [0, *changes], [*changes, columns]
     parts = [
