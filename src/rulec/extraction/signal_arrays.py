@@ -243,7 +243,9 @@ def signal_parts(
     about_names = frozenset(name for name in names if name not in columns.world)
     nothing: dict[str, SignalColumn] = {}
 
-    def part(values: Mapping[str, Any], k: int) -> SharedColumns:
+    def part(values: Mapping[str, Any], k: int) -> Mapping[str, Any]:
+        if spans.n_drives == 1:
+            return values
         cells_of = slice(bounds[k], bounds[k + 1])
         return SharedColumns(values, about_names, spans.slices[k], cells_of)
 
@@ -257,7 +259,7 @@ def signal_parts(
             "unknown": nothing if defaults else part(unknown, k),
             "absent": part(unknown, k) if defaults else nothing,
             "bounds": {} if defaults else part(intervals, k),
-            "only": SharedColumns(only, about_names, own, own),
+            "only": SharedColumns(only, about_names, own, own) if spans.n_drives > 1 else only,
         }
         for k, own in enumerate(own_objects)
     ]

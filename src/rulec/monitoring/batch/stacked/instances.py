@@ -120,10 +120,11 @@ def numbers_at(
 
 
 def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
-    """All choices that may not be kept, and perhaps others that are."""
+    """All choices that may not be kept, and perhaps others that are.
+
+    What a rule reads may do something somewhere (see ``SimpleRules``).
+    """
     stack = reader.stack
-    if rule.does_nothing([reader.digits(read) for read in rule.reads]):
-        return _NO_INSTANCES
     # To count takes longest, and is seldom needed to see that nothing happens
     if rule.counts_everywhere:
         uncounted = [

@@ -107,12 +107,9 @@ class MetValues:
         """The names and columns of signals of which all is known, as many together as may be."""
         declarations = self._stack.vocabulary.declarations
         groups: dict[int | str, tuple[list[str], list[StackColumn]]] = {}
-        for name in self._stack.said:
-            column = self._stack.column(name)
-            if column is None or isinstance(declarations[name], Quantity):
-                continue
+        for name, column in self._stack.columns.items():
             size = len(column.values)
-            if column.unknown is None and size:
+            if column.unknown is None and size and not isinstance(declarations[name], Quantity):
                 names, columns = groups.setdefault(size if size <= FEW else name, ([], []))
                 names.append(name)
                 columns.append(column)

@@ -6,7 +6,7 @@ stands in *cells*, one for each state in which an object is there, object by obj
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite
@@ -85,7 +85,6 @@ class Stack:
         self.names = [name for trace in traces for name in trace.objects]
         about = dict.fromkeys(traces[0].about, True)
         self.said = {**dict.fromkeys(traces[0].world, False), **about}
-        self._columns: dict[str, StackColumn | None] = {}
         self._ends: dict[str, tuple[float, float]] = {}
         self._of_type: dict[str, Flags] = {}
         self._whole_types: dict[str, bool] = {}
@@ -133,23 +132,25 @@ class Stack:
             self._states_of_type[kind] = self.state_of if is_every else self.state_of[cells]
         return self._states_of_type[kind]
 
-    def can_tell(self, name: str) -> bool:
-        """Whether a name's values can be read from arrays. Raises UnencodableError."""
-        column, declaration = self.column(name), self.vocabulary.declarations[name]
-        if column is None:
-            return declaration.default is not None
-        return not (declaration.constant and column.apart is not None and column.apart.any())
+    def untold(self, names: Iterable[str]) -> set[str]:
+        """Those of some names whose values cannot be read from arrays. Raises UnencodableError."""
+        declarations, columns = self.vocabulary.declarations, self.columns
+        found = {x for x in names if x not in columns and declarations[x].default is None}
+        for name in self.vocabulary.constants:
+            apart = columns[name].apart if name in columns else None
+            if apart is not None and apart.any():
+                found.add(name)
+        return found
 
     def odd_traces(self) -> set[int]:
         """Traces in which something is missing, or a constant changes. Raises UnencodableError."""
         odd: set[int] = set()
-        for name, is_about in self.said.items():
-            column = self.column(name)
-            assert column is not None, "it is said"
+        constants = self.vocabulary.constants
+        for name, column in self.columns.items():
             if column.missing is not None:
                 odd.update(self.traces_at(name, np.flatnonzero(column.missing)))
-            if self.vocabulary.declarations[name].constant:
-                starts = self.starts if is_about else self.begins
+            if name in constants:
+                starts = self.starts if self.said[name] else self.begins
                 lengths = np.diff(starts)
                 for values in (column.values, column.unknown):
                     if values is not None:
@@ -166,9 +167,32 @@ class Stack:
 
     def column(self, name: str) -> StackColumn | None:
         """The column of a name; None if no state says it. Raises UnencodableError."""
-        if name not in self._columns:
-            self._columns[name] = self._column(name) if name in self.said else None
-        return self._columns[name]
+        return self.columns.get(name)
+
+    @cached_property
+    def columns(self) -> Mapping[str, StackColumn]:
+        """The columns of all names that are said. Raises UnencodableError."""
+        plain = self._plain_signals() if len(self._pieces) == 1 else {}
+        return {name: plain.get(name) or self._column(name) for name in self.said}
+
+    def _plain_signals(self) -> dict[str, StackColumn]:
+        """The columns of Boolean signals of the only piece of which all is said, as most are."""
+        (piece,), (dark, absent) = self._pieces, self._flagged
+        others = {*dark, *absent, *self._partly, *piece.texts}
+        declarations, found = self.vocabulary.declarations, {}
+        for is_about, columns in ((False, piece.world), (True, piece.about)):
+            for name, values in columns.items():
+                if values.dtype.kind == "b" and name not in others:
+                    signal = declarations.get(name)
+                    if isinstance(signal, Signal) and self._suits(signal, is_about=is_about):
+                        found[name] = StackColumn(values, None, None, None)
+        return found
+
+    def _suits(self, signal: Signal, *, is_about: bool) -> bool:
+        """Whether a signal is about all objects, or about none."""
+        if not is_about:
+            return not signal.parameters
+        return len(signal.parameters) == 1 and self._all_are(signal.parameters[0])
 
     def ends(self, name: str) -> tuple[float, float] | None:
         """The least and the greatest number of a quantity; None if some are unknown, or none said.

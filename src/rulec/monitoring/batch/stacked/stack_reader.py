@@ -136,12 +136,7 @@ class StackReader:
                 read.meanings[int(default)] if ready is None else 1 << ready.digit(float(default))
             )
         if ready is None:
-            found = 0
-            met = self.met_values.values(name)
-            for number in range(met.bit_length()):
-                if met >> number & 1:
-                    found |= read.meanings[number]
-            return found
+            return read.of_values(self.met_values.values(name))
         ends = None if ready.quantity is None else self.met_values.ends(name)
         if ends is None:
             return read.every

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeAlias
 
 import numpy as np
@@ -78,11 +78,23 @@ class StackedRead:
     key: int
     digits_key: int
     is_composed: bool
+    _of_values: dict[int, int] = field(default_factory=dict, init=False)
 
     @property
     def every(self) -> int:
         """All digits."""
         return (1 << self.read.size) - 1
+
+    def of_values(self, met: int) -> int:
+        """The digits of some values of a signal, both as bits."""
+        known = self._of_values.get(met)
+        if known is None:
+            known = 0
+            for number in range(met.bit_length()):
+                if met >> number & 1:
+                    known |= self.meanings[number]
+            self._of_values[met] = known
+        return known
 
     @property
     def counts_itself(self) -> bool:
@@ -147,7 +159,6 @@ class StackedRule:
         self._answers: dict[bytes, Answer] = {}
         self._words: dict[bytes, Answer | None] = {}
         self._bytes = 0
-        self._does_nothing: dict[tuple[int, ...], bool] = {}
         self._vocabulary = vocabulary
         self._everybody: dict[str, str] = {}
         self._crowd: EntangledReads | None = None
@@ -194,16 +205,6 @@ class StackedRule:
             self._busy_flags = np.zeros(0, dtype=bool)
             self._class_bits = np.zeros(0, dtype=np.uint64)
             self.words_together = WordsTogether(self.machine.monitor, self.letters)
-
-    def does_nothing(self, digits: Sequence[int]) -> bool:
-        """Whether letters are idle that have any of these digits, as bits, for each read."""
-        key = tuple(digits)
-        known = self._does_nothing.get(key)
-        if known is None:
-            if len(self._does_nothing) > MOST_SETS:
-                self._does_nothing.clear()
-            known = self._does_nothing[key] = self.machine.idle.of_cube(key)
-        return known
 
     def busy_flags(self) -> NDArray[np.bool_]:
         """Whether each set of letters that has been met might do something: it is not idle."""

@@ -7,7 +7,7 @@ the rules that arrays cannot be read for.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from itertools import repeat
 from operator import itemgetter
@@ -21,9 +21,10 @@ from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.columns.columnize import UnencodableError
-from rulec.monitoring.batch.stacked.contradictions import LinkedFacts, contradicted, linked
+from rulec.monitoring.batch.stacked.contradictions import contradicted
 from rulec.monitoring.batch.stacked.joined_traces import side_by_side
 from rulec.monitoring.batch.stacked.open_reasons import StackedReasons
+from rulec.monitoring.batch.stacked.simple_rules import SimpleRules
 from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.monitoring.batch.stacked.stack_reader import StackReader
 from rulec.monitoring.batch.stacked.stacked_outcomes import (
@@ -132,17 +133,16 @@ class _StackedRun:
 
     def verdicts(self) -> list[Answer]:
         """The answers."""
-        rules = self._ready.rules
-        untold = {name for name in self._ready.names if not self._stack.can_tell(name)}
-        simple = [rule.is_simple and untold.isdisjoint(rule.names) for rule in rules]
-        self._odd |= contradicted(self._facts_of(simple), self._reader)
-        for number, (rule, is_simple) in enumerate(zip(rules, simple, strict=True)):
-            if is_simple:
+        simple = self._ready.simple_rules(frozenset(self._stack.untold(self._ready.names)))
+        self._odd |= contradicted(simple.facts, self._reader)
+        busy = simple.busy(self._reader)
+        for number, rule in enumerate(self._ready.rules):
+            if number not in simple.rules:
+                self._add_closely(number, rule)
+            elif number in busy:
                 rule.forget_many()
                 for found in outcomes(rule, self._reader, self._rulebook):
                     self._add(number, found)
-            else:
-                self._add_closely(number, rule)
         self._odd |= self._stack.odd_traces()
         return [
             _by_its_states(trace, self._whole_rulebook)
@@ -150,15 +150,6 @@ class _StackedRun:
             else self._verdict(number)
             for number, trace in enumerate(self._traces)
         ]
-
-    def _facts_of(self, simple: Sequence[bool]) -> Sequence[LinkedFacts]:
-        """The facts that have to do with simple rules; mostly these are the same ones again."""
-        key, known = tuple(simple), self._ready.facts
-        if key not in known:
-            rules = zip(self._ready.rules, simple, strict=True)
-            facts = dict.fromkeys(fact for rule, own in rules if own for fact in rule.facts)
-            known[key] = tuple(linked(tuple(facts)))
-        return known[key]
 
     def _add(self, rule_number: int, outcomes: StackedOutcomes) -> None:
         words, stack = outcomes.words, self._stack
@@ -229,14 +220,26 @@ class _StackedRun:
 class _ReadyRules:
     """What is the same for all traces of one kind.
 
-    ``names`` are those of the ``rules`` that are simple; of which of them there are, as flags, go
-    the linked ``facts`` that have been asked for.
+    ``names`` are those of the ``rules`` that are simple.
     """
 
     judged: JudgedRules
     rules: Sequence[StackedRule]
     names: frozenset[str]
-    facts: dict[tuple[bool, ...], Sequence[LinkedFacts]]
+    _simple: dict[frozenset[str], SimpleRules] = field(default_factory=dict, init=False)
+
+    def simple_rules(self, untold: frozenset[str]) -> SimpleRules:
+        """The rules that arrays can be read for, where some names cannot; mostly the same again."""
+        known = self._simple.get(untold)
+        if known is None:
+            known = self._simple[untold] = SimpleRules.of(
+                {
+                    number: rule
+                    for number, rule in enumerate(self.rules)
+                    if rule.is_simple and untold.isdisjoint(rule.names)
+                }
+            )
+        return known
 
 
 def _ready_rules(example: TraceArrays, rules: CompiledRulebook) -> _ReadyRules:
@@ -255,7 +258,7 @@ def _ready_rules(example: TraceArrays, rules: CompiledRulebook) -> _ReadyRules:
         for rule, machine in judged.machines
     ]
     names = frozenset().union(*(rule.names for rule in ready if rule.is_simple))
-    return _ReadyRules(judged, ready, names, {})
+    return _ReadyRules(judged, ready, names)
 
 
 class _CloseLook:

@@ -1,0 +1,54 @@
+"""Which of some rules may do anything at all, by what their reads are anywhere in traces."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from rulec.monitoring.batch.stacked.contradictions import LinkedFacts, linked
+from rulec.monitoring.batch.stacked.stack_reader import StackReader
+from rulec.monitoring.batch.stacked.stacked_rule import StackedRead, StackedRule
+
+_MOST_KEPT = 1 << 10
+"""Digits of all reads that are kept before all are forgotten."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SimpleRules:
+    """The ``rules`` that can be judged by arrays, by number, and the linked ``facts`` about them.
+
+    ``reads`` are those with digits of their own, ``places`` those of each rule's among them. Which
+    rules may do something is remembered by the digits that all reads have anywhere.
+    """
+
+    rules: Mapping[int, StackedRule]
+    facts: Sequence[LinkedFacts]
+    reads: Sequence[StackedRead]
+    places: Mapping[int, Sequence[int]]
+    _busy: dict[tuple[int, ...], frozenset[int]] = field(default_factory=dict, init=False)
+
+    @staticmethod
+    def of(rules: Mapping[int, StackedRule]) -> SimpleRules:
+        """Some rules with what they read."""
+        facts = dict.fromkeys(fact for rule in rules.values() for fact in rule.facts)
+        reads = {read.digits_key: read for rule in rules.values() for read in rule.reads}
+        place_of = {key: place for place, key in enumerate(reads)}
+        places = {
+            number: tuple([place_of[read.digits_key] for read in rule.reads])
+            for number, rule in rules.items()
+        }
+        return SimpleRules(rules, tuple(linked(tuple(facts))), tuple(reads.values()), places)
+
+    def busy(self, reader: StackReader) -> frozenset[int]:
+        """The numbers of the rules that may be anything but kept. Raises UnencodableError."""
+        digits = tuple([reader.digits(read) for read in self.reads])
+        found = self._busy.get(digits)
+        if found is None:
+            if len(self._busy) >= _MOST_KEPT:
+                self._busy.clear()
+            found = self._busy[digits] = frozenset(
+                number
+                for number, rule in self.rules.items()
+                if not rule.machine.idle.of_cube([digits[k] for k in self.places[number]])
+            )
+        return found
