@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property, wraps
-from typing import TypeVar, cast
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy import intp
@@ -66,7 +66,7 @@ class DriveContext:
     surroundings: Surroundings
     alone: Callable[[int], tuple[Surroundings, int]] | None = None
     wrong_way: bool = False
-    computed: dict[Callable[..., object], object] = field(default_factory=dict)
+    computed: dict[Callable[..., object], Any] = field(default_factory=dict)
 
     @cached_property
     def tolerances(self) -> Tolerances:
@@ -310,8 +310,10 @@ def once(compute: Callable[[DriveContext], Found]) -> Callable[[DriveContext], F
 
     @wraps(compute)
     def found(context: DriveContext) -> Found:
-        if compute not in context.computed:
-            context.computed[compute] = compute(context)
-        return cast("Found", context.computed[compute])
+        known = context.computed
+        if compute not in known:
+            known[compute] = compute(context)
+        value: Found = known[compute]
+        return value
 
     return found

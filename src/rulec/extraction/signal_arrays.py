@@ -153,12 +153,14 @@ def _numbers(
 def _places_of_texts(column: SignalColumn, values: Sequence[str]) -> NDArray[intp]:
     """The places of texts among values, behind them for others."""
     every = column.ravel()
+    if not len(every):
+        return np.zeros(column.shape, dtype=intp)
     # They seldom change, and are slow to compare
-    starts = np.flatnonzero(np.append(np.ones(min(len(every), 1), bool), every[1:] != every[:-1]))
+    changes = (every[1:] != every[:-1]).nonzero()[0] + 1
+    edges = np.concatenate(((0,), changes, (len(every),)))
     known = {value: place for place, value in enumerate(values)}
-    own = [known.get(text, len(values)) for text in every[starts].tolist()]
-    lengths = np.diff(starts, append=len(every))
-    return np.repeat(np.array(own, dtype=intp), lengths).reshape(column.shape)
+    own = [known.get(text, len(values)) for text in every[edges[:-1]].tolist()]
+    return np.array(own, dtype=intp).repeat(edges[1:] - edges[:-1]).reshape(column.shape)
 
 
 def _is_told(strange: Flags, unknown: Flags) -> bool:

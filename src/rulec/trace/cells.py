@@ -24,11 +24,11 @@ class Cells:
     @staticmethod
     def at(flags: NDArray[bool_]) -> Cells:
         """Those that are flagged."""
-        places = np.flatnonzero(flags)
+        places = flags.ravel().nonzero()[0]
         n_rows, n_columns = flags.shape
         # Rows stand together, which is sooner known than what a division leaves
-        ends = np.searchsorted(places, np.arange(1, n_rows + 1) * n_columns)
-        rows = np.repeat(np.arange(n_rows), np.diff(ends, prepend=0))
+        bounds = places.searchsorted(np.arange(n_rows + 1) * n_columns)
+        rows = np.arange(n_rows).repeat(bounds[1:] - bounds[:-1])
         return Cells(flags.shape, rows, places - rows * n_columns, places)
 
     @staticmethod

@@ -92,10 +92,10 @@ class EndToEnd:
     def latest(self, flags: _Flags) -> _Columns:
         """The last state up to each in which a flag holds; the one before the drive for none."""
         # What is between two flags is sooner laid out than found state by state
-        edges = np.concatenate(((-1,), np.flatnonzero(flags), (flags.size,)))
+        edges = np.concatenate(((-1,), flags.ravel().nonzero()[0], (flags.size,)))
         lengths = edges[1:] - edges[:-1]
         lengths[0] -= 1
-        found = self._in_rows(np.repeat(edges[:-1], lengths), flags)
+        found = self._in_rows(edges[:-1].repeat(lengths), flags)
         return np.maximum(found, self.first - 1, out=found)
 
     def next_state(self, flags: _Flags, beyond: int = 0) -> _Columns:
@@ -103,11 +103,11 @@ class EndToEnd:
 
         For none it is the one behind the drive, and so many ``beyond``.
         """
-        edges = np.concatenate(((-1,), np.flatnonzero(flags), (flags.size - 1,)))
+        edges = np.concatenate(((-1,), flags.ravel().nonzero()[0], (flags.size - 1,)))
         lengths = edges[1:] - edges[:-1]
         # Behind the last flag none is before any end
         edges[-1] += self.n_states + 1
-        found = self._in_rows(np.repeat(edges[1:], lengths), flags)
+        found = self._in_rows(edges[1:].repeat(lengths), flags)
         if beyond:
             return np.where(found < self.end, found, self.end + beyond)
         return np.minimum(found, self.end, out=found)

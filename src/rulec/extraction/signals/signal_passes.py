@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import wraps
-from typing import TypeAlias, TypeVar, cast
+from typing import Any, TypeAlias, TypeVar
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, together
@@ -66,8 +66,9 @@ def _kept(
     key: object,
     function: Callable[[DriveContext], _Value],
     context: DriveContext,
-    known: dict[object, object],
+    known: dict[object, Any],
 ) -> _Value:
     if key not in known:
         known[key] = function(context)
-    return cast("_Value", known[key])
+    found: _Value = known[key]
+    return found

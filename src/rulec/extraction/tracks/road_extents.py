@@ -76,7 +76,7 @@ class RoadExtents:
     def lane(self) -> NDArray[intp]:
         """The lane of the middle, the nearest one beside the road."""
         last = self.left_of_min.shape[-1] - 2
-        beyond = np.moveaxis(self.left_of, -1, 0) >= 0
+        beyond = self.left_of.transpose(2, 0, 1) >= 0
         lane: NDArray[intp] = np.clip(beyond.sum(axis=0) - 1, 0, last)
         return lane
 
@@ -125,7 +125,7 @@ class RoadExtents:
         steps = bound * len(self.left_of_min)
         places = (steps[cells.columns] + cells.rows) * len(bound) + cells.columns
         low, high = (
-            np.moveaxis(own, -1, 0).ravel().take(places)
+            own.transpose(2, 0, 1).ravel().take(places)
             for own in (self.left_of_min, self.left_of_max)
         )
         return low, high
@@ -225,7 +225,7 @@ class _LaidExtents(RoadExtents):
         places *= own.left_of_min.shape[1]
         places += columns
         low, high = (
-            np.moveaxis(own, -1, 0).ravel().take(places)
+            own.transpose(2, 0, 1).ravel().take(places)
             for own in (own.left_of_min, own.left_of_max)
         )
         return low, high
@@ -243,7 +243,9 @@ def at_columns(values: NDArray[Any], rows: NDArray[intp], columns: NDArray[intp]
     """Some columns of rows, or of one row for each; a third axis stays the first in memory."""
     if values.ndim == 2:
         return values[rows, columns]
-    return np.moveaxis(np.stack([own[rows, columns] for own in np.moveaxis(values, -1, 0)]), 0, -1)
+    by_lane = [own[rows, columns] for own in values.transpose(2, 0, 1)]
+    found: NDArray[Any] = np.array(by_lane).transpose(1, 2, 0)
+    return found
 
 
 def and_row(values: NDArray[Any], others: NDArray[Any], row: int) -> NDArray[Any]:
@@ -276,8 +278,8 @@ def _at_bound(left_of: Floats, bound: NDArray[intp]) -> Floats:
         return left_of[:, :, int(of_column[0])]
     if rows == 1:
         places = of_column * columns + np.arange(columns)
-        own: Floats = np.moveaxis(left_of, -1, 0).ravel().take(places)[None]
-        return own
+        of_bound: Floats = left_of.transpose(2, 0, 1).ravel().take(places)[None]
+        return of_bound
     changes = (is_new.nonzero()[0] + 1).tolist()
     starts, ends = [0, *changes], [*changes, columns]
     parts = [

@@ -166,10 +166,10 @@ def are_near(lanelet: Lanelet, area: shapely.Polygon, x: Floats, y: Floats) -> F
     ahead = lanelet.centre[-1] - lanelet.centre[0]
     length = np.hypot(*ahead)
     for sideways in (-_SIDEWAYS_M, _SIDEWAYS_M) if length else ():
-        left = np.flatnonzero(~near)
+        left = (~near).nonzero()[0]
         to_x, to_y = x[left] - ahead[1] / length * sideways, y[left] + ahead[0] / length * sideways
         near[left] = shapely.intersects_xy(area, to_x, to_y)
-    left = np.flatnonzero(~near)
+    left = (~near).nonzero()[0]
     near[left] = shapely.dwithin(area, shapely.points(x[left], y[left]), NEAR_M)
     return near
 

@@ -91,7 +91,7 @@ class MapMatching:
     def _starts(self) -> tuple[list[int], list[int]]:
         """Where stretches begin, and the last one ends; and the numbers of each row's first one."""
         rows, (_, begins) = self._candidates.rows, self._paths
-        starts = np.flatnonzero(begins)
+        starts = begins.nonzero()[0]
         of_row = np.searchsorted(rows[starts], np.arange(len(self._tracks.present) + 1))
         return [*starts.tolist(), len(rows)], of_row.tolist()
 
@@ -148,7 +148,7 @@ def likeliest_paths(
     """
     if not len(begins):
         return np.empty(0, dtype=intp), begins
-    starts = np.flatnonzero(begins)
+    starts = begins.nonzero()[0]
     lengths = np.diff(starts, append=len(begins))
     # All runs go step by step together, the longest first: those that go on are the first ones
     longest = np.argsort(-lengths, kind="stable")
@@ -191,8 +191,8 @@ def _paths_one_by_one(
     found: LaneCandidates, places: Floats, begins: NDArray[bool_], graph: LaneletGraph
 ) -> tuple[NDArray[intp], NDArray[bool_]]:
     """The same of few runs: in numbers, since arrays are not worth it for some of them."""
-    starts = np.flatnonzero(begins).tolist()
-    to = _transitions(found, places, np.flatnonzero(~begins), graph)
+    starts = begins.nonzero()[0].tolist()
+    to = _transitions(found, places, (~begins).nonzero()[0], graph)
     steps = iter(zip(to.off.tolist(), to.changes.tolist(), to.own.tolist(), strict=True))
     first_costs = iter(_padded(found, np.array(starts), found.costs).tolist())
     first, counts = found.first.tolist(), found.counts.tolist()
@@ -224,7 +224,7 @@ def _cheapest(
         least, way = inf, (0, False)
         for number, (cost, away, change) in enumerate(zip(before, off_own, changed, strict=True)):
             through, broken = cost + away + change, cost + BREAK_COST
-            cheaper = min(through, broken)
+            cheaper = broken if broken < through else through
             if cheaper < least or not number:
                 least, way = cheaper, (number, through > broken)
         ways.append(way)

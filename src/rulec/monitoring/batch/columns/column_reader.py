@@ -56,7 +56,7 @@ def digits_of_sum(
             unclear |= ~(np.abs(away) > error + abs(limit) * _UNIT)
     # The same few numbers are at a limit again and again
     known: dict[tuple[float, ...], int] = {}
-    for state in np.flatnonzero(unclear & ~ignored).tolist():
+    for state in (unclear & ~ignored).nonzero()[0].tolist():
         own = _numbers_in(summands, state)
         if own not in known:
             known[own] = read.digit(_exactly(summands, own))

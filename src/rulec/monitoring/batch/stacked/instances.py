@@ -114,7 +114,9 @@ def numbers_at(
     """
     known = frozenset(variables)
     return [
-        reader.numbers(read, spots) if known.issuperset(read.variables) else read.unknown
+        read.unknown
+        if read.variables and not known.issuperset(read.variables)
+        else reader.numbers(read, spots)
         for read in rule.reads
     ]
 
@@ -164,7 +166,7 @@ def _doubtful_objects(rule: StackedRule, reader: StackReader, busy: Mask) -> Pla
     stack, (variable,), (kind,) = reader.stack, rule.variables, rule.types
     suits = stack.of_type(kind)
     if isinstance(busy, np.ndarray):
-        before = np.concatenate([[0], np.cumsum(busy)])
+        before = np.concatenate([[0], busy.cumsum()])
         suits = suits & (before[stack.lasts + 1] > before[stack.firsts])
     if not suits.any():
         return _NONE

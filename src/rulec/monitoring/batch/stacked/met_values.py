@@ -13,7 +13,7 @@ from rulec.logic.fold import Algebra, fold
 from rulec.monitoring.batch.columns.column_reader import KLEENE_COLUMNS, UNKNOWN, Truth, known
 from rulec.monitoring.batch.stacked.stack import FEW, Stack, StackColumn
 from rulec.trace.trace_columns import Array
-from rulec.vocabulary import Enumeration, Quantity
+from rulec.vocabulary import Enumeration
 from rulec.vocabulary.partial_values import UNKNOWN as UNKNOWN_VALUE
 from rulec.vocabulary.partial_values import PartialValue
 
@@ -45,8 +45,9 @@ class MetValues:
 
         None for one that no state tells, and that has no default.
         """
-        if name in self._stack.said:
-            return self.values(name)
+        met = self._values.get(name)
+        if met is not None or name in self._stack.said:
+            return met or 0
         default = self._stack.default(name)
         return None if default is None or default is UNKNOWN_VALUE else 1 << int(default)
 
@@ -105,15 +106,19 @@ class MetValues:
 
     def _known_signals(self) -> Iterator[tuple[list[str], list[StackColumn]]]:
         """The names and columns of signals of which all is known, as many together as may be."""
-        declarations = self._stack.vocabulary.declarations
-        groups: dict[int | str, tuple[list[str], list[StackColumn]]] = {}
-        for name, column in self._stack.columns.items():
-            size = len(column.values)
-            if column.unknown is None and size and not isinstance(declarations[name], Quantity):
-                names, columns = groups.setdefault(size if size <= FEW else name, ([], []))
-                names.append(name)
-                columns.append(column)
-        yield from groups.values()
+        columns = self._stack.columns
+        # Only quantities are numbers that are no whole ones
+        sizes = {
+            name: len(column.values)
+            for name, column in columns.items()
+            if column.unknown is None and column.values.dtype.kind != "f"
+        }
+        for size in dict.fromkeys(sizes.values()):
+            names = [name for name, own in sizes.items() if own == size]
+            if size > FEW:
+                yield from (([name], [columns[name]]) for name in names)
+            elif size:
+                yield names, [columns[name] for name in names]
 
 
 def _as_numbers(values: Array) -> Array:

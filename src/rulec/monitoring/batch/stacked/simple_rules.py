@@ -41,7 +41,7 @@ class SimpleRules:
 
     def busy(self, reader: StackReader) -> frozenset[int]:
         """The numbers of the rules that may be anything but kept. Raises UnencodableError."""
-        digits = tuple([reader.digits(read) for read in self.reads])
+        digits = reader.digits_of(self.reads)
         found = self._busy.get(digits)
         if found is None:
             if len(self._busy) >= _MOST_KEPT:

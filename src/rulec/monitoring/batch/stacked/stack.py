@@ -58,6 +58,8 @@ class StackColumn:
 class Stack:
     """Traces that say the same names, end to end; ``vocabulary`` has the defaults of the others.
 
+    ``defaults`` remember these as they stand in columns, for all that are judged by it.
+
     ``begins`` is where the states of each trace begin, ``starts`` where the cells of each object
     do, both with the end of all as the last. ``said`` are the names that some state may say, and
     whether they are about objects. ``trace_of``, ``firsts`` and ``lasts`` are the trace
@@ -65,8 +67,11 @@ class Stack:
     among the ``kinds``.
     """
 
-    def __init__(self, traces: Sequence[TraceArrays], vocabulary: Vocabulary) -> None:
+    def __init__(
+        self, traces: Sequence[TraceArrays], vocabulary: Vocabulary, defaults: dict[str, Any]
+    ) -> None:
         self.traces = traces
+        self._defaults = defaults
         self._pieces = tuple(joined_traces(traces))
         self.vocabulary = vocabulary
         lengths = np.array([trace.n_states for trace in traces], dtype=np.intp)
@@ -92,15 +97,19 @@ class Stack:
         self._states_of_type: dict[str, Places] = {}
 
     @cached_property
+    def _n_cells(self) -> Places:
+        return np.diff(self.starts)
+
+    @cached_property
     def object_of(self) -> Places:
         """The object of each cell."""
-        return np.repeat(np.arange(len(self.types)), np.diff(self.starts))
+        return np.repeat(np.arange(len(self.types)), self._n_cells)
 
     @cached_property
     def state_of(self) -> Places:
         """The state of each cell."""
         shift: Places = self.firsts - self.starts[:-1]
-        return np.arange(self.starts[-1]) + np.repeat(shift, np.diff(self.starts))
+        return np.arange(self.starts[-1]) + np.repeat(shift, self._n_cells)
 
     @cached_property
     def are_first(self) -> Flags:
@@ -151,11 +160,12 @@ class Stack:
                 odd.update(self.traces_at(name, np.flatnonzero(column.missing)))
             if name in constants:
                 starts = self.starts if self.said[name] else self.begins
-                lengths = np.diff(starts)
+                lengths = self._n_cells if self.said[name] else np.diff(starts)
                 for values in (column.values, column.unknown):
                     if values is not None:
                         changed = values != np.repeat(values[starts[:-1]], lengths)
-                        odd.update(self.traces_at(name, np.flatnonzero(changed)))
+                        if changed.any():
+                            odd.update(self.traces_at(name, np.flatnonzero(changed)))
         return odd
 
     def traces_at(self, name: str, places: Places) -> list[int]:
@@ -184,15 +194,11 @@ class Stack:
             for name, values in columns.items():
                 if values.dtype.kind == "b" and name not in others:
                     signal = declarations.get(name)
-                    if isinstance(signal, Signal) and self._suits(signal, is_about=is_about):
+                    if not isinstance(signal, Signal) or len(signal.parameters) != is_about:
+                        continue
+                    if all(map(self._all_are, signal.parameters)):
                         found[name] = StackColumn(values, None, None, None)
         return found
-
-    def _suits(self, signal: Signal, *, is_about: bool) -> bool:
-        """Whether a signal is about all objects, or about none."""
-        if not is_about:
-            return not signal.parameters
-        return len(signal.parameters) == 1 and self._all_are(signal.parameters[0])
 
     def ends(self, name: str) -> tuple[float, float] | None:
         """The least and the greatest number of a quantity; None if some are unknown, or none said.
@@ -220,11 +226,13 @@ class Stack:
 
     def default(self, name: str) -> Any:
         """What holds where nothing is said, as columns have it; None if there is nothing."""
-        declaration = self.vocabulary.declarations[name]
-        default: Any = declaration.default
-        if default is None or default is UNKNOWN:
-            return default
-        return encode_values([default], declaration)[0]
+        if name not in self._defaults:
+            declaration = self.vocabulary.declarations[name]
+            default: Any = declaration.default
+            if default is not None and default is not UNKNOWN:
+                default = encode_values([default], declaration)[0]
+            self._defaults[name] = default
+        return self._defaults[name]
 
     def _column(self, name: str) -> StackColumn:
         declaration = self.vocabulary.declarations.get(name)
@@ -335,7 +343,7 @@ class Stack:
         said = _end_to_end(every)
         if not self._all_are(kind) and (said & ~self.of_type(kind)).any():
             raise UnencodableError
-        return None if said.all() else np.repeat(~said, np.diff(self.starts))
+        return None if said.all() else np.repeat(~said, self._n_cells)
 
     def _all_are(self, kind: str) -> bool:
         """Whether all objects are of a type."""
@@ -358,15 +366,14 @@ def _joined(
 def _names(flags: Mapping[str, Flags], some: Callable[..., Flags]) -> set[str]:
     """The names of which all or any flags are set."""
     found: set[str] = set()
-    by_length: dict[int, list[str]] = {}
-    for name, own in flags.items():
-        if len(own) > FEW:
-            found |= {name} if some(own) else set()
+    lengths = dict(zip(flags, map(len, flags.values()), strict=True))
+    for length in set(lengths.values()):
+        names = [name for name, own in lengths.items() if own == length]
+        if length > FEW:
+            found.update([name for name in names if some(flags[name])])
         else:
-            by_length.setdefault(len(own), []).append(name)
-    for names in by_length.values():
-        are_set = some(np.array([flags[name] for name in names]), axis=1).tolist()
-        found.update(name for name, is_set in zip(names, are_set, strict=True) if is_set)
+            are_set = some(np.array([flags[name] for name in names]), axis=1).tolist()
+            found.update([name for name, is_set in zip(names, are_set, strict=True) if is_set])
     return found
 
 

@@ -119,14 +119,20 @@ class StackReader:
             known = self._digits[read.digits_key] = self._digits_met(read) or read.every
         return known
 
+    def digits_of(self, reads: Sequence[StackedRead]) -> tuple[int, ...]:
+        """The digits of many reads. Raises UnencodableError."""
+        known = self._digits
+        for read in reads:
+            if read.digits_key not in known:
+                known[read.digits_key] = self._digits_met(read) or read.every
+        return tuple([known[read.digits_key] for read in reads])
+
     def _digits_met(self, read: StackedRead) -> int:
         if read.count is not None:
-            assert isinstance(read.read, NumberRead), "it counts"
-            is_nobody = bool(self.met_values.truth_anywhere(read.count.body).false)
-            return 1 << read.read.digit(Fraction(0)) if is_nobody else read.every
-        if len(read.names) > 1:
+            return self._digits_counted(read, read.count)
+        name, *others = read.names
+        if others:
             return read.every
-        (name,) = read.names
         ready = read.ready
         if name not in self.stack.said:
             default = self.stack.default(name)
@@ -142,6 +148,18 @@ class StackReader:
             return read.every
         low, high = map(ready.digit, ends)
         return (1 << high + 1) - (1 << low)
+
+    def _digits_counted(self, read: StackedRead, count: ltl.Count) -> int:
+        """The digits of a count: of nobody, or any."""
+        met = self.met_values
+        key = tuple([met.with_default(name) for name in read.names])
+        known = read.of_counts.get(key)
+        if known is None:
+            assert isinstance(read.read, NumberRead), "it counts"
+            is_nobody = bool(met.truth_anywhere(count.body).false)
+            known = 1 << read.read.digit(Fraction(0)) if is_nobody else read.every
+            read.of_counts[key] = known
+        return known
 
     def _everywhere(self, read: StackedRead) -> Array | int:
         """The numbers in all states, or cells."""

@@ -232,7 +232,7 @@ def _doubtful_words(rule: StackedRule, reader: StackReader, chosen: _Chosen) -> 
     if not doubtful.any():
         return None
     if not doubtful.all():
-        chosen = chosen.part(rule, reader, np.flatnonzero(doubtful))
+        chosen = chosen.part(rule, reader, doubtful.nonzero()[0])
         alternatives = _alternatives(rule, reader, chosen)
     return _entangled_words(rule, reader, chosen, alternatives)
 

@@ -65,7 +65,8 @@ class StackedRead:
     ``counts_itself``, none but the one that the only variable stands for. Reads with the same
     ``key`` have the same numbers, those with the same ``digits_key`` the same digits, too;
     ``ready`` are the thresholds of a number. What ``is_composed`` is computed of several values of
-    an object: it is a sum, or counts itself.
+    an object: it is a sum, or counts itself. ``of_counts`` remembers the digits of a count by the
+    values that its ``names`` have anywhere, as bits.
     """
 
     read: Read | NumberRead
@@ -78,6 +79,7 @@ class StackedRead:
     key: int
     digits_key: int
     is_composed: bool
+    of_counts: dict[tuple[int | None, ...], int] = field(default_factory=dict, init=False)
     _of_values: dict[int, int] = field(default_factory=dict, init=False)
 
     @property
@@ -231,7 +233,8 @@ class StackedRule:
             self._class_bits = np.append(self._class_bits, np.array(more, dtype=np.uint64))
         own = self._class_bits.take(letters)
         every = np.bitwise_or.reduceat(own, begins)
-        last = own[np.append(begins[1:], len(letters)) - 1]
+        last = np.empty_like(every)
+        last[:-1], last[-1:] = own.take(begins[1:] - 1), own[-1:]
         # Words are mostly kept, and so are all of whose letters any word is
         if self._keep(*(int(np.bitwise_or.reduce(classes)) for classes in (every, last))):
             return np.ones(len(begins), dtype=bool)
@@ -307,7 +310,7 @@ def stretches(
     is_new = np.ones(len(letters), dtype=bool)
     np.not_equal(letters[1:], letters[:-1], out=is_new[1:])
     is_new[bounds[:-1]] = True
-    starts = np.flatnonzero(is_new)
+    starts = is_new.nonzero()[0]
     rows = np.empty((len(starts), 2), dtype=np.intp)
     rows[:, 0] = letters[starts]
     rows[:-1, 1] = starts[1:] - starts[:-1]

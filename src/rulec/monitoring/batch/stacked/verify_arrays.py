@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from functools import cached_property, partial
 from itertools import repeat
 from operator import itemgetter
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -124,7 +124,7 @@ class _StackedRun:
         self._ready = known[key]
         _check_objects(traces, rules.vocabulary)
         self._judged = self._ready.judged
-        self._stack = Stack(traces, self._judged.vocabulary)
+        self._stack = Stack(traces, self._judged.vocabulary, self._ready.defaults)
         self._reader = StackReader(self._stack)
         self._reasons = StackedReasons(self._reader)
         self._closely = [_CloseLook(trace, rules) for trace in traces]
@@ -220,12 +220,14 @@ class _StackedRun:
 class _ReadyRules:
     """What is the same for all traces of one kind.
 
-    ``names`` are those of the ``rules`` that are simple.
+    ``names`` are those of the ``rules`` that are simple, ``defaults`` what they take where nothing
+    is said, as far as it has been asked for.
     """
 
     judged: JudgedRules
     rules: Sequence[StackedRule]
     names: frozenset[str]
+    defaults: dict[str, Any] = field(default_factory=dict, init=False)
     _simple: dict[frozenset[str], SimpleRules] = field(default_factory=dict, init=False)
 
     def simple_rules(self, untold: frozenset[str]) -> SimpleRules:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import islice
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +39,7 @@ class LetterSets:
     def __init__(self, diagram: LetterDiagram, meanings: Sequence[Sequence[int]]) -> None:
         self._diagram = diagram
         self._meanings = meanings
+        self._widths = [len(row) for row in meanings]
         # Places of sets of nodes behind each read, and before all.
         self._places: list[dict[int, int]] = [{} for _ in range(len(meanings))]
         self._places.append({diagram.start: 0})
@@ -79,18 +81,20 @@ class LetterSets:
     def numbers(self, columns: Sequence[Numbers]) -> Numbers:
         """The number of each letter, for columns of the reads' numbers, or one for all."""
         numbers = list(columns)
+        given: list[Any] = list(numbers)
         varying: list[tuple[int, NDArray[np.intp]]] = []
         width, n_letters = 1, 1
         for read, own in enumerate(numbers):
             if isinstance(own, int):
                 continue
             if own.ndim:
-                width *= len(self._meanings[read])
+                width *= self._widths[read]
                 n_letters = len(own)
                 varying.append((read, own))
+                given[read] = None
             else:
                 # One number for all letters may be in an array without an axis, too
-                numbers[read] = own.item()
+                numbers[read] = given[read] = own.item()
         if width > MOST_CODES or width > max(_FEW_CODES, n_letters):
             return self._one_by_one(numbers)
         codes: Numbers = 0
@@ -98,10 +102,9 @@ class LetterSets:
             if isinstance(codes, int):
                 codes = column.astype(np.uint16)
             else:
-                codes *= np.uint16(len(self._meanings[read]))
+                codes *= np.uint16(self._widths[read])
                 np.add(codes, column, out=codes, casting="unsafe")
-        given: list[int | None] = [own if isinstance(own, int) else None for own in numbers]
-        key = tuple(given)
+        key: tuple[int | None, ...] = tuple(given)
         table = self._together.get(key)
         if table is None:
             self._kept += width
