@@ -138,7 +138,11 @@ class CompiledRulebook(Rows):
             for rule in self.rules:
                 check_step(rule, step)
             return self
-        if all(rule.step_s in (None, step) for rule in self.rules):
+        steps: frozenset[Fraction | None] | None = self.prepared.get(CompiledRulebook.at_step)
+        if steps is None:
+            steps = frozenset([rule.step_s for rule in self.rules])
+            self.prepared[CompiledRulebook.at_step] = steps
+        if steps <= {None, step}:
             return self
         compiled = self.recompile(step)
         if len(compiled.rules) == len(self.rules):

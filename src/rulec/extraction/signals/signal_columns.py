@@ -57,7 +57,7 @@ def together(parts: Sequence[SignalColumns], names: SignalNames = None) -> Signa
                 found.update(columns)
     if names is not None:
         for found in kinds:
-            if not names.issuperset(found):
+            if found and not names.issuperset(found):
                 for name in found.keys() - names:
                     del found[name]
     return SignalColumns(*kinds)

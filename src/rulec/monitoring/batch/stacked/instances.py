@@ -127,6 +127,10 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
     What a rule reads may do something somewhere (see ``SimpleRules``).
     """
     stack = reader.stack
+    for kind in rule.types:
+        # Of most rules about people, cycles or buses nobody is there
+        if not stack.of_type(kind).any():
+            return _NO_INSTANCES
     # To count takes longest, and is seldom needed to see that nothing happens
     if rule.counts_everywhere:
         uncounted = [

@@ -34,7 +34,7 @@ class MetValues:
 
     def values(self, name: str) -> int:
         """The values of a signal, as bits; none if some are unknown, or there are too many."""
-        return self._values.get(name, 0)
+        return self.signals.get(name, 0)
 
     def ends(self, name: str) -> tuple[float, float] | None:
         """The least and the greatest number of a quantity; None if some are unknown."""
@@ -45,7 +45,7 @@ class MetValues:
 
         None for one that no state tells, and that has no default.
         """
-        met = self._values.get(name)
+        met = self.signals.get(name)
         if met is not None or name in self._stack.said:
             return met or 0
         default = self._stack.default(name)
@@ -90,7 +90,8 @@ class MetValues:
         return UNKNOWN if met & holds else _FALSE
 
     @cached_property
-    def _values(self) -> dict[str, int]:
+    def signals(self) -> dict[str, int]:
+        """The values of each signal, as bits, of which all are known and not too many."""
         found: dict[str, int] = {}
         for names, columns in self._known_signals():
             only = columns[0].values

@@ -121,10 +121,14 @@ class StackReader:
 
     def digits_of(self, reads: Sequence[StackedRead]) -> tuple[int, ...]:
         """The digits of many reads. Raises UnencodableError."""
-        known = self._digits
+        known, signals = self._digits, self.met_values.signals
         for read in reads:
             if read.digits_key not in known:
-                known[read.digits_key] = self._digits_met(read) or read.every
+                # Most reads are of signals of which all values are known
+                met = signals.get(read.names[0], 0) if read.ready is None else 0
+                known[read.digits_key] = (
+                    read.of_met.get(met) or self._digits_met(read) or read.every
+                )
         return tuple([known[read.digits_key] for read in reads])
 
     def _digits_met(self, read: StackedRead) -> int:

@@ -66,7 +66,7 @@ class StackedRead:
     ``key`` have the same numbers, those with the same ``digits_key`` the same digits, too;
     ``ready`` are the thresholds of a number. What ``is_composed`` is computed of several values of
     an object: it is a sum, or counts itself. ``of_counts`` remembers the digits of a count by the
-    values that its ``names`` have anywhere, as bits.
+    values that its ``names`` have anywhere, as bits, ``of_met`` those of a signal by its own.
     """
 
     read: Read | NumberRead
@@ -80,7 +80,7 @@ class StackedRead:
     digits_key: int
     is_composed: bool
     of_counts: dict[tuple[int | None, ...], int] = field(default_factory=dict, init=False)
-    _of_values: dict[int, int] = field(default_factory=dict, init=False)
+    of_met: dict[int, int] = field(default_factory=dict, init=False)
 
     @property
     def every(self) -> int:
@@ -89,13 +89,13 @@ class StackedRead:
 
     def of_values(self, met: int) -> int:
         """The digits of some values of a signal, both as bits."""
-        known = self._of_values.get(met)
+        known = self.of_met.get(met)
         if known is None:
             known = 0
             for number in range(met.bit_length()):
                 if met >> number & 1:
                     known |= self.meanings[number]
-            self._of_values[met] = known
+            self.of_met[met] = known
         return known
 
     @property
