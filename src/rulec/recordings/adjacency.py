@@ -35,6 +35,7 @@ _CLEARLY = 4.0
 """Where lanes lie so many times as long on one side of those that lead the other way."""
 
 _EVERY_M = 2.0
+_HAIR_M = 1e-6
 _LIKE = cos(radians(30))
 _NAMED = 3
 
@@ -122,6 +123,13 @@ class _Borders:
         found: Points = (1 - share) * self._points[before] + share * self._points[before + 1]
         return found
 
+    def may_reach(self, lines: _Indices, places: Points) -> NDArray[np.bool_]:
+        """Flags of places that may be within ``BORDER_M`` of some of the lines, one each."""
+        bounds = shapely.bounds(self.lines)[lines]
+        beyond = np.maximum(bounds[:, :2] - places, places - bounds[:, 2:])
+        flags: NDArray[np.bool_] = beyond.max(axis=1) <= BORDER_M + _HAIR_M
+        return flags
+
     def directions(self, lines: _Indices, at: NDArray[float64]) -> Points:
         """The directions there, from a metre before to one after."""
         steps = self.points(lines, at + 1) - self.points(lines, at - 1)
@@ -142,12 +150,16 @@ def _near(
     numbers = np.arange(ends[-1]) - np.repeat(ends - counts, counts)
     at = numbers * np.repeat(lengths / (counts - 1), counts)
     ones, second = np.repeat(ones, counts), np.repeat(second, counts)
-    points = shapely.points(lines.points(ones, at))
+    places = lines.points(ones, at)
+    # Most borders that meet at all only do at their ends
+    (maybe,) = np.nonzero(others.may_reach(second, places))
+    ones, second, at, points = ones[maybe], second[maybe], at[maybe], shapely.points(places[maybe])
     near = shapely.distance(others.lines[second], points) <= BORDER_M
     along = shapely.line_locate_point(others.lines[second], points)
     cosines = (lines.directions(ones, at) * others.directions(second, along)).sum(axis=1)
-    like = sense * cosines >= _LIKE
-    shares: NDArray[float64] = np.add.reduceat(near & like, ends - counts, dtype=float) / counts
+    like = np.zeros(len(numbers), dtype=bool)
+    like[maybe] = near & (sense * cosines >= _LIKE)
+    shares: NDArray[float64] = np.add.reduceat(like, ends - counts, dtype=float) / counts
     return shares
 
 
