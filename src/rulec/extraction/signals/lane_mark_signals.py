@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise, product
 
@@ -228,52 +227,53 @@ def _across(context: DriveContext, low: Floats, high: Floats, other: tuple[float
 
 
 def _under(context: DriveContext, crossed: Flags, states: NDArray[intp] | slice) -> Flags:
-    """What ``_judged`` says of the lines crossed in these states, a row of flags each."""
-    bits = crossed @ (1 << np.arange(crossed.shape[1]))
-    from_left, unseen = (own[states] & bits for own in _comes_from(context))
-    found = np.zeros((len(crossed), 5), dtype=bool)
-    somewhere = np.flatnonzero(bits)
-    number = _marked_rows(context).number[states]
-    keys = np.stack((number, bits, from_left, unseen), axis=1)[somewhere].tolist()
-    judged = {key: _judged(context, *key) for key in set(map(tuple, keys))}
-    found[somewhere] = np.array([judged[tuple(key)] for key in keys], dtype=bool).reshape(-1, 5)
-    return found
+    """What the lines are that ego crosses in these states, a row of flags each.
 
-
-def _judged(
-    context: DriveContext, number: int, bits: int, from_left: int, unseen: int
-) -> tuple[bool, bool, bool, bool, bool]:
-    """What ``_solid_lines`` says of a row of lanelets, and are there marks that are not told?
-
-    Bit ``k`` is for line ``k``: whether ego is on it, comes from its left, or has not been seen to.
+    Is one solid, is such a one broken on ego's own side, and is it a single one? And is one broken
+    on one side alone, and nobody has seen from which one ego came? And are there marks that are
+    not told? Ego's own side is that from which it comes.
     """
-    row = _marked_rows(context).rows[number]
-    lines = [
-        # The mark at ego's side first
-        (_turned(_between(*pair)) if from_left >> k & 1 else _between(*pair), bool(unseen >> k & 1))
-        for k, pair in enumerate(pairwise([None, *row, None]))
-        if bits >> k & 1
+    bits = crossed @ (1 << np.arange(crossed.shape[1]))
+    from_left, unseen = (own[states] for own in _comes_from(context))
+    kinds = _line_kinds(context).take(_marked_rows(context).number[states], axis=1)
+    solid, broken_right, broken_left, single, not_told = kinds & bits
+    broken = solid & (broken_right & ~from_left | broken_left & from_left)
+    return np.stack(
+        [
+            solid != 0,
+            broken != 0,
+            (solid & single != 0) & (solid & (solid - 1) == 0),
+            solid & unseen & (broken_right | broken_left) != 0,
+            not_told != 0,
+        ],
+        axis=1,
+    )
+
+
+@once
+def _line_kinds(context: DriveContext) -> NDArray[intp]:
+    """Bits of the lines that are of a kind, by row of lanelets (second axis): bit ``k`` of line k.
+
+    Solid ones, those broken on their right and on their left, single ones, and those not told of.
+    """
+
+    def kinds(marks: _Marks) -> tuple[bool, ...]:
+        right, left = marks
+        is_solid = not _SOLID.isdisjoint(marks)
+        return is_solid, right == "broken", left == "broken", marks in _SINGLE, not any(marks)
+
+    found = [
+        [kinds(_between(*pair)) for pair in pairwise([None, *row, None])]
+        for row in _marked_rows(context).rows
     ]
-    return *_solid_lines(lines), any(not any(marks) for marks, _ in lines)
+    flags = np.array(found, dtype=bool)
+    bits: NDArray[intp] = flags.transpose(2, 0, 1) @ (1 << np.arange(flags.shape[1]))
+    return bits
 
 
 def _between(right: Lanelet | None, left: Lanelet | None) -> _Marks:
+    """The marks of the line between two lanes, as the one on its right and on its left says."""
     return right.left_mark if right else None, left.right_mark if left else None
-
-
-def _turned(marks: _Marks) -> _Marks:
-    return marks[1], marks[0]
-
-
-def _solid_lines(crossed: Sequence[tuple[_Marks, bool]]) -> tuple[bool, bool, bool, bool]:
-    """Is ego on a solid line, is one broken on its own side, and is it a single one?
-
-    And is one broken on one side alone, and has nobody seen from which one ego came?
-    """
-    solid = [(marks, unseen) for marks, unseen in crossed if _SOLID & set(marks)]
-    broken = any(marks[0] == "broken" for marks, _ in solid)
-    single = len(solid) == 1 and solid[0][0] in _SINGLE
-    return bool(solid), broken, single, any(unseen and "broken" in own for own, unseen in solid)
 
 
 def _near_a_line(context: DriveContext, margin_m: Floats) -> Flags:
