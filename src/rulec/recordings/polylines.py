@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
@@ -26,12 +28,23 @@ def without_repeats(points: Points, closest_m: float) -> Points:
 
 def densified(points: Points, every_m: float) -> Points:
     """A polyline with further points, none farther apart than a limit."""
-    ways = np.diff(points, axis=0)
+    return densified_lines([points], every_m)[0]
+
+
+def densified_lines(lines: Sequence[Points], every_m: float) -> tuple[Points, list[int]]:
+    """The same of several, each one's points end to end, and how many each has."""
+    points, sizes = np.concatenate(lines), [len(line) for line in lines]
+    begins = np.cumsum([0, *sizes])[:-1]
+    ways = np.diff(points, axis=0, prepend=points[:1])
+    ways[begins] = 0.0
+    # Each point, and before it those on the way to it; to a line's first one there is none
     counts = np.maximum(1, np.ceil(np.hypot(*ways.T) / every_m)).astype(int)
     piece = np.repeat(np.arange(len(ways)), counts)
     number = np.arange(1, len(piece) + 1) - np.repeat(np.cumsum(counts) - counts, counts)
-    between = points[:-1][piece] + ways[piece] * (number / counts[piece])[:, None]
-    return np.concatenate((points[:1], between))
+    before = np.arange(len(ways)) - 1
+    before[begins] = begins
+    between = points[before[piece]] + ways[piece] * (number / counts[piece])[:, None]
+    return between, np.add.reduceat(counts, begins).tolist()
 
 
 def parallel_line(points: Points, offset: float | NDArray[float64]) -> Points:

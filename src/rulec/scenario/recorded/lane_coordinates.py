@@ -19,7 +19,7 @@ import numpy as np
 from numpy import float64, intp
 from numpy.typing import NDArray
 
-from rulec.recordings.polylines import densified
+from rulec.recordings.polylines import densified, densified_lines
 from rulec.recordings.recording import Lanelet, Points, Recording
 from rulec.scenario.recorded.borders import Borders
 from rulec.scenario.recorded.joined_outlines import JoinedOutlines
@@ -51,6 +51,7 @@ _AT_ONCE = 1 << 10
 """Outlines that are looked at together: what is computed of them stays near at hand."""
 
 _Values = NDArray[float64]
+_Beside = Sequence["Lanelet | None"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,9 +143,15 @@ def lanes_along(
     grid = grid[np.concatenate(([True], np.diff(grid) > _HAIR_M))]
     own_number = np.zeros(len(way), dtype=int) if numbers is None else np.array(numbers)
     strip = _Strip(recording, lanelets, line, borders, grid, own_number=own_number)
-    right, left = (_bound(strip, lanelets, left=side) for side in (False, True))
-    on_the_right = _side(strip, right, left=False)
-    on_the_left = _side(strip, left, left=True)
+    beside = {left: _beside(strip, left=left) for left in (False, True)}
+    right, left, *outer = _bounds(
+        strip,
+        [(lanelets, False), (lanelets, True)]
+        + [(lane, left) for left, lanes in beside.items() for lane in lanes],
+    )
+    n_right = len(beside[False])
+    on_the_right = _side(strip, right, beside[False], outer[:n_right], left=False)
+    on_the_left = _side(strip, left, beside[True], outer[n_right:], left=True)
     own = np.maximum(left - right, _HAIR_M), np.ones(len(lanelets), dtype=bool)
     columns = list(_by_number(strip, [*reversed(on_the_right), own, *on_the_left]))
     middles = pieces_at(borders, (grid[:-1] + grid[1:]) / 2)
@@ -227,15 +234,15 @@ def _by_number(
             yield np.full(len(width), _HAIR_M), present
 
 
-def _side(strip: _Strip, inner: _Values, *, left: bool) -> list[tuple[_Values, NDArray[np.bool_]]]:
-    rows = [lanes_beside(strip.recording, lanelet.id, left=left) for lanelet in strip.way]
+def _side(
+    strip: _Strip, inner: _Values, beside: Sequence[_Beside], outer: Sequence[_Values], *, left: bool
+) -> list[tuple[_Values, NDArray[np.bool_]]]:
+    """Widths and presences of the lanes on a side, by their ``outer`` bounds."""
     columns = []
-    for k in range(max(map(len, rows))):
-        present = np.array([len(row) > k for row in rows])
-        own = [strip.recording.lanelets[row[k]] if len(row) > k else None for row in rows]
-        outer = _bound(strip, own, left=left)
+    for lanelets, bound in zip(beside, outer, strict=True):
+        present = np.array([lanelet is not None for lanelet in lanelets])
         known = present[pieces_at(strip.borders, strip.grid)]
-        width = np.maximum(outer - inner if left else inner - outer, _HAIR_M)
+        width = np.maximum(bound - inner if left else inner - bound, _HAIR_M)
         if known.any():
             width = np.interp(strip.grid, strip.grid[known], width[known])
         inner = inner + width if left else inner - width
@@ -243,27 +250,40 @@ def _side(strip: _Strip, inner: _Values, *, left: bool) -> list[tuple[_Values, N
     return columns
 
 
-def _bound(strip: _Strip, lanelets: Sequence[Lanelet | None], *, left: bool) -> _Values:
-    numbers = [k for k, lanelet in enumerate(lanelets) if lanelet is not None]
-    bounds = [
-        densified(lanelet.left if left else lanelet.right, _EVERY_M)
-        for lanelet in lanelets
-        if lanelet is not None
+def _beside(strip: _Strip, *, left: bool) -> list[_Beside]:
+    """The lanes on a side of the way's own, nearest first: a lanelet, or none, for each of its."""
+    rows = [lanes_beside(strip.recording, lanelet.id, left=left) for lanelet in strip.way]
+    return [
+        [strip.recording.lanelets[row[k]] if len(row) > k else None for row in rows]
+        for k in range(max(map(len, rows)))
     ]
+
+
+def _bounds(strip: _Strip, lanes: Sequence[tuple[_Beside, bool]]) -> list[_Values]:
+    """The left bounds of lanes or, where that is false, their right ones, on the grid."""
+    told = [
+        [(k, lanelet.left if left else lanelet.right) for k, lanelet in enumerate(lane) if lanelet]
+        for lane, left in lanes
+    ]
+    numbers, bounds = zip(*(own for lane in told for own in lane), strict=True)
+    points, counts = densified_lines(bounds, _EVERY_M)
     # All places together, each near the piece of its lanelet
-    piece = np.repeat(numbers, [len(bound) for bound in bounds])
+    piece = np.repeat(numbers, counts)
     start, end = strip.borders[piece], strip.borders[piece + 1]
-    places: Points = strip.line.coordinates_near(
-        np.concatenate(bounds), (start + end) / 2, (end - start) / 2 + _FAR_M
-    )
+    places = strip.line.coordinates_near(points, (start + end) / 2, (end - start) / 2 + _FAR_M)
     # Where the way changes lanes its bounds do not go on
     same = np.concatenate(([True], np.diff(strip.own_number) == 0, [True]))
     low, high = (np.where(goes_on, _MARGIN_M, 0.0) for goes_on in (same[piece], same[piece + 1]))
-    places = places[(places[:, 0] >= start - low) & (places[:, 0] <= end + high)]
-    if not len(places):
-        raise ValueError("a lane's bounds are nowhere beside its centre line")
-    places = places[np.argsort(places[:, 0], kind="stable")]
-    return np.interp(strip.grid, places[:, 0], places[:, 1])
+    kept = (places[:, 0] >= start - low) & (places[:, 0] <= end + high)
+    ends = np.cumsum([0, *counts])[np.cumsum([0, *map(len, told)])].tolist()
+    found = []
+    for begins, stops in pairwise(ends):
+        own = places[begins:stops][kept[begins:stops]]
+        if not len(own):
+            raise ValueError("a lane's bounds are nowhere beside its centre line")
+        own = own[np.argsort(own[:, 0], kind="stable")]
+        found.append(np.interp(strip.grid, own[:, 0], own[:, 1]))
+    return found
 
 
 def outline_bounds(
