@@ -36,7 +36,7 @@ from rulec.trace.end_to_end import UnlikeDrivesError
 
 FEWEST_STATES = 2
 
-MOST_CELLS = 1 << 17
+MOST_CELLS = 1 << 18
 """So many states of all participants, in several drives, are looked at by the same calls."""
 
 FEWEST_TOGETHER = 2
