@@ -268,8 +268,9 @@ def part_of(values: NDArray[Any], rows: NDArray[intp], columns: slice) -> NDArra
 def _at_bound(left_of: Floats, bound: NDArray[intp]) -> Floats:
     """The values of one bound (last axis), by column, or by row and column."""
     rows, columns = left_of.shape[:2]
+    values: Floats
     if (bound.ndim > 1 and len(bound) != 1) or not columns:
-        values: Floats = left_of[np.arange(rows)[:, None], np.arange(columns), bound]
+        values = left_of[np.arange(rows)[:, None], np.arange(columns), bound]
         return values
     # Ego seldom changes lanes: the values of a bound stand together
     of_column = bound if bound.ndim == 1 else bound[0]

@@ -8,7 +8,7 @@ have the width that they have there.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby, pairwise
@@ -149,9 +149,9 @@ def lanes_along(
         [(lanelets, False), (lanelets, True)]
         + [(lane, left) for left, lanes in beside.items() for lane in lanes],
     )
-    n_right = len(beside[False])
-    on_the_right = _side(strip, right, beside[False], outer[:n_right], left=False)
-    on_the_left = _side(strip, left, beside[True], outer[n_right:], left=True)
+    bounds_of = iter(outer)
+    on_the_right = _side(strip, right, [(x, next(bounds_of)) for x in beside[False]], left=False)
+    on_the_left = _side(strip, left, [(x, next(bounds_of)) for x in beside[True]], left=True)
     own = np.maximum(left - right, _HAIR_M), np.ones(len(lanelets), dtype=bool)
     columns = list(_by_number(strip, [*reversed(on_the_right), own, *on_the_left]))
     middles = pieces_at(borders, (grid[:-1] + grid[1:]) / 2)
@@ -235,11 +235,11 @@ def _by_number(
 
 
 def _side(
-    strip: _Strip, inner: _Values, beside: Sequence[_Beside], outer: Sequence[_Values], *, left: bool
+    strip: _Strip, inner: _Values, lanes: Iterable[tuple[_Beside, _Values]], *, left: bool
 ) -> list[tuple[_Values, NDArray[np.bool_]]]:
-    """Widths and presences of the lanes on a side, by their ``outer`` bounds."""
+    """Widths and presences of the lanes on a side, which come with their outer bounds."""
     columns = []
-    for lanelets, bound in zip(beside, outer, strict=True):
+    for lanelets, bound in lanes:
         present = np.array([lanelet is not None for lanelet in lanelets])
         known = present[pieces_at(strip.borders, strip.grid)]
         width = np.maximum(bound - inner if left else inner - bound, _HAIR_M)
