@@ -40,6 +40,12 @@ def test_a_border_in_common_for_a_while_makes_no_neighbours():
     assert pair.part < 0.3
 
 
+def test_borders_that_meet_at_their_ends_have_a_place_in_common():
+    # Of 51 places, every 2 m, the last one
+    (pair,) = bordering([straight(1, 0, 100), straight(2, 100, 200, y=4)])
+    assert (pair.part, pair.length) == (pytest.approx(1 / 51), pytest.approx(100 / 51))
+
+
 def test_what_the_map_says_stands():
     lanes = [straight(1, 0, 100, left_of=3), straight(2, 0, 100, y=4), straight(3, 0, 99, y=4)]
     assert neighbours(*lanes) == ({("1", "3")}, ())
