@@ -3,6 +3,8 @@
 import pytest
 
 from rulec.book_tests.example_runs import run_rulebook_examples
+from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
+from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.rulebook.loader import read_rulebook
 from support.builders.national_books import FOLDER, NATIONAL, compiled, read
 
@@ -67,3 +69,12 @@ def test_each_rule_has_an_automaton_that_can_be_kept_and_violated(name: str) -> 
         assert rule.hoa.startswith("HOA: v1")
         outputs = {verdict for row in rule.machine.outputs for verdict in row}
         assert outputs == {True, False}, rule.name
+
+
+@of_every_book
+def test_every_rule_is_judged_in_arrays(name: str) -> None:
+    """Not so one that asks of other objects who they are: of a town it takes hours."""
+    book = compiled(name)
+    judged = judged_rules(book, frozenset(book.vocabulary.declarations), cut=True)
+    ready = [StackedRule(rule, own, book, judged.vocabulary, {}) for rule, own in judged.machines]
+    assert [rule.rule.name for rule in ready if not rule.is_simple] == []
