@@ -38,7 +38,9 @@ def completed(trace: Trace, vocabulary: Vocabulary, supposed: Supposed) -> Trace
     declarations = vocabulary.declarations
     states = tuple(
         {
-            name: _known(value, declarations[name], len(declarations[name].parameters), supposed)
+            name: _of_all(trace.objects, len(declarations[name].parameters), supposed.values[name])
+            if value is UNKNOWN and name in supposed.values
+            else _known(value, declarations[name], len(declarations[name].parameters), supposed)
             for name, value in state.items()
         }
         if has_partial_values(state)
@@ -46,6 +48,11 @@ def completed(trace: Trace, vocabulary: Vocabulary, supposed: Supposed) -> Trace
         for state in trace.states
     )
     return replace(trace, states=states, ends="complete", told=None)
+
+
+def _of_all(objects: Collection[str], depth: int, value: Value) -> Any:
+    """A value of the world, or the same of all objects, or of all pairs of them."""
+    return value if not depth else dict.fromkeys(objects, _of_all(objects, depth - 1, value))
 
 
 def kindest(
