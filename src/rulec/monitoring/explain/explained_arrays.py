@@ -28,7 +28,6 @@ from rulec.monitoring.uncertainty.one_completion import (
     completed,
     kindest,
     with_all_defaults,
-    with_defaults,
 )
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import Violation
@@ -130,10 +129,9 @@ class _Vocabularies:
             declared, untold = rulebook.vocabulary, untold_names(rulebook.vocabulary, told)
             facts = [axiom.formula for axiom in rulebook.axioms]
             supposed = kindest(rule.formula, declared, facts)
-            unsaid = {name: supposed.values[name] for name in supposed.values.keys() & untold}
             found = _Vocabularies(
                 declared,
-                completed=with_all_defaults(with_defaults(declared, unsaid)),
+                completed=with_all_defaults(declared, supposed, untold),
                 given=with_untold(declared, untold),
                 supposed=supposed,
                 untold=untold,

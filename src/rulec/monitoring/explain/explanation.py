@@ -28,12 +28,7 @@ from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import has_partial_values
 from rulec.monitoring.state_view import StateView
-from rulec.monitoring.uncertainty.one_completion import (
-    completed,
-    kindest,
-    with_all_defaults,
-    with_defaults,
-)
+from rulec.monitoring.uncertainty.one_completion import completed, kindest, with_all_defaults
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import Violation
 from rulec.monitoring.verify import letter_reader_of
@@ -195,8 +190,7 @@ def explain(
         facts = [axiom.formula for axiom in rulebook.axioms]
         supposed = kindest(rule.formula, declared, facts)
         trace = completed(trace, declared, supposed)
-        unsaid = {name: supposed.values[name] for name in supposed.values.keys() & untold}
-        rulebook = replace(rulebook, vocabulary=with_all_defaults(with_defaults(declared, unsaid)))
+        rulebook = replace(rulebook, vocabulary=with_all_defaults(declared, supposed, untold))
     binding = binding_of(violation.binding, trace.present, len(trace.states))
     reader = letter_reader_of(trace, rulebook)
     stretch = range(binding.first, binding.last + 1)

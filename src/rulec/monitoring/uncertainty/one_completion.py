@@ -120,21 +120,13 @@ def _is_kind(value: str | bool, signs: Mapping[str | None, set[bool]]) -> bool:
     return all(own == {value == (wanted or True)} for wanted, own in signs.items())
 
 
-def with_defaults(vocabulary: Vocabulary, values: Mapping[str, Value]) -> Vocabulary:
-    """The vocabulary in which names have these defaults."""
-    if not values:
-        return vocabulary
+def with_all_defaults(
+    vocabulary: Vocabulary, supposed: Supposed, untold: Collection[str]
+) -> Vocabulary:
+    """The vocabulary in which each name has a default: of ``untold`` ones what is supposed."""
+    values = {name: supposed.values[name] for name in supposed.values.keys() & untold}
     declarations = {
-        name: replace(item, default=values[name]) if name in values else item  # type: ignore[arg-type]
-        for name, item in vocabulary.declarations.items()
-    }
-    return replace(vocabulary, declarations=declarations)
-
-
-def with_all_defaults(vocabulary: Vocabulary) -> Vocabulary:
-    """The vocabulary in which each name has a default."""
-    declarations = {
-        name: replace(item, default=any_value(item))  # type: ignore[arg-type]
+        name: replace(item, default=values.get(name, any_value(item)))  # type: ignore[arg-type]
         for name, item in vocabulary.declarations.items()
     }
     return replace(vocabulary, declarations=declarations)
