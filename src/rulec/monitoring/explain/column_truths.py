@@ -21,7 +21,7 @@ from rulec.monitoring.uncertainty.one_completion import (
     NOTHING_SUPPOSED,
     Supposed,
     any_value,
-    one_of,
+    number_at,
 )
 from rulec.trace.trace_arrays import Flags, TraceArrays
 from rulec.vocabulary import Vocabulary
@@ -246,5 +246,5 @@ class _Numbers:
             return exact(self._default)
         value = values[state].item()
         if high is not None and (most := high[state].item()) != value:
-            value = one_of(Interval(value, most), self._end)
+            value = number_at(Interval(value, most), self._end)
         return exact(value)

@@ -26,7 +26,7 @@ from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.one_completion import (
     Supposed,
     completed,
-    kindest,
+    favourable,
     with_all_defaults,
 )
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
@@ -128,7 +128,7 @@ class _Vocabularies:
         if found is None:
             declared, untold = rulebook.vocabulary, untold_names(rulebook.vocabulary, told)
             facts = [axiom.formula for axiom in rulebook.axioms]
-            supposed = kindest(rule.formula, declared, facts)
+            supposed = favourable(rule.formula, declared, facts)
             found = _Vocabularies(
                 declared,
                 completed=with_all_defaults(declared, supposed, untold),

@@ -28,7 +28,7 @@ from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import has_partial_values
 from rulec.monitoring.state_view import StateView
-from rulec.monitoring.uncertainty.one_completion import completed, kindest, with_all_defaults
+from rulec.monitoring.uncertainty.one_completion import completed, favourable, with_all_defaults
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.monitoring.verdict import Violation
 from rulec.monitoring.verify import letter_reader_of
@@ -188,7 +188,7 @@ def explain(
     untold = untold_names(declared, trace.told)
     if untold or trace.ends == "cut" or any(map(has_partial_values, trace.states)):
         facts = [axiom.formula for axiom in rulebook.axioms]
-        supposed = kindest(rule.formula, declared, facts)
+        supposed = favourable(rule.formula, declared, facts)
         trace = completed(trace, declared, supposed)
         rulebook = replace(rulebook, vocabulary=with_all_defaults(declared, supposed, untold))
     binding = binding_of(violation.binding, trace.present, len(trace.states))

@@ -55,7 +55,7 @@ def _of_all(objects: Collection[str], depth: int, value: Value) -> Any:
     return value if not depth else dict.fromkeys(objects, _of_all(objects, depth - 1, value))
 
 
-def kindest(
+def favourable(
     formula: ltl.Formula, vocabulary: Vocabulary, facts: Collection[ltl.Formula]
 ) -> Supposed:
     """By name, that by which a formula is most likely to hold, where it is the same for all atoms.
@@ -85,10 +85,10 @@ def kindest(
     for name in signs.keys() - excluded:
         declaration = vocabulary.declarations[name]
         known = declaration.values if isinstance(declaration, Enumeration) else (False, True)
-        kind = [value for value in known if _is_kind(value, signs[name])]
-        if kind:
+        best = [value for value in known if _is_favourable(value, signs[name])]
+        if best:
             default = any_value(declaration)
-            values[name] = default if default in kind else kind[0]
+            values[name] = default if default in best else best[0]
     agreed = {name: own.pop() for name, own in ends.items() if len(own) == 1}
     return Supposed(
         values,
@@ -115,7 +115,7 @@ def _signed(formula: ltl.Formula) -> Iterator[tuple[ltl.Proposition, bool]]:
                 yield part, sign
 
 
-def _is_kind(value: str | bool, signs: Mapping[str | None, set[bool]]) -> bool:
+def _is_favourable(value: str | bool, signs: Mapping[str | None, set[bool]]) -> bool:
     """Whether each atom is true, or false, as it should be if a name has this value."""
     return all(own == {value == (wanted or True)} for wanted, own in signs.items())
 
@@ -145,7 +145,7 @@ def _known(value: Any, declaration: Declaration, depth: int, supposed: Supposed)
     if depth:
         return {}  # unknown of all objects
     if isinstance(value, Interval):
-        return one_of(value, supposed.ends.get(declaration.name))
+        return number_at(value, supposed.ends.get(declaration.name))
     if isinstance(value, OneOf):
         return min(value.values)
     if value is not UNKNOWN:
@@ -153,7 +153,7 @@ def _known(value: Any, declaration: Declaration, depth: int, supposed: Supposed)
     return supposed.values.get(declaration.name, any_value(declaration))
 
 
-def one_of(bounds: Interval, end: End | None) -> float:
+def number_at(bounds: Interval, end: End | None) -> float:
     """The number at an end of bounds, or their middle."""
     if end is None:
         return bounds.middle
