@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from itertools import pairwise
 from math import gcd
@@ -84,6 +84,7 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
     step_s = time_step(path, data.moments)
     types = read_vehicle_types(demand_beside(path, data.head))
     unknown: set[str] = set()
+    rounding = _rounding(data)
     participants = tuple(_participants(data, types, step_s, unknown))
     replaced = programmes_beside(path, data.head)
     # What is not there may have programmes for each of them
@@ -104,7 +105,7 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
         side=net.side,
         remarks=(*_remarks(unknown, net), *_left_out(data)),
         complete=COMPLETE - _TRAFFIC if data.head.leaves_out else COMPLETE,
-        rounding=_rounding(data),
+        rounding=rounding,
     )
 
 
@@ -137,26 +138,30 @@ _MANY = 100
 
 def _rounding(data: FloatingCarData) -> Rounding:
     """The rounding of places and speeds, by the decimals that all of them have."""
-    rows = np.concatenate([np.array(track.rows, dtype=float) for track in data.tracks.values()])
-    x, y, _, speed = rows.reshape(-1, 4).T
-    return Rounding(_unit(np.concatenate((x, y))), _unit(speed))
+    tracks = [np.frombuffer(track.rows).reshape(-1, 4) for track in data.tracks.values()]
+    return Rounding(_unit([rows[:, :2] for rows in tracks]), _unit([rows[:, 3] for rows in tracks]))
 
 
-def _unit(numbers: NDArray[float64]) -> float:
-    fewest = 0 if len(numbers) >= _MANY else 2
+def _unit(numbers: Sequence[NDArray[float64]]) -> float:
+    fewest = 0 if sum(own.size for own in numbers) >= _MANY else 2
     for decimals in range(fewest, _MOST_DECIMALS):
-        scaled = numbers * 10.0**decimals
-        if np.abs(scaled - np.round(scaled)).max() < _HAIR:
+        if all(_are_whole(own * 10.0**decimals) for own in numbers):
             return float(10.0**-decimals)
     return float(10.0**-_MOST_DECIMALS)
+
+
+def _are_whole(numbers: NDArray[float64]) -> bool:
+    return bool((np.abs(numbers - np.round(numbers)) < _HAIR).all())
 
 
 def _participants(
     data: FloatingCarData, types: dict[str, VehicleType], step_s: float, unknown: set[str]
 ) -> Iterator[Participant]:
+    """All participants; what is made into one is held no longer."""
     step = round(step_s * MICROSECONDS)
-    steps = np.array(data.moments, dtype=int64) // step
-    for key, track in data.tracks.items():
+    steps = [moment // step for moment in data.moments]
+    for key in list(data.tracks):
+        track = data.tracks.pop(key)
         kind, known = vehicle_type(track.type, track.element, types)
         if not known:
             unknown.add(f"`{short(track.type)}` ({kind.kind}, {kind.length:g} m)")
@@ -240,13 +245,14 @@ def time_step(path: Path, moments: list[int]) -> float:
 
 
 def fcd_participants(
-    key: str, track_rows: FcdTrack, kind: VehicleType, steps: NDArray[int64], step_s: float
+    key: str, track_rows: FcdTrack, kind: VehicleType, steps: Sequence[int], step_s: float
 ) -> Iterator[Participant]:
     """The participants of a track: who vanishes and comes back is another one then.
 
     ``steps``: the time step of every moment of the file.
     """
-    own = steps[np.array(track_rows.moments, dtype=int64)]
+    count = len(track_rows.moments)
+    own = np.fromiter(map(steps.__getitem__, track_rows.moments), dtype=int64, count=count)
     starts = np.flatnonzero(np.diff(own, prepend=own[0] - 2) > 1)
     rows = np.array(track_rows.rows, dtype=float).reshape(-1, 4)
     if track_rows.element == "vehicle":
@@ -258,7 +264,8 @@ def fcd_participants(
         else _centres(rows, kind.length)
     )
     rows = np.column_stack((rows, _accelerations(track_rows, rows[:, 3], own, step_s)))
-    lamps = {int(steps[moment]): _lit(bits) for moment, bits in track_rows.lamps.items()}
+    # All tracks share the numbers of steps
+    lamps = {steps[moment]: _lit(bits) for moment, bits in track_rows.lamps.items()}
     for number, (start, end) in enumerate(zip(starts, [*starts[1:], len(own)], strict=True), 1):
         track = Track(own[start:end], rows[start:end], kind.length, kind.width)
         name = key if number == 1 else f"{key}_{number}"
