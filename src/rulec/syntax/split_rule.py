@@ -69,7 +69,8 @@ class RuleSplitter:
         )
 
     def _end_of_clause(self, first: int) -> int:
-        index, braces, parentheses = first + 1, 0, 0
+        index, parentheses = first + 1, 0
+        braces = int(self.marks.is_symbol(first, "{"))
         while index < len(self.tokens):
             if self.marks.begins_clause(index) or self.marks.begins_item_inside(index):
                 break
