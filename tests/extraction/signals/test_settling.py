@@ -65,6 +65,10 @@ def test_flicker_is_settled_by_what_it_began_with():
     assert after("aaabababbb") == "aaaaaaabbb"
 
 
+def test_what_is_brief_within_what_is_brief_is_settled_alone():
+    assert after("cbabc", least=4) == "cbbbc"
+
+
 def test_what_is_said_of_one_line_is_settled_alike():
     assert len({LEAST_S[x] for x in ("on_solid_line", "broken_on_own_side", "single_line")}) == 1
 
@@ -108,8 +112,8 @@ def test_what_lasts_stays_and_nothing_new_is_said(column, least):
     assert set(found) <= set(column)
 
 
-@given(columns, st.integers(1, 4))
-def test_settling_again_changes_nothing(column, least):
+@given(st.lists(st.sampled_from("ab"), min_size=1, max_size=20), st.integers(1, 4))
+def test_settling_flags_again_changes_nothing(column, least):
     once = without_blips(np.array(column), least)
     assert without_blips(once, least).tolist() == once.tolist()
 
