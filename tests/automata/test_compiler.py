@@ -274,6 +274,16 @@ def test_phases_in_phases_that_explode_are_an_error():
     assert [one.code for one in caught.value.diagnostics] == ["R0401"]
 
 
+@pytest.mark.spot
+def test_more_acceptance_sets_than_spot_has_are_an_error():
+    """Whether it will end well, six steps on, is guessed at every instant before."""
+    well = Unary(UnaryOperator.NEXT, Unary(UnaryOperator.EVENTUALLY, P), within(6, 6))
+    ends = Binary(BinaryOperator.UNTIL, Q, Binary(BinaryOperator.AND, far("x"), well))
+    with pytest.raises(RulecError, match="acceptance sets") as caught:
+        compile_rulebook(book(rule("A", Binary(BinaryOperator.SINCE, near("x"), ends), "x: thing")))
+    assert [one.code for one in caught.value.diagnostics] == ["R0401"]
+
+
 def test_a_past_that_explodes_is_an_error():
     """Which of 14 signals there have been, told apart at every instant."""
     pasts = [Unary(UnaryOperator.ONCE, Atom(f"s{i}")) for i in range(14)]

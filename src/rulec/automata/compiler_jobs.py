@@ -54,13 +54,13 @@ class Done:
 class Failed:
     """Reason for no monitor.
 
-    ``letters``, ``steps`` or ``memory``: there would be too many, or too much. ``check``: it was
-    wrong. ``facts``: those of ``contradiction`` cannot hold together. ``reach``: it takes Spot.
+    ``letters``, ``steps``, ``sets`` (of acceptance) or ``memory``: there would be too many, or too
+    much. ``check``: it was wrong. ``facts``: those of ``contradiction`` cannot hold together. ``reach``: it takes Spot.
     ``time``: those before it took all that a rulebook has.
     ``bug`` is anything that nobody thought of, with the traceback.
     """
 
-    why: Literal["letters", "steps", "memory", "check", "facts", "reach", "time", "bug"]
+    why: Literal["letters", "steps", "sets", "memory", "check", "facts", "reach", "time", "bug"]
     traceback: str = ""
     contradiction: tuple[AxiomInstance, ...] = ()
 
@@ -89,8 +89,12 @@ class BeyondReachError(Exception):
     """A formula that a compiler has no way to translate."""
 
 
+class AcceptanceError(Exception):
+    """An automaton takes more acceptance sets than a compiler has."""
+
+
 Translator: TypeAlias = Callable[[Job], Translated]
-"""Raises CheckError, and BeyondReachError."""
+"""Raises CheckError, BeyondReachError and AcceptanceError."""
 
 
 @dataclass(frozen=True, slots=True)

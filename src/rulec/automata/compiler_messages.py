@@ -18,7 +18,8 @@ AUTOMATON_TOO_LARGE = Code(
     "R0401",
     title="the automaton of a rule would be too large",
     why="An automaton can be far larger than its formula. A rule may take 5 s of processor time "
-    "and 2 GiB of memory to compile, and read 65,536 different letters (16 signals). Demands "
+    "and 2 GiB of memory to compile, and as many acceptance sets as Spot has, 32, and read 65,536 "
+    "different letters (16 signals). Demands "
     "that are joined by `and` can each have a rule of their own; those automata stand beside "
     "each other instead of being multiplied.",
     bad=f"rulebook example\nsignal {_SIGNALS}\nhard rule all_off {{\n"
@@ -106,6 +107,8 @@ def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnosti
             return COMPILING.exceeded(at(rule.span), whose).diagnostics[0]
         case Failed("letters"):
             why = "it reads too many signals, enumerations and numbers at once"
+        case Failed("sets"):
+            why = "it takes more acceptance sets than Spot has"
         case Failed("steps"):
             why = "one of its bounds has more than 10,000 steps"
     # Seconds or steps, it is the number of them that makes it large.

@@ -61,7 +61,7 @@ def compile_here(rulebook, step_s=None):
     for formula in compiler.lower(rulebook, step_s).rules:
         job = compiler._job(rulebook, formula, cpu_limit_s=5)
         answer = answer_to(job, usual)
-        if answer == Failed("reach"):
+        if answer in (Failed("reach"), Failed("sets")):
             reject()
         compiled.append(compiler._compiled(formula.rule, formula.step_s, answer))
     return CompiledRulebook(

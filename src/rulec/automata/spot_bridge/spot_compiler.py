@@ -4,18 +4,27 @@ from __future__ import annotations
 
 from rulec.automata.alphabet import AND, joined, propositions_of
 from rulec.automata.axiom_groups import possible_letters
-from rulec.automata.compiler_jobs import Compiler, Job, Translated
+from rulec.automata.compiler_jobs import AcceptanceError, Compiler, Job, Translated
 from rulec.automata.spot_bridge.spot_automata import VERSION, explore, in_hoa
 from rulec.automata.spot_bridge.spot_formulas import projected
 from rulec.automata.spot_bridge.translation import translate
 from rulec.logic.formula import Constant, Formula
 
 
+_NO_SETS = "Too many acceptance sets"
+"""So begins what Spot says of an automaton that takes more of them than it was built for, 32."""
+
+
 def _translated(job: Job) -> Translated:
     propositions = propositions_of(job.formula)
     facts = [projected(group.known, propositions) for group in job.groups]
     axioms = [fact for fact in facts if fact != Constant(True)]
-    translation = translate(job.formula, job.reads, job.semantics, axioms)
+    try:
+        translation = translate(job.formula, job.reads, job.semantics, axioms)
+    except RuntimeError as problem:
+        if str(problem).startswith(_NO_SETS):
+            raise AcceptanceError from None
+        raise
     return Translated(
         explore(translation, job.reads),
         possible_letters(job.reads, joined(AND, axioms)) if axioms else None,

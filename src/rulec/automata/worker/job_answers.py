@@ -9,6 +9,7 @@ from rulec.automata.alphabet import count_letters, letters_with, propositions_of
 from rulec.automata.axiom_groups import AxiomGroup
 from rulec.automata.compiler_jobs import (
     MOST_STEPS_AHEAD,
+    AcceptanceError,
     BeyondReachError,
     CheckError,
     Compiler,
@@ -43,6 +44,8 @@ def answer_to(job: Job, compiler: Compiler) -> Done | Failed:
         return Failed("check")
     except BeyondReachError:
         return Failed("reach")
+    except AcceptanceError:
+        return Failed("sets")
     machine = build_machine(found.automaton, job.reads, found.possible)
     try:
         return Done(machine, found.hoa) if _is_right(machine, job, found) else Failed("check")
