@@ -3,13 +3,16 @@
 import json
 import re
 
+import numpy as np
 import pytest
 
 import rulec
-from rulec import RulecError, read_recording
+from rulec import RulecError, build_lanelet, read_recording
+from rulec.recordings.doubts.road_doubts import road_doubts
 from rulec.recordings.format_table import FORMATS
 from rulec.recordings.recording_files import read_recordings
 from rulec.recordings.recording_format import RecordingSource
+from rulec.recordings.track import Track
 from support.builders import argoverse_files as argoverse
 from support.builders import d123_files as d123
 from support.builders.track_tables import HEAD, driving, table, written
@@ -197,3 +200,19 @@ def test_numbers_of_tracks_that_are_no_times(tmp_path):
 def test_no_lane_in_the_map(tmp_path):
     with pytest.raises(RulecError, match="R06"):
         read_recording(written(tmp_path, table(HEAD, *driving()), "lane,x,y\n"))
+
+
+@pytest.mark.parametrize(("gap", "said"), [(0.0, None), (0.9, None), (-0.9, None), (2.5, "2.5 m")])
+def test_lanes_that_do_not_begin_where_those_before_end(gap, said):
+    """A lane that splits in two begins beside the middle of the one before: no gap."""
+    lanes = [
+        build_lanelet("a", [(0, 0), (100, 0)], successors=["b", "c"]),
+        build_lanelet("b", [(100 + gap, 0), (200, 0)], predecessors=["a"]),
+        build_lanelet("c", [(100, -1.7), (200, -3)], predecessors=["a"]),
+    ]
+    rows = np.array([[10.0 * k, 0.0, 0.0, 10.0, 0.0] for k in range(10)])
+    track = Track(np.arange(10), rows, 4.5, 1.8)
+    found = list(road_doubts({lane.id: lane for lane in lanes}, [track]))
+    assert [remark for remark in found if "at 1 of 2 places" in remark and said] == found
+    assert all(f"`b` {said} from that of `a`" in remark for remark in found)
+    assert len(found) == (said is not None)

@@ -11,6 +11,7 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.diagnostics import SourceLocation
+from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.recording import Lanelet, Participant, Points, Recording, is_lane
 from rulec.recordings.recording_messages import OTHER_NET
 from rulec.recordings.track import Track, TrackStates
@@ -30,6 +31,10 @@ _ASTRAY = np.pi / 3
 """Who turns off or changes lanes is turned less far away from its lane."""
 
 _FEWEST_BODIES = 3
+
+_APART_M = 1.0
+"""On the maps of published recordings no lane begins farther from the end of one that leads to it
+than 0.6 m."""
 
 
 def check_near(recording: Recording, path: Path | None) -> None:
@@ -65,6 +70,7 @@ def road_doubts(lanelets: Mapping[str, Lanelet], tracks: Sequence[Track]) -> Ite
     lanes = [one for one in lanelets.values() if is_lane(one)]
     if not lanes or not tracks:
         return
+    yield from _gaps(lanes)
     roads = _Roads(lanes)
     moves = [_moves(track) for track in tracks]
     on, along = roads.shares(moves)
@@ -86,6 +92,27 @@ def road_doubts(lanelets: Mapping[str, Lanelet], tracks: Sequence[Track]) -> Ite
         yield (
             f"only {along:.0%} of the places of vehicles that move are on lanes that lead their "
             "way: the map may be that of another place, or y point down"
+        )
+
+
+def _gaps(lanes: Sequence[Lanelet]) -> Iterator[str]:
+    """What is to be said of lanes that end elsewhere than those begin that they lead to."""
+    known = {one.id: one for one in lanes}
+    pairs = [(one, known[name]) for one in lanes for name in one.successors if name in known]
+    if not pairs:
+        return
+    ends, begins = (
+        shapely.linestrings([(one.left[at], one.right[at]) for one in own])
+        for at, own in zip((-1, 0), zip(*pairs, strict=True), strict=True)
+    )
+    gaps = shapely.distance(ends, begins)
+    count, widest = int((gaps > _APART_M).sum()), int(gaps.argmax())
+    if count:
+        before, behind = (f"`{short(one.id)}`" for one in pairs[widest])
+        yield (
+            f"at {count:,} of {len(pairs):,} places where a lane leads to the next, that one "
+            f"begins more than {_APART_M:g} m from its end, {behind} {gaps[widest]:.1f} m from "
+            f"that of {before}: what is said of lanes may be wrong near there"
         )
 
 
