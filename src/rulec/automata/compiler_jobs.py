@@ -55,9 +55,9 @@ class Failed:
     """Reason for no monitor.
 
     ``letters``, ``steps``, ``sets`` (of acceptance) or ``memory``: there would be too many, or too
-    much. ``check``: it was wrong. ``facts``: those of ``contradiction`` cannot hold together. ``reach``: it takes Spot.
-    ``time``: those before it took all that a rulebook has.
-    ``bug`` is anything that nobody thought of, with the traceback.
+    much. ``check``: it was wrong. ``facts``: those of ``contradiction`` cannot hold together.
+    ``reach``: it takes Spot. ``time``: those before it took all that a rulebook has. ``bug`` is
+    anything that nobody thought of, with the traceback.
     """
 
     why: Literal["letters", "steps", "sets", "memory", "check", "facts", "reach", "time", "bug"]

@@ -10,7 +10,6 @@ from rulec.automata.spot_bridge.spot_formulas import projected
 from rulec.automata.spot_bridge.translation import translate
 from rulec.logic.formula import Constant, Formula
 
-
 _NO_SETS = "Too many acceptance sets"
 """So begins what Spot says of an automaton that takes more of them than it was built for, 32."""
 
