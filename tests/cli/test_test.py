@@ -141,6 +141,20 @@ def test_json(odd, capsys):
     }
 
 
+@pytest.mark.parametrize(
+    ("formula", "turned_round"),
+    [("red and not stop", True), ("not red", False), ("red and stop", False)],
+)
+def test_all_examples_the_other_way(formula, turned_round, tmp_path, capsys):
+    """Of the second and the third formula one example comes out as it claims."""
+    (tmp_path / "stops.rules").write_text(
+        f"rulebook stops signal red, stop hard rule r {{ require {formula} "
+        "accept { red and stop } reject { red and not stop } }"
+    )
+    _, out, _ = run(capsys, str(tmp_path / "stops.rules"))
+    assert ("all examples of rule `r` come out the other way" in out) == turned_round
+
+
 def test_junit(odd, capsys):
     status, out, _ = run(capsys, odd, "--output-format", "junit", "--coverage")
     assert status == 1

@@ -43,7 +43,7 @@ def as_text(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]
         for outcome in run.outcomes
     ]
     problems = [
-        failure(outcome, run.rulebook.name)
+        failure(outcome, run.rulebook.name, turned_round=outcome.rule.name in _turned_round(run))
         for run in runs
         for outcome in run.outcomes
         if not outcome.passed
@@ -86,8 +86,26 @@ def coverage_in_words(runs: Sequence[ExampleRun], covered: Sequence[Sequence[Rul
     return f"coverage{own}, {with_others} with those that are inherited"
 
 
-def failure(example_outcome: ExampleOutcome, rulebook: str) -> Diagnostic:
-    """The diagnostic of a failing, perhaps inherited, example."""
+def _turned_round(run: ExampleRun) -> frozenset[str]:
+    """The rules that reject all that their examples accept, and accept all that these reject."""
+    own: dict[str, list[ExampleOutcome]] = {}
+    for outcome in run.outcomes:
+        own.setdefault(outcome.rule.name, []).append(outcome)
+    return frozenset(
+        rule
+        for rule, outcomes in own.items()
+        if not any(outcome.passed for outcome in outcomes)
+        and len({outcome.example.accepts for outcome in outcomes}) > 1
+    )
+
+
+def failure(
+    example_outcome: ExampleOutcome, rulebook: str, *, turned_round: bool = False
+) -> Diagnostic:
+    """The diagnostic of a failing, perhaps inherited, example.
+
+    ``turned_round``: all examples of its rule come out the other way.
+    """
     problem = replace(example_warning(example_outcome), severity="error")
     rule = example_outcome.rule
     if (
@@ -101,7 +119,9 @@ def failure(example_outcome: ExampleOutcome, rulebook: str) -> Diagnostic:
         span.source for span in (rule.span, example_outcome.example.span) if span is not None
     ]
     if rule.book == rulebook and len(set(stands_in)) < 2:
-        return problem
+        why = f"all examples of rule `{rule.name}` come out the other way"
+        way_out = f"{why}: a `not` may be missing or too many, or `accept` and `reject` exchanged"
+        return replace(problem, help=way_out) if turned_round else problem
     variables = ", ".join(f"{variable.name}: {variable.type}" for variable in rule.variables)
     head = f"{rule.name} ({variables})" if variables else rule.name
     return replace(
