@@ -2,6 +2,8 @@
 
 import json
 
+import pytest
+
 from rulec.cli.main import main
 
 ROAD = """
@@ -57,13 +59,25 @@ def test_nothing_is_said_where_there_is_a_way(tmp_path, capsys):
     assert "leads on" not in text
 
 
-def test_it_says_that_no_trajectory_was_found(tmp_path, capsys, monkeypatch):
+@pytest.mark.parametrize(
+    ("require", "satisfying"), [("true", "satisfying  1 "), ("near", "satisfying  0 ")]
+)
+def test_it_says_that_no_trajectory_was_found(require, satisfying, tmp_path, capsys, monkeypatch):
+    """Of those that keep the rule, and of those that may: of `near` nothing is known."""
     search = "rulec.partition.motion.witness_trajectory.WitnessSearch.of"
     file = tmp_path / "free.toml"
-    file.write_text(ROAD.replace("d = 0", 'd = 0\nspeed = 5\nbounds = "car"'))
-    command = ["maneuvers", str(file), "-r", "esterle2019", "--list", "1"]
+    ego = ROAD.replace("d = 0", 'd = 0\nspeed = 5\nbounds = "car"')
+    file.write_text(f'{ego}[signals]\nnear = "?"\n')
+    book = tmp_path / "book.rules"
+    book.write_text(
+        f"rulebook book signal near hard rule r {{ require {require} }} "
+        "hard rule s { require always near implies near }"
+    )
+    command = ["maneuvers", str(file), "-r", str(book), "--list", "1"]
     assert main(command) == 0
-    assert "listed      none" not in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "listed      none" not in said
+    assert satisfying in said
     monkeypatch.setattr(search, lambda *_: None)
     assert main(command) == 0
     assert "listed      none: no trajectory was found" in capsys.readouterr().out

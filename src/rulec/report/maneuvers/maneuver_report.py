@@ -115,7 +115,7 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
     if least is not None:
         lines.append(f"emergency   every maneuver brakes by more than {least:.1f} m/s²")
     lines.append(f"computed in {seconds:.3f} s")
-    if answers.listed is not None and not answers.listed and maneuvers.satisfying:
+    if answers.listed == [] and (maneuvers.satisfying or maneuvers.open):
         lines.append("listed      none: no trajectory was found along those that cost least")
     for number, maneuver in enumerate(answers.listed or (), 1):
         lines += maneuver_blocks.listed_block(maneuvers, number, maneuver, answers.verdicts)
