@@ -26,7 +26,7 @@ from rulec.partition.start_cell import start_cell, step_that_leaves_room
 from rulec.resource_limits import PLACES
 from rulec.scenario import MotionBounds, Scenario
 from rulec.scenario.motion_bounds import read_bounds
-from rulec.scenario.time_grid import Timing, timing
+from rulec.scenario.time_grid import Timing, timing, whole_steps
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -172,10 +172,12 @@ def _planned(
                 expected=f"expected one of {named(known)}",
                 help=did_you_mean(str(name), known),
             )
-    times = timing(
-        scenario.horizon_s if horizon_s is None else horizon_s,
-        scenario.step_s if step_s is None else step_s,
-    )
+    step_s = scenario.step_s if step_s is None else step_s
+    if horizon_s is None:
+        horizon_s = scenario.horizon_s
+        if scenario.account is not None and scenario.account.map_ends:
+            horizon_s = whole_steps(horizon_s, step_s)
+    times = timing(horizon_s, step_s)
     return _Plan(scenario, partition, adjacency, extent, bounds), times
 
 

@@ -182,8 +182,9 @@ class Account:
     ``left_out`` of the file's ``recorded`` obstacles are never on the road of ``reference``, the
     lanelet ego starts from; ``until_s`` is when the recording ends, and from when on who was still
     there goes on as before; ``derived`` says how each derived signal came about,
-    ``remarks`` what the file leaves open, and is taken to be. ``origin`` is what it was made of
-    (``recorded.scene_origin.SceneOrigin``), None unless others do what was recorded.
+    ``remarks`` what the file leaves open, and is taken to be. ``map_ends`` if it does so ahead of
+    ego, which gets there at its speed when the horizon is over, or soon after. ``origin`` is what
+    it was made of (``recorded.scene_origin.SceneOrigin``), None unless others do what was recorded.
     """
 
     reference: str
@@ -192,7 +193,11 @@ class Account:
     until_s: float
     derived: Mapping[str, str]
     remarks: tuple[str, ...] = ()
+    map_ends: bool = False
     origin: object = field(default=None, compare=False, repr=False)
+
+
+USUAL_HORIZON_S = 4.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,8 +206,8 @@ class Scenario:
 
     ``signals`` hold in every state. ``goal`` is a region that a maneuver has to reach; None means
     that every cell of the last layer will do. ``account`` is there if the scene was recorded: then
-    signals and types that a rulebook does not know are no mistake, and ``step_s`` is only the
-    longest step that is good.
+    signals and types that a rulebook does not know are no mistake, ``step_s`` is only the longest
+    step that is good, and, if the map ends, ``horizon_s`` the longest horizon.
     """
 
     __repr__ = short_repr
@@ -213,7 +218,7 @@ class Scenario:
     obstacles: tuple[Obstacle, ...] = ()
     signals: Mapping[str, SignalValue] = field(default_factory=dict)
     goal: Box | None = None
-    horizon_s: float = 4.0
+    horizon_s: float = USUAL_HORIZON_S
     step_s: float = 1.0
     about: str = ""
     account: Account | None = None

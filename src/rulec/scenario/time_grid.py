@@ -61,6 +61,12 @@ def timing(horizon_s: float, step_s: float) -> Timing:
     return Timing(horizon / steps, steps + 1)
 
 
+def whole_steps(horizon_s: float, step_s: float) -> float:
+    """The longest time (s) up to a horizon that is a whole number of steps, or one step."""
+    step = Fraction(str(step_s))
+    return float(max(Fraction(str(horizon_s)) // step, 1) * step)
+
+
 def _steps_that_fit(horizon: Fraction, steps: int) -> str:
     """The steps that divide a horizon nearest to so many, written as they can be given again."""
     numbers = [

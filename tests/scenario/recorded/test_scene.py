@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from rulec.diagnostics import RulecError
+from rulec.partition import navigation_graph
 from rulec.recordings.recording import Light, Participant
 from rulec.scenario import Alternative, Box, Choice, ConstantAcceleration, Footprints
 from rulec.scenario.motion import swept
@@ -315,3 +316,40 @@ def test_a_programme_repeats_itself():
 def test_what_is_not_known_is_not_said():
     signals = scene().signals
     assert set(signals) == {"CONGESTED", "congested", "lanes"}
+
+
+ENDING = straight(1, 0, 200, left_of=2)
+GOING_ON = straight(2, 0, 200, y=4, right_of=1)
+
+
+def leading_on(lanelet):
+    return replace(lanelet, successors=("3",))
+
+
+@pytest.mark.parametrize(
+    ("speed", "lanelets", "horizon", "step"),
+    [
+        # 180 m are left: 4.5 s at 40 m/s, 3.6 s at 50 m/s, 0.36 s at 500 m/s
+        (40.0, (ENDING, GOING_ON), 4.0, 0.5),
+        (50.0, (ENDING, GOING_ON), 3.5, 0.5),
+        (500.0, (ENDING, GOING_ON), 0.25, 0.25),
+        (0.0, (ENDING, GOING_ON), 4.0, 0.5),
+        # A lane that ends beside one that goes on is no end of the map
+        (50.0, (ENDING, leading_on(GOING_ON), straight(3, 200, 400, y=4)), 4.0, 0.5),
+        (50.0, (leading_on(ENDING), GOING_ON, straight(3, 200, 400)), 4.0, 0.5),
+    ],
+)
+def test_nothing_is_looked_at_beyond_the_end_of_the_map(speed, lanelets, horizon, step):
+    scenario = scene(drive(7, 20, speed, steps=1), choice=Choice(ego=7), lanelets=lanelets)
+    assert (scenario.horizon_s, scenario.step_s) == (horizon, step)
+    ends = any("the map ends 180.0 m ahead of ego" in one for one in scenario.account.remarks)
+    assert ends == scenario.account.map_ends == (horizon < 4.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "layers"), [({}, 8), ({"step_s": 1.0}, 4), ({"horizon_s": 4.0}, 9)]
+)
+def test_at_the_end_of_the_map_a_step_need_not_fit(options, layers):
+    """3.5 s in steps of 0.5 s, 3 s in steps of 1 s, and 4 s, on a road that ends, if asked for."""
+    scenario = scene(drive(7, 20, 50.0, steps=1), choice=Choice(ego=7))
+    assert len(navigation_graph(scenario, bounds="none", **options).layers) == layers

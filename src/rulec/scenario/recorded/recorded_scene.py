@@ -21,10 +21,11 @@ from rulec.scenario.recorded import ego_start as starts
 from rulec.scenario.recorded.ego_start import choice_error, ego_start, reference_lanelet
 from rulec.scenario.recorded.lane_coordinates import borders_along, crossings_along, lanes_along
 from rulec.scenario.recorded.reference_line import ReferenceLine, reference_line
-from rulec.scenario.recorded.route import REACH_M, lanelets_at, route
+from rulec.scenario.recorded.route import REACH_M, lanelets_at, lanes_beside, route
 from rulec.scenario.recorded.scene_origin import SceneOrigin
 from rulec.scenario.recorded.traffic_obstacles import TrafficView, traffic_obstacles
 from rulec.scenario.scenario_model import (
+    USUAL_HORIZON_S,
     Account,
     Choice,
     Ego,
@@ -34,11 +35,15 @@ from rulec.scenario.scenario_model import (
     SignalValue,
     Stretch,
 )
+from rulec.scenario.time_grid import whole_steps
 
 STEP_S = 0.5
 
 FEWEST = 3
 """So many vehicles it takes for traffic to be congested."""
+
+_STEPS_S = STEP_S, STEP_S / 2, STEP_S / 4, STEP_S / 8
+"""A horizon that is shorter than a step takes one of the others."""
 
 _FOR_S = 1.0
 _MORE_M = 5.0
@@ -102,6 +107,16 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
         "congested": congestion,
         **map_signals(ahead, count, recording.step_s, start.step),
     }
+    motion = starts.ego_motion(recording, start, line.heading_at(ego_s))
+    ends_s = _map_ends_s(recording, way[-1], road.outline.s_max, motion["speed"])
+    horizon_s, step_s, remarks = USUAL_HORIZON_S, STEP_S, recording.remarks
+    map_ends = ends_s is not None and ends_s < USUAL_HORIZON_S
+    if ends_s is not None and map_ends:
+        # A road that ends there would have ego stop for nothing
+        step_s = next((step for step in _STEPS_S if step <= ends_s), _STEPS_S[-1])
+        horizon_s = whole_steps(ends_s, step_s)
+        away = f"{road.outline.s_max:.1f} m ahead of ego, which gets there in {ends_s:.1f} s"
+        remarks = (*remarks, f"the map ends {away}: so far is looked ahead, or as --horizon says")
     others = sum(participant.id != start.participant for participant in recording.participants)
     return Scenario(
         recording.name,
@@ -110,11 +125,12 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
             0.0,
             d,
             *starts.ego_size(recording, start, choice),
-            **starts.ego_motion(recording, start, line.heading_at(ego_s)),
+            **motion,
         ),
         on_road,
         {name: value for name, (value, _) in derived.items()},
-        step_s=STEP_S,
+        horizon_s=horizon_s,
+        step_s=step_s,
         about=f"{recording.form} {recording.name}",
         account=Account(
             reference=own,
@@ -122,12 +138,26 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
             left_out=others - len(on_road),
             until_s=view.until_s,
             derived={name: how for name, (_, how) in derived.items()},
-            remarks=recording.remarks,
+            remarks=remarks,
+            map_ends=map_ends,
             origin=SceneOrigin(recording, start, line, lanes, ego_s=ego_s, way=tuple(way))
             if choice.prediction == "recorded"
             else None,
         ),
     )
+
+
+def _map_ends_s(
+    recording: Recording, last: str, away_m: float, speed_mps: float | None
+) -> float | None:
+    """When ego gets where the map ends (s); None if it does not.
+
+    The last lanelet of its road leads nowhere then. Nor does one beside that, or else it is a lane
+    that ends.
+    """
+    left, right = (lanes_beside(recording, last, left=left) for left in (True, False))
+    leads_on = any(recording.lanelets[name].successors for name in (last, *left, *right))
+    return None if leads_on or not speed_mps else away_m / speed_mps
 
 
 def _place_on(
