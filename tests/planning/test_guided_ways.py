@@ -6,7 +6,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from rulec import RulecError, compile_rulebook, find_maneuvers
+from rulec import RulecError, compile_rulebook, find_maneuvers, parse_rulebook
 from rulec.planning.ranking.cheapest import cheapest
 from rulec.planning.ranking.guided_ways import ALIKE, guided_ways
 from rulec.planning.ranking.proven import with_trajectory
@@ -86,3 +86,20 @@ def test_who_waited_goes_on():
     states = first.trajectory.states
     assert min(v for _, _, v, _, _ in states) < 9.0
     assert states[-1][2] == pytest.approx(10.0, abs=1.0)
+
+
+def test_who_stands_in_another_lane_is_passed_at_speed():
+    """A queue beside ego's lane, 20 to 40 m ahead, costs nothing to pass: no reason to brake."""
+    queue = [car(f"c{k}", 20.0 + 8 * k, 0.0, d=4.0) for k in range(3)]
+    book = parse_rulebook("rulebook free signal p default false hard rule r { require true }")
+    (first,) = find_maneuvers(scene(*queue), book, partition="fine", step_s=0.5).cheapest(1)
+    assert first.changes == 0
+    assert {round(v, 2) for _, _, v, _, _ in first.trajectory.states} == {10.0}
+
+
+def test_who_stands_in_egos_lane_is_not_passed_for_nothing():
+    book = parse_rulebook("rulebook free signal p default false hard rule r { require true }")
+    found = find_maneuvers(scene(car("c", 20.0, 0.0)), book, partition="fine", step_s=0.5)
+    passing = [one for one in found.cheapest(5) if one.trajectory.states[-1][1] > 24.0]
+    assert passing
+    assert all(one.changes > 0 for one in passing)

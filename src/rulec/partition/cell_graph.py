@@ -139,7 +139,7 @@ class NavigationGraph:
         return tuple(
             tuple(
                 tuple(
-                    least[p + 1][j] + (0 if weight and self.goes_on(p, i, j) else weight)
+                    least[p + 1][j] + (0 if weight and self.is_free(p, i, j) else weight)
                     for weight, j in zip(row, onward, strict=True)
                 )
                 for i, (row, onward) in enumerate(zip(weights, followers, strict=True))
@@ -147,13 +147,17 @@ class NavigationGraph:
             for p, (weights, followers) in enumerate(zip(rows, self.successors, strict=True))
         )
 
-    def goes_on(self, p: int, i: int, j: int) -> bool:
-        """Whether from cell i of layer p to cell j of the next one only the surface changes."""
+    def is_free(self, p: int, i: int, j: int) -> bool:
+        """Whether going on from cell i of layer p to cell j of the next one costs no change.
+
+        Its surface alone differs, or where ego is beside those who are in other lanes all along.
+        """
         here, there = self.layers[p].cells[i], self.layers[p + 1].cells[j]
         before, after = here.signature, there.signature
-        return here.surface != there.surface and all(
-            before[name] == after[name] for name in before.keys() & after.keys()
-        )
+        changed = [name for name in before.keys() & after.keys() if before[name] != after[name]]
+        if here.surface == there.surface and not changed:
+            return False
+        return all(_is_beside(before[name], after[name]) for name in changed)
 
     def _states(self, layer: Layer) -> tuple[State, ...]:
         signals = self.signals_of({name: self.objects[name] for name in layer.objects})
@@ -217,6 +221,13 @@ def valuation(cell: Cell, names: Sequence[str], code: bytes) -> State:
         "lateral": dict(zip(names, map(LATERAL_OF.__getitem__, code), strict=False)),
         "surface": cell.surface,
     }
+
+
+def _is_beside(before: str | tuple[str, str], after: str | tuple[str, str]) -> bool:
+    """Whether both say the same side of an object, and none that ego is in its lane."""
+    if isinstance(before, str) or isinstance(after, str):
+        return False
+    return before[1] == after[1] != "same_lane"
 
 
 def _weights(margins: Margins, whole: int) -> tuple[tuple[int, ...], ...]:
