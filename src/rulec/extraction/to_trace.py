@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
@@ -51,11 +51,10 @@ from rulec.extraction.signals.map.zone_signals import zone_signals
 from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.signals.settling import agreeing, settled
 from rulec.extraction.signals.signal_columns import (
-    SignalColumns,
     SignalNames,
     known_only,
-    together,
 )
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Floats
 from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.logic.formula import Relation
@@ -67,33 +66,35 @@ from rulec.trace.vocabulary_projection import known_type, values_lacking, with_t
 from rulec.value_display import short_repr
 from rulec.vocabulary import Vocabulary
 
-_SIGNALS: tuple[Callable[[DriveContext, SignalNames], SignalColumns], ...] = (
-    ego_signals,
-    participant_signals,
-    following_signals,
-    map_signals,
-    road_signals,
-    junction_signals,
-    line_signals,
-    priority_signals,
-    crossing_signals,
-    roundabout_signals,
-    level_crossing_signals,
-    zone_signals,
-    intention_signals,
-    called_signals,
-    merge_signals,
-    clearance_signals,
-    next_lane_signals,
-    flow_signals,
-    overtaking_signals,
-    lane_change_signals,
-    lane_mark_signals,
-    manoeuvre_signals,
-    lamp_signals,
-    reason_signals,
-    turning_conflicts,
-    oncoming_conflicts,
+_SIGNALS = SignalPasses.joined(
+    (
+        ego_signals,
+        participant_signals,
+        following_signals,
+        map_signals,
+        road_signals,
+        junction_signals,
+        line_signals,
+        priority_signals,
+        crossing_signals,
+        roundabout_signals,
+        level_crossing_signals,
+        zone_signals,
+        intention_signals,
+        called_signals,
+        merge_signals,
+        clearance_signals,
+        next_lane_signals,
+        flow_signals,
+        overtaking_signals,
+        lane_change_signals,
+        lane_mark_signals,
+        manoeuvre_signals,
+        lamp_signals,
+        reason_signals,
+        turning_conflicts,
+        oncoming_conflicts,
+    )
 )
 """The signal passes, in the order in which traces name their signals."""
 
@@ -265,8 +266,7 @@ def to_traces(
     Raises UnlikeDrivesError for several that say different names.
     """
     read, spans = _names_written(writer), context.spans
-    signals = together([signals_of(context, read) for signals_of in _SIGNALS])
-    signals = agreeing(settled(signals, LEAST_S, context.recording.step_s, spans))
+    signals = agreeing(settled(_SIGNALS(context, read), LEAST_S, context.recording.step_s, spans))
     if context.wrong_way:
         signals = known_only(signals, _WITHOUT_DIRECTION)
     types = [body.object_types for body in context.tracks.participants]

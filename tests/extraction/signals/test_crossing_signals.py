@@ -215,7 +215,7 @@ def side_road(walker, stops_at=None):
     places = {k: (12.0, y) for k, y in enumerate(walker)}
     body = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     context = context_of(recording(road, [along(7, line, way), body]), ("1", "2", "3"))
-    found = crossing_signals(context, {"crosses_side_road"})
+    found = crossing_signals(context, frozenset({"crosses_side_road"}))
     columns = [table["crosses_side_road"][0] for table in (found.about, found.unknown)]
     told = zip(*columns, strict=True)
     return "".join("?" if dark else "FT"[int(flag)] for flag, dark in told)

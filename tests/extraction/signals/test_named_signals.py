@@ -32,7 +32,7 @@ from rulec.extraction.signals.map.roundabout_signals import roundabout_signals
 from rulec.extraction.signals.map.zone_signals import zone_signals
 from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.signals.signal_columns import SignalColumns
-from rulec.extraction.signals.signal_passes import signals_by
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tellable_words import TELLABLE_WORDS
 from rulec.recordings.recording import Weather
 from support.builders.drive_contexts import context_of, steady
@@ -87,7 +87,7 @@ def test_together_they_give_all_words_that_some_format_can_tell():
     assert sum(map(len, given)) == len(set().union(*given))
 
 
-@pytest.mark.parametrize("signals_of", GROUPS, ids=lambda signals_of: signals_of.__name__)
+@pytest.mark.parametrize("signals_of", GROUPS)
 def test_a_signal_is_the_same_without_the_others(signals_of):
     found = everything()
     together = signals_of(context_of(found))
@@ -112,7 +112,7 @@ def test_what_nobody_wants_is_not_computed():
         return signals_of
 
     passes = {("wet", "icy"): gives("wet"), ("speed",): gives("speed")}
-    assert names(signals_by(passes, context, frozenset({"speed", "lane"}))) == {"speed"}
+    assert names(SignalPasses(passes)(context, frozenset({"speed", "lane"}))) == {"speed"}
     assert asked == ["speed"]
-    assert names(signals_by(passes, context, frozenset({"icy"}))) == set()
+    assert names(SignalPasses(passes)(context, frozenset({"icy"}))) == set()
     assert asked == ["speed", "wet"]

@@ -312,7 +312,7 @@ def test_who_overtakes_beyond_the_middle_does_so_from_going_there_until_it_is_ba
     other = vehicle(8, {k: (float(x), 0.0) for k, x in enumerate(slow)}, speed=10)
     found = recording([straight(1, 0, 500), lanelet(2, [(500, 4), (0, 4)])], [ego, other])
     found = mirrored_recording(found) if side == "left" else found
-    signals = overtaking_signals(context_of(found, side=side), {"overtaking"})
+    signals = overtaking_signals(context_of(found, side=side), frozenset({"overtaking"}))
     told = zip(signals.world["overtaking"], signals.unknown["overtaking"], strict=True)
     assert "".join("?" if dark else "FT"[int(value)] for value, dark in told) == past
 
@@ -331,7 +331,7 @@ def test_a_cycle_is_overtaken_but_on_a_lane_of_its_own(kind, past):
         lanelet(2, [(500, 4), (0, 4)]),
         straight(3, 0, 500, -3, 2.0, left_of=1, types=frozenset({kind})),
     ]
-    told = overtaking_signals(context_of(recording(roads, [ego, cycle])), {"overtaking"})
+    told = overtaking_signals(context_of(recording(roads, [ego, cycle])), frozenset({"overtaking"}))
     assert "".join("FT"[int(value)] for value in told.world["overtaking"]) == past
     assert not told.unknown["overtaking"].any()
 
@@ -344,7 +344,9 @@ def test_who_overtakes_over_the_middle_does_so_as_soon_as_its_side_is_over_it(si
     slow = vehicle(8, {k: (30 + 2.5 * k, 0.0) for k in range(len(ys))}, speed=5)
     found = recording([straight(1, 0, 500), lanelet(2, [(500, 4), (0, 4)])], [ego, slow])
     found = mirrored_recording(found) if side == "left" else found
-    told = overtaking_signals(context_of(found, side=side), {"overtaking"}).world["overtaking"]
+    told = overtaking_signals(context_of(found, side=side), frozenset({"overtaking"})).world[
+        "overtaking"
+    ]
     assert "".join("FT"[int(value)] for value in told) == "FFTTTTTTTTTTFF"
 
 
@@ -358,6 +360,8 @@ def test_who_goes_out_behind_another_one_may_have_meant_to_pass_whom_that_one_pa
     slow = vehicle(8, {k: (180 + 5.0 * k, 0.0) for k in range(len(ys))}, speed=10)
     roads = [straight(1, 0, 500), lanelet(2, [(500, 4), (0, 4)])]
     for others, perhaps in (([slow], False), ([first, slow], True)):
-        signals = overtaking_signals(context_of(recording(roads, [ego, *others])), {"overtaking"})
+        signals = overtaking_signals(
+            context_of(recording(roads, [ego, *others])), frozenset({"overtaking"})
+        )
         assert not signals.world["overtaking"].any()
         assert bool(signals.unknown["overtaking"][8]) == perhaps

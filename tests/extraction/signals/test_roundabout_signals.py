@@ -205,7 +205,7 @@ def test_one_turns_where_one_leaves_it():
     """Onto it and along it the road bends, which is no turn that anybody signals."""
     way = 42 + 9 * TIMES
     context = context_of(seen("arms", ego=way), ROUTE)
-    turn = junction_signals(context, {"turn"}).world["turn"]
+    turn = junction_signals(context, frozenset({"turn"})).world["turn"]
     # The ring begins 60 m and the entry along; ego is on it from 200° to 340°
     leaves = 60 + np.hypot(*np.diff(ENTRY, axis=0).T).sum() + np.radians(140) * RADIUS_M
     turns = turn != "straight_on"

@@ -11,8 +11,8 @@ from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.manoeuvre_signals import on_both_halves, oncoming_side
 from rulec.extraction.signals.ego_lanelets import own_lanelets, travel_lanes
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.lane_sets import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.cells import Cells
@@ -26,11 +26,6 @@ _BESIDE_WALKERS_M = 1.5
 
 _ALONG = np.cos(np.pi / 4)
 """Who walks at no more than that angle to the road walks along it, either way."""
-
-
-def clearance_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of what leaves ego room to go on, to overtake, and to pass."""
-    return signals_by(_PASSES, context, names)
 
 
 def _for_overtaking(context: DriveContext) -> SignalColumns:
@@ -198,9 +193,12 @@ def _needs_access(context: DriveContext) -> tuple[Flags, Flags]:
     return turns, ends & ~turns
 
 
-_PASSES: Passes = {
-    ("oncoming_clear",): _for_overtaking,
-    ("obstructed",): _in_own_lanes,
-    ("needs_access",): _for_access,
-    ("room_on_near_side",): _on_near_side,
-}
+clearance_signals = SignalPasses(
+    {
+        ("oncoming_clear",): _for_overtaking,
+        ("obstructed",): _in_own_lanes,
+        ("needs_access",): _for_access,
+        ("room_on_near_side",): _on_near_side,
+    }
+)
+"""The signals of what leaves ego room to go on, to overtake, and to pass."""

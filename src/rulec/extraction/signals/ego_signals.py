@@ -16,11 +16,10 @@ from rulec.extraction.signals.measured_numbers import own_speed, speed_bounds
 from rulec.extraction.signals.queues import lanes_that_go_on
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,
-    SignalNames,
     rounded,
     rounded_outward,
 )
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.track import TrackOutlines
 from rulec.trace.plain_arrays import medians
@@ -38,11 +37,6 @@ _COUNTS = ("one_lane", "two_lanes", "three_or_more_lanes")
 _NUMBERS = ("first_lane", "second_lane", "third_lane", "fourth_or_further_lane")
 _HAIR_M = 0.001
 _PLACES = ("centred", "at_near_edge", "at_far_edge")
-
-
-def ego_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of ego alone, those of the names."""
-    return signals_by(_PASSES, context, names)
 
 
 def _ego_type(context: DriveContext) -> SignalColumns:
@@ -208,16 +202,19 @@ def _place_in_lane(context: DriveContext) -> NDArray[intp]:
     return np.where(kept, np.where(near < far, 1, 2), 0)
 
 
-_PASSES: Passes = {
-    ("ego_type",): _ego_type,
-    ("ego_length",): _ego_length,
-    ("speed",): _speed,
-    ("accelerating", "braking_hard"): _change_of_speed,
-    ("acceleration",): _acceleration,
-    ("can_stop_at_once",): _stopping,
-    ("lane",): _lane,
-    ("lane_number",): _lane_number,
-    ("lanes",): _lane_count,
-    ("straddling",): _straddling,
-    ("lane_position",): _lane_position,
-}
+ego_signals = SignalPasses(
+    {
+        ("ego_type",): _ego_type,
+        ("ego_length",): _ego_length,
+        ("speed",): _speed,
+        ("accelerating", "braking_hard"): _change_of_speed,
+        ("acceleration",): _acceleration,
+        ("can_stop_at_once",): _stopping,
+        ("lane",): _lane,
+        ("lane_number",): _lane_number,
+        ("lanes",): _lane_count,
+        ("straddling",): _straddling,
+        ("lane_position",): _lane_position,
+    }
+)
+"""The signals of ego alone."""

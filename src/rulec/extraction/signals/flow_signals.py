@@ -23,8 +23,8 @@ from rulec.extraction.signals.queues import (
     queues_by_lane,
     vehicles_around,
 )
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Flags
 from rulec.trace.plain_arrays import medians_hold
 
@@ -33,11 +33,6 @@ TIMES_AS_FAST = 2.0
 
 _JAM_S = 10.0
 """Traffic that has been slow for less may be so where somebody pulls in or turns off."""
-
-
-def flow_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of traffic as a whole, those of the names."""
-    return signals_by(_PASSES, context, names)
 
 
 def _slow_traffic(context: DriveContext) -> SignalColumns:
@@ -172,9 +167,12 @@ def _beside(context: DriveContext, lanes: Flags) -> Flags:
     return beside
 
 
-_PASSES: Passes = {
-    ("congested", "CONGESTED", "walking_pace_flow"): _slow_traffic,
-    ("dense_all_lanes",): _dense_all_lanes,
-    ("far_lane_queue",): _far_lane_queue,
-    ("own_lane_queue",): _own_lane_queue,
-}
+flow_signals = SignalPasses(
+    {
+        ("congested", "CONGESTED", "walking_pace_flow"): _slow_traffic,
+        ("dense_all_lanes",): _dense_all_lanes,
+        ("far_lane_queue",): _far_lane_queue,
+        ("own_lane_queue",): _own_lane_queue,
+    }
+)
+"""The signals of traffic as a whole."""

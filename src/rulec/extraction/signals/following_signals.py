@@ -19,11 +19,10 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.measured_numbers import LONGEST_S, joint_error, safe_distances
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,
-    SignalNames,
     rounded,
     rounded_outward,
 )
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.cells import Cells
 from rulec.trace.end_to_end import EndToEnd
@@ -43,11 +42,6 @@ _OUTLIERS = 3.0
 """So many tolerances off are places now and then, but not for ``_BRIEF_S``."""
 
 _HAIR_S = 1e-6
-
-
-def following_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signal of times behind others, if it is named."""
-    return signals_by(_PASSES, context, names)
 
 
 def _ahead_for(context: DriveContext) -> SignalColumns:
@@ -291,4 +285,5 @@ def safe_gaps(context: DriveContext) -> SafeGaps:
     return SafeGaps(cells, cells.of(relations.gap(context)), *safe_distances(context, cells))
 
 
-_PASSES: Passes = {("ahead_for",): _ahead_for}
+following_signals = SignalPasses({("ahead_for",): _ahead_for})
+"""The signal of times behind others."""

@@ -19,21 +19,15 @@ from rulec.extraction.signals.conduct.others_lamps import (
     own_part,
     stands,
 )
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
+from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import (
-    Passes,
+    SignalPasses,
     once_a_recording,
-    signals_by,
 )
 from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import JOINING
 
 _PUBLIC = ("bus", "rail_vehicle")
-
-
-def intention_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of others' lamps and doors, and of what they are about to do."""
-    return signals_by(_PASSES, context, names)
 
 
 def _boarding(context: DriveContext) -> SignalColumns:
@@ -266,12 +260,15 @@ def _came_beside(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Fla
     return spans.latest(arrives) > left, spans.latest(appears) > left
 
 
-_PASSES: Passes = {
-    ("boarding",): _boarding,
-    ("leaving_stop",): _leaving_stop,
-    ("warning_lights",): _warning_lights,
-    ("hazard_lights",): _hazard_lights,
-    ("turning_far",): _turning_far,
-    ("about_to_overtake",): _about_to_overtake,
-    ("came_up_beside",): _came_up,
-}
+intention_signals = SignalPasses(
+    {
+        ("boarding",): _boarding,
+        ("leaving_stop",): _leaving_stop,
+        ("warning_lights",): _warning_lights,
+        ("hazard_lights",): _hazard_lights,
+        ("turning_far",): _turning_far,
+        ("about_to_overtake",): _about_to_overtake,
+        ("came_up_beside",): _came_up,
+    }
+)
+"""The signals of others' lamps and doors, and of what they are about to do."""

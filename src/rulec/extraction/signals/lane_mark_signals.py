@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.ego_lanelets import map_contents
 from rulec.extraction.signals.measured_numbers import own_widths
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Lanelet, LaneMark, is_lane
 from rulec.scenario.recorded.route import lanelet_area
@@ -40,11 +40,6 @@ _MOVED_OFF_M, _STOOD_S = 1.0, 1.0
 """A box of who is parked wanders by less; who stays there for so long stands."""
 
 _Marks = tuple[LaneMark | None, LaneMark | None]
-
-
-def lane_mark_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of marks, those of the names; none at all if the map has none."""
-    return signals_by(_PASSES, context, names) if map_contents(context).marks else _NONE
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -75,6 +70,8 @@ def _marked_rows(context: DriveContext) -> MarkedRows:
 
 def _marked_lanes(context: DriveContext) -> SignalColumns:
     """Whether all lines between ego's lanes are marked."""
+    if not map_contents(context).marks:
+        return _NONE
     marked = _marked_rows(context)
     between = [[_between(*pair) for pair in pairwise(row) if all(pair)] for row in marked.rows]
     told = np.array([all(any(marks) for marks in row) for row in between])
@@ -96,6 +93,8 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     the drive's beginning on cross the line that it stands on, until it moves off; nor who comes
     first into view on one from which side it came.
     """
+    if not map_contents(context).marks:
+        return _NONE
     names = ("on_solid_line", "broken_on_own_side", "single_line")
     stays = context.spans.all(context.ego.speed[0] * KMH < context.thresholds.standing_kmh)
     if stays.all():
@@ -286,7 +285,10 @@ def _near_a_line(context: DriveContext, margin_m: Floats) -> Flags:
 
 _NONE = SignalColumns()
 
-_PASSES: Passes = {
-    ("marked_lanes",): _marked_lanes,
-    ("on_solid_line", "broken_on_own_side", "single_line"): _lines_under_ego,
-}
+lane_mark_signals = SignalPasses(
+    {
+        ("marked_lanes",): _marked_lanes,
+        ("on_solid_line", "broken_on_own_side", "single_line"): _lines_under_ego,
+    }
+)
+"""The signals of marks; none at all if the map has none."""

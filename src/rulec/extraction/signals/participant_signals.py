@@ -34,11 +34,10 @@ from rulec.extraction.signals.settling import only_when
 from rulec.extraction.signals.signal_columns import (
     Bounds,
     SignalColumns,
-    SignalNames,
     rounded,
     rounded_outward,
 )
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.paper_words import LATERALS, STATIONS
@@ -54,11 +53,6 @@ _EDGE_M, _ROOM_M = 0.5, 3.05
 
 _ASKED_FOR_M = 3.0
 """No law asks for more room between a vehicle and a cycle, or people in the road."""
-
-
-def participant_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of objects, those of the names."""
-    return signals_by(_PASSES, context, names)
 
 
 def _position(context: DriveContext) -> SignalColumns:
@@ -357,25 +351,28 @@ def _in_the_road(context: DriveContext) -> SignalColumns:
     )
 
 
-_PASSES: Passes = {
-    ("position",): _position,
-    ("station",): _station,
-    ("lateral",): _lateral,
-    ("gap",): _gap,
-    ("time_headway",): _time_headway,
-    ("lateral_gap",): _lateral_gap,
-    ("speed_difference",): _speed_difference,
-    ("time_to_collision",): _time_to_collision,
-    ("safe_gap",): keeps_safe_gap,
-    ("parts_soon",): may_part,
-    ("precedes",): _precedes,
-    ("one_between",): _one_between,
-    ("oncoming",): _oncoming,
-    ("goes_across",): _goes_across,
-    ("stopped",): _stopped,
-    ("parked",): _parked,
-    ("on_shoulder",): _on_shoulder,
-    ("leads_elsewhere",): leads_elsewhere,
-    ("two_wheeled",): _two_wheeled,
-    ("in_the_road",): _in_the_road,
-}
+participant_signals = SignalPasses(
+    {
+        ("position",): _position,
+        ("station",): _station,
+        ("lateral",): _lateral,
+        ("gap",): _gap,
+        ("time_headway",): _time_headway,
+        ("lateral_gap",): _lateral_gap,
+        ("speed_difference",): _speed_difference,
+        ("time_to_collision",): _time_to_collision,
+        ("safe_gap",): keeps_safe_gap,
+        ("parts_soon",): may_part,
+        ("precedes",): _precedes,
+        ("one_between",): _one_between,
+        ("oncoming",): _oncoming,
+        ("goes_across",): _goes_across,
+        ("stopped",): _stopped,
+        ("parked",): _parked,
+        ("on_shoulder",): _on_shoulder,
+        ("leads_elsewhere",): leads_elsewhere,
+        ("two_wheeled",): _two_wheeled,
+        ("in_the_road",): _in_the_road,
+    }
+)
+"""The signals of objects."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import wraps
 from typing import Any, TypeAlias, TypeVar
 
@@ -14,15 +14,35 @@ Passes: TypeAlias = Mapping[tuple[str, ...], Callable[[DriveContext], SignalColu
 
 _Value = TypeVar("_Value")
 
+_MOST_READERS = 1 << 6
+"""Choices of names for which the functions are kept before all are forgotten."""
 
-def signals_by(passes: Passes, context: DriveContext, names: SignalNames) -> SignalColumns:
-    """The signals of a drive that have these names, by those passes that give any of them."""
-    parts = [
-        signals_of(context)
-        for given, signals_of in passes.items()
-        if names is None or not names.isdisjoint(given)
-    ]
-    return together(parts, names)
+
+class SignalPasses:
+    """Functions that give signals of a drive, each called if somebody reads any that it gives."""
+
+    def __init__(self, passes: Passes) -> None:
+        self._passes = passes
+        self._read: dict[SignalNames, Sequence[Callable[[DriveContext], SignalColumns]]] = {}
+
+    def __call__(self, context: DriveContext, names: SignalNames = None) -> SignalColumns:
+        """The signals of a drive that have these names."""
+        if names not in self._read:
+            if len(self._read) >= _MOST_READERS:
+                self._read.clear()
+            self._read[names] = tuple(
+                [
+                    signals_of
+                    for given, signals_of in self._passes.items()
+                    if names is None or not names.isdisjoint(given)
+                ]
+            )
+        return together([signals_of(context) for signals_of in self._read[names]], names)
+
+    @staticmethod
+    def joined(several: Iterable[SignalPasses]) -> SignalPasses:
+        """The functions of several, in their order."""
+        return SignalPasses({given: x for own in several for given, x in own._passes.items()})
 
 
 def once_a_recording(

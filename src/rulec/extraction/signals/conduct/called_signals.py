@@ -21,19 +21,14 @@ from rulec.extraction.signals.conduct.others_lamps import (
     stands,
 )
 from rulec.extraction.signals.ego_lanelets import own_lanelets, room_beside
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, ids_by_state
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Flags
 
 _OWN = "ego_on_call"
 
 _FACES = -0.5
 """The cosine between the directions of ego's road and of one who has come the other way on it."""
-
-
-def called_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of emergency vehicles on call, those of the names."""
-    return signals_by(_PASSES, context, names)
 
 
 def _emergency_vehicle_near(context: DriveContext) -> SignalColumns:
@@ -188,8 +183,11 @@ def _is_silent(context: DriveContext, rows: NDArray[intp]) -> Flags:
     return silent
 
 
-_PASSES: Passes = {
-    ("emergency_vehicle_near",): _emergency_vehicle_near,
-    ("on_call",): _called,
-    ("way_cleared",): _way_cleared,
-}
+called_signals = SignalPasses(
+    {
+        ("emergency_vehicle_near",): _emergency_vehicle_near,
+        ("on_call",): _called,
+        ("way_cleared",): _way_cleared,
+    }
+)
+"""The signals of emergency vehicles on call."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from rulec.extraction.drive_context import DriveContext, once
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.recording import Lamp
 
 _FOG_LAMPS: tuple[tuple[str, Lamp], ...] = (
@@ -17,11 +17,6 @@ _HEADLAMPS = ("lamps_off", "dipped_beam", "main_beam")
 _BEAMS = frozenset[Lamp]({"dipped_beam", "main_beam"})
 FLASH_S = 1.0
 """Lights that flash are on if they are lit within so long."""
-
-
-def lamp_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of ego's lamps, those of the names."""
-    return signals_by(_PASSES, context, names)
 
 
 def _headlamps(context: DriveContext) -> SignalColumns:
@@ -85,8 +80,11 @@ def ego_lamps(context: DriveContext) -> list[frozenset[Lamp] | None]:
     ]
 
 
-_PASSES: Passes = {
-    ("headlamps",): _headlamps,
-    ("ego_on_call",): _ego_on_call,
-    ("front_fog_lamps", "rear_fog_lamps"): _fog_lamps,
-}
+lamp_signals = SignalPasses(
+    {
+        ("headlamps",): _headlamps,
+        ("ego_on_call",): _ego_on_call,
+        ("front_fog_lamps", "rear_fog_lamps"): _fog_lamps,
+    }
+)
+"""The signals of ego's lamps."""

@@ -19,8 +19,8 @@ from rulec.extraction.signals.conduct.manoeuvre_signals import (
 )
 from rulec.extraction.signals.conduct.squeezing_in import WayIn, squeezed
 from rulec.extraction.signals.conduct.turning_round import has_to_brake_for_turn
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, ids_by_state
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Flags
 from rulec.scenario.recorded.route import lanelet_area
 from rulec.trace.plain_arrays import distinct
@@ -42,11 +42,6 @@ _FORK_M = 15.0
 """So far behind where a lane has forked its ways lie over each other."""
 
 _HAIR_M = 0.01
-
-
-def lane_change_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of ego's lane changes, those of the names."""
-    return signals_by(_PASSES, context, names)
 
 
 def _lane_change(context: DriveContext) -> SignalColumns:
@@ -307,8 +302,11 @@ def _pulls_away(context: DriveContext, states: NDArray[intp]) -> Flags:
     return away
 
 
-_PASSES: Passes = {
-    ("lane_change",): _lane_change,
-    ("lane_is_clear",): _lane_is_clear,
-    ("indicator",): _indicator,
-}
+lane_change_signals = SignalPasses(
+    {
+        ("lane_change",): _lane_change,
+        ("lane_is_clear",): _lane_is_clear,
+        ("indicator",): _indicator,
+    }
+)
+"""The signals of ego's lane changes."""

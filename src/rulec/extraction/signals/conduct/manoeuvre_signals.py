@@ -9,8 +9,8 @@ import shapely
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.ego_lanelets import own_lanelets
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.recording import HEADINGS
@@ -35,11 +35,6 @@ _MUCH_RAD = 1.5
 
 _DRIFT_M = 3.0
 """Boxes of vehicles that stand drift by less: up to 2.5 m to and fro in Argoverse 2."""
-
-
-def manoeuvre_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of ego's manoeuvres, those of the names."""
-    return signals_by(_PASSES, context, names)
 
 
 def _reversing(context: DriveContext) -> SignalColumns:
@@ -386,9 +381,12 @@ def _joins_road(context: DriveContext) -> SignalColumns:
     return SignalColumns({"joins_road": joins}, unknown={"joins_road": perhaps & ~joins})
 
 
-_PASSES: Passes = {
-    ("reversing",): _reversing,
-    ("driving_side",): _driving_side,
-    ("u_turn",): _u_turn,
-    ("joins_road",): _joins_road,
-}
+manoeuvre_signals = SignalPasses(
+    {
+        ("reversing",): _reversing,
+        ("driving_side",): _driving_side,
+        ("u_turn",): _u_turn,
+        ("joins_road",): _joins_road,
+    }
+)
+"""The signals of ego's manoeuvres."""

@@ -19,12 +19,11 @@ from rulec.extraction.signals.ego_lanelets import CYCLE_LANE, SHOULDER, own_lane
 from rulec.extraction.signals.map.lanes_ahead import Leads, junctions_ahead
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.queues import LOOSE, close_by, lanes_that_go_on, queues_by_lane
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
+from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import (
-    Passes,
+    SignalPasses,
     once_a_recording,
     once_a_road,
-    signals_by,
 )
 from rulec.extraction.tracks.lane_sets import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
@@ -61,11 +60,6 @@ _STANDING_CAMERAS = frozenset(
     }
 )
 """Forms of what is recorded from above a stretch of road, or made up for one."""
-
-
-def next_lane_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of whether a lane next to ego's is free for it."""
-    return signals_by(_PASSES, context, names)
 
 
 def _on_far_lane(context: DriveContext) -> SignalColumns:
@@ -349,7 +343,10 @@ def _on_lane(
     return rows, states[places]
 
 
-_PASSES: Passes = {
-    ("other_lane_available",): _on_far_lane,
-    ("near_lane_is_free",): _on_near_lane,
-}
+next_lane_signals = SignalPasses(
+    {
+        ("other_lane_available",): _on_far_lane,
+        ("near_lane_is_free",): _on_near_lane,
+    }
+)
+"""The signals of whether a lane next to ego's is free for it."""

@@ -20,8 +20,8 @@ from rulec.extraction.signals.conduct.manoeuvre_signals import (
     two_way,
 )
 from rulec.extraction.signals.ego_lanelets import own_lanelets
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Floats
 
 _GOES_FIRST = "PRIORITY_OVER_ONCOMING"
@@ -41,11 +41,6 @@ class _Stay(NamedTuple):
     end: int
     drive_end: int
     sure: bool
-
-
-def oncoming_conflicts(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signal of conflicts with those who come towards ego beyond the middle, if it is named."""
-    return signals_by(_PASSES, context, names)
 
 
 def _holds_up_oncoming(context: DriveContext) -> SignalColumns:
@@ -171,4 +166,5 @@ def _is_passed(context: DriveContext, row: int, states: slice) -> bool:
     return bool((others.s_min[row, states] < own.s_max[0, states]).any())
 
 
-_PASSES: Passes = {("holds_up_oncoming",): _holds_up_oncoming}
+oncoming_conflicts = SignalPasses({("holds_up_oncoming",): _holds_up_oncoming})
+"""The signal of conflicts with those who come towards ego beyond the middle."""

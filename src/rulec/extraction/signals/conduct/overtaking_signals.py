@@ -18,8 +18,8 @@ from rulec.extraction.signals.ego_lanelets import (
 from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.queues import dense_lines
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, ids_by_state
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.lane_sets import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import JOINING
@@ -37,11 +37,6 @@ _SETS_OFF_MPS2 = 2.0
 
 _CRAWLS_MPS = 5.5
 """Who is as slow and gains speed sets off, though it has not quite stood."""
-
-
-def overtaking_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of overtaking, those of the names."""
-    return signals_by(_PASSES, context, names)
 
 
 def _overtaking(context: DriveContext) -> SignalColumns:
@@ -332,8 +327,11 @@ def _gets_past(
     return gets_past, unsure
 
 
-_PASSES: Passes = {
-    ("overtaking",): _overtaking,
-    ("begins_to_overtake",): _begins_to_overtake,
-    ("being_overtaken",): _being_overtaken,
-}
+overtaking_signals = SignalPasses(
+    {
+        ("overtaking",): _overtaking,
+        ("begins_to_overtake",): _begins_to_overtake,
+        ("being_overtaken",): _being_overtaken,
+    }
+)
+"""The signals of overtaking."""

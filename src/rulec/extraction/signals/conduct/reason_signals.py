@@ -17,8 +17,8 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.measured_numbers import moves
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import JOINING
 from rulec.scenario.recorded.reference_line import turn
@@ -44,11 +44,6 @@ _MOVES_OFF_S = 5.0
 
 _DRIVES_KMH = 30.0
 """Who is as fast later on has not broken down, nor is towed."""
-
-
-def reason_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of reasons to brake and of holding up others, those of the names."""
-    return signals_by(_PASSES, context, names)
 
 
 def _cause_to_brake(context: DriveContext) -> SignalColumns:
@@ -317,7 +312,10 @@ def _followed(context: DriveContext) -> Flags:
     return followed
 
 
-_PASSES: Passes = {
-    ("cause_to_brake",): _cause_to_brake,
-    ("impedes_traffic",): _impedes,
-}
+reason_signals = SignalPasses(
+    {
+        ("cause_to_brake",): _cause_to_brake,
+        ("impedes_traffic",): _impedes,
+    }
+)
+"""The signals of reasons to brake and of holding up others."""

@@ -13,8 +13,8 @@ import numpy as np
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.map.conflicts import first_column
 from rulec.extraction.signals.map.priority_signals import drive_by_drive, own_passages
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.tracks import Floats
 
@@ -24,11 +24,6 @@ _BEHIND_M, _ASIDE_M = 30.0, 8.0
 _BEFORE_M = 8.0
 _STRAIGHT_RAD = np.radians(30.0)
 _CREEPS_MPS = 0.5
-
-
-def turning_conflicts(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signal of conflicts with those beside a turning ego, if it is named."""
-    return signals_by(_PASSES, context, names)
 
 
 @drive_by_drive
@@ -165,4 +160,5 @@ def _in_frame(
     return x * cos + y * sin, y * cos - x * sin
 
 
-_PASSES: Passes = {("turns_in_way_of",): _turns_in_way_of}
+turning_conflicts = SignalPasses({("turns_in_way_of",): _turns_in_way_of})
+"""The signal of conflicts with those beside a turning ego."""

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.map_signals import crossings_told, next_crossing
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.cells import Cells
 
@@ -23,11 +23,6 @@ _STOOD_S = 5.0
 """Who has stood for longer as ego comes, and does for as long after it, has not stopped for it."""
 
 _USES = ("not_crossing", "waiting_to_cross", "about_to_cross", "entering_crossing", "on_crossing")
-
-
-def crossing_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of pedestrians, and of vehicles that stop for them, those of the names."""
-    return signals_by(_PASSES, context, names)
 
 
 def _crossing_use(context: DriveContext) -> SignalColumns:
@@ -279,9 +274,12 @@ def _stopped(context: DriveContext, states: NDArray[intp]) -> Flags:
     return stopped
 
 
-_PASSES: Passes = {
-    ("crossing_use",): _crossing_use,
-    ("stopped_for_pedestrian",): _stopped_for_pedestrian,
-    ("nearest_to_crossing",): _nearest_to_crossing,
-    ("crosses_side_road",): _crosses_side_road,
-}
+crossing_signals = SignalPasses(
+    {
+        ("crossing_use",): _crossing_use,
+        ("stopped_for_pedestrian",): _stopped_for_pedestrian,
+        ("nearest_to_crossing",): _nearest_to_crossing,
+        ("crosses_side_road",): _crosses_side_road,
+    }
+)
+"""The signals of pedestrians, and of vehicles that stop for them."""

@@ -15,8 +15,8 @@ from rulec.extraction.signals.map.priority_signals import (
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.map.stop_lines import around_crossing, passes, stop_line
 from rulec.extraction.signals.measured_numbers import own_front
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, SignalNames
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.junctions import all_have_to_stop
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import STOP_SIGNS, STRAIGHT_ON, Light, ObservedLight
@@ -34,11 +34,6 @@ COLOURS = {
     "green": "green_light",
     "inactive": "no_light",
 }
-
-
-def junction_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of junctions on ego's road, their lights and signs, those of the names."""
-    return signals_by(_PASSES, context, names)
 
 
 def _junction_zone(context: DriveContext) -> SignalColumns:
@@ -335,11 +330,14 @@ def _colour(context: DriveContext, lights: tuple[Light | ObservedLight, ...], st
     return shown.pop() if len(shown) == 1 else ""
 
 
-_PASSES: Passes = {
-    ("junction_zone",): _junction_zone,
-    ("enters_junction",): _enters_junction,
-    ("turn", "preparing_to_leave"): _turns,
-    ("crosses_stop_line",): _stop_signs,
-    ("all_way_stop",): _all_way_stop,
-    ("light", "crosses_light_line"): _traffic_lights,
-}
+junction_signals = SignalPasses(
+    {
+        ("junction_zone",): _junction_zone,
+        ("enters_junction",): _enters_junction,
+        ("turn", "preparing_to_leave"): _turns,
+        ("crosses_stop_line",): _stop_signs,
+        ("all_way_stop",): _all_way_stop,
+        ("light", "crosses_light_line"): _traffic_lights,
+    }
+)
+"""The signals of junctions on ego's road, their lights and signs."""

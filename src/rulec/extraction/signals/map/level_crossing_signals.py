@@ -8,8 +8,8 @@ from heapq import heappop, heappush
 import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
-from rulec.extraction.signals.signal_passes import Passes, once_a_map, once_a_road, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_passes import SignalPasses, once_a_map, once_a_road
 from rulec.extraction.tracks.driven_road import runs_along
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.recorded.route import lanelet_length
@@ -18,11 +18,6 @@ _SIGNS_M = 300.0
 """No sign that warns of a level crossing is farther before it: beacons begin 240 m before."""
 
 Stretches = Sequence[tuple[float, float]]
-
-
-def level_crossing_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of level crossings and rails, those of the names."""
-    return signals_by(_PASSES, context, names)
 
 
 def _zones(context: DriveContext) -> SignalColumns:
@@ -120,8 +115,11 @@ def _pieces_by_rails(context: DriveContext) -> Flags:
     return np.array(flags)
 
 
-_PASSES: Passes = {
-    ("level_crossing_zone", "enters_level_crossing", "guarded"): _zones,
-    ("past_level_crossing_sign",): _warned,
-    ("tracks_at_kerb",): _tracks_at_kerb,
-}
+level_crossing_signals = SignalPasses(
+    {
+        ("level_crossing_zone", "enters_level_crossing", "guarded"): _zones,
+        ("past_level_crossing_sign",): _warned,
+        ("tracks_at_kerb",): _tracks_at_kerb,
+    }
+)
+"""The signals of level crossings and rails."""

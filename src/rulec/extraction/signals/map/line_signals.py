@@ -10,21 +10,15 @@ from rulec.extraction.signals.map.stop_lines import stop_line
 from rulec.extraction.signals.measured_numbers import LONGEST_S, moves, own_front, own_speed
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,
-    SignalNames,
     rounded,
     rounded_outward,
 )
-from rulec.extraction.signals.signal_passes import Passes, signals_by
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Floats
 from rulec.recordings.recording import STOP_SIGNS, Lanelet
 from rulec.trace.plain_arrays import distinct
 
 _NO_JUNCTION_M = 1000.0
-
-
-def line_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of the way to lines and junctions, those of the names."""
-    return signals_by(_PASSES, context, names)
 
 
 def _to_line(context: DriveContext) -> SignalColumns:
@@ -102,7 +96,10 @@ def _to_junction(context: DriveContext) -> SignalColumns:
     )
 
 
-_PASSES: Passes = {
-    ("distance_to_stop_line", "time_to_stop_line"): _to_line,
-    ("distance_to_junction",): _to_junction,
-}
+line_signals = SignalPasses(
+    {
+        ("distance_to_stop_line", "time_to_stop_line"): _to_line,
+        ("distance_to_junction",): _to_junction,
+    }
+)
+"""The signals of the way to lines and junctions."""

@@ -23,11 +23,10 @@ from rulec.extraction.signals.settling import only_when
 from rulec.extraction.signals.signal_columns import (
     SignalColumn,
     SignalColumns,
-    SignalNames,
     rounded,
     rounded_outward,
 )
-from rulec.extraction.signals.signal_passes import Passes, once_a_recording, signals_by
+from rulec.extraction.signals.signal_passes import SignalPasses, once_a_recording
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import CROSSWALK, CYCLES_TOO, STOP_SIGNS, Lanelet
 from rulec.scenario.recorded.route import lanelet_area
@@ -64,11 +63,6 @@ _SURFACES = {
     "level_crossing": "level_crossing",
 }
 """Type of a lanelet -> surface; a later one counts."""
-
-
-def map_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of ego's road, as far as the map knows them, those of the names."""
-    return signals_by(_PASSES, context, names)
 
 
 def _distance_to_crossing(context: DriveContext) -> SignalColumns:
@@ -285,10 +279,13 @@ def _crossing_areas(context: DriveContext) -> shapely.Geometry:
     return shapely.union_all([lanelet_area(x) for x in lanelets if CROSSWALK in x.types])
 
 
-_PASSES: Passes = {
-    ("surface",): _surface,
-    ("distance_to_crossing",): _distance_to_crossing,
-    ("crossing_zone",): _crossing_zone,
-    ("limit",): _limit,
-    tuple(_SIGNS): _signs,
-}
+map_signals = SignalPasses(
+    {
+        ("surface",): _surface,
+        ("distance_to_crossing",): _distance_to_crossing,
+        ("crossing_zone",): _crossing_zone,
+        ("limit",): _limit,
+        tuple(_SIGNS): _signs,
+    }
+)
+"""The signals of ego's road, as far as the map knows them."""

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames
-from rulec.extraction.signals.signal_passes import Passes, once_a_road, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumns
+from rulec.extraction.signals.signal_passes import SignalPasses, once_a_road
 from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import Lanelet, Recording
 from rulec.scenario.recorded.route import lanelet_length
@@ -33,11 +33,6 @@ _WAY_M = 30.0
 
 _RAMPS = frozenset({"accessRamp", "exitRamp"})
 """Who joins from an acceleration lane gives way, and who leaves a road does not go on beside it."""
-
-
-def merge_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of ego's place at narrowings, and of who is beside it there, if named."""
-    return signals_by(_PASSES, context, names)
 
 
 def _narrowings(context: DriveContext) -> SignalColumns:
@@ -131,4 +126,5 @@ def _tapers(lanelet: Lanelet) -> bool:
     return bool(widths[1] < _TAPERED * widths[0])
 
 
-_PASSES: Passes = {("narrowing", "merged", "abreast_at_narrowing"): _narrowings}
+merge_signals = SignalPasses({("narrowing", "merged", "abreast_at_narrowing"): _narrowings})
+"""The signals of ego's place at narrowings, and of who is beside it there."""

@@ -24,11 +24,10 @@ from rulec.extraction.signals.map.roundabout_signals import without_junction
 from rulec.extraction.signals.signal_columns import (
     SignalColumn,
     SignalColumns,
-    SignalNames,
     end_to_end,
     nobody,
 )
-from rulec.extraction.signals.signal_passes import Passes, once_a_recording, signals_by
+from rulec.extraction.signals.signal_passes import SignalPasses, once_a_recording
 from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.junctions import Junction, approaches, before_joining
 from rulec.extraction.tracks.tracks import Flags
@@ -75,11 +74,6 @@ def drive_by_drive(
         return end_to_end([signals_of(context.one(number)) for number in drives])
 
     return found
-
-
-def priority_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of right of way at junctions, those of the names."""
-    return signals_by(_PASSES, context, names)
 
 
 @drive_by_drive
@@ -380,7 +374,10 @@ def _leaves_at_latest(context: DriveContext, own: Passage) -> float:
     return column + left / speed / context.recording.step_s
 
 
-_PASSES: Passes = {
-    _ROADS: _roads,
-    (*_CONFLICTS, *_ARRIVALS): _conflicts,
-}
+priority_signals = SignalPasses(
+    {
+        _ROADS: _roads,
+        (*_CONFLICTS, *_ARRIVALS): _conflicts,
+    }
+)
+"""The signals of right of way at junctions."""

@@ -11,11 +11,10 @@ import numpy as np
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.ego_lanelets import lanelets_at, map_contents, own_lanelets
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, SignalNames
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.signals.signal_passes import (
-    Passes,
+    SignalPasses,
     once_a_map,
-    signals_by,
 )
 from rulec.extraction.tracks.surroundings import Directions
 from rulec.extraction.tracks.tracks import Flags
@@ -34,11 +33,6 @@ _LANE_KINDS = {
     "exitRamp": "exit_lane",
     "mainCarriageWay": "through_lane",
 }
-
-
-def road_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of ego's road, its surroundings and its weather, those of the names."""
-    return signals_by(_PASSES, context, names)
 
 
 def _built_up(context: DriveContext) -> SignalColumns:
@@ -161,12 +155,15 @@ def _has_fast_town(context: DriveContext) -> bool:
     )
 
 
-_PASSES: Passes = {
-    ("built_up",): _built_up,
-    ("road_class",): _road_class,
-    ("one_way", "divided"): _ways,
-    ("lane_kind",): _lane_kind,
-    ("tunnel",): _tunnel,
-    ("told_to_stop", "told_to_go"): _officers,
-    ("wet", "icy", "visibility", "raining", "night"): _weather,
-}
+road_signals = SignalPasses(
+    {
+        ("built_up",): _built_up,
+        ("road_class",): _road_class,
+        ("one_way", "divided"): _ways,
+        ("lane_kind",): _lane_kind,
+        ("tunnel",): _tunnel,
+        ("told_to_stop", "told_to_go"): _officers,
+        ("wet", "icy", "visibility", "raining", "night"): _weather,
+    }
+)
+"""The signals of ego's road, its surroundings and its weather."""

@@ -9,8 +9,8 @@ import numpy as np
 
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.ego_lanelets import map_contents
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns, SignalNames
-from rulec.extraction.signals.signal_passes import Passes, once_a_road, signals_by
+from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.signals.signal_passes import SignalPasses, once_a_road
 from rulec.extraction.tracks.driven_road import runs_along
 from rulec.extraction.tracks.tracks import Flags
 
@@ -20,11 +20,6 @@ _SIGNS: Mapping[str, frozenset[str]] = {
     "compulsory_roundabout": _ROUNDABOUT,
 }
 """Word -> the signs before a ring that it is about."""
-
-
-def roundabout_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of roundabouts on ego's road, which are rings of lanelets, if they are named."""
-    return signals_by(_PASSES, context, names)
 
 
 def _rings(context: DriveContext) -> SignalColumns:
@@ -78,4 +73,5 @@ def roundabouts(context: DriveContext) -> tuple[tuple[float, float, bool], ...]:
     return tuple(found)
 
 
-_PASSES: Passes = {("roundabout", "enters_roundabout", *_SIGNS): _rings}
+roundabout_signals = SignalPasses({("roundabout", "enters_roundabout", *_SIGNS): _rings})
+"""The signals of roundabouts on ego's road, which are rings of lanelets."""

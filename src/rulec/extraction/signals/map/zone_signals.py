@@ -16,12 +16,11 @@ from rulec.extraction.signals.map.level_crossing_signals import Stretches, level
 from rulec.extraction.signals.map.map_signals import next_crossing
 from rulec.extraction.signals.map.stop_lines import drawn_lines
 from rulec.extraction.signals.measured_numbers import corner_ahead
-from rulec.extraction.signals.signal_columns import SignalColumns, SignalNames, ids_by_state
+from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
 from rulec.extraction.signals.signal_passes import (
-    Passes,
+    SignalPasses,
     once_a_map,
     once_a_road,
-    signals_by,
 )
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Recording, is_lane, is_there
@@ -35,11 +34,6 @@ _BEFORE_LINE_M = 10.0
 """On maps without stop lines crossings are up to so far before the ends of lanelets with lights."""
 
 ROOM_M = 1.0
-
-
-def zone_signals(context: DriveContext, names: SignalNames = None) -> SignalColumns:
-    """The signals of crossings and of the room behind what ego enters, those of the names."""
-    return signals_by(_PASSES, context, names)
 
 
 def _crossing_kind(context: DriveContext) -> SignalColumns:
@@ -292,7 +286,10 @@ def _entered(front: Floats, rear: Floats, places: Stretches, reach: float) -> ND
     return entered
 
 
-_PASSES: Passes = {
-    ("crossing_kind",): _crossing_kind,
-    ("exit_clear",): _exit_clear,
-}
+zone_signals = SignalPasses(
+    {
+        ("crossing_kind",): _crossing_kind,
+        ("exit_clear",): _exit_clear,
+    }
+)
+"""The signals of crossings and of the room behind what ego enters."""
