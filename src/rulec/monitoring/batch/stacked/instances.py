@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.monitoring.batch.columns.column_reader import Mask
-from rulec.monitoring.batch.stacked.stack import Places, Stack
+from rulec.monitoring.batch.stacked.stack import FEW, Places, Stack
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
@@ -139,6 +139,8 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
         ]
         if not _are_busy(rule, rule.letters.numbers(uncounted)).any():
             return _NO_INSTANCES
+    if len(rule.variables) == 1 and stack.starts[-1] <= FEW:
+        return _of_objects((_doubtful_of_few(rule, reader),), stack)
     every = rule.letters.numbers(numbers_at(rule, reader, None))
     busy = _are_busy(rule, every)
     if not busy.any():
@@ -156,9 +158,33 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
             for variable, kind in zip(rule.variables, rule.types, strict=True)
         )
         objects = _pairs(rule, reader, first, second)
-    firsts = np.max([stack.firsts[own] for own in objects], axis=0)
-    lasts = np.min([stack.lasts[own] for own in objects], axis=0)
-    return Instances(stack.trace_of[objects[0]], objects, firsts, lasts)
+    return _of_objects(objects, stack)
+
+
+def _of_objects(objects: tuple[Places, ...], stack: Stack) -> Instances:
+    """The choices of these objects, one for each variable, while all of them are there."""
+    first, *others = objects
+    firsts, lasts = stack.firsts[first], stack.lasts[first]
+    for own in others:
+        firsts = np.maximum(firsts, stack.firsts[own])
+        lasts = np.minimum(lasts, stack.lasts[own])
+    return Instances(stack.trace_of[first], objects, firsts, lasts)
+
+
+def _doubtful_of_few(rule: StackedRule, reader: StackReader) -> Places:
+    """The objects for the only variable whose letters alone do not show that the rule is kept.
+
+    Letters are found in all cells, of which there are few.
+    """
+    stack, (variable,), (kind,) = reader.stack, rule.variables, rule.types
+    spots = reader.every_cell_of(variable)
+    numbers = [
+        read.unknown if read.is_composed else reader.numbers(read, spots) for read in rule.reads
+    ]
+    begins = stack.are_first.nonzero()[0]
+    objects = stack.object_of[begins]
+    are_kept = rule.are_surely_kept(rule.letters.numbers(numbers), begins)
+    return objects[stack.of_type(kind)[objects] & ~are_kept]
 
 
 def _doubtful_objects(rule: StackedRule, reader: StackReader, busy: Mask) -> Places:

@@ -61,6 +61,7 @@ class StackReader:
         self.stack = stack
         self._numbers: dict[int, Array | int] = {}
         self._of_kind: dict[tuple[int, str], Array] = {}
+        self._in_cells: dict[int, Array] = {}
         self._changes: dict[int, Flags | None] = {}
         self._digits: dict[int, int] = {}
         self.met_values = MetValues(stack)
@@ -69,6 +70,10 @@ class StackReader:
     @cached_property
     def _every_cell(self) -> Places:
         return np.arange(self.stack.starts[-1])
+
+    def every_cell_of(self, variable: str) -> Spots:
+        """All cells, for a variable."""
+        return Spots(self.stack.state_of, {variable: self._every_cell}, whole=True)
 
     def numbers(self, read: StackedRead, spots: Spots | None) -> Numbers:
         """The numbers of a read at some spots, or in all states; one if they are all the same.
@@ -84,6 +89,8 @@ class StackReader:
             found = self._numbers[read.key] = self._everywhere(read)
         if spots is None or not isinstance(found, np.ndarray):
             return found
+        if spots.whole and spots.cells:
+            return found if read.variables else self._in_every_cell(read, found)
         if spots.kind is None:
             return found.take(spots.cells[read.variables[0]] if read.variables else spots.states)
         key = read.key, spots.kind
@@ -92,6 +99,12 @@ class StackReader:
             is_every = bool(read.variables) and len(own) == len(found)
             self._of_kind[key] = found if is_every else found.take(own)
         return self._of_kind[key]
+
+    def _in_every_cell(self, read: StackedRead, numbers: Array) -> Array:
+        """The numbers of a read of no object in the state of each cell."""
+        if read.key not in self._in_cells:
+            self._in_cells[read.key] = numbers.take(self.stack.state_of)
+        return self._in_cells[read.key]
 
     def changes(self, read: StackedRead) -> Flags | None:
         """The cells whose number of a read is not that of the cell before; None if there are none.
@@ -167,13 +180,12 @@ class StackReader:
 
     def _everywhere(self, read: StackedRead) -> Array | int:
         """The numbers in all states, or cells."""
-        stack = self.stack
         digits = self.digits(read)
         if digits & (digits - 1) == 0 and read.meanings.count(digits) == 1:
             return read.meanings.index(digits)
         every = Spots(self._every_state, {}, whole=True)
         if read.variables:
-            every = Spots(stack.state_of, {read.variables[0]: self._every_cell}, whole=True)
+            every = self.every_cell_of(read.variables[0])
         found = self._of(read, every)
         if isinstance(read.read, Read):
             met = self.met_values.values(read.names[0])

@@ -20,7 +20,7 @@ from rulec.monitoring.batch.stacked.instances import (
     doubtful_instances,
 )
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
-from rulec.monitoring.batch.stacked.stacked_rule import ODD, StackedRule, stretches
+from rulec.monitoring.batch.stacked.stacked_rule import FEW_WORDS, ODD, StackedRule, stretches
 from rulec.monitoring.batch.stacked.words_together import are_many
 from rulec.monitoring.batch.uncertain.partial_reader import number_of_value
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
@@ -29,9 +29,6 @@ from rulec.monitoring.uncertainty.uncertain_machine import Answer
 from rulec.trace import Value
 from rulec.trace.plain_arrays import distinct, ranges
 from rulec.vocabulary.partial_values import UNKNOWN
-
-_FEW_WORDS = 1 << 5
-"""Fewer words are looked at one by one, and those that are the same not looked for."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -75,7 +72,7 @@ def outcomes(
         words = _doubtful_words(rule, reader, chosen)
         if words is None:
             continue
-        if len(words.bounds) <= _FEW_WORDS:
+        if len(words.bounds) <= FEW_WORDS:
             yield _few(words)
             continue
         is_odd = np.logical_or.reduceat(words.odd, words.bounds[:-1])
@@ -273,7 +270,7 @@ def _are_surely_kept(
 ) -> NDArray[np.bool_]:
     """For each word whether it is kept, whatever its letters are of those that they may be."""
     n_words = len(bounds) - 1
-    if n_words < _FEW_WORDS:
+    if n_words < FEW_WORDS:
         words = [rule.answer_to(letters[i:j]) for i, j in pairwise(bounds.tolist())]
         # What cannot be, because facts exclude it, is never kept
         return np.array([word is not None and word.worst == KEPT for word in words])

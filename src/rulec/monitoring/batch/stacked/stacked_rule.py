@@ -48,6 +48,9 @@ MOST_SETS = 1 << 14
 MOST_BYTES = 1 << 22
 """Words of so many bytes, whose answers are known, are kept before all are forgotten."""
 
+FEW_WORDS = 1 << 5
+"""Fewer words are looked at one by one, and those that are the same not looked for."""
+
 ODD = np.uint64(0x9E3779B97F4A7C15)
 """Of the golden ratio's digits, a weight without a pattern."""
 
@@ -235,6 +238,9 @@ class StackedRule:
         every = np.bitwise_or.reduceat(own, begins)
         last = np.empty_like(every)
         last[:-1], last[-1:] = own.take(begins[1:] - 1), own[-1:]
+        if len(begins) <= FEW_WORDS:
+            words = zip(every.tolist(), last.tolist(), strict=True)
+            return np.array([self._keep(*word) for word in words], dtype=bool)
         # Words are mostly kept, and so are all of whose letters any word is
         if self._keep(*(int(np.bitwise_or.reduce(classes)) for classes in (every, last))):
             return np.ones(len(begins), dtype=bool)

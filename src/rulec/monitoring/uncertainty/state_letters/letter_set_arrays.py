@@ -17,7 +17,7 @@ Numbers = NDArray[np.intp] | int
 MOST_CODES = 1 << 16
 """Reads whose numbers have no more combinations are looked up together."""
 
-_FEW_CODES = 1 << 12
+_FEW_CODES = 1 << 15
 """More combinations are too many for fewer letters."""
 
 _MOST_KEPT = 1 << 18
