@@ -189,8 +189,6 @@ class RoadExtents:
 
 _FIELDS = tuple(field.name for field in fields(RoadExtents))
 
-_LAID = frozenset((*_FIELDS, "s", "lane", "lane_steps", "off_middle"))
-
 
 class _LaidExtents(RoadExtents):
     """Extents of a ``whole`` in several ranges, with each array laid out when it is asked for.
@@ -230,13 +228,31 @@ class _LaidExtents(RoadExtents):
         )
         return low, high
 
-    def __getattribute__(self, name: str) -> Any:
-        if name in _LAID:
-            own = object.__getattribute__(self, "__dict__")
-            if name not in own:
-                own[name] = own["_laid"](getattr(own["_whole"], name))
-            return own[name]
-        return object.__getattribute__(self, name)
+    def __getattr__(self, name: str) -> NDArray[Any]:
+        if name not in _FIELDS:
+            raise AttributeError(name)
+        values = self.__dict__[name] = self._laid_out(name)
+        return values
+
+    @cached_property
+    def s(self) -> Floats:
+        return self._laid_out("s")
+
+    @cached_property
+    def lane(self) -> NDArray[intp]:
+        return self._laid_out("lane")
+
+    @cached_property
+    def lane_steps(self) -> NDArray[int8]:
+        return self._laid_out("lane_steps")
+
+    @cached_property
+    def off_middle(self) -> Floats:
+        return self._laid_out("off_middle")
+
+    def _laid_out(self, name: str) -> NDArray[Any]:
+        found: NDArray[Any] = self.__dict__["_laid"](getattr(self.__dict__["_whole"], name))
+        return found
 
 
 def at_columns(values: NDArray[Any], rows: NDArray[intp], columns: NDArray[intp]) -> NDArray[Any]:
