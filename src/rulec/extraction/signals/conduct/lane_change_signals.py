@@ -106,15 +106,16 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
     disturbed = np.zeros(context.relevant.shape, dtype=bool)
     moot, unsure = np.zeros((2, context.states), dtype=bool)
     flagged, ways = _ways_into_lanes(context)
-    states = np.array([way.state for way in ways], dtype=intp)
-    found, perhaps = _disturbed(context, states)
-    no_room, maybe_none = squeezed(context, ways)
-    in_lane = context.extents.lane[:, states] == context.ego_lane[states]
-    in_lane |= found & ~context.in_ego_lane[:, states]
-    has_to_brake = found & in_lane & ~_pulls_away(context, states)
-    disturbed[:, flagged] = found | no_room
-    unsure[flagged] = perhaps.any(axis=0) | maybe_none.any(axis=0)
-    moot[flagged] = ~np.any(has_to_brake | no_room, axis=0)
+    if ways:
+        states = np.array([way.state for way in ways], dtype=intp)
+        found, perhaps = _disturbed(context, states)
+        no_room, maybe_none = squeezed(context, ways)
+        in_lane = context.extents.lane[:, states] == context.ego_lane[states]
+        in_lane |= found & ~context.in_ego_lane[:, states]
+        has_to_brake = found & in_lane & ~_pulls_away(context, states)
+        disturbed[:, flagged] = found | no_room
+        unsure[flagged] = perhaps.any(axis=0) | maybe_none.any(axis=0)
+        moot[flagged] = ~np.any(has_to_brake | no_room, axis=0)
     turns = u_turns(context)
     brakes, may_brake = has_to_brake_for_turn(context, turns)
     disturbed |= brakes

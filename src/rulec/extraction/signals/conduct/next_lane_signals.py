@@ -68,7 +68,10 @@ def _on_far_lane(context: DriveContext) -> SignalColumns:
 
 def _on_near_lane(context: DriveContext) -> SignalColumns:
     free = _near_lane_is_free(context)
-    doubtful = _perhaps_on_near_lane(context) | _of_no_use(context) | _goes_back(context)
+    doubtful = _goes_back(context)
+    # Who is on the lane next to the kerb mostly stays there
+    if (free & _next_lane(context, context.side)[1]).any():
+        doubtful |= _perhaps_on_near_lane(context) | _of_no_use(context)
     # For which buses such a lane is, and when, no map tells, nor do those have to use it that may
     doubtful |= _is_beside(context, _BUS_LANE)
     return SignalColumns(

@@ -118,6 +118,14 @@ def _begins_to_overtake(context: DriveContext) -> SignalColumns:
 
 def _being_overtaken(context: DriveContext) -> SignalColumns:
     by, open_end = _overtaken(context)
+    if not by.any() and not open_end.any():
+        nobody = np.zeros(context.states, dtype=bool)
+        whom = ids_by_state(by, context.ids)
+        return SignalColumns(
+            {"being_overtaken": nobody},
+            unknown={"being_overtaken": nobody},
+            whom={"being_overtaken": whom},
+        )
     # Who is about to join gets up speed for it, beside others on the lanes that go on; who leaves
     # may be faster than they, too (StVO § 7a), and many lanes between ramps serve for both
     on_ramp = own_lanelets(context).flags(lambda at: not at.types.isdisjoint(_RAMPS))
@@ -258,12 +266,14 @@ def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
     comes &= (relations.lateral(context) == near) & context.going_along
     closing = relations.gap(context) <= faster_mps * limits.passed_s
     cells = Cells.at(comes & (closing | (station == relations.BESIDE)))
+    open_end = np.zeros(context.states, dtype=bool)
+    if not len(cells):
+        return np.zeros_like(comes), open_end
     gets_past, unsure = map(cells.of, _gets_past(context, distinct(cells.rows), faster_mps))
     next_lane, lanes = cells.of(_next_lane(context)), context.existing_lanes.shape[1]
     there = (next_lane >= 0) & (next_lane < lanes)
     reaches = there & is_in(cells.of(context.lanes_within[0]), np.clip(next_lane, 0, lanes - 1))
     inside = reaches & (cells.of(context.extents.lane) == next_lane)
-    open_end = np.zeros(context.states, dtype=bool)
     open_end[cells.columns[reaches & (unsure | (~inside & gets_past))]] = True
     return cells.laid(inside & gets_past), open_end
 
