@@ -63,10 +63,15 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     one_way = own_lanelets(context).flags(lambda at: context.surroundings.directions(at)[0] is True)
     alone = own_lanes | one_way
     own = np.maximum(context.ego_extents.along[0], 0.0)
+    steps = round(limits.overtaking_s / context.recording.step_s)
+    ends = context.spans.columns + steps >= context.spans.end
+    far_enough = 2 * own * limits.overtaking_s <= limits.near_m
     present = presence_cells(context)
     against = present.of(context.extents.along) * KMH < -limits.standing_kmh
     against &= context.tracks.of_type("vehicle")[present.rows]
     cells = present.part(np.flatnonzero(against))
+    if not len(cells):
+        return np.ones(context.states, dtype=bool), ends & ~alone & ~far_enough
     comes = (np.cos(cells.of(context.extents.turned)) < 0) & cells.of(context.relevant)
     cells = cells.part(np.flatnonzero(comes))
     columns, station = cells.columns, cells.of(relations.station(context))
@@ -74,14 +79,11 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     left_s = np.where(
         station == relations.BEHIND, cells.of(relations.gap(context)) / closing, np.inf
     )
-    steps = round(limits.overtaking_s / context.recording.step_s)
     met, meets, soon = np.zeros((3, context.states), dtype=bool)
     met[columns[station == relations.BESIDE]] = True
     meets[columns[left_s < limits.overtaking_s]] = True
     soon[columns[left_s < limits.yielding_s]] = True
     meets |= context.spans.within(met, steps) | _meets_beyond_middle(context, met | soon)
-    ends = context.spans.columns + steps >= context.spans.end
-    far_enough = 2 * own * limits.overtaking_s <= limits.near_m
     return alone | ~meets, ~alone & ~meets & ends & ~far_enough
 
 
@@ -128,6 +130,8 @@ def _obstructed(context: DriveContext) -> Flags:
     stands = present.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
     walking = context.tracks.of_type("pedestrian")
     maybe = present.part(np.flatnonzero(stands | walking[present.rows]))
+    if not len(maybe):
+        return blocked
     maybe = maybe.part(np.flatnonzero(_near_obstacle(context, maybe)))
     if not len(maybe):
         return blocked

@@ -50,12 +50,14 @@ def _ego_type(context: DriveContext) -> SignalColumns:
 
 def _ego_length(context: DriveContext) -> SignalColumns:
     """Ego's length, of a rectangle its own: who turns takes more of the road."""
-    lengths = (context.ego_extents.s_max - context.ego_extents.s_min)[0]
-    (told,) = np.nonzero(~np.isnan(lengths))
-    length, _ = medians(context.spans.number[told], lengths[told], context.spans.n_drives)
-    for drive, body in enumerate(context.ego.participants):
-        if isinstance(body.outlines, TrackOutlines):
-            length[drive] = body.outlines.track.length
+    outlines = [body.outlines for body in context.ego.participants]
+    own = [x.track.length if isinstance(x, TrackOutlines) else np.nan for x in outlines]
+    length = np.array(own)
+    if np.isnan(length).any():
+        lengths = (context.ego_extents.s_max - context.ego_extents.s_min)[0]
+        (told,) = np.nonzero(~np.isnan(lengths))
+        median, _ = medians(context.spans.number[told], lengths[told], context.spans.n_drives)
+        length = np.where(np.isnan(length), median, length)
     return SignalColumns({"ego_length": rounded(context.spans.spread(length))})
 
 
@@ -161,8 +163,18 @@ def _straddling(context: DriveContext) -> SignalColumns:
 
     Also on its way over the middle of the road, to the lanes of the other direction or back.
     """
-    place, offset = context.tolerances.place_m, context.map_offset_m
+    straddling, unknown = np.zeros((2, context.states), dtype=bool)
     states = np.flatnonzero(_near_a_bound(context))
+    if len(states):
+        straddling[states], unknown[states] = _in_two_lanes(context, states)
+    over = goes_over_the_middle(context)
+    straddling, unknown = straddling | over, unknown & ~over
+    return SignalColumns({"straddling": straddling}, unknown={"straddling": unknown})
+
+
+def _in_two_lanes(context: DriveContext, states: NDArray[intp]) -> tuple[Flags, Flags]:
+    """Flags of those states in which ego is in two lanes, and in which places decide it."""
+    place, offset = context.tolerances.place_m, context.map_offset_m
     shifts = [np.zeros(len(states)), *([offset[states]] if offset.any() else [])]
     tried = [(0.0, shifts[0]), *product((place, -place), shifts)]
     # Numbers of tries are the first axis
@@ -175,11 +187,7 @@ def _straddling(context: DriveContext) -> SignalColumns:
     least = context.thresholds.touching_m + np.array([less for less, _ in tried])
     inside = replace(own, **bounds).inside > least[:, None, None]
     both = (inside & context.existing_lanes[states]).sum(axis=-1) > 1
-    straddling, unknown = np.zeros((2, context.states), dtype=bool)
-    straddling[states], unknown[states] = both[0], both.any(axis=0) & ~both.all(axis=0)
-    over = goes_over_the_middle(context)
-    straddling, unknown = straddling | over, unknown & ~over
-    return SignalColumns({"straddling": straddling}, unknown={"straddling": unknown})
+    return both[0], both.any(axis=0) & ~both.all(axis=0)
 
 
 def _near_a_bound(context: DriveContext) -> Flags:

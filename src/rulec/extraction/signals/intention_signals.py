@@ -32,6 +32,9 @@ _PUBLIC = ("bus", "rail_vehicle")
 
 def _boarding(context: DriveContext) -> SignalColumns:
     public = np.any([context.tracks.of_type(kind) for kind in _PUBLIC], axis=0)[:, None]
+    if not public.any():
+        nobody = np.zeros_like(context.relevant)
+        return SignalColumns(about={"boarding": nobody}, unknown={"boarding": nobody})
     stops = public & stands(context)
     doors, told = lit_lamps(context, "doors")
     return SignalColumns(about={"boarding": stops & doors}, unknown={"boarding": stops & ~told})
@@ -53,12 +56,15 @@ def may_have_broken_down(context: DriveContext) -> Flags:
 
     Nobody knows whether they do not stand for the traffic, or warn of the end of a jam.
     """
+    still = stands(context)
+    if not still.any():
+        return still
     left, right, hazard = (
         lit_lamps(context, lamp)[0]
         for lamp in ("left_indicator", "right_indicator", "hazard_lights")
     )
     both = flashing(left, context) & flashing(right, context)
-    warns: Flags = stands(context) & (both | flashing(hazard, context))
+    warns: Flags = still & (both | flashing(hazard, context))
     return warns
 
 
@@ -199,6 +205,9 @@ def _about_to_overtake(context: DriveContext) -> SignalColumns:
     pulls_out = onward > 0 if far > 0 else onward < 0
     pulls_out[:, context.spans.end[context.spans.begins] - 1] = False
     rows = np.flatnonzero(pulls_out.any(axis=1))
+    lit, told = _far_indicator(context)
+    if not len(rows) and not lit.any():
+        return SignalColumns(about={"about_to_overtake": lit}, unknown={"about_to_overtake": lit})
     inside = context.on_lanes[rows]
     pulls_out[rows] &= inside & context.spans.after(inside)
     soon = np.zeros_like(pulls_out)
@@ -210,7 +219,6 @@ def _about_to_overtake(context: DriveContext) -> SignalColumns:
     if joining.any():
         joins = joining[context.road.piece(np.nan_to_num(context.extents.s)), lane]
         soon &= ~joins
-    lit, told = _far_indicator(context)
     unknown = soon & ~(told & _caught_up(context))
     if lit.any():
         unknown |= told & lit & _ends_within(context, steps) & ~soon & ~joins

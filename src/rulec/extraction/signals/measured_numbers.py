@@ -181,6 +181,8 @@ def own_front(context: DriveContext) -> Floats:
     (far,) = np.nonzero(own.s_max[0] - own.s_min[0] > lengths + _CORNER_M)
     behind = context.road.line.headings_at(own.s_min[0, far])
     far = far[np.abs(turn(behind, context.ego.heading[0, far])) < _STRAIGHT_RAD]
+    if not len(far):
+        return front
     half, heading = lengths[far] / 2, context.ego.heading[0, far]
     middles = np.stack(
         (

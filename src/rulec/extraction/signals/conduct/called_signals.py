@@ -43,7 +43,9 @@ def _emergency_vehicle_near(context: DriveContext) -> SignalColumns:
     if len(rows):
         near = context.relevant[rows] & _comes_near(context)[rows]
         perhaps |= np.any(near & (on_call | not_told)[rows], axis=0)
-    comes = surely.any(axis=0) & ~_may_be_on_call(context)
+    comes = surely.any(axis=0)
+    if comes.any():
+        comes &= ~_may_be_on_call(context)
     return SignalColumns(
         {"emergency_vehicle_near": comes},
         unknown={"emergency_vehicle_near": perhaps & ~comes},
@@ -97,6 +99,9 @@ def _on_call(context: DriveContext) -> tuple[Flags, Flags]:
     """Flags of emergency vehicles with their blue lights on, and of those that perhaps are that."""
     called = context.tracks.of_type("emergency_vehicle")[:, None]
     kinds = np.array([body.type == "unknown" for body in context.tracks.participants], dtype=bool)
+    if not called.any():
+        nobody = np.zeros_like(context.relevant)
+        return nobody, nobody | kinds[:, None]
     blue, told = lit_lamps(context, "blue_light")
     blue = flashing(blue, context)
     return called & blue, (called & ~told & ~blue) | kinds[:, None]

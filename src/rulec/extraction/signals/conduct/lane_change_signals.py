@@ -51,9 +51,9 @@ def _lane_change(context: DriveContext) -> SignalColumns:
     has just forked: ego may follow one of its ways.
     """
     changes = _changes(context)
-    unknown = _within_tolerance(context, changes)
+    unknown = np.zeros(context.states, dtype=bool)
     if changes.any():
-        unknown |= changes & swings_round(context)
+        unknown = _within_tolerance(context, changes) | (changes & swings_round(context))
         states = np.flatnonzero(changes & ~unknown)
         pieces = context.road.piece(context.ego_extents.s[0, states])
         for change, piece in zip(states.tolist(), pieces.tolist(), strict=True):
@@ -121,12 +121,15 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
     disturbed |= brakes
     unsure |= may_brake.any(axis=0)
     clear: Flags = ~np.any(disturbed, axis=0)
-    stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
-    just_stood = round(_JUST_STOOD_S / context.recording.step_s)
-    stands |= _changes(context) & context.spans.within_last(stands, just_stood)
+    unknown = unsure
+    if not clear.all():
+        stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
+        just_stood = round(_JUST_STOOD_S / context.recording.step_s)
+        stands |= _changes(context) & context.spans.within_last(stands, just_stood)
+        unknown = np.where(clear, unsure, moot | stands)
     return SignalColumns(
         {"lane_is_clear": clear},
-        unknown={"lane_is_clear": np.where(clear, unsure, moot | stands)},
+        unknown={"lane_is_clear": unknown},
         whom={"lane_is_clear": ids_by_state(disturbed, context.ids)},
     )
 

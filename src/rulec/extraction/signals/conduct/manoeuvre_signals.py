@@ -133,7 +133,9 @@ def _tells_headings(context: DriveContext, columns: slice) -> bool:
 
 def _driving_side(context: DriveContext) -> SignalColumns:
     there, perhaps = oncoming_side(context)
-    perhaps, sides = perhaps & ~_goes_over(context, there, perhaps), there.astype(int)
+    sides = there.astype(int)
+    if perhaps.any():
+        perhaps = perhaps & ~_goes_over(context, there, perhaps)
     if context.wrong_way:
         sides, perhaps = np.full_like(sides, _SIDES.index("wrong_way")), perhaps & False
     return SignalColumns(

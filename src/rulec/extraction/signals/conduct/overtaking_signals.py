@@ -234,6 +234,8 @@ def _overtakes(context: DriveContext, whom: Flags | bool) -> tuple[Flags, Flags]
     slower: Flags = (context.extents.along < context.ego_extents.along) & whom
     slower &= (relations.lateral(context) == far) & (context.driving_along | _ride_along(context))
     cells = Cells.at(slower)
+    if not len(cells):
+        return overtakes, unsure
     beside = cells.of(relations.station(context)) == relations.BESIDE
     surely, perhaps = (_ahead_and_past(context, cells, tolerances) for tolerances in (0.0, 1.0))
     overtakes[cells.columns[surely | beside]] = True

@@ -71,9 +71,11 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     others = others.part(np.flatnonzero(~caused[others.states]))
     soon = round(context.thresholds.preparing_s / context.recording.step_s)
     spans, stands = context.spans, ~moves(context)
-    broken_down = stands & ~_drives_on(context, stands)
-    perhaps = spans.within(broken_down, soon) & ~(stands & _shows_no_hazard(context))
-    perhaps |= stands & spans.begins_here
+    perhaps = np.zeros(context.states, dtype=bool)
+    if stands.any():
+        broken_down = stands & ~_drives_on(context, stands)
+        perhaps = spans.within(broken_down, soon) & ~(stands & _shows_no_hazard(context))
+        perhaps |= stands & spans.begins_here
     perhaps |= spans.columns + soon // 2 >= spans.end
     # Ego may want to get in behind one beside it, or let it in
     beside = (others.away > _IN_WAY_M) & (others.away <= _COMES_M)
@@ -82,9 +84,10 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     perhaps |= _seeks_a_gap(context)
     least = context.ego.acceleration[0] - context.ego.acceleration_error[0]
     perhaps |= (least <= -context.thresholds.braking_hard_mps2) & ~_followed(context)
-    held = spans.latest(stands & (caused | perhaps))
-    since_s = (spans.columns - held) * context.recording.step_s
-    perhaps |= stands & (held > spans.latest(~stands)) & (since_s <= _MOVES_OFF_S)
+    if stands.any():
+        held = spans.latest(stands & (caused | perhaps))
+        since_s = (spans.columns - held) * context.recording.step_s
+        perhaps |= stands & (held > spans.latest(~stands)) & (since_s <= _MOVES_OFF_S)
     if "arrivals" not in context.recording.complete:
         farther = (others.ahead > _reach(context)[others.states]) & (others.away <= _ROAD_M)
         perhaps[others.states] |= ~farther.any(axis=0)

@@ -167,6 +167,8 @@ def _crossing_uses(
     start, end = stretch
     others, tracks, limits = context.extents, context.tracks, context.thresholds
     rows = _pedestrians(context)
+    if not len(rows):
+        return np.zeros((0, context.states), dtype=int)
     # Room for who does not walk exactly between the marks
     beside = others.s_max[rows] > start - limits.kerb_m
     beside &= others.s_min[rows] < end + limits.kerb_m

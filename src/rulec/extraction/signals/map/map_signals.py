@@ -64,6 +64,8 @@ _SURFACES = {
 }
 """Type of a lanelet -> surface; a later one counts."""
 
+_PLAIN = "carriageway"
+
 
 def _distance_to_crossing(context: DriveContext) -> SignalColumns:
     if not crossings_told(context):
@@ -196,6 +198,10 @@ def _surface(context: DriveContext) -> SignalColumns:
     the direction in which a body points is known less well than where it is, and some sources turn
     those who stand.
     """
+    if not (context.road.junctions or context.road.crossings or _kinds(context)):
+        surfaces = np.full(context.states, _PLAIN)
+        nowhere = np.zeros(context.states, dtype=bool)
+        return SignalColumns({"surface": surfaces}, unknown={"surface": nowhere})
     middle, place = context.ego_extents.s[0], context.tolerances.place_m
     surfaces = _below_middle(context, middle, context.ego_lane)
     others = [_below_middle(context, middle + way * place, context.ego_lane) for way in (-1, 1)]
@@ -215,6 +221,8 @@ def _in_doubt(context: DriveContext, values: SignalColumn, unknown: Flags) -> Fl
 
     There only the moment is in doubt.
     """
+    if not unknown.any():
+        return unknown
     moves = context.ego.speed[0] * KMH >= context.thresholds.standing_kmh
     longest = round(context.thresholds.passed_s / context.recording.step_s)
     (passing,) = only_when(values[None], unknown[None], moves[None], longest, context.spans)
@@ -224,17 +232,21 @@ def _in_doubt(context: DriveContext, values: SignalColumn, unknown: Flags) -> Fl
 
 def _below_middle(context: DriveContext, middle: Floats, lane: NDArray[intp]) -> NDArray[np.str_]:
     """The surface at so far along the road, in a lane, by state, crossings apart."""
-    surfaces = np.full(context.states, "carriageway", dtype="<U14")
+    surfaces = np.full(context.states, _PLAIN, dtype="<U14")
     for start, end in context.road.junctions:
         surfaces[(middle > start) & (middle < end)] = "junction"
-    kinds = [kind for kind in _SURFACES if kind in map_contents(context).types]
-    if kinds:
+    if kinds := _kinds(context):
         own = lanelets_at(context, middle, lane)
         cycles = context.spans.spread(context.ego.of_type("cyclist"))
         may = cycles & own.flags(_is_of(CYCLES_TOO))
         for kind in kinds:
             surfaces[own.flags(_is_of(kind)) & ~may] = _SURFACES[kind]
     return surfaces
+
+
+def _kinds(context: DriveContext) -> list[str]:
+    """The types of lanelets on the map that are surfaces."""
+    return [kind for kind in _SURFACES if kind in map_contents(context).types]
 
 
 def _on_crossing(context: DriveContext) -> tuple[Flags, Flags, Flags]:
