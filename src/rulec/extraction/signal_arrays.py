@@ -132,6 +132,8 @@ def _numbers(
         return column if fit else None
     n_values = len(declaration.values)
     dtype = smallest_unsigned(n_values + 1)
+    if texts is not None and tuple(texts) == declaration.values:
+        return column.astype(dtype, copy=False)
     if texts is None:
         places = _places_of_texts(column, declaration.values).astype(dtype)
     else:

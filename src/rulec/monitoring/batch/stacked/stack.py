@@ -301,13 +301,13 @@ class Stack:
 
     def _places(self, name: str, declaration: Enumeration, parts: Sequence[Array]) -> Array:
         """The places among the declared values; the one after these for any other."""
-        places = {value: place for place, value in enumerate(declaration.values)}
         found = []
         for piece, part in zip(self._pieces, parts, strict=True):
             texts = piece.texts.get(name)
             if texts is None:
                 raise UnencodableError
             if texts != declaration.values:
+                places = {value: place for place, value in enumerate(declaration.values)}
                 table = [places.get(text, len(places)) for text in texts]
                 part = np.array(table, dtype=np.intp).take(part)
             found.append(part)
