@@ -308,8 +308,10 @@ def tracks_of(
     members = recording.participants if participants is None else participants
     bodies = tuple(body for body in members if body.outlines)
     laid_out = [_poses(body) for body in bodies]
-    looked = recording if participants is None else replace(recording, participants=bodies)
-    first, last = span or looked_at(looked)
+    if span is None:
+        own = recording if participants is None else replace(recording, participants=bodies)
+        span = looked_at(own)
+    first, last = span
     shape = len(bodies), last - first + 1
     every = np.full((4, *shape), np.nan)
     moving = [row for row, body in enumerate(bodies) if not body.standing]

@@ -43,7 +43,7 @@ def _emergency_vehicle_near(context: DriveContext) -> SignalColumns:
     if len(rows):
         near = context.relevant[rows] & _comes_near(context)[rows]
         perhaps |= np.any(near & (on_call | not_told)[rows], axis=0)
-    comes = surely.any(axis=0)
+    comes: Flags = np.any(surely, axis=0)
     if comes.any():
         comes &= ~_may_be_on_call(context)
     return SignalColumns(

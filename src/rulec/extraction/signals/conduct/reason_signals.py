@@ -66,6 +66,8 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     caused = _by_map(context)
     others = _others(context, np.flatnonzero(~caused))
     caused[others.states] = _by_others(context, others)
+    if caused.all():
+        return caused, ~caused
     others = others.part(np.flatnonzero(~caused[others.states]))
     caused[others.states] = _by_road(context, others.states)
     others = others.part(np.flatnonzero(~caused[others.states]))

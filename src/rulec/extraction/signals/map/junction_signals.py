@@ -193,6 +193,8 @@ def _may_turn_later(context: DriveContext) -> Flags:
 
     It does not if no junction is so near that it would get there, as fast as it is at the end.
     """
+    if not context.road.junctions:
+        return np.zeros(context.states, dtype=bool)
     thresholds, last = context.thresholds, context.spans.end - 1
     front, speed = context.ego_extents.s_max[0, last], context.ego.speed[0, last]
     nearest = np.full(context.states, np.inf)
@@ -210,6 +212,8 @@ def _within_preparation(context: DriveContext, flags: Flags, pace_kmh: float) ->
 
     While ego is slower than so it waits for its turn, and that time does not count.
     """
+    if not flags.any():
+        return flags
     due, driven = context.spans.next_state(flags), _time_driven(context, pace_kmh)
     left = driven[np.minimum(due, context.states - 1)] - driven
     most = context.thresholds.preparing_s + context.recording.step_s / 2
