@@ -134,6 +134,8 @@ class TrafficWorld:
             beside[own] = ~shapely.intersects_xy(area, x[own], y[own])
         # Distances take ten times as long
         off = np.flatnonzero(beside)
+        if not len(off):
+            return beside.reshape(paths.shape[:-1])
         points = shapely.points(x[off], y[off])
         near, _ = self._lanes.query(points, predicate="dwithin", distance=_BESIDE_M)
         beside[off[near]] = False

@@ -39,9 +39,11 @@ def come_into_lane(
     do where none forks between the two; those do not whose lane ends there: they have to change
     lanes themselves.
     """
+    comes, perhaps = context.in_ego_lane[rows, states], np.zeros(len(rows), dtype=bool)
+    if not len(rows):
+        return comes, perhaps
     s, own = context.extents.s[rows, states], context.ego_extents.s[0, states]
     theirs, egos = (context.road.piece(np.nan_to_num(places)) for places in (s, own))
-    comes, perhaps = context.in_ego_lane[rows, states], np.zeros(len(rows), dtype=bool)
     for number in np.flatnonzero(theirs < egos).tolist():
         pieces = int(theirs[number]), int(egos[number])
         found = _comes_by_its_way(context, int(rows[number]), int(states[number]), pieces)

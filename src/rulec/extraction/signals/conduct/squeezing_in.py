@@ -100,6 +100,8 @@ def _gives_way(
     there = context.going_along[:, begins] & context.going_along[:, changes]
     there &= others.lane[:, begins] == lanes
     there &= ~_drifts(context, there, begins, lanes)
+    if not there.any():
+        return there, there
     # Who takes another way where the lane forks brakes for that
     rows = np.flatnonzero(there.any(axis=1))
     there[rows] &= ~_any_between(

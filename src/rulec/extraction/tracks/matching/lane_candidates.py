@@ -167,6 +167,8 @@ def are_near(lanelet: Lanelet, area: shapely.Polygon, x: Floats, y: Floats) -> F
     length = np.hypot(*ahead)
     for sideways in (-_SIDEWAYS_M, _SIDEWAYS_M) if length else ():
         left = (~near).nonzero()[0]
+        if not len(left):
+            return near
         to_x, to_y = x[left] - ahead[1] / length * sideways, y[left] + ahead[0] / length * sideways
         near[left] = shapely.intersects_xy(area, to_x, to_y)
     left = (~near).nonzero()[0]

@@ -37,6 +37,9 @@ class NumbersAt(Sequence[Numbers]):
     def __len__(self) -> int:
         return len(self._rule.reads)
 
+    def __iter__(self) -> Iterator[Numbers]:
+        return map(self.__getitem__, range(len(self)))
+
     @overload
     def __getitem__(self, place: int) -> Numbers: ...
 

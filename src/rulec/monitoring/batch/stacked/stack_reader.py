@@ -225,40 +225,45 @@ class StackReader:
         n_spots, read = len(spots.states), ready.read
         lows: list[Summand] = []
         highs: list[Summand] = []
-        unknown: Mask = np.False_
+        unknown: Mask | None = None
+        same = True
         for factor, term in read.terms:
             assert isinstance(term, ltl.QuantityTerm), "it counts nothing"
             low, high, dark = self._bounds(term, spots)
-            lows.append((factor, low if factor > 0 else high))
-            highs.append((factor, high if factor > 0 else low))
-            unknown = unknown | dark
-        if np.all(unknown):
+            same &= low is high
+            if factor.numerator < 0:
+                low, high = high, low
+            lows.append((factor, low))
+            highs.append((factor, high))
+            if dark is not None:
+                unknown = dark if unknown is None else unknown | dark
+        if unknown is not None and unknown.all():
             return read.size - 1
-        low_digits = _digits(ready, lows, n_spots, unknown)
-        same = all(low is high for (_, low), (_, high) in zip(lows, highs, strict=True))
-        high_digits = low_digits if same else _digits(ready, highs, n_spots, unknown)
+        ignored = np.False_ if unknown is None else unknown
+        low_digits = _digits(ready, lows, n_spots, ignored)
+        high_digits = low_digits if same else _digits(ready, highs, n_spots, ignored)
         dtype = smallest_unsigned(read.size**2)
         numbers: Array = low_digits.astype(dtype) * dtype.type(read.size)
         numbers += high_digits.astype(dtype)
-        if np.any(unknown):
+        if unknown is not None:
             numbers[unknown] = read.size - 1
         return numbers
 
     def _bounds(
         self, term: ltl.QuantityTerm, spots: Spots
-    ) -> tuple[Array | float, Array | float, Mask]:
-        """The least and the most that a term may be, and where it is unknown."""
+    ) -> tuple[Array | float, Array | float, Mask | None]:
+        """The least and the most that a term may be, and where it is unknown, None for nowhere."""
         column = self.stack.column(term.name)
         if column is None:
             default = self.stack.default(term.name)
             if default is UNKNOWN_VALUE:
                 return 0.0, 0.0, np.True_
             number = float(default)
-            return number, number, np.False_
+            return number, number, None
         low = self._taken(column.values, term.arguments, spots)
         high = low if column.upper is None else self._taken(column.upper, term.arguments, spots)
         if column.unknown is None:
-            return low, high, np.False_
+            return low, high, None
         return low, high, self._taken(column.unknown, term.arguments, spots)
 
     def _counted(self, read: StackedRead, number: NumberRead, spots: Spots) -> Numbers:
