@@ -30,6 +30,14 @@ def _are_new(ascending: NDArray[Any]) -> NDArray[np.bool_]:
     return are_new
 
 
+def begin_runs(ascending: NDArray[np.intp]) -> NDArray[np.bool_]:
+    """Flags of those of ascending whole numbers that are no one more than the one before."""
+    begin = np.empty(len(ascending), dtype=bool)
+    begin[:1] = True
+    np.greater(ascending[1:] - ascending[:-1], 1, out=begin[1:])
+    return begin
+
+
 def places_among(values: NDArray[_Number]) -> NDArray[np.intp]:
     """The place of each number of an array among the different ones, ascending; without NaN."""
     if values.dtype.kind in "iu" and len(values) and values.min() >= 0:

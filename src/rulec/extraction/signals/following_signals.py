@@ -26,7 +26,7 @@ from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.cells import Cells
 from rulec.trace.end_to_end import EndToEnd
-from rulec.trace.plain_arrays import distinct
+from rulec.trace.plain_arrays import begin_runs, distinct
 
 _AWAY_MPS = 0.3
 
@@ -70,7 +70,7 @@ def _ahead_for(context: DriveContext) -> SignalColumns:
 
 def _since(context: DriveContext, cells: Cells) -> tuple[NDArray[intp], Flags]:
     """The states in which runs of cells began, and was one seen the state before?"""
-    spans, begins = context.spans, np.diff(cells.places, prepend=-1) > 1
+    spans, begins = context.spans, begin_runs(cells.places)
     begins |= spans.begins_here[cells.columns]
     since = cells.columns[begins][np.cumsum(begins) - 1]
     before = context.relevant.ravel().take(cells.places - (cells.columns - since) - 1, mode="clip")
@@ -89,10 +89,10 @@ def _before(context: DriveContext, cells: Cells) -> Floats:
     low, high = others.cells_from_bound(cells, right)
     from_right = np.maximum(high - own.left_of_min[0, states, right[states]], low) + reach
     inside = np.minimum(inside, np.minimum(high - reach, from_right))
-    way = np.nan_to_num(np.maximum(inside - context.tolerances.place_m, 0.0))
+    way = np.fmax(inside - context.tolerances.place_m, 0.0)
     across = others.across[rows, states]
     speed = np.maximum(np.abs(across), np.abs(across - own.across[0, states]))
-    speed = np.nan_to_num(speed) + np.nan_to_num(context.tracks.speed_error[rows, states])
+    speed = np.fmax(speed, 0.0) + np.fmax(context.tracks.speed_error[rows, states], 0.0)
     slows = limits.cutting_in_mps2
     time: Floats = (np.sqrt(speed**2 + 2 * slows * way) - speed) / slows
     return time
@@ -248,7 +248,7 @@ def _brief_and_slight(context: DriveContext, late: Cells, far_too_late: Flags) -
     """Flags of late cells in runs that last for less than ``_BRIEF_S``, and are nowhere far too."""
     if not len(late):
         return far_too_late
-    is_first = np.diff(late.places, prepend=-1) > 1
+    is_first = begin_runs(late.places)
     is_first |= context.spans.begins_here.take(late.columns)
     begins = np.flatnonzero(is_first)
     lengths = np.diff(begins, append=len(late))

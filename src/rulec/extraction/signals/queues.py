@@ -123,7 +123,7 @@ def _shortest_queue(context: DriveContext) -> Floats:
 def longest_gaps(context: DriveContext, speed: Floats, speed_error: Floats) -> Floats:
     """The longest gap (m) in a queue behind which one drives at ``speed`` (m/s), by reading."""
     limits = context.thresholds
-    wrong = limits.queue_headway_s * np.nan_to_num(speed_error)
+    wrong = limits.queue_headway_s * np.fmax(speed_error, 0.0)
     wrong = joint_error(context.tolerances.place_m, wrong)
     longest, loose = (
         np.maximum(limits.queue_gap_m, headway_s * speed)

@@ -114,6 +114,9 @@ def _near_lane_is_free(context: DriveContext) -> Flags:
         np.zeros(context.states, dtype=bool),
     )
     lane, there = _next_lane(context, context.side)
+    cycles_beside = _is_beside(context, _CYCLE_LANE) & ~context.ego_is("light_rider")
+    if not there.any():
+        return ~cycles_beside
     parted = own_lanelets(context).flags(lambda lanelet: _near_mark(lanelet, context) in _SOLID)
     turned, _ = _sorted_ahead(context)
     on_ramp = own_lanelets(context).flags(lambda lanelet: not _RAMPS.isdisjoint(lanelet.types))
@@ -128,7 +131,6 @@ def _near_lane_is_free(context: DriveContext) -> Flags:
     behind, ahead = np.where(leads, own, other), np.where(leads, other, own)
     safe = limits.reaction_s * behind + (behind**2 - ahead**2) / (2 * limits.braking_mps2)
     taken[cells[1][(station == relations.BESIDE) | (gap < safe)]] = True
-    cycles_beside = _is_beside(context, _CYCLE_LANE) & ~context.ego_is("light_rider")
     free: Flags = np.where(there, ~(taken | kept), ~cycles_beside)
     return free
 
