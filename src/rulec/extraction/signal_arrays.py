@@ -95,7 +95,7 @@ def written(
                 only[name] = suits & only[name] if name in only else suits
         if isinstance(declaration, Enumeration) and (name in world or name in about):
             texts[name] = declaration.values
-    return WrittenSignals(replace(signals, world=world, about=about, only=only), texts)
+    return WrittenSignals(signals._replace(world=world, about=about, only=only), texts)
 
 
 def _all(signals: SignalColumns) -> WrittenSignals:
@@ -112,7 +112,7 @@ def _all(signals: SignalColumns) -> WrittenSignals:
     world, about = (
         {name: numbers(name) for name in columns} for columns in (signals.world, signals.about)
     )
-    return WrittenSignals(replace(signals, world=world, about=about), texts)
+    return WrittenSignals(signals._replace(world=world, about=about), texts)
 
 
 def _numbers(
@@ -192,8 +192,7 @@ def with_assumed(
         name: np.full(states, 0 if isinstance(value, str) else value)
         for name, value in assumed.items()
     }
-    known = replace(
-        columns,
+    known = columns._replace(
         world={**columns.world, **values},
         unknown={name: own for name, own in columns.unknown.items() if name not in assumed},
         bounds={name: own for name, own in columns.bounds.items() if name not in assumed},
@@ -209,7 +208,7 @@ def with_likeliest(signals: WrittenSignals, vocabulary: Vocabulary) -> WrittenSi
         for name, own in signals.columns.unknown.items()
         if name not in declared or declared[name].default is not None
     }
-    return replace(signals, columns=replace(signals.columns, unknown=unknown))
+    return replace(signals, columns=signals.columns._replace(unknown=unknown))
 
 
 def signal_parts(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from math import ceil
 
 import numpy as np
@@ -40,7 +39,7 @@ def settled(
         {**columns, **_changed(columns, least, unknown, spans)}
         for columns in (signals.world, signals.about)
     )
-    return replace(signals, world=world, about=about, unknown=unknown)
+    return signals._replace(world=world, about=about, unknown=unknown)
 
 
 def agreeing(signals: SignalColumns) -> SignalColumns:
@@ -57,7 +56,7 @@ def agreeing(signals: SignalColumns) -> SignalColumns:
                     columns[name] = columns[name] | sure
                     if name in unknown:
                         unknown[name] = unknown[name] & ~sure
-    return replace(signals, world=world, about=about, unknown=unknown)
+    return signals._replace(world=world, about=about, unknown=unknown)
 
 
 def _changed(

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any, TypeAlias
+from types import MappingProxyType
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +18,10 @@ SignalNames: TypeAlias = frozenset[str] | None
 """The names of the signals that somebody reads; None for all."""
 
 
-@dataclass(frozen=True, slots=True)
-class SignalColumns:
+_NONE: Mapping[str, Any] = MappingProxyType({})
+
+
+class SignalColumns(NamedTuple):
     """The signals of a drive, in arrays with a column per state.
 
     ``world``: a value for each state. ``about``: a row of values for each participant, or only
@@ -30,13 +32,13 @@ class SignalColumns:
     ``whom``: the ids of those because of whom a signal of the world is as it is, a tuple by state.
     """
 
-    world: Mapping[str, SignalColumn] = field(default_factory=dict)
-    about: Mapping[str, SignalColumn] = field(default_factory=dict)
-    unknown: Mapping[str, Flags] = field(default_factory=dict)
-    only: Mapping[str, Flags] = field(default_factory=dict)
-    bounds: Mapping[str, Bounds] = field(default_factory=dict)
-    texts: Mapping[str, Sequence[str]] = field(default_factory=dict)
-    whom: Mapping[str, SignalColumn] = field(default_factory=dict)
+    world: Mapping[str, SignalColumn] = _NONE
+    about: Mapping[str, SignalColumn] = _NONE
+    unknown: Mapping[str, Flags] = _NONE
+    only: Mapping[str, Flags] = _NONE
+    bounds: Mapping[str, Bounds] = _NONE
+    texts: Mapping[str, Sequence[str]] = _NONE
+    whom: Mapping[str, SignalColumn] = _NONE
 
     def values(self, name: str) -> SignalColumn:
         """The values of a signal, as texts if they stand for such."""
@@ -51,8 +53,7 @@ def together(parts: Sequence[SignalColumns], names: SignalNames = None) -> Signa
     """The signals of all these, optionally only those of some names."""
     kinds: tuple[dict[str, Any], ...] = ({}, {}, {}, {}, {}, {}, {})
     for part in parts:
-        own = part.world, part.about, part.unknown, part.only, part.bounds, part.texts, part.whom
-        for found, columns in zip(kinds, own, strict=True):
+        for found, columns in zip(kinds, part, strict=True):
             if columns:
                 found.update(columns)
     if names is not None:
@@ -96,7 +97,7 @@ def known_only(signals: SignalColumns, names: frozenset[str]) -> SignalColumns:
         for name, column in columns.items()
     }
     bounds = {name: ends for name, ends in signals.bounds.items() if name in names}
-    return replace(signals, unknown=unknown, bounds=bounds)
+    return signals._replace(unknown=unknown, bounds=bounds)
 
 
 def ids_by_state(flags: Flags, ids: Sequence[str]) -> SignalColumn:
