@@ -230,7 +230,7 @@ def signal_parts(
         if column.ndim == 1:
             return column if present.kept is None else column.take(present.kept)
         # Much is true of nobody, which is seen sooner than it is gathered
-        is_never = column.dtype == bool and not column.any()
+        is_never = column.dtype == bool and not np.count_nonzero(column)
         return never if is_never else column.ravel().take(present.cells)
 
     world = {name: gathered(name, own) for name, own in columns.world.items()}

@@ -291,7 +291,7 @@ def _at_bound(left_of: Floats, bound: NDArray[intp]) -> Floats:
     # Ego seldom changes lanes: the values of a bound stand together
     of_column = bound if bound.ndim == 1 else bound[0]
     is_new = of_column[1:] != of_column[:-1]
-    if not is_new.any():
+    if not np.count_nonzero(is_new):
         return left_of[:, :, int(of_column[0])]
     if rows == 1:
         places = of_column * columns + np.arange(columns)

@@ -132,7 +132,7 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
     stack = reader.stack
     for kind in rule.types:
         # Of most rules about people, cycles or buses nobody is there
-        if not stack.of_type(kind).any():
+        if not stack.has_type(kind):
             return _NO_INSTANCES
     # To count takes longest, and is seldom needed to see that nothing happens
     if rule.counts_everywhere:

@@ -125,6 +125,10 @@ class Stack:
             self._of_type[kind] = np.array(suits, dtype=bool)[self.kind_of]
         return self._of_type[kind]
 
+    def has_type(self, kind: str) -> bool:
+        """Whether some object is of a type, or of one below it."""
+        return any(self.vocabulary.is_subtype(own, kind) for own in self.kinds)
+
     def cells_of_type(self, kind: str) -> Places:
         """The cells of the objects of a type."""
         if kind not in self._cells_of_type:
