@@ -23,6 +23,7 @@ from rulec.scenario.recorded.lane_coordinates import outline_bounds
 from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.cells import Cells
 from rulec.trace.laid_out import LaidOut
+from rulec.trace.plain_arrays import zero_if_nan
 
 _BOUNDS = ("s_min", "s_max", "d_min", "d_max")
 
@@ -102,7 +103,7 @@ class RoadExtents:
     @cached_property
     def most_off_middle(self) -> float:
         """The greatest of these distances (m) to either side, or more."""
-        return float(np.abs(np.nan_to_num(self.off_middle)).max(initial=0.0))
+        return float(np.abs(zero_if_nan(self.off_middle)).max(initial=0.0))
 
     @cached_property
     def breadth(self) -> Floats:
@@ -329,7 +330,7 @@ def road_extents(
             bounds[:, standing] = bounds[:, standing, :1]
             left_of[:, :, standing] = left_of[:, :, standing, :1]
     s_min, s_max, d_min, d_max = bounds
-    directions, cos, sin = road.line.directions_at(np.nan_to_num((s_min + s_max) / 2))
+    directions, cos, sin = road.line.directions_at(zero_if_nan((s_min + s_max) / 2))
     left_of_min, left_of_max = np.moveaxis(left_of, 1, -1)
     return RoadExtents(
         s_min=s_min,

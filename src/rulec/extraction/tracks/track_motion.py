@@ -10,6 +10,7 @@ from numpy import bool_, float64, intp
 from numpy.typing import NDArray
 
 from rulec.extraction.tracks.source_tolerances import Tolerances
+from rulec.trace.plain_arrays import zero_if_nan
 
 _LEAST_PART = 0.7
 """Whose motion is less along its heading than at 45° has a heading that says nothing."""
@@ -113,7 +114,7 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     apart = np.where(apart > 0, apart * step_s, seconds)
     gained = window.gained(speed) / apart
     error = known.speed_mps / np.where(single, 1.0, seconds)
-    error += np.nan_to_num(np.abs(gained) * beside)
+    error += zero_if_nan(np.abs(gained) * beside)
     # What contradicts itself is known no better
     error += contradicts[:, None]
     # A slip is anywhere in the time over which it shows
@@ -132,8 +133,8 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
         vy=vy,
         speed=speed,
         speed_error=error,
-        acceleration=np.where(present, np.nan_to_num(gained), np.nan),
-        acceleration_error=np.nan_to_num(gained_error),
+        acceleration=np.where(present, zero_if_nan(gained), np.nan),
+        acceleration_error=zero_if_nan(gained_error),
     )
 
 
@@ -183,7 +184,7 @@ def _bends(poses: Poses, steps: int) -> NDArray[float64]:
             ),
             poses.heading[:, steps:-steps],
         )
-        bends[:, steps:-steps] = np.nan_to_num(x * np.cos(inner) + y * np.sin(inner))
+        bends[:, steps:-steps] = zero_if_nan(x * np.cos(inner) + y * np.sin(inner))
     return bends
 
 

@@ -26,6 +26,7 @@ from rulec.recordings.track import TrackOutlines, outlines_on_track
 from rulec.scenario.recorded.joined_outlines import JoinedOutlines
 from rulec.scenario.recorded.route import lanelet_area
 from rulec.trace.laid_out import LaidOut
+from rulec.trace.plain_arrays import zero_if_nan
 
 Floats: TypeAlias = NDArray[float64]
 Flags: TypeAlias = NDArray[bool_]
@@ -95,7 +96,7 @@ class Tracks:
     @cached_property
     def fastest(self) -> Floats:
         """The greatest speed (m/s) of each participant, 0 where none is known."""
-        fastest: Floats = np.nan_to_num(self.speed).max(axis=1, initial=0.0)
+        fastest: Floats = zero_if_nan(self.speed).max(axis=1, initial=0.0)
         return fastest
 
     @cached_property

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.extraction.tracks.tracks import Flags
+from rulec.trace.plain_arrays import zero_if_nan
 
 _BEYOND_M = 15.0
 """So far behind where a lane has forked its ways lie over each other no more."""
@@ -43,7 +44,7 @@ def come_into_lane(
     if not len(rows):
         return comes, perhaps
     s, own = context.extents.s[rows, states], context.ego_extents.s[0, states]
-    theirs, egos = (context.road.piece(np.nan_to_num(places)) for places in (s, own))
+    theirs, egos = (context.road.piece(zero_if_nan(places)) for places in (s, own))
     for number in np.flatnonzero(theirs < egos).tolist():
         pieces = int(theirs[number]), int(egos[number])
         found = _comes_by_its_way(context, int(rows[number]), int(states[number]), pieces)

@@ -23,7 +23,7 @@ from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import JOINING
 from rulec.scenario.recorded.reference_line import turn
 from rulec.trace.cells import Cells
-from rulec.trace.plain_arrays import distinct
+from rulec.trace.plain_arrays import distinct, zero_if_nan
 
 _REACH_S, _GENTLE_MPS2, _REACH_M = 3.0, 4.0, 20.0
 """What makes ego brake is no farther ahead than it drives in so long, brakes so hard, and this."""
@@ -174,10 +174,10 @@ def _by_road(context: DriveContext, states: NDArray[intp]) -> Flags:
     road, width, reach = context.road, context.existing_lanes.shape[1], _reach(context)[states]
     front, speed = context.ego_extents.s_max[0, states], context.ego.speed[0, states]
     lanes, turned = context.ego_lane[states], np.radians(context.thresholds.turned_deg)
-    before = road.line.headings_at(np.nan_to_num(context.ego_extents.s[0, states]))
+    before = road.line.headings_at(zero_if_nan(context.ego_extents.s[0, states]))
     # Rows of places ahead, a column for each state
     ahead = np.arange(0.0, float(np.nanmax(reach, initial=0.0)) + _EVERY_M, _EVERY_M)[:, None]
-    place = np.nan_to_num(front + ahead)
+    place = zero_if_nan(front + ahead)
     bends = np.abs(turn(before, road.line.headings_at(place))) > _BEND_RAD
     there = road.lanes.existing_at(place)[:, np.arange(len(states)), lanes]
     codes = road.piece(place) * width + lanes
