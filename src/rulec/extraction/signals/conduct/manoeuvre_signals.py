@@ -367,8 +367,11 @@ def _joins_road(context: DriveContext) -> SignalColumns:
     perhaps = np.zeros(context.states, dtype=bool)
     stands = outside & (context.ego.speed[0] * KMH < context.thresholds.standing_kmh)
     reach, spans = round(context.thresholds.setting_off_s / context.recording.step_s), context.spans
+    comes = (np.flatnonzero(spans.enters(inside)) - 1).tolist()
+    if not comes:
+        return SignalColumns({"joins_road": joins}, unknown={"joins_road": perhaps})
     last_inside, last_stood = spans.latest(inside), spans.latest(stands)
-    for state in (np.flatnonzero(spans.enters(inside)) - 1).tolist():
+    for state in comes:
         left, stood, first = (
             int(last_inside[state]),
             int(last_stood[state]),

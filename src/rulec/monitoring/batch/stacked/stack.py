@@ -7,10 +7,9 @@ stands in *cells*, one for each state in which an object is there, object by obj
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,8 +36,7 @@ FEW = 1 << 12
 _NOWHERE = np.zeros(0, dtype=bool)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class StackColumn:
+class StackColumn(NamedTuple):
     """The values of a name in all states, or cells, as in ``TraceColumns``.
 
     None is for nowhere. Where a value is ``missing`` nothing is said, and there is no default.

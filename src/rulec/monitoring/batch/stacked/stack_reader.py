@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -35,8 +35,7 @@ from rulec.vocabulary.partial_values import UNKNOWN as UNKNOWN_VALUE
 from rulec.vocabulary.partial_values import Interval, PartialValue
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Spots:
+class Spots(NamedTuple):
     """States of the stack, and the cells of the variables' objects in each.
 
     ``whole`` are all states, or all cells, in their order; of a ``kind`` are the cells of all
