@@ -8,12 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.trace.plain_arrays import (
+    begin_runs,
     distinct,
     median,
     medians,
     medians_hold,
     quantile,
     ranges,
+    zero_if_nan,
 )
 
 
@@ -31,6 +33,20 @@ def test_the_median_is_that_of_numpy(numbers):
 def test_quantiles_are_those_of_numpy(numbers, share):
     wanted = np.quantile(numbers, share)
     assert quantile(np.array(numbers), share) == pytest.approx(wanted, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "runs"), [([], ""), ([0], "T"), ([3, 4, 6, 7, 8, 20], "TFTFFT"), ([1, 3], "TT")]
+)
+def test_runs_begin_where_no_number_is_one_more_than_the_one_before(numbers, runs):
+    found = begin_runs(np.array(numbers, dtype=np.intp))
+    assert found.tolist() == [run == "T" for run in runs]
+
+
+@given(st.lists(st.floats(allow_infinity=False), max_size=9))
+def test_nothing_but_nan_becomes_zero(numbers):
+    found, wanted = zero_if_nan(np.array(numbers)), np.nan_to_num(np.array(numbers))
+    assert found.tolist() == wanted.tolist()
 
 
 def test_what_is_no_number_has_no_quantile():
