@@ -3,6 +3,7 @@
 import itertools
 from dataclasses import replace
 from fractions import Fraction
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from hypothesis import Phase, given, settings
 
 import rulec
 from rulec.logic.free_names import names_in
+from rulec.monitoring.batch.stacked import instances, stacked_rule
 from rulec.monitoring.batch.stacked.verify_arrays import verify_arrays
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.monitoring.verify import verify_or_reason
@@ -63,6 +65,10 @@ def test_together_they_get_the_verdicts_of_each(chance):
             continue
     expected = [in_plain_words(verify_or_reason(own.trace(), compiled)) for own in arrays]
     answers = verify_arrays(arrays, compiled)
+    # As if they were long, and their words many
+    with patch.object(instances, "FEW", -1), patch.object(stacked_rule, "FEW_WORDS", -1):
+        among_many = verify_arrays(arrays, compiled)
+    assert [in_plain_words(answer) for answer in among_many] == expected
     some = frozenset(name for name in names if chance.random() < 0.8)
     for verdict in answers:
         for one in () if isinstance(verdict, NotJudged) else verdict.open:
