@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import count
+from typing import Any
 
 import numpy as np
 from numpy import intp
@@ -60,6 +61,22 @@ def presence_cells(context: DriveContext) -> Cells:
     shift = context.spans.begins[runs.drives]
     shape = context.relevant.shape
     return Cells.of_runs(shape, runs.rows, runs.first + shift, runs.last + shift)
+
+
+@once
+def _presence_numbers(context: DriveContext) -> NDArray[intp]:
+    """Which of the presence cells each cell of the arrays is; behind all of them for none."""
+    cells = presence_cells(context)
+    return cells.laid(np.arange(len(cells)), len(cells)).ravel()
+
+
+def in_presences(
+    context: DriveContext, cells: Cells, values: NDArray[Any], elsewhere: float
+) -> NDArray[Any]:
+    """Values of some cells, one for each of the presence cells; something else for the others."""
+    found = np.full(len(presence_cells(context)) + 1, elsewhere)
+    found[_presence_numbers(context).take(cells.places)] = values
+    return found[:-1]
 
 
 def presence_names(context: DriveContext) -> list[str]:

@@ -60,6 +60,7 @@ from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.logic.formula import Relation
 from rulec.monitoring.explain.margins import Margin
 from rulec.trace import Trace, Value
+from rulec.trace.cells import Cells
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_model import Ending
 from rulec.trace.vocabulary_projection import known_type, values_lacking, with_told_values
@@ -115,13 +116,16 @@ others there than for the road."""
 class DecidedBy:
     """The numbers by which a signal about objects was decided: whether a value reaches a limit.
 
-    ``quantity`` is the value's, ``rows`` are the objects' in the arrays, by state; NaN where
-    nothing was compared. The errors of values and limits are independent.
+    ``quantity`` is the value's, ``rows`` are the objects' in the arrays of which those in the
+    ``cells`` were compared, the drive being in their ``columns``. The errors of values and limits
+    are independent.
     """
 
     quantity: str
     unit: str
     rows: Mapping[str, int]
+    columns: slice
+    cells: Cells
     values: Floats
     limits: Floats
     value_error: float
@@ -130,11 +134,12 @@ class DecidedBy:
     def margin(self, item: str, state: int) -> Margin | None:
         """The margin for an object in a state, if there is one."""
         row = self.rows.get(item)
-        if row is None or np.isnan(self.values[row, state]):
+        at = None if row is None else self.cells.number(row, self.columns.start + state)
+        if at is None or np.isnan(self.values[at]):
             return None
-        value, limit = float(self.values[row, state]), float(self.limits[row, state])
+        value, limit = float(self.values[at]), float(self.limits[at])
         relation: Relation = ">=" if value >= limit else "<"
-        limit_error = float(self.limit_errors[row, state])
+        limit_error = float(self.limit_errors[at])
         return Margin(
             f"{self.quantity}({item})",
             value=value,
@@ -343,10 +348,6 @@ def _decided_by(
     if "safe_gap" not in chosen.columns.about:
         return [{} for _ in objects]
     followed, place = safe_gaps(context), context.tolerances.place_m
-    gap, safe, error = (
-        followed.cells.laid(values, np.nan)
-        for values in (followed.gap, followed.safe, followed.safe_error)
-    )
     found, every = [], present.rows.tolist()
     for own, (begin, end), columns in zip(
         objects, pairwise(present.bounds), context.spans.slices, strict=True
@@ -355,10 +356,12 @@ def _decided_by(
             "gap",
             "m",
             dict(zip(own, every[begin:end], strict=True)),
-            values=gap[:, columns],
-            limits=safe[:, columns],
+            columns,
+            followed.cells,
+            values=followed.gap,
+            limits=followed.safe,
             value_error=place,
-            limit_errors=error[:, columns],
+            limit_errors=followed.safe_error,
         )
         found.append({"safe_gap": numbers})
     return found

@@ -66,6 +66,12 @@ class Cells:
         """The same cells in arrays of more rows, of which these have only some."""
         return Cells.in_shape((n_rows, self.shape[1]), rows.take(self.rows), self.columns)
 
+    def number(self, row: int, column: int) -> int | None:
+        """Which of them, in ascending order, is in a row and a column; None if none is."""
+        place = row * self.shape[1] + column
+        at = int(self.places.searchsorted(place))
+        return at if at < len(self) and self.places[at] == place else None
+
     def of(self, values: NDArray[Any]) -> NDArray[Any]:
         """The cells of an array, or of one with a value for each column only."""
         if values.ndim > 1 and len(values) == self.shape[0]:

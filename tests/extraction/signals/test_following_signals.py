@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec.api.rulebook_compilation import machines
+from rulec.extraction.presences import presence_cells
 from rulec.extraction.signals.following_signals import following_signals
 from rulec.extraction.signals.measured_numbers import LONGEST_S
 from support.builders.drive_contexts import context_of, steady
@@ -22,7 +23,7 @@ GERMAN = machines("de")
 def times(*others, steps=4, **thresholds):
     """At least and at most (s), by state, of the first of the others; ego is at x = 0 first."""
     context = context_of(recording(lanes(2), [steady(7, 0, 0, steps=steps), *others]), **thresholds)
-    least, most = following_signals(context).bounds["ahead_for"]
+    least, most = map(presence_cells(context).laid, following_signals(context).bounds["ahead_for"])
     return least[0].tolist(), most[0].tolist()
 
 
@@ -77,10 +78,9 @@ def test_who_comes_into_sight_later_was_somewhere_before():
     """At 15 m/s from 160 m on ego comes within 150 m of it after two seconds."""
     ego = steady(7, 0, 0, speed=15.0, steps=8)
     context = context_of(recording(lanes(2), [ego, steady(8, 162, 0, steps=8)]))
-    most = following_signals(context).bounds["ahead_for"][1][0]
     first = int(np.flatnonzero(context.relevant[0])[0])
     assert first > 0
-    assert most[first] == LONGEST_S
+    assert following_signals(context).bounds["ahead_for"][1][0] == LONGEST_S
 
 
 def test_who_stands_beside_or_behind_has_not_been_ahead():

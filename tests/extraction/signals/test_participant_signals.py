@@ -439,8 +439,8 @@ def test_the_time_to_a_collision_is_of_who_is_ahead_and_slower(y, speed, expecte
 def test_the_bounds_of_the_time_to_a_collision():
     # 26 m to 5 cm, and 5 m/s to 0.14 m/s, the root of the sum of two squares of 0.1
     signals = participant_signals(context(steady(8, 30, 0, speed=5.0)))
-    low, high = (bound[0, 1] for bound in signals.bounds["time_to_collision"])
-    now = signals.about["time_to_collision"][0, 1]
+    low, high = (bound[1] for bound in signals.bounds["time_to_collision"])
+    now = signals.about["time_to_collision"][1]
     assert low < now < high
     gap = 26 - 5 * STEP_S
     assert (low, high) == (

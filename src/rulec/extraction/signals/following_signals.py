@@ -15,6 +15,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
+from rulec.extraction.presences import in_presences
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.measured_numbers import LONGEST_S, joint_error, safe_distances
 from rulec.extraction.signals.signal_columns import (
@@ -61,11 +62,11 @@ def _ahead_for(context: DriveContext) -> SignalColumns:
     run = np.cumsum(since[appears] == own.columns[appears]) - 1
     times[appears] += earlier[run]
     least[sure] = np.minimum(times, LONGEST_S)
-    low, high = rounded_outward(least, np.maximum(least, most))
-    return SignalColumns(
-        about={"ahead_for": cells.laid(rounded(least))},
-        bounds={"ahead_for": (cells.laid(low), cells.laid(high))},
+    ends = rounded_outward(least, np.maximum(least, most))
+    measured, low, high = (
+        in_presences(context, cells, own, 0.0) for own in (rounded(least), *ends)
     )
+    return SignalColumns(about={"ahead_for": measured}, bounds={"ahead_for": (low, high)})
 
 
 def _since(context: DriveContext, cells: Cells) -> tuple[NDArray[intp], Flags]:

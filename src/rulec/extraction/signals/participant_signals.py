@@ -7,7 +7,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
-from rulec.extraction.presences import presence_cells
+from rulec.extraction.presences import in_presences, presence_cells
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import (
     CYCLE_LANE,
@@ -152,10 +152,12 @@ def _time_to_collision(context: DriveContext) -> SignalColumns:
     seconds_measured = rounded(seconds(measured, 0.0, closing))
     soonest = seconds(perhaps, -place, closing + wrong)
     latest_s = seconds(surely, place, closing - wrong)
-    low, high = (cells.laid(own, LONGEST_S) for own in rounded_outward(soonest, latest_s))
+    found, low, high = (
+        in_presences(context, cells, own, LONGEST_S)
+        for own in (seconds_measured, *rounded_outward(soonest, latest_s))
+    )
     return SignalColumns(
-        about={"time_to_collision": cells.laid(seconds_measured, LONGEST_S)},
-        bounds={"time_to_collision": (low, high)},
+        about={"time_to_collision": found}, bounds={"time_to_collision": (low, high)}
     )
 
 
