@@ -78,6 +78,12 @@ class Cells:
             return values.ravel().take(self.places)
         return values.ravel().take(self.columns)
 
+    def least(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The least of the cells' values in each column, infinity where there is none."""
+        found = np.full(self.shape[1], np.inf)
+        np.minimum.at(found, self.columns, values)
+        return found
+
     def laid(self, values: NDArray[Any], elsewhere: object = 0) -> NDArray[Any]:
         """The array with these values in the cells, and something else in all others."""
         found = np.full(self.shape, elsewhere, dtype=values.dtype)

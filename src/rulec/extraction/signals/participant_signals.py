@@ -42,9 +42,13 @@ from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.paper_words import LATERALS, STATIONS
 from rulec.trace.cells import Cells
+from rulec.trace.plain_arrays import distinct
 
 _ALONG = 0.5
 """The sine of the angle to the road up to which one heads along it."""
+
+_FACES_RAD = np.radians(120.0)
+"""The angle to the road beyond which one faces ego."""
 
 _TWO_WHEELED = ("motorcycle", "bicycle")
 
@@ -167,11 +171,11 @@ def _measured(name: str, values: Floats, bounds: Bounds) -> SignalColumns:
 
 def _precedes(context: DriveContext) -> SignalColumns:
     """Who is next ahead of ego in its lane."""
-    follows, _, _ = relations.ahead_in_lane(context)
-    counts = follows & ~_comes_towards(context) & context.relevant
-    ahead = np.where(counts, relations.gap(context), np.inf)
-    nearest = ahead.min(axis=0, initial=np.inf)
-    return SignalColumns(about={"precedes": (ahead == nearest) & np.isfinite(ahead)})
+    (follows, _, _), cells = relations.ahead_in_lane(context), relations.perhaps_ahead(context)
+    counts = cells.of(follows) & ~cells.of(_comes_towards(context)) & cells.of(context.relevant)
+    ahead = cells.part(np.flatnonzero(counts))
+    gap = ahead.of(relations.gap(context))
+    return SignalColumns(about={"precedes": ahead.laid(gap == ahead.of(ahead.least(gap)))})
 
 
 def _one_between(context: DriveContext) -> SignalColumns:
@@ -179,17 +183,18 @@ def _one_between(context: DriveContext) -> SignalColumns:
 
     It is if it is farther from that one than places may be wrong, which is unknown otherwise.
     """
-    _, surely, perhaps = relations.ahead_in_lane(context)
-    drives = context.tracks.of_type("vehicle")[:, None] & ~_comes_towards(context)
-    gap, place = relations.gap(context), context.tolerances.place_m
+    (_, surely, _), cells = relations.ahead_in_lane(context), relations.perhaps_ahead(context)
+    drives = context.tracks.of_type("vehicle")[cells.rows] & ~cells.of(_comes_towards(context))
+    gap, place = cells.of(relations.gap(context)), context.tolerances.place_m
     nearest, may_be = (
-        np.where(ahead & drives, gap, np.inf).min(axis=0, initial=np.inf)
-        for ahead in (surely, perhaps)
+        cells.of(cells.part(ahead).least(gap.take(ahead)))
+        for ahead in map(np.flatnonzero, (cells.of(surely) & drives, drives))
     )
-    between = perhaps & (gap > nearest + place)
+    between = gap > nearest + place
+    unknown = ~between & (gap > may_be - place) & (gap > may_be)
     return SignalColumns(
-        about={"one_between": between},
-        unknown={"one_between": ~between & perhaps & (gap > may_be - place) & (gap > may_be)},
+        about={"one_between": cells.laid(between)},
+        unknown={"one_between": cells.laid(unknown)},
     )
 
 
@@ -201,26 +206,27 @@ def _oncoming(context: DriveContext) -> SignalColumns:
 def _comes_towards(context: DriveContext) -> Flags:
     """Flags of participants that move against ego's direction, or wait on lanes of that way."""
     along = context.extents.along
-    moves_against: Flags = (along < 0) & (np.abs(along) * KMH >= context.thresholds.standing_kmh)
-    cells = Cells.at(moves_against | _waits_elsewhere(context))
-    return cells.laid(np.cos(cells.of(context.extents.turned)) < -0.5)
+    faces: Flags = np.abs(context.extents.turned) > _FACES_RAD
+    comes = faces & (along * -KMH >= context.thresholds.standing_kmh)
+    others = Cells.at(faces & ~comes)
+    comes.ravel()[others.places] = _waits_elsewhere(context, others)
+    return comes
 
 
-def _waits_elsewhere(context: DriveContext) -> Flags:
-    """Flags of who drives or rides and stands on lanes not of ego's way, in a queue for example.
+def _waits_elsewhere(context: DriveContext, cells: Cells) -> Flags:
+    """Flags of cells of who drives or rides, facing ego, on lanes not of its way.
 
-    Ego does not overtake those that face it, no more than ones that move, nor follow one that waits
-    in a junction for its turn. What only stands there, the wrong way round, is an obstacle in ego's
-    lanes. One that faces ego and moves away from it backs, or its box drifts: as good as standing.
+    Where they stand, in a queue for example. Ego does not overtake those, no more than ones that
+    move, nor follow one that waits in a junction for its turn. What only stands there, the wrong
+    way round, is an obstacle in ego's lanes. One that faces ego and moves away from it backs, or
+    its box drifts: as good as standing.
     """
-    along = context.extents.along
-    stands = np.abs(along) * KMH < context.thresholds.standing_kmh
+    rows = distinct(cells.rows)
+    slow = np.abs(context.extents.along[rows]) * KMH < context.thresholds.standing_kmh
+    still = context.spans.all(slow)[np.searchsorted(rows, cells.rows), cells.columns]
     drivers = context.tracks.of_type("vehicle") | context.tracks.of_type("light_rider")
-    moves_elsewhere = context.elsewhere & ~context.spans.all(stands)
-    waits: Flags = drivers[:, None] & (moves_elsewhere | ~context.on_lanes)
-    backs = Cells.at(waits & ~stands & (along > 0))
-    waits &= stands
-    waits.ravel()[backs.places] = np.cos(backs.of(context.extents.turned)) < -0.5
+    moves_elsewhere = cells.of(context.elsewhere) & ~still
+    waits: Flags = drivers[cells.rows] & (moves_elsewhere | ~cells.of(context.on_lanes))
     return waits
 
 
