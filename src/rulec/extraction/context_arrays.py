@@ -133,10 +133,9 @@ def _near(places: RoadPlaces, ranges: Sequence[slice], ego: RoadExtents) -> tupl
     """
     limits, extents = places.thresholds, places.extents
 
-    columns = np.concatenate([np.arange(own.start, own.stop) for own in ranges])
-
     def laid(values: NDArray[Any]) -> NDArray[Any]:
-        return values[:, ranges[0]] if len(ranges) == 1 else values.take(columns, axis=1)
+        parts = [values[:, columns] for columns in ranges]
+        return parts[0] if len(ranges) == 1 else np.concatenate(parts, axis=1)
 
     gap = laid(extents.s_min) - ego.s_max
     np.maximum(gap, ego.s_min - laid(extents.s_max), out=gap)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from numpy import bool_, float64, intp
 from numpy.typing import NDArray
 
 _LONG = 200
-"""Of ranges that are longer each is laid out by itself."""
+"""Of ranges that are longer those who are absent are found for each by itself."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,19 +34,14 @@ class LaidOut:
         in memory.
         """
         by_lane = np.moveaxis(values, -1, 0) if values.ndim > 2 else values[None]
+        own = by_lane.take(self.rows, axis=1)
+        found = np.concatenate([own[..., there] for there in self.ranges], axis=-1)
         none = values.dtype.type(np.nan if values.dtype.kind == "f" else 0)
-        if self._columns is not None:
-            found = by_lane.take(self.rows, axis=1).take(self._columns, axis=2)
-            if self._are_absent:
-                np.copyto(found, none, where=self.absent)
-        else:
-            found, begin = np.empty((len(by_lane), *self.absent.shape), dtype=values.dtype), 0
-            for own, (there, whole, gone) in zip(self.ranges, self._there, strict=True):
-                end = begin + own.stop - own.start
-                if len(gone):
-                    found[:, gone, begin:end] = none
-                found[:, there, begin:end] = by_lane[:, whole, own]
-                begin = end
+        if self._are_long:
+            for columns, gone in self._absent_in:
+                found[:, gone, columns] = none
+        elif self._are_absent:
+            np.copyto(found, none, where=self.absent)
         return np.moveaxis(found, 0, -1) if values.ndim > 2 else found[0]
 
     def of_rows(self, rows: NDArray[intp]) -> LaidOut:
@@ -62,13 +58,6 @@ class LaidOut:
         return found
 
     @cached_property
-    def _columns(self) -> NDArray[intp] | None:
-        """The columns of all ranges, if these are so short that each is not worth it by itself."""
-        if self.absent.shape[1] > _LONG * len(self.ranges):
-            return None
-        return self.columns
-
-    @cached_property
     def columns(self) -> NDArray[intp]:
         """The columns of all ranges."""
         return np.concatenate([np.arange(own.start, own.stop) for own in self.ranges])
@@ -77,13 +66,15 @@ class LaidOut:
     def _are_absent(self) -> bool:
         return bool(self.absent.any())
 
+    @property
+    def _are_long(self) -> bool:
+        return self.absent.shape[1] > _LONG * len(self.ranges)
+
     @cached_property
-    def _there(self) -> list[tuple[NDArray[intp], NDArray[intp], NDArray[intp]]]:
-        """For each range who is not absent, their rows in arrays, and who is."""
-        begins = np.cumsum([0, *(own.stop - own.start for own in self.ranges)])[:-1]
-        absent = [self.absent[:, begin] for begin in begins.tolist()]
-        there = map(np.flatnonzero, np.logical_not(absent))
+    def _absent_in(self) -> list[tuple[slice, NDArray[intp]]]:
+        """The columns of each range in what is laid out, and who is absent from it."""
+        bounds = np.cumsum([0, *(own.stop - own.start for own in self.ranges)]).tolist()
         return [
-            (own, self.rows[own], np.flatnonzero(gone))
-            for own, gone in zip(there, absent, strict=True)
+            (slice(begin, end), self.absent[:, begin].nonzero()[0])
+            for begin, end in pairwise(bounds)
         ]
