@@ -157,33 +157,44 @@ def likeliest_paths(
     width = int(found.counts.max())
     if len(starts) * width**2 <= FEW_TRANSITIONS:
         return _paths_one_by_one(found, places, begins, graph)
-    back = np.zeros((len(begins), width), dtype=intp)
-    broken = np.zeros((len(begins), width), dtype=bool)
-    reached = _padded(found, starts, found.costs)
-    for states, to in _steps(found, places, (starts, going), graph):
-        earlier = reached[: len(states), None, :]
+    # States and what is known of them stand in the order of steps, those of one together
+    bounds = np.cumsum([0, *going]).tolist()
+    parts = list(map(slice, bounds[:-1], bounds[1:]))
+    states = np.concatenate([starts[:count] + step for step, count in enumerate(going)])
+    back = np.zeros((len(states), width), dtype=intp)
+    broken = np.zeros((len(states), width), dtype=bool)
+    reached = np.empty((len(states), width))
+    reached[parts[0]] = _padded(found, starts, found.costs)
+    rows = np.arange(0, len(starts) * width, width)
+    candidate = (rows[:, None] + np.arange(width)) * width
+    begin = 0
+    for part, to in zip(parts[1:], _steps(found, places, (states, bounds), graph), strict=True):
+        count = part.stop - part.start
+        earlier = reached[begin : begin + count, None, :]
         through = earlier + to.off
         through += to.changes
         breaks = earlier + BREAK_COST
         least = np.minimum(through, breaks)
-        best = least.argmin(axis=2)
-        chosen = best + np.arange(0, least.size, width).reshape(best.shape)
-        back[states], broken[states] = best, (through > breaks).ravel()[chosen]
-        reached[: len(states)] = least.ravel()[chosen] + to.own
-    lanes, parted = np.empty(len(begins), dtype=intp), begins.copy()
+        chosen = least.argmin(axis=2, out=back[part]) + candidate[:count]
+        broken[part] = (through > breaks).take(chosen)
+        np.add(least.take(chosen), to.own, out=reached[part])
+        begin = part.start
+    last = np.array(bounds)[lengths - 1] + np.arange(len(starts))
     own = np.array(
         [
             # As cheap ones by their name
             min((cost, found.names[found.lanes[first + k]], k) for k, cost in enumerate(costs))[2]
-            for first, costs in _ends(found, starts + lengths - 1, reached)
+            for first, costs in _ends(found, states[last], reached[last])
         ]
     )
-    for step in range(len(going) - 1, -1, -1):
-        count = going[step]
-        states, chosen = starts[:count] + step, own[:count]
-        lanes[states] = found.lanes[found.first[states] + chosen]
-        parted[states] |= broken[states, chosen]
-        own[:count] = back[states, chosen]
+    ways = np.empty(len(states), dtype=intp)
+    for part in reversed(parts):
+        count = part.stop - part.start
+        ways[part] = own[:count]
+        own[:count] = back[part].take(rows[:count] + own[:count])
+    lanes, parted = np.empty(len(begins), dtype=intp), begins.copy()
+    lanes[states] = found.lanes[found.first[states] + ways]
+    parted[states] |= broken.ravel()[np.arange(0, broken.size, width) + ways]
     return lanes, parted
 
 
@@ -244,29 +255,25 @@ def _ends(
 def _steps(
     found: LaneCandidates,
     places: Floats,
-    runs: tuple[NDArray[intp], list[int]],
+    passed: tuple[NDArray[intp], list[int]],
     graph: LaneletGraph,
-) -> Iterator[tuple[NDArray[intp], _Transitions]]:
-    """The second state of each run, then the third, and so on, with the transitions to them.
+) -> Iterator[_Transitions]:
+    """The transitions to the second state of each run, then those to the third, and so on.
 
-    ``runs`` are where each starts, and how many go on up to each step.
+    ``passed`` are the states in this order, from the first ones on, and where each step begins.
     """
-    starts, going = runs
-    states = np.concatenate([starts[:count] + step for step, count in enumerate(going)])
-    states = states[len(starts) :]
-    width = int(found.counts.max())
-    size = max(1, _AT_ONCE // width**2)
-    ends = np.cumsum(going[1:]).tolist()
-    done = step = 0
-    while step < len(ends):
+    states, bounds = passed
+    size = max(1, _AT_ONCE // int(found.counts.max()) ** 2)
+    step = 1
+    while step < len(bounds) - 1:
         # Whole steps, one at least
-        last = max(step + 1, int(np.searchsorted(ends, done + size, "right")))
-        block = states[done : ends[last - 1]]
-        to = _transitions(found, places, block, graph)
-        for end, count in zip(ends[step:last], going[step + 1 : last + 1], strict=True):
-            part = slice(end - count - done, end - done)
-            yield block[part], _Transitions(to.off[part], to.changes[part], to.own[part])
-        done, step = ends[last - 1], last
+        begin = bounds[step]
+        last = max(step + 1, bisect_right(bounds, begin + size) - 1)
+        to = _transitions(found, places, states[begin : bounds[last]], graph)
+        for part in map(slice, bounds[step:last], bounds[step + 1 : last + 1]):
+            own = slice(part.start - begin, part.stop - begin)
+            yield _Transitions(to.off[own], to.changes[own], to.own[own])
+        step = last
 
 
 def _padded(found: LaneCandidates, states: NDArray[intp], values: Floats) -> Floats:
