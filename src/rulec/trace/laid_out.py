@@ -68,7 +68,7 @@ class LaidOut:
 
     @property
     def _are_long(self) -> bool:
-        return self.absent.shape[1] > _LONG * len(self.ranges)
+        return bool(self.absent.shape[1] > _LONG * len(self.ranges))
 
     @cached_property
     def _absent_in(self) -> list[tuple[slice, NDArray[intp]]]:

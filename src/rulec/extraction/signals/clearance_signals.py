@@ -72,7 +72,7 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     cells = present.part(np.flatnonzero(against))
     if not len(cells):
         return np.ones(context.states, dtype=bool), ends & ~alone & ~far_enough
-    comes = (np.cos(cells.of(context.extents.turned)) < 0) & cells.of(context.relevant)
+    comes = (np.abs(cells.of(context.extents.turned)) > np.pi / 2) & cells.of(context.relevant)
     cells = cells.part(np.flatnonzero(comes))
     columns, station = cells.columns, cells.of(relations.station(context))
     closing: Floats = np.maximum(own[columns] - cells.of(context.extents.along), 0.1)

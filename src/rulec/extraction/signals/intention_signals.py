@@ -26,6 +26,7 @@ from rulec.extraction.signals.signal_passes import (
 )
 from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import JOINING
+from rulec.trace.cells import Cells
 
 _PUBLIC = ("bus", "rail_vehicle")
 
@@ -219,7 +220,8 @@ def _about_to_overtake(context: DriveContext) -> SignalColumns:
     if joining.any():
         joins = joining[context.road.piece(np.nan_to_num(context.extents.s)), lane]
         soon &= ~joins
-    unknown = soon & ~(told & _caught_up(context))
+    unknown, asked = soon.copy(), Cells.at(soon & told)
+    unknown.ravel()[asked.places] = ~_caught_up(context, asked)
     if lit.any():
         unknown |= told & lit & _ends_within(context, steps) & ~soon & ~joins
     return SignalColumns(
@@ -227,10 +229,12 @@ def _about_to_overtake(context: DriveContext) -> SignalColumns:
     )
 
 
-def _caught_up(context: DriveContext) -> Flags:
-    """Flags of those whom ego would be beside within ``catching_up_s``, at the speeds of both."""
-    faster_mps = context.ego_extents.along - context.extents.along
-    caught_up: Flags = relations.gap(context) <= faster_mps * context.thresholds.catching_up_s
+def _caught_up(context: DriveContext, cells: Cells) -> Flags:
+    """Flags of cells of those whom ego is beside within ``catching_up_s``, at both speeds."""
+    faster_mps = cells.of(context.ego_extents.along[0]) - cells.of(context.extents.along)
+    caught_up: Flags = (
+        cells.of(relations.gap(context)) <= faster_mps * context.thresholds.catching_up_s
+    )
     return caught_up
 
 

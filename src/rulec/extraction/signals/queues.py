@@ -294,7 +294,6 @@ def gap_in_lane(context: DriveContext, station: int) -> Floats:
 
     As far as traffic reaches, infinity without any.
     """
-    own_lane = context.extents.lane == context.ego_lane
-    there = close_by(context) & (relations.station(context) == station) & own_lane
-    gap: Floats = np.where(there, relations.gap(context), np.inf).min(axis=0, initial=np.inf)
-    return gap
+    cells = Cells.at(close_by(context) & (relations.station(context) == station))
+    cells = cells.part(np.flatnonzero(cells.of(context.extents.lane) == cells.of(context.ego_lane)))
+    return cells.least(cells.of(relations.gap(context)))

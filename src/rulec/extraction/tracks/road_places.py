@@ -14,6 +14,7 @@ from rulec.extraction.tracks.lane_sets import LaneSets, lane_sets, lanes_touched
 from rulec.extraction.tracks.road_extents import RoadExtents, and_row
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.extraction.traffic_thresholds import Thresholds
+from rulec.trace.cells import Cells
 
 KMH = 3.6
 """km/h in one m/s."""
@@ -23,6 +24,9 @@ _ACROSS = np.pi / 4
 
 _PIECES_M = 20.0
 """Feet are looked for on whole pieces of a line, of 5 m at most."""
+
+_SOME_TIMES = 32
+"""One of so many times is looked at first."""
 
 _SOON_S = 2.0
 """So long before it comes near to a road one is looked at, longer than somebody may be away."""
@@ -116,19 +120,20 @@ class RoadPlaces:
         close = (self.extents.left_of_max[..., 0] > -beside) & (
             self.extents.left_of_min[..., -1] < beside
         )
-        vulnerable = self.tracks.of_type("vulnerable_user")[:, None]
+        flags: Flags = close & self.tracks.of_type("vulnerable_user")[:, None]
         moves = self.fastest * KMH >= self.thresholds.standing_kmh
-        oncoming = (np.cos(self.extents.turned) < _ONCOMING_COSINE) & moves[:, None]
-        flags: Flags = (self.on_lanes | (close & (vulnerable | oncoming))) & ~self.crosses
+        others = Cells.at(close & moves[:, None] & ~flags & ~self.on_lanes)
+        flags.ravel()[others.places] = np.cos(others.of(self.extents.turned)) < _ONCOMING_COSINE
+        flags |= self.on_lanes
+        flags &= ~self.crosses
         return flags
 
     @cached_property
     def crosses(self) -> Flags:
         """Flags of cross traffic: vehicles that drive on another road, and across this one."""
-        turned = np.abs(np.nan_to_num(self.extents.turned))
-        across = (turned > _ACROSS) & (turned < np.pi - _ACROSS)
-        crosses: Flags = self.elsewhere & across & self.tracks.of_type("vehicle")[:, None]
-        return crosses
+        cells = Cells.at(self.elsewhere & self.tracks.of_type("vehicle")[:, None])
+        turned = np.abs(cells.of(self.extents.turned))
+        return cells.laid((turned > _ACROSS) & (turned < np.pi - _ACROSS))
 
     @cached_property
     def seen(self) -> Flags:
@@ -150,13 +155,18 @@ def rows_in_reach(
         limits.near_m, (tracks.fastest + tracks.fastest[ego] + 1.0) * limits.catching_up_s
     )
     off = 2 * _farthest_off(road, limits) + _PIECES_M + tracks.reaches + tracks.reaches[ego]
-    x, y = tracks.x[:, columns], tracks.y[:, columns]
-    away, aside = x - x[ego], y - y[ego]
-    away *= away
-    aside *= aside
-    away += aside
-    flags: Flags = (away <= ((along + off) ** 2)[:, None]).any(axis=1)
+    squares = (along + off) ** 2
+    flags = np.zeros(len(squares), dtype=bool)
     flags[ego] = True
+    # Most of those who are so near some time are so at one of a few times already
+    for step in (_SOME_TIMES, 1):
+        rows, times = np.flatnonzero(~flags), slice(columns.start, columns.stop, step)
+        away = tracks.x[rows, times] - tracks.x[ego, times]
+        aside = tracks.y[rows, times] - tracks.y[ego, times]
+        away *= away
+        aside *= aside
+        away += aside
+        flags[rows] = (away <= squares[rows, None]).any(axis=1)
     return flags
 
 

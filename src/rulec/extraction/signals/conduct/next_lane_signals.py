@@ -25,9 +25,9 @@ from rulec.extraction.signals.signal_passes import (
     once_a_recording,
     once_a_road,
 )
-from rulec.extraction.tracks.lane_sets import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.recording import JOINING, Lanelet, LaneMark, Side
+from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import ranges
 
 _SOON_M = 10.0
@@ -343,9 +343,10 @@ def _on_lane(
     context: DriveContext, lane: NDArray[intp], states: NDArray[intp]
 ) -> tuple[NDArray[intp], NDArray[intp]]:
     """Those who go ego's way on a lane, by state, in some states: rows and states."""
-    on_it = is_in(context.lanes_within[0][:, states], lane[states])
-    rows, places = (on_it & context.going_along[:, states]).nonzero()
-    return rows, states[places]
+    chosen = np.zeros(context.states, dtype=bool)
+    chosen[states] = True
+    cells = Cells.at(context.in_lane(lane) & context.going_along & chosen)
+    return cells.rows, cells.columns
 
 
 next_lane_signals = SignalPasses(

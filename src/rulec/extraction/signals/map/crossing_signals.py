@@ -18,6 +18,7 @@ from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.cells import Cells
+from rulec.trace.plain_arrays import ranges
 
 _STOOD_S = 5.0
 """Who has stood for longer as ego comes, and does for as long after it, has not stopped for it."""
@@ -254,16 +255,23 @@ def _behind_another(context: DriveContext, stopped: Flags) -> Flags:
 
     They may stop for that one.
     """
+    if not stopped.any():
+        return stopped
     start, _ = next_crossing(context)
-    others, vehicles = context.extents, context.tracks.of_type("vehicle")[:, None]
-    waits, lanes = np.zeros_like(stopped), context.lanes_within[0]
-    for row in np.flatnonzero(stopped.any(axis=1)):
-        at = np.flatnonzero(stopped[row])
-        s_min = others.s_min[:, at]
-        ahead = vehicles & (s_min >= others.s_max[row, at]) & (s_min < start[at])
-        same = (lanes[:, at] & lanes[row, at]) != 0
-        waits[row, at] = (ahead & same).any(axis=0)
-    return waits
+    others, lanes, cells = context.extents, context.lanes_within[0], Cells.at(stopped)
+    between = context.tracks.of_type("vehicle")[:, None] & stopped.any(axis=0) & context.on_lanes
+    between &= others.s_min < start
+    before = Cells.at(between)
+    # Those in each column one behind the other, and for each who stopped those in its column
+    before = before.part(np.argsort(before.columns, kind="stable"))
+    begins, ends = np.searchsorted(before.columns, (cells.columns, cells.columns + 1))
+    pairs, _ = ranges(begins, ends - begins)
+    number = np.repeat(np.arange(len(cells)), ends - begins)
+    ahead = before.of(others.s_min).take(pairs) >= cells.of(others.s_max).take(number)
+    ahead &= (before.of(lanes).take(pairs) & cells.of(lanes).take(number)) != 0
+    waits = np.zeros(len(cells), dtype=bool)
+    waits[number[ahead]] = True
+    return cells.laid(waits)
 
 
 def _stopped(context: DriveContext, states: NDArray[intp]) -> Flags:
