@@ -34,6 +34,9 @@ _BESIDE_M = 15.0
 Nobody knows how it goes on there; straight on it comes by its own other parts after a bend or two.
 """
 
+_MANY = 256
+"""Of so many places those are sorted out first whose feet are sure."""
+
 _CLOSEST_M = 0.05
 _PIECE_M = 5.0
 _SMOOTH_M = 5.0
@@ -97,7 +100,14 @@ class ReferenceLine:
 
     def coordinates_near(self, places: Points, around: _Values, reach: _Values) -> Points:
         """Frenet coordinates of feet within ``reach`` of a given ``s`` each."""
-        return self._nearest(places, self._piece(around - reach), self._piece(around + reach))
+        low, high = self._piece(around - reach), self._piece(around + reach)
+        if len(places) < _MANY:
+            return self._nearest(places, low, high)
+        found, sure = sure_feet(self.piece_fans, places)
+        pieces = self._piece(found[:, 0])
+        left = np.flatnonzero(~sure | (pieces < low) | (pieces > high))
+        found[left] = self._nearest(places[left], low[left], high[left])
+        return found
 
     def coordinates_of_rows(self, places: Points, around: _Values, reach: _Values) -> Points:
         """The same of rows of as many places, with an ``s`` for each row; NaN for those of NaN.
@@ -135,6 +145,8 @@ class ReferenceLine:
 
     def _nearest(self, places: Points, low: NDArray[intp], high: NDArray[intp]) -> Points:
         """The coordinates of the nearest foot on one of the pieces from ``low`` to ``high``."""
+        if not len(places):
+            return np.empty((0, 2))
         numbers, pieces = self._fans.candidates(places, low, high)
         ux, uy, x, y, lengths, first, change, arc = np.take(self.piece_fans.columns, pieces, axis=1)
         dx, dy = places[numbers, 0] - x, places[numbers, 1] - y
@@ -144,13 +156,14 @@ class ReferenceLine:
         with np.errstate(divide="ignore", invalid="ignore"):
             part = (along + across * first) / turned_lengths
         good = (turned_lengths > 0) & (part >= -_HAIR) & (part <= 1 + _HAIR)
-        distance = np.hypot(along - part * lengths, across)
-        best = good.nonzero()[0]
-        away, own = distance[best], pieces[best]
-        away += np.where((own == 0) | (own == len(self.arc) - 1), _BESIDE_M, 0.0)
-        best = best[_least_of_each(numbers[best], away)]
+        at = good.nonzero()[0]
+        numbers, own, foot, across = numbers[at], pieces[at], part[at] * lengths[at], across[at]
+        # As feet that are sure are computed, to the last digit
+        distance = np.sqrt(np.square(along[at] - foot) + np.square(across))
+        away = distance + np.where((own == 0) | (own == len(self.arc) - 1), _BESIDE_M, 0.0)
+        best = _least_of_each(numbers, away)
         found = np.full((len(places), 2), np.nan)
-        found[numbers[best], 0] = arc[best] + part[best] * lengths[best]
+        found[numbers[best], 0] = arc[at[best]] + foot[best]
         found[numbers[best], 1] = np.copysign(distance[best], across[best])
         return found
 

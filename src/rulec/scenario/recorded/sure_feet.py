@@ -1,8 +1,9 @@
 """Feet of places that are sure to be their only ones, so that no other piece needs to be tried.
 
 A place is before or behind the line through each corner that bounds the fans on either side. As
-long as it is nearer to all pieces than these lines meet, those that it is behind come first: then
-it is in one fan only, and a guess that proves right is the answer. What is not sure stays open.
+long as it is nearer to all pieces than these lines meet, or no farther aside than the two of a fan
+meet any other, those that it is behind come first: then it is in one fan only, and a guess that
+proves right is the answer. What is not sure stays open.
 """
 
 from __future__ import annotations
@@ -23,7 +24,8 @@ _INSIDE = 1e-3
 _AT_ONCE = 1 << 13
 """So many places are looked at together: what is computed of them stays near at hand."""
 
-_WIDEST = 64
+_WIDEST, _MOST_PIECES = 64, 512
+_HAIR_M = 1e-6
 _FEWEST, _ROUNDS = 2, 2
 _Values = NDArray[float64]
 
@@ -60,6 +62,32 @@ class PieceFans:
             windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * width + 1)
             self._rooms[width] = windows.min(axis=1)
         return self._rooms[width]
+
+    @cached_property
+    def alone(self) -> _Values:
+        """How far (m) aside of each piece a place in its fan is in no other one; 0 of many pieces.
+
+        As far as both lines that bound the fan lie beyond all before them, and before all others.
+        """
+        lengths, first, change = self.columns[4:7]
+        if len(lengths) > _MOST_PIECES:
+            return np.zeros(len(lengths))
+        # One line through each corner
+        ahead = self.columns[:2, [*range(len(lengths)), -1]]
+        corners = self.columns[2:4, [*range(len(lengths)), -1]]
+        corners[:, -1] += lengths[-1] * ahead[:, -1]
+        slope = np.append(first, first[-1] + change[-1])
+        across = np.hypot(1.0, slope)
+        normals = (ahead + slope * np.array((-ahead[1], ahead[0]))) / across
+        # How far each corner (row) is beyond each line, and by how much that changes along its own
+        beyond = corners.T @ normals - (corners * normals).sum(axis=0)
+        gained = np.abs(np.outer(normals[0], normals[1]) - np.outer(normals[1], normals[0]))
+        beyond[np.triu_indices(len(slope), 1)] *= -1
+        np.fill_diagonal(beyond, np.inf)
+        with np.errstate(divide="ignore"):
+            room: _Values = ((beyond - _HAIR_M) / gained).min(axis=1) / across
+        alone: _Values = np.minimum(room[:-1], room[1:])
+        return alone
 
     def at(self, s: _Values) -> NDArray[intp]:
         """The numbers of the pieces at places along the line."""
@@ -128,7 +156,7 @@ def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[bool_]]:
     corners = fans.columns[2:4, 1:].T
     middle, room = corners.mean(axis=0), float(fans.room.min())
     farthest = float(np.abs(corners - middle).sum(axis=1).max())
-    if farthest >= room or len(corners) < _FEWEST:
+    if len(corners) < _FEWEST:
         return found, sure
     chord = corners[-1] - corners[0]
     ux, uy = (chord / np.hypot(*chord)).tolist()
@@ -139,8 +167,9 @@ def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[bool_]]:
         near = np.abs(x - middle[0]) + np.abs(y - middle[1]) < room - farthest
         s = first + (x - corners[0, 0]) * ux + (y - corners[0, 1]) * uy
         for _ in range(_ROUNDS):
-            s, d, inside = _on(fans, x, y, fans.at(s))
-        safe = near & inside
+            pieces = fans.at(s)
+            s, d, inside = _on(fans, x, y, pieces)
+        safe = inside & (near | (np.abs(d) < fans.alone.take(pieces)))
         np.copyto(found[part, 0], s, where=safe)
         np.copyto(found[part, 1], d, where=safe)
         sure[part] = safe
