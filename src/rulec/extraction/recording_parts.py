@@ -70,9 +70,10 @@ def recording_parts(
 ) -> tuple[RecordingPart, ...]:
     """A recording in parts of about ``MOST_CELLS``, in the order of ``egos``; often it is one."""
     bodies = [body for body in recording.participants if body.outlines]
-    whole = whole_recording(recording)
-    if len(bodies) * (whole.last - whole.first + 1) <= MOST_CELLS:
+    first, last = _first_and_last(recording)
+    if len(bodies) * (last - first + 1) <= MOST_CELLS:
         return (RecordingPart(tuple(egos), recording),)
+    whole = whole_recording(recording)
     always = whole.first, whole.last
     spans = np.array([always if body.standing else span_of(body) for body in bodies], dtype=intp)
     farthest = _farthest_steps(thresholds, recording.step_s)
@@ -196,15 +197,25 @@ def _in_the_middle(stated: Iterable[StatedError]) -> StatedError:
     return StatedError(*map(median, zip(*stated, strict=True)))
 
 
+def _first_and_last(recording: Recording) -> tuple[int, int]:
+    """The first and the last time step of all of a recording, or of that which one is a part of."""
+    whole = recording.whole
+    return _span_of_all(recording) if whole is None else (whole.first, whole.last)
+
+
+def _span_of_all(recording: Recording) -> tuple[int, int]:
+    spans = [span_of(body) for body in _moving(recording)]
+    first = min((begins for begins, _ in spans), default=0)
+    return first, max((ends for _, ends in spans), default=0)
+
+
 def looked_at(recording: Recording) -> tuple[int, int]:
     """The first and the last time step of a recording's arrays.
 
     Those of a part have one more on each side, if the recording has: who is there in an array's
     last step may go on, unlike others.
     """
-    spans = [span_of(body) for body in _moving(recording)]
-    first = min((begins for begins, _ in spans), default=0)
-    last = max((ends for _, ends in spans), default=0)
+    first, last = _span_of_all(recording)
     if recording.whole is None:
         return first, last
     return max(recording.whole.first, first - 1), min(recording.whole.last, last + 1)

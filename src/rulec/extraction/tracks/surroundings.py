@@ -66,7 +66,7 @@ class Surroundings:
     @cached_property
     def tolerances(self) -> Tolerances:
         """How well the source knows places and speeds."""
-        return tolerances_of(self.recording)
+        return tolerances_of(self.recording, self.whole)
 
     @cached_property
     def passages(self) -> JunctionPassages:
