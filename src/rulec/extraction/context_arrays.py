@@ -18,7 +18,7 @@ from rulec.extraction.tracks.surroundings import Surroundings
 from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import Side
 from rulec.trace.end_to_end import EndToEnd
-from rulec.trace.laid_out import LaidOut
+from rulec.trace.laid_out import LaidOut, columns_of, one_behind_the_other
 
 _MOST_KEPT_BYTES = 31 << 20
 """A little less than glibc's greatest threshold."""
@@ -81,7 +81,7 @@ def drives_context(
     keep_freed_memory()
     lengths = [columns.stop - columns.start for columns in egos.columns]
     spans = EndToEnd((0, *np.cumsum(lengths).tolist()))
-    columns = np.concatenate([np.arange(own.start, own.stop) for own in egos.columns])
+    columns = columns_of(egos.columns)
     members = np.array(egos.rows, dtype=intp)
     own = spans.spread(members)[None], columns[None]
     ego = egos.places.extents.at(*own)
@@ -133,9 +133,12 @@ def _near(places: RoadPlaces, ranges: Sequence[slice], ego: RoadExtents) -> tupl
     """
     limits, extents = places.thresholds, places.extents
 
+    columns = columns_of(ranges)
+
     def laid(values: NDArray[Any]) -> NDArray[Any]:
-        parts = [values[:, columns] for columns in ranges]
-        return parts[0] if len(ranges) == 1 else np.concatenate(parts, axis=1)
+        if len(ranges) == 1:
+            return values[:, ranges[0]]
+        return one_behind_the_other(values, ranges, columns)
 
     gap = laid(extents.s_min) - ego.s_max
     np.maximum(gap, ego.s_min - laid(extents.s_max), out=gap)

@@ -12,6 +12,9 @@ import numpy as np
 from numpy import bool_, float64, intp
 from numpy.typing import NDArray
 
+_SHORT = 48
+"""Columns of ranges that are shorter are picked one by one, others are copied range by range."""
+
 _LONG = 200
 """Of ranges that are longer those who are absent are found for each by itself."""
 
@@ -35,7 +38,7 @@ class LaidOut:
         """
         by_lane = np.moveaxis(values, -1, 0) if values.ndim > 2 else values[None]
         own = by_lane.take(self.rows, axis=1)
-        found = np.concatenate([own[..., there] for there in self.ranges], axis=-1)
+        found = one_behind_the_other(own, self.ranges, self.columns)
         none = values.dtype.type(np.nan if values.dtype.kind == "f" else 0)
         if self._are_long:
             for columns, gone in self._absent_in:
@@ -60,7 +63,7 @@ class LaidOut:
     @cached_property
     def columns(self) -> NDArray[intp]:
         """The columns of all ranges."""
-        return np.concatenate([np.arange(own.start, own.stop) for own in self.ranges])
+        return columns_of(self.ranges)
 
     @cached_property
     def _are_absent(self) -> bool:
@@ -78,3 +81,17 @@ class LaidOut:
             (slice(begin, end), self.absent[:, begin].nonzero()[0])
             for begin, end in pairwise(bounds)
         ]
+
+
+def columns_of(ranges: Sequence[slice]) -> NDArray[intp]:
+    """The columns of all ranges."""
+    return np.concatenate([np.arange(own.start, own.stop) for own in ranges])
+
+
+def one_behind_the_other(
+    values: NDArray[Any], ranges: Sequence[slice], columns: NDArray[intp]
+) -> NDArray[Any]:
+    """An array's part in ranges of its last axis, whose ``columns`` are these."""
+    if len(columns) < _SHORT * len(ranges):
+        return values.take(columns, axis=-1)
+    return np.concatenate([values[..., own] for own in ranges], axis=-1)

@@ -8,7 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from rulec.scenario.recorded.reference_line import BEYOND_M, reference_line
-from rulec.scenario.recorded.sure_feet import sure_feet, sure_feet_near
+from rulec.scenario.recorded.sure_feet import MANY, sure_feet, sure_feet_near
 
 RADIUS = 60.0
 offsets = st.floats(-20, 20)
@@ -193,7 +193,7 @@ def test_most_feet_beside_a_gentle_road_are_sure_without_trying_all_pieces(angle
 @pytest.mark.parametrize(("aside", "sure"), [(10.0, True), (59.9, True), (61.0, False)])
 def test_feet_beside_a_circle_are_sure_up_to_its_centre(aside, sure):
     line = reference_line(arc(10, pi / 8))
-    at, far = (np.arange(1, 9) + 0.3) / 10 * pi / 8, RADIUS - aside
+    at, far = (np.arange(MANY) % 8 + 1.3) / 10 * pi / 8, RADIUS - aside
     places = np.stack((far * np.sin(at), RADIUS - far * np.cos(at)), axis=1)
     _, found = sure_feet(line.piece_fans, places)
     assert found.all() if sure else not found.any()

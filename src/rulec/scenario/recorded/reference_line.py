@@ -22,7 +22,7 @@ from rulec.recordings.polylines import densified, without_repeats
 from rulec.recordings.recording import Points
 from rulec.scenario.recorded.line_fans import LineFans, line_fans
 from rulec.scenario.recorded.line_surroundings import LineSurroundings, line_surroundings
-from rulec.scenario.recorded.sure_feet import PieceFans, sure_feet, sure_feet_near
+from rulec.scenario.recorded.sure_feet import MANY, PieceFans, sure_feet, sure_feet_near
 from rulec.trace.plain_arrays import distinct
 
 BEYOND_M = 2000.0
@@ -33,9 +33,6 @@ _BESIDE_M = 15.0
 
 Nobody knows how it goes on there; straight on it comes by its own other parts after a bend or two.
 """
-
-_MANY = 256
-"""Of so many places those are sorted out first whose feet are sure."""
 
 _CLOSEST_M = 0.05
 _PIECE_M = 5.0
@@ -101,7 +98,7 @@ class ReferenceLine:
     def coordinates_near(self, places: Points, around: _Values, reach: _Values) -> Points:
         """Frenet coordinates of feet within ``reach`` of a given ``s`` each."""
         low, high = self._piece(around - reach), self._piece(around + reach)
-        if len(places) < _MANY:
+        if len(places) < MANY:
             return self._nearest(places, low, high)
         found, sure = sure_feet(self.piece_fans, places)
         pieces = self._piece(found[:, 0])

@@ -24,6 +24,9 @@ _INSIDE = 1e-3
 _AT_ONCE = 1 << 13
 """So many places are looked at together: what is computed of them stays near at hand."""
 
+MANY = 256
+"""For fewer places it takes less to try all pieces than to know where each of them is alone."""
+
 _WIDEST, _MOST_PIECES = 64, 512
 _HAIR_M = 1e-6
 _FEWEST, _ROUNDS = 2, 2
@@ -156,7 +159,7 @@ def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[bool_]]:
     corners = fans.columns[2:4, 1:].T
     middle, room = corners.mean(axis=0), float(fans.room.min())
     farthest = float(np.abs(corners - middle).sum(axis=1).max())
-    if len(corners) < _FEWEST:
+    if len(corners) < _FEWEST or (farthest >= room and len(places) < MANY):
         return found, sure
     chord = corners[-1] - corners[0]
     ux, uy = (chord / np.hypot(*chord)).tolist()
