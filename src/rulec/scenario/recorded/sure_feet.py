@@ -29,7 +29,7 @@ MANY = 256
 
 _WIDEST, _MOST_PIECES = 64, 512
 _HAIR_M = 1e-6
-_FEWEST, _ROUNDS = 2, 2
+_ROUNDS = 2
 _Values = NDArray[float64]
 
 
@@ -159,10 +159,12 @@ def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[bool_]]:
     corners = fans.columns[2:4, 1:].T
     middle, room = corners.mean(axis=0), float(fans.room.min())
     farthest = float(np.abs(corners - middle).sum(axis=1).max())
-    if len(corners) < _FEWEST or (farthest >= room and len(places) < MANY):
-        return found, sure
     chord = corners[-1] - corners[0]
-    ux, uy = (chord / np.hypot(*chord)).tolist()
+    length = float(np.hypot(*chord))
+    # Along a line that ends where it begins nothing is guessed
+    if not length or (farthest >= room and len(places) < MANY):
+        return found, sure
+    ux, uy = (chord / length).tolist()
     first = float(fans.columns[7, 1])
     for begin in range(0, len(places), _AT_ONCE):
         part = slice(begin, begin + _AT_ONCE)
