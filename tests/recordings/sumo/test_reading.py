@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec import read_recording
-from rulec.recordings.sumo.vehicle_types import CLASSES, read_vehicle_types
+from rulec.recordings.sumo.vehicle_types import CLASSES, read_vehicle_types, vehicle_type
 from rulec.recordings.track import rectangles
 from support.builders.sumo_files import body, data, moment, written
 
@@ -272,3 +272,24 @@ def test_who_is_not_in_data_of_a_part_of_the_traffic_may_be_there(tmp_path, opti
     # What the net has is told all the same
     assert "light" in found.complete
     assert any(f"--{option}:" in remark for remark in found.remarks) != whole
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "known"),
+    [
+        ("bike@f.0", "bicycle", True),
+        ("own@f.0", "bus", True),
+        ("own@7", "truck", True),
+        # Unknown as it is, and without its copy
+        ("cargo@f.0", "car", False),
+    ],
+)
+def test_the_type_of_one_vehicle_alone_is_that_of_which_it_is_a_copy(name, kind, known):
+    types = {
+        "bike": CLASSES["bicycle"],
+        "own": CLASSES["bus"],
+        # One may be called so
+        "own@7": CLASSES["truck"],
+    }
+    found, told = vehicle_type(name, "vehicle", types)
+    assert (found.kind, told) == (kind, known)

@@ -74,6 +74,7 @@ _BUILT_IN = {
     "DEFAULT_CONTAINERTYPE": "container",
 }
 _UNKNOWN = VehicleType("unknown", 5.0, 1.8)
+_COPY = "@"
 _USUAL = {"vehicle": "passenger", "person": "pedestrian", "container": "container"}
 
 
@@ -109,7 +110,11 @@ def vehicle_type(
     """The type of a participant, with a flag for a known one; else it is assumed.
 
     ``element`` is the name of the participant's element: ``vehicle``, ``person``, ``container``.
+    Where SUMO changes a type for one vehicle alone, as it does near blue lights, it calls the copy
+    ``type@vehicle``.
     """
+    if name not in known and _COPY in name:
+        name = name[: name.index(_COPY)] or name
     if name in known:
         return known[name], True
     if name in _BUILT_IN:
