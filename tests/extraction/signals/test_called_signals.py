@@ -141,6 +141,15 @@ def test_one_that_comes_towards_ego():
     assert set(near(ambulance(100, -15, 7), road=divided)) == {"False"}
 
 
+def test_one_that_comes_from_far_away_does_not_need_the_way_yet():
+    """At 10 m/s each they meet within 4 s from 80 m on, and 50 m are near however slow it is."""
+    against = [straight(1, -200, 300), lanelet(2, [(300, 4), (-200, 4)])]
+    found = near(ambulance(134, -10, 4), road=against)
+    # The gap is 130 m, and 10 m less in each state
+    assert found[:5] == ["?"] * 5
+    assert found[6:13] == ["True"] * 7
+
+
 def test_one_that_stands_with_its_lights_on():
     # At an accident, or held up for as long: nobody knows
     stands = ambulance(20, 0.0)
@@ -170,7 +179,8 @@ def test_one_that_waits_at_lights_having_come_towards_ego():
     assert found[:3] == ["True"] * 3
     # Ego is 15 m ahead of it after five states, and it stands from the eighth on
     assert set(found[6:]) == {"False"}
-    ahead = near(body, road=against, ego=steady(7, -150, 0, 1, STEPS))
+    ahead = near(body, road=against, ego=steady(7, -70, 0, 1, STEPS))
+    # It stands 36 m ahead
     assert ahead[20] == "True"
 
 

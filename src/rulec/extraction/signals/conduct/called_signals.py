@@ -34,8 +34,8 @@ _FACES = -0.5
 def _emergency_vehicle_near(context: DriveContext) -> SignalColumns:
     """Whether one on call is near.
 
-    Unknown of one that stands, does not sound a told horn, is behind ego and does not draw near, or
-    comes on a road across; and where ego is on call itself.
+    Unknown of one that stands, does not sound a told horn, is not beside ego soon, or comes on a
+    road across; and where ego is on call itself.
     """
     on_call, not_told = _on_call(context)
     surely, perhaps = _surely_near(context), _crosses_near(context)
@@ -62,7 +62,7 @@ def _surely_near(context: DriveContext) -> Flags:
     if len(rows):
         needs_way = _drives(context, rows) & ~_is_silent(context, rows)
         near = context.relevant[rows] & on_call[rows] & needs_way
-        found[rows] = near & _comes_near(context)[rows] & ~_falls_behind(context)[rows]
+        found[rows] = near & _comes_near(context)[rows] & ~_is_far(context)[rows]
     return found
 
 
@@ -135,17 +135,24 @@ def _against(context: DriveContext) -> Flags:
     return against
 
 
-def _falls_behind(context: DriveContext) -> Flags:
-    """Flags of those behind ego who do not need its lane at once.
+def _is_far(context: DriveContext) -> Flags:
+    """Flags of those behind ego or coming towards it who do not need its way at once.
 
     They are farther than at ``queue_headway_s``, as if held up, and would not be beside ego before
-    a change of lanes is over, within ``parting_s``.
+    a change of lanes is over, within ``parting_s``; who comes towards it, and may wait at lights,
+    is farther than ``approach_m``, too.
     """
-    limits, theirs = context.thresholds, np.maximum(context.extents.along, 0.0)
-    gains = np.maximum(theirs - context.ego_extents.along, 0.0)
+    limits, along, own = context.thresholds, context.extents.along, context.ego_extents.along
+    theirs = np.maximum(along, 0.0)
+    gains = np.maximum(theirs - own, 0.0)
+    station, against = relations.station(context), _against(context)
+    behind = ~against & (station == relations.IN_FRONT_OF)
+    towards = against & (station == relations.BEHIND)
+    gains = np.where(towards, np.maximum(own, 0.0) - along, gains)
+    theirs = np.where(towards, -along, theirs)
     reach = np.maximum(gains * limits.parting_s, theirs * limits.queue_headway_s)
-    behind = relations.station(context) == relations.IN_FRONT_OF
-    far: Flags = behind & (relations.gap(context) > reach)
+    reach = np.maximum(reach, np.where(towards, limits.approach_m, 0.0))
+    far: Flags = (behind | towards) & (relations.gap(context) > reach)
     return far
 
 
