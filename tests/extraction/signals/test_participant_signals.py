@@ -405,6 +405,27 @@ def test_a_lane_that_ends_at_the_junction_leads_elsewhere(x, goes_on, elsewhere)
     assert signals.about["leads_elsewhere"][0, 0] == elsewhere
 
 
+@pytest.mark.parametrize("y", [-8, -1.5])
+def test_who_waits_in_a_junction_having_come_on_another_road_is_not_on_ego_s_way(y):
+    """It rides from the south into the junction and stands there, beside ego's lane or in it."""
+    inside = frozenset({"intersection"})
+    road = [
+        straight(1, 0, 112, successors=(2,)),
+        straight(2, 112, 142, predecessors=(1,), successors=(3,), types=inside),
+        straight(3, 142, 300, predecessors=(2,)),
+        lanelet(4, [(120, -80), (120, -20)], successors=(5, 6)),
+        lanelet(5, [(120, -20), (120, 20)], predecessors=(4,), successors=(7,), types=inside),
+        lanelet(6, [(120, -20), (121.5, -6), (142, 0)], predecessors=(4,), types=inside),
+        lanelet(7, [(120, 20), (120, 80)], predecessors=(5,)),
+    ]
+    places = {k: (120.0, -60.0 + 15 * k) if k < 4 else (120.6, y) for k in range(8)}
+    other = vehicle(8, places, "bicycle", length=2, width=0.6, heading=np.pi / 2)
+    found = recording(road, [steady(7, 60, 0, speed=10, steps=8), other])
+    signals = participant_signals(context_of(found, ("1", "2", "3")))
+    assert not signals.unknown["leads_elsewhere"][0, -1]
+    assert signals.about["leads_elsewhere"][0, -1]
+
+
 @pytest.mark.parametrize(
     ("mark", "x", "complete", "unknown"),
     [

@@ -124,12 +124,15 @@ def _lead(context: DriveContext, ways: Sequence[JunctionWay], turned: float) -> 
 def leads_elsewhere(context: DriveContext) -> SignalColumns:
     """Whether the lane of those before a junction does not go on along ego's road beyond it.
 
-    Of a lane from which ways lead there and elsewhere, that of the one who takes it decides. It is
-    unknown where the map ends, of lanes that a solid line parts from ego's there, and before a
-    ring: by which way they leave it drivers choose among several lanes.
+    Of a lane from which ways lead there and elsewhere, that of the one who takes it decides; in the
+    junction the way on which one is does. It is unknown where the map ends, of lanes that a solid
+    line parts from ego's there, and before a ring: by which way they leave it drivers choose among
+    several lanes.
     """
     others, reach = context.extents, context.thresholds.approach_m
     elsewhere, unknown = np.zeros((2, *context.relevant.shape), dtype=bool)
+    # Who rides near ego's road, but on lanes of another one
+    elsewhere |= context.relevant & context.tracks.on_lane & ~context.on_lanes
     end, parted = _parted_at_the_end(context)
     if parted.any():
         near = context.on_lanes & (context.road.line.length - others.s_max <= reach)
@@ -137,6 +140,11 @@ def leads_elsewhere(context: DriveContext) -> SignalColumns:
         unknown |= near & parted[np.clip(others.lane, 0, len(parted) - 1)]
     rings = {begins for begins, _, at_junction in roundabouts(context) if at_junction}
     for junction in junctions_ahead(context):
+        there = context.relevant & (others.s >= junction.low) & (others.s <= junction.high)
+        for row in np.flatnonzero(there.any(axis=1)).tolist():
+            surely, perhaps = _on_another_way(context, row, junction)
+            elsewhere[row] |= there[row] & surely
+            unknown[row] |= there[row] & perhaps
         # Who waits there may be past the place where the junction begins for ego
         near = context.on_lanes & (others.s <= junction.high)
         near &= junction.low - others.s_max <= reach
@@ -194,6 +202,29 @@ def _turns_off(context: DriveContext, row: int, junction: JunctionAhead) -> bool
         if passage.sure and any(inside & way.names for way in same.ways):
             return not _goes_along(context, passages.way(passage), junction.turned)
     return None
+
+
+def _on_another_way(
+    context: DriveContext, row: int, junction: JunctionAhead
+) -> tuple[Flags, Flags]:
+    """Flags of states in which a participant is in a junction on a way that is not ego's.
+
+    It came to it on another road, which the direction tells in which it came, or turns otherwise.
+    And flags of those in which that may be, where its track does not tell its way.
+    """
+    passages, own_row = context.surroundings.passages, int(context.tracks.rows[row])
+    surely, perhaps = np.zeros((2, context.states), dtype=bool)
+    (own,) = context.road.line.headings_at(np.array([junction.low - _HAIR_M])).tolist()
+    for passage in passages.of_row.get(own_row, ()):
+        inside = (context.columns >= passage.first) & (context.columns <= passage.last)
+        begins = passage.first == int(passages.tracks.present[own_row].argmax())
+        came = abs(turn(own, passage.heading)) > np.radians(context.thresholds.turned_deg)
+        leaves = not _goes_along(context, passages.way(passage), junction.turned)
+        if (came and not begins) or (passage.sure and (came or leaves)):
+            surely |= inside
+        elif not passage.sure and (begins or leaves):
+            perhaps |= inside
+    return surely, perhaps
 
 
 @once_a_recording
