@@ -84,6 +84,16 @@ def test_ego_stands_in_the_junction_for_another_reason():
     assert exit_clear(road(), STOPS, ahead) == [True] * 7
 
 
+def test_one_that_leaves_room_when_ego_enters_does_not_make_it_stand():
+    """The one ahead is near behind the junction in state 1, and far away when ego stands.
+
+    Another one has come there from the side by state 2, and does make it stand.
+    """
+    ahead = going(8, (115, 125, 145, 165, 185, 205, 225))
+    comes = vehicle(9, {k: (125, y) for k, y in enumerate((8, 4, 0, 0, 0, 0, 0))})
+    assert exit_clear(road(), STOPS, ahead, comes) == [True, "?", False, False] + [True] * 3
+
+
 @pytest.mark.parametrize(("metres", "clear"), [(1.25, False), (1.75, True)])
 def test_one_that_drives_on_makes_nobody_stand(metres, clear):
     """At 9 or 12.6 km/h, in steps of 0.5 s; it leaves 1.75 or 3.25 m where ego stands."""

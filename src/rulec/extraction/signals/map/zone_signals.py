@@ -193,7 +193,10 @@ def _exit_clear(context: DriveContext) -> SignalColumns:
             _free_beyond(context, those, (start, end)) < front - rear + ROOM_M
             for those in (ahead & ~still, ahead, ahead & ~still & holds_up, ahead & holds_up)
         )
-        blocked = nears & short & _until(context, stuck & stops)
+        # Whoever leaves too little room when ego comes leaves it ego too little when it stands
+        takes = ahead & ~still & (context.extents.s_min - end < front - rear + ROOM_M)
+        same = takes & _until(context, takes & (stuck & stops))
+        blocked = nears & short & same.any(axis=0)
         clear &= ~blocked
         nearest |= blocked & (ahead & ~still)
         may_be = _until(context, perhaps & may_stop) | ~passed
