@@ -9,7 +9,7 @@ import pytest
 
 from rulec.extraction.signals.map.level_crossing_signals import level_crossing_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
-from support.builders.drive_contexts import context_of
+from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording, straight, vehicle
 
 RAILS = frozenset({"level_crossing"})
@@ -84,3 +84,12 @@ def test_tracks_beside_the_lane_at_the_kerb():
     lanes = road({"left_of": 8})
     lanes.append(straight(8, 0, 1000, 4, right_of=1, types=rail))
     assert not told(lanes, 990, 1005).world["tracks_at_kerb"].any()
+
+
+@pytest.mark.parametrize(("y", "expected"), [(0, True), (4, False)])
+def test_tracks_in_the_lane_at_the_kerb_where_a_tram_runs_there(y, expected):
+    lanes = [straight(1, 0, 500, left_of=2), straight(2, 0, 500, 4, right_of=1)]
+    ego, tram = steady(7, 0, 4 - y, 10, 4), vehicle(8, dict.fromkeys(range(4), (60, y)), "train")
+    found = replace(recording(lanes, [ego, tram]), complete=frozenset({"rail"}))
+    signals = level_crossing_signals(context_of(found))
+    assert signals.world["tracks_at_kerb"].tolist() == [expected] * 4

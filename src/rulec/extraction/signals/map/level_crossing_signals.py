@@ -83,10 +83,18 @@ def _ways_to_next(context: DriveContext) -> Mapping[str, float]:
 
 
 def _tracks_at_kerb(context: DriveContext) -> SignalColumns:
+    """Whether rails are beside the lane at the kerb, or in it, as who runs there shows."""
     if not _tells_rails(context):
         return SignalColumns()
     pieces = context.road.piece(context.ego_extents.s[0])
-    return SignalColumns({"tracks_at_kerb": _pieces_by_rails(context)[pieces]})
+    there = context.existing_lanes
+    kerb = there.argmax(axis=1)
+    if context.side == "left":
+        kerb = there.shape[1] - 1 - there[:, ::-1].argmax(axis=1)
+    runs = context.relevant & context.on_lanes & (abs(context.extents.turned) < 1.0)
+    runs &= context.tracks.of_type("rail_vehicle")[:, None]
+    in_it = (runs & (context.extents.lane == kerb)).any(axis=0)
+    return SignalColumns({"tracks_at_kerb": _pieces_by_rails(context)[pieces] | in_it})
 
 
 def _tells_rails(context: DriveContext) -> bool:
