@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
@@ -19,7 +21,7 @@ from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.queues import dense_lines
 from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
-from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.signals.signal_passes import SignalPasses, once_a_road
 from rulec.extraction.tracks.lane_sets import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import JOINING
@@ -133,7 +135,8 @@ def _being_overtaken(context: DriveContext) -> SignalColumns:
     overtaken = by.any(axis=0)
     dense, surely, not_told = dense_lines(context)
     # Lanes that move off beside each other do not overtake, and who has joined gets up speed yet
-    joined = _was(context, on_ramp) | _was(context, _comes_round(context))
+    elsewhere = on_ramp | _comes_round(context) | _comes_beside(context)
+    joined = _was(context, elsewhere)
     moot = _sets_off(context) | _recovers(context) | _may_recover(context) | joined | not_told
     # Where all lanes queue, one that is faster does not overtake (Vienna, Art. 11(6)(a))
     return SignalColumns(
@@ -182,6 +185,27 @@ def _comes_round(context: DriveContext) -> Flags:
         if start in rings or turn_at(context, start, end) != "straight_on":
             inside |= (middle >= start) & (middle <= end)
     return inside
+
+
+def _comes_beside(context: DriveContext) -> Flags:
+    """Flags of states in which ego comes onto a road that has more lanes than led ego there."""
+    joins = _before_joining(context)
+    return joins[context.road.piece(context.ego_extents.s[0])]
+
+
+@once_a_road
+def _before_joining(context: DriveContext) -> Flags:
+    """Flags of the pieces of ego's road behind which most lanes come from other ones."""
+    joins = np.zeros(len(context.road.rows), dtype=bool)
+    for piece, (row, beyond) in enumerate(pairwise(context.road.rows)):
+        known = {lanelet.id for lanelet in row if lanelet is not None}
+        led = [
+            not known.isdisjoint(lanelet.predecessors)
+            for lanelet in beyond
+            if lanelet is not None and lanelet.predecessors
+        ]
+        joins[piece] = 2 * sum(led) < len(led)
+    return joins
 
 
 def _gains_speed(context: DriveContext) -> Flags:
