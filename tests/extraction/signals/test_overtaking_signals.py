@@ -173,6 +173,31 @@ def test_who_has_joined_gets_up_speed_yet(ago_s, known):
     assert found.unknown["being_overtaken"][last] == (not known)
 
 
+@pytest.mark.parametrize(("ago_s", "known"), [(4, False), (11, True)])
+def test_who_has_come_onto_a_larger_road_gets_up_speed_yet(ago_s, known):
+    """Ego comes at 21 m/s from a road of one lane beside the two of another one.
+
+    Who drove on those, beside which that lane comes, has joined nothing.
+    """
+    road = [
+        straight(1, -100, 10, successors=(4,)),
+        straight(2, -100, 10, 4.0, successors=(5,), left_of=3),
+        straight(3, -100, 10, 8.0, successors=(6,), right_of=2),
+        straight(4, 10, 600, predecessors=(1,), left_of=5),
+        straight(5, 10, 600, 4.0, predecessors=(2,), right_of=4, left_of=6),
+        straight(6, 10, 600, 8.0, predecessors=(3,), right_of=5),
+    ]
+    last = 2 * ago_s
+    passes = {k: (10.5 * last + 13.0 * (k - last), 8.0) for k in range(last + 4)}
+    other = vehicle(8, passes, speed=26)
+    for y, route, told in ((0.0, ("1", "4"), known), (4.0, ("2", "5"), True)):
+        ego = vehicle(7, {k: (10.5 * k, y if k < 3 else 4.0) for k in range(last + 4)}, speed=21)
+        context = context_of(recording(road, [ego, other]), route=route)
+        found = overtaking_signals(context)
+        assert found.world["being_overtaken"][last]
+        assert found.unknown["being_overtaken"][last] == (not told)
+
+
 @pytest.mark.parametrize(("speed", "known"), [(9, False), (21, True)])
 def test_who_may_have_stood_before_anybody_saw_it_may_set_off(speed, known):
     """To 9 m/s it takes 4.5 s, to 21 m/s 10.5 s."""
