@@ -8,7 +8,7 @@ import pytest
 
 from rulec.extraction.signals.map.crossing_signals import crossing_signals
 from support.builders.drive_contexts import along, context_of, steady
-from support.builders.recordings import lanelet, recording, vehicle
+from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
 
 ZEBRA = lanelet(9, [(60, -8), (60, 8)], width=4, types=frozenset({"crosswalk"}))
@@ -45,6 +45,28 @@ def use(x, y, along=0.0, across=0.0, **thresholds):
 )
 def test_uses_of_the_crossing(x, y, across, expected):
     assert use(x, y, across=across) == expected
+
+
+@pytest.mark.parametrize(
+    ("y", "across", "expected"),
+    [
+        # 3.8 m from the lane, where another one was beside it up to x = 40
+        (-6, 1.5, "not_crossing"),
+        (-6, 0, "not_crossing"),
+        (-4, 1, "about_to_cross"),
+    ],
+)
+def test_one_comes_to_the_lanes_that_there_are_at_the_crossing(y, across, expected):
+    road = [
+        straight(1, 0, 40, successors=(2,), right_of=3),
+        straight(2, 40, 120, predecessors=(1,)),
+        straight(3, 0, 40, -4, left_of=1),
+    ]
+    places = {k: (60, y + across * 0.5 * k) for k in range(2)}
+    walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
+    found = recording([*road, ZEBRA], [steady(7, 20, 0, steps=2), walker])
+    signals = crossing_signals(context_of(found, ("1", "2")))
+    assert str(signals.values("crossing_use")[0, 0]) == expected
 
 
 @pytest.mark.parametrize(

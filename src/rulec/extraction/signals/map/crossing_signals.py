@@ -16,6 +16,7 @@ from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.map_signals import crossings_told, next_crossing
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.tracks.lane_sets import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import ranges
@@ -177,11 +178,7 @@ def _crossing_uses(
     if not len(own):
         return uses
     cells = own.in_rows(rows, len(context.relevant))
-    edges = (
-        np.zeros(context.states, dtype=intp),
-        np.full(context.states, context.existing_lanes.shape[1]),
-    )
-    (low_r, high_r), (low_l, high_l) = (others.cells_from_bound(cells, edge) for edge in edges)
+    (low_r, high_r), (low_l, high_l) = _from_edges(context, cells)
     to_road = np.maximum(-high_r, low_l).clip(0.0)
     walks = cells.of(tracks.speed) * KMH >= limits.standing_kmh
     # The speed towards the middle of the road, across it (m/s)
@@ -196,6 +193,22 @@ def _crossing_uses(
     enters = soon & (to_road <= towards * limits.entering_s)
     uses.ravel()[own.places] = np.select([on, enters, soon, waits], [4, 3, 2, 1], 0)
     return uses
+
+
+def _from_edges(
+    context: DriveContext, cells: Cells
+) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
+    """How far (m) left of the right edge of the lanes that there are, and of their left one.
+
+    Where bodies begin and end, by cell.
+    """
+    others, count, sets = context.extents, context.existing_lanes.shape[1], context.lanes_there
+    there = np.stack([is_in(cells.of(sets), lane) for lane in range(count)])
+    bounds = [np.full(context.states, number) for number in range(count + 1)]
+    ends = np.array([others.cells_from_bound(cells, bound) for bound in bounds])
+    edges = (there.argmax(axis=0), count - there[::-1].argmax(axis=0))
+    right, left = (ends[edge, :, np.arange(len(edge))].T for edge in edges)
+    return (right[0], right[1]), (left[0], left[1])
 
 
 def _too_late(
