@@ -140,7 +140,8 @@ def leads_elsewhere(context: DriveContext) -> SignalColumns:
         unknown |= near & parted[np.clip(others.lane, 0, len(parted) - 1)]
     rings = {begins for begins, _, at_junction in roundabouts(context) if at_junction}
     for junction in junctions_ahead(context):
-        there = context.relevant & (others.s >= junction.low) & (others.s <= junction.high)
+        there = context.relevant & (others.s <= junction.high)
+        there &= junction.low - others.s_max <= reach
         for row in np.flatnonzero(there.any(axis=1)).tolist():
             surely, perhaps = _on_another_way(context, row, junction)
             elsewhere[row] |= there[row] & surely
@@ -189,19 +190,23 @@ def _parted_at_the_end(context: DriveContext) -> tuple[float, Flags]:
 
 def _turns_off(context: DriveContext, row: int, junction: JunctionAhead) -> bool | None:
     """Does a participant leave ego's road at a junction; None if its track does not tell."""
-    passages = context.surroundings.passages
-    inside = {
-        lanelet.id
-        for lanelets, low in zip(context.road.rows, context.road.borders.tolist(), strict=False)
-        if junction.low - 0.1 <= low < junction.high
-        for lanelet in lanelets
-        if lanelet is not None
-    }
+    passages, inside = context.surroundings.passages, _lanelets_inside(context, junction)
     for passage in passages.of_row.get(int(context.tracks.rows[row]), ()):
         same = passages.junctions[passage.junction]
         if passage.sure and any(inside & way.names for way in same.ways):
             return not _goes_along(context, passages.way(passage), junction.turned)
     return None
+
+
+def _lanelets_inside(context: DriveContext, junction: JunctionAhead) -> frozenset[str]:
+    """The ids of the lanelets of ego's road in a junction."""
+    return frozenset(
+        lanelet.id
+        for lanelets, low in zip(context.road.rows, context.road.borders.tolist(), strict=False)
+        if junction.low - 0.1 <= low < junction.high
+        for lanelet in lanelets
+        if lanelet is not None
+    )
 
 
 def _on_another_way(
@@ -213,9 +218,12 @@ def _on_another_way(
     And flags of those in which that may be, where its track does not tell its way.
     """
     passages, own_row = context.surroundings.passages, int(context.tracks.rows[row])
+    own_ways = _lanelets_inside(context, junction)
     surely, perhaps = np.zeros((2, context.states), dtype=bool)
     (own,) = context.road.line.headings_at(np.array([junction.low - _HAIR_M])).tolist()
     for passage in passages.of_row.get(own_row, ()):
+        if not any(own_ways & way.names for way in passages.junctions[passage.junction].ways):
+            continue
         inside = (context.columns >= passage.first) & (context.columns <= passage.last)
         begins = passage.first == int(passages.tracks.present[own_row].argmax())
         came = abs(turn(own, passage.heading)) > np.radians(context.thresholds.turned_deg)
