@@ -359,6 +359,16 @@ def test_signs_order_a_junction_where_the_map_has_them():
     assert bare.unknown["unregulated_junction"][3]
 
 
+def test_a_road_has_priority_until_all_of_ego_is_out_of_the_junction():
+    """Its middle is out of it in state 5, at x = 5, its rear 1 m before its end."""
+    east = [replace(EAST[0], signs=frozenset({"PRIORITY"})), *EAST[1:]]
+    ego = vehicle(7, {k: (-20 + 5 * k, 0) for k in STEPS}, speed=10)
+    found = recording([*east, *NORTH], [ego])
+    found = replace(found, complete=frozenset({"YIELD", "PRIORITY"}))
+    told = priority_signals(context_of(found, route=("1", "2", "3")))
+    assert told.world["on_priority_road"].tolist() == [True] * 6 + [False] * 10
+
+
 @pytest.mark.parametrize("path", NETS, ids=lambda path: path.name.split(".")[0])
 def test_ways_that_meet_are_the_foes_of_the_net(path):
     """Geometry alone says what SUMO's `request` bits say, way by way."""

@@ -162,6 +162,17 @@ def _next(context: DriveContext, passage: Passage) -> int:
     return min(enters, default=context.states)
 
 
+def _until_out(context: DriveContext, passage: Passage) -> slice:
+    """The same states, and those after them in which ego's body is in the junction yet."""
+    span, (rear,) = approach(context, passage), context.ego_extents.s_min
+    place = context.ego_extents.s[0, max(span.stop - 1, 0)]
+    ends = [high for low, high in context.road.junctions if low <= place <= high]
+    if not ends or span.stop >= context.states:
+        return span
+    out = span.stop + int((np.append(rear[span.stop :], np.inf) >= ends[0]).argmax())
+    return slice(span.start, max(span.stop, min(out, _next(context, passage))))
+
+
 @drive_by_drive
 def _roads(context: DriveContext) -> SignalColumns:
     """What the map says of the junction that ego nears or is in."""
@@ -171,7 +182,7 @@ def _roads(context: DriveContext) -> SignalColumns:
     for passage in own_passages(context):
         junction, span = (
             context.surroundings.passages.junctions[passage.junction],
-            approach(context, passage),
+            _until_out(context, passage),
         )
         columns[unregulated][span] = junction.regulated is False
         unknown[unregulated][span] = junction.regulated is None
