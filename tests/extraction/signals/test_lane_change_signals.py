@@ -336,3 +336,32 @@ def test_hazard_lights_of_a_drive_whose_file_contradicts_itself_are_not_known():
     body = vehicle(7, CHANGE)
     body = replace(body, lamps=dict(enumerate(map(frozenset, lit))), shows=frozenset(both | shows))
     assert changes(body=body).unknown["indicator"].tolist() == [False, True, True, False]
+
+
+@pytest.mark.parametrize(("heading", "known"), [(0.4, False), (0.1, True)])
+def test_who_turns_off_swings_over_the_lanes_of_the_road_that_it_comes_to(heading, known):
+    """A long vehicle turns right into a road of two lanes, its rear in the junction yet.
+
+    Its middle is beyond their mark in state 3, and back in state 5.
+    """
+    inside = frozenset({"intersection"})
+    bend = [(0, -10), (0, -4), (4, 0), (10, 0)]
+    road = [
+        lanelet(1, [(0, -60), (0, -10)], successors=("2",)),
+        lanelet(2, bend, predecessors=("1",), successors=("3",), types=inside),
+        straight(3, 10, 90, predecessors=("2",), left_of=4),
+        straight(4, 10, 90, 4, right_of=3),
+        # Another way leads straight on
+        lanelet(5, [(0, -10), (0, 10)], types=inside),
+    ]
+    north = {k: (0, -50 + 15 * k) for k in range(3)}
+    east = {3: (12, 2.5), 4: (14, 2.5), 5: (16, 1), 6: (19, 0), 7: (22, 0)}
+    first, then = (
+        vehicle(7, places, "truck", length=16, heading=angle)
+        for places, angle in ((north, np.pi / 2), (east, heading))
+    )
+    ego = replace(first, states=first.states | then.states, outlines=first.outlines | then.outlines)
+    found = lane_change_signals(context_of(recording(road, [ego]), ("1", "2", "3")))
+    changed = found.world["lane_change"] & (np.arange(8) >= 3)
+    assert changed.any()
+    assert bool((changed & ~found.unknown["lane_change"]).any()) == known
