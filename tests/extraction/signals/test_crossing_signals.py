@@ -48,6 +48,20 @@ def test_uses_of_the_crossing(x, y, across, expected):
 
 
 @pytest.mark.parametrize(
+    ("along", "across", "expected"),
+    [(1.4, -0.3, "not_crossing"), (0.3, -1.4, "on_crossing"), (0, 0, "on_crossing")],
+)
+def test_who_walks_along_the_far_edge_of_the_road_does_not_cross_it(along, across, expected):
+    """At the edge of the lane of those who come towards ego, which reaches to y = 6."""
+    road = [straight(1, 0, 120), lanelet(2, [(120, 4), (0, 4)])]
+    places = {k: (60 + along * 0.5 * k, 5.9 + across * 0.5 * k) for k in range(2)}
+    walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
+    found = recording([*road, ZEBRA], [steady(7, 20, 0, steps=2), walker])
+    signals = crossing_signals(context_of(found, ("1",)))
+    assert str(signals.values("crossing_use")[0, 0]) == expected
+
+
+@pytest.mark.parametrize(
     ("y", "across", "expected"),
     [
         # 3.8 m from the lane, where another one was beside it up to x = 40

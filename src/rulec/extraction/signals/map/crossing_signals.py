@@ -185,10 +185,11 @@ def _crossing_uses(
     across, left = cells.of(others.across), (low_r + high_r) / 2 + (low_l + high_l) / 2
     towards = np.where(left < 0, across, -across)
     crossing = cells.of(on_it) & cells.of(tracks.on_lane)
-    on = crossing & (cells.of(context.on_lanes) | ~walks | (towards > 0))
     waits = (to_road <= limits.kerb_m) & ~walks
-    # Who walks along the pavement and drifts a little towards the road does not come to cross
+    # Who walks along the pavement and drifts a little towards the road does not come to cross, nor
+    # who does so at the very edge of a crossing
     approaches = walks & (towards > np.abs(cells.of(others.along)))
+    on = crossing & (cells.of(context.on_lanes) | ~walks | approaches)
     soon = approaches & (to_road <= towards * limits.about_to_s)
     enters = soon & (to_road <= towards * limits.entering_s)
     uses.ravel()[own.places] = np.select([on, enters, soon, waits], [4, 3, 2, 1], 0)
