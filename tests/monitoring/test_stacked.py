@@ -78,6 +78,18 @@ def test_together_they_get_the_verdicts_of_each(chance):
     assert [in_plain_words(answer) for answer in answers] == expected
 
 
+@pytest.mark.parametrize("count", [1, 3])
+def test_a_rule_that_reads_nothing_may_be_open(count):
+    """Whether another state comes is not known of what has been cut out."""
+    book = rulec.compile(
+        rulec.parse_rulebook("rulebook b semantics finite hard rule r { require next true }")
+    )
+    trace = Trace("t", 0.5, {}, ({},) * count, ends="cut")
+    (verdict,) = verify_arrays([in_arrays(trace, book.vocabulary)], book)
+    assert verdict == verify_or_reason(trace, book)
+    assert [one.because for one in verdict.open] == [("not over",)] * (count == 1)
+
+
 def test_arrays_say_what_the_states_say():
     book = rulec.compile(rulec.parse_rulebook(BOOK))
     states = (

@@ -86,7 +86,7 @@ class OpenVerdict:
         binding: Mapping[str, str],
         reasons: Callable[[], OpenReasons],
         *,
-        beyond: Callable[[Set[str]], frozenset[str] | None] | None = None,
+        beyond: Callable[[Set[str]], frozenset[str]] | None = None,
     ) -> OpenVerdict:
         """An open verdict whose reasons are found when they are asked for.
 
@@ -99,10 +99,9 @@ class OpenVerdict:
         return result
 
     def depends_beyond(self, names: Set[str]) -> frozenset[str]:
-        """What of ``depends_on`` is not among these, told without finding it if that can be."""
-        beyond = self.__dict__.get("_beyond")
-        found: frozenset[str] | None = None if beyond is None else beyond(names)
-        return frozenset(self.depends_on) - names if found is None else found
+        """What of ``depends_on`` is not among these, told without finding all reasons."""
+        beyond: Callable[[Set[str]], frozenset[str]] | None = self.__dict__.get("_beyond")
+        return frozenset(self.depends_on) - names if beyond is None else beyond(names)
 
     def __getattr__(self, name: str) -> Any:
         # Called only for what is not there.

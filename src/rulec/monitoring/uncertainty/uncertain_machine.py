@@ -148,19 +148,28 @@ class UncertainMachine:
         self,
         words: Sequence[PossibleWord],
         constants: Sequence[Mapping[str, object]],
+        order: Sequence[str],
         names: Set[str],
-    ) -> frozenset[str] | None:
+    ) -> frozenset[str]:
         """On what it depends which of two outcomes words have but for these names.
 
-        A name that decides what all others do not is in every set that decides. None if some is
-        not surely so: then it takes the reasons to know.
+        As ``reasons`` tell, but sooner: a name that decides what all others do not is in every set
+        that decides.
         """
         alternatives, unknown = _possible_alternatives(words, constants)
         doubtful = _doubtful(alternatives, unknown)
         others = doubtful - names
         every = doubtful | {BEFORE} if len(self.machine.starts) > 1 else doubtful
         dependence = Dependence(self._runs, alternatives, unknown)
-        return others if all(dependence.needs(name, every) for name in others) else None
+        if all(dependence.needs(name, every) for name in others):
+            return others
+        found = dependence.smallest(self._in_order(doubtful, order))
+        return others if found is None else others.intersection(found)
+
+    def _in_order(self, doubtful: Set[str], order: Sequence[str]) -> list[str]:
+        """Names in their order, and what was before last, if that may matter."""
+        names = [name for name in order if name in doubtful]
+        return [*names, BEFORE] if len(self.machine.starts) > 1 else names
 
     def _reasons_of(
         self,
@@ -173,9 +182,7 @@ class UncertainMachine:
         if len(outcomes) == 1:
             return OpenReasons(pending)
         doubtful = _doubtful(alternatives, unknown)
-        names = [name for name in order if name in doubtful]
-        if len(self.machine.starts) > 1:
-            names.append(BEFORE)
+        names = self._in_order(doubtful, order)
         dependence = Dependence(self._runs, alternatives, unknown)
         found = dependence.smallest(names)
         on = names if found is None else found

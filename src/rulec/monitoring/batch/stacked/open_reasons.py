@@ -43,12 +43,12 @@ class StackedReasons:
         stretch = slice(int(first), int(last) + 1)
         return told_within_bounds(found, lambda name: self._is_within_bounds(name, stretch))
 
-    def beyond(self, words: StackedWords, place: int, names: Set[str]) -> frozenset[str] | None:
-        """On what it depends but for these names; None if that takes finding all of it."""
+    def beyond(self, words: StackedWords, place: int, names: Set[str]) -> frozenset[str]:
+        """On what it depends but for these names, told without finding all reasons."""
         if unknown_names(words, place) <= names:
             return frozenset()
         possible, constants, _ = self._possible_words(words, place)
-        return words.rule.machine.depends_beyond(possible, constants, names)
+        return words.rule.machine.depends_beyond(possible, constants, self._order, names)
 
     def _possible_words(
         self, words: StackedWords, place: int
@@ -64,7 +64,7 @@ class StackedReasons:
             columns = [_part(column, own) for column in numbers]
             if entangled is not None:
                 columns.append(np.array(entangled.at(np.arange(own.start, own.stop))))
-            starts, lengths = _runs(columns)
+            starts, lengths = _runs(columns, own.stop - own.start)
             starts += own.start
             digits = [digits_at(rule, n, numbers[n], starts) for n in range(len(rule.reads))]
             unknown = []
@@ -72,7 +72,8 @@ class StackedReasons:
                 unknown.append(self._unknown_names(words, n, column, own))
             sets = rule.letters.sets
             classes = [sets[number] for number in letters[starts].tolist()]
-            states: list[Letters] = [(cube,) for cube in zip(*digits, strict=True)]
+            cubes = zip(*digits, strict=True) if digits else [()] * len(starts)
+            states: list[Letters] = [(cube,) for cube in cubes]
             if entangled is not None:
                 for run, number in enumerate(entangled.at(starts)):
                     if number >= 0:
@@ -214,9 +215,8 @@ def _part(column: Numbers, own: slice) -> NDArray[np.intp]:
     return np.broadcast_to(np.intp(column), (own.stop - own.start,))
 
 
-def _runs(columns: Sequence[NDArray[np.intp]]) -> tuple[NDArray[np.intp], list[int]]:
+def _runs(columns: Sequence[NDArray[np.intp]], length: int) -> tuple[NDArray[np.intp], list[int]]:
     """Where states begin in which all columns stay the same, and how many each time."""
-    length = len(columns[0])
     changes = np.zeros(length, dtype=bool)
     changes[0] = True
     for column in columns:
