@@ -97,6 +97,18 @@ def test_who_is_there_at_the_end_goes_on():
 
 
 @pytest.mark.parametrize(
+    ("start", "y", "goes_on"), [(0, 0.0, False), (0, 4.0, True), (60, 0.0, True)]
+)
+def test_who_follows_ego_and_is_lost_does_not_go_on(start, y, goes_on):
+    """Ego drives at 10 m/s from x = 20 on, and is at 55 m when the other one is lost, at 42 m."""
+    ego = drive(1, 20, 10, steps=8)
+    lost = drive(7, start, 12, steps=7, y=y)
+    scenario = scene(ego, lost, choice=Choice(ego=1))
+    assert scenario.account.until_s == 4
+    assert (swept(only(scenario), 3.8, 4.0) is not None) == goes_on
+
+
+@pytest.mark.parametrize(
     ("y", "kept"), [(0, True), (4, True), (6.6, True), (6.8, False), (-8, False), (-300, False)]
 )
 def test_only_who_touches_the_road_is_kept(y, kept):

@@ -116,7 +116,10 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
         lines.append(f"emergency   every maneuver brakes by more than {least:.1f} m/s²")
     lines.append(f"computed in {seconds:.3f} s")
     if answers.listed == [] and (maneuvers.satisfying or maneuvers.open):
-        lines.append("listed      none: no trajectory was found along those that cost least")
+        way_out = "; `--extent body` leaves more room" if graph.extent == "lane" else ""
+        lines.append(
+            f"listed      none: no trajectory was found along those that cost least{way_out}"
+        )
     for number, maneuver in enumerate(answers.listed or (), 1):
         lines += maneuver_blocks.listed_block(maneuvers, number, maneuver, answers.verdicts)
         lines += _chances(answers, maneuver)

@@ -94,8 +94,16 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
     stretches = tuple(Stretch("crossing", (s0 - ego_s, s1 - ego_s)) for s0, s1 in crossings)
     road = Road((low - ego_s, high - ego_s), bounds, stretches, lanes.missing(low, high, ego_s))
     at_s = start.step * recording.step_s
+    motion = starts.ego_motion(recording, start, line.heading_at(ego_s))
     view = TrafficView(
-        recording=recording, line=line, lanes=lanes, ego_s=ego_s, at_s=at_s, road=road.outline
+        recording=recording,
+        line=line,
+        lanes=lanes,
+        ego_s=ego_s,
+        at_s=at_s,
+        road=road.outline,
+        ego_d=d,
+        ego_speed=motion["speed"] or 0.0,
     )
     on_road = tuple(traffic_obstacles(view, start.participant, choice.prediction))
     congestion = congested(on_road, road.outline, choice.congested_below_kmh)
@@ -107,7 +115,6 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
         "congested": congestion,
         **map_signals(ahead, count, recording.step_s, start.step),
     }
-    motion = starts.ego_motion(recording, start, line.heading_at(ego_s))
     ends_s = _map_ends_s(recording, way[-1], road.outline.s_max, motion["speed"])
     horizon_s, step_s, remarks = USUAL_HORIZON_S, STEP_S, recording.remarks
     map_ends = ends_s is not None and ends_s < USUAL_HORIZON_S

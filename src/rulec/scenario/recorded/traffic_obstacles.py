@@ -30,7 +30,7 @@ _AT_ONCE = 20_000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrafficView:
-    """A recording seen along a line from ego's place at time 0."""
+    """A recording seen along a line from ego's place at time 0, when it has a speed (m/s)."""
 
     recording: Recording
     line: ReferenceLine
@@ -38,6 +38,8 @@ class TrafficView:
     ego_s: float
     at_s: float
     road: Box
+    ego_d: float = 0.0
+    ego_speed: float = 0.0
 
     def time(self, step: int) -> float:
         """The scenario's time (s) of a time step; 3 x 0.1 s is 0.3 s, as typed."""
@@ -52,6 +54,10 @@ class TrafficView:
             if participant.outlines and not participant.standing
         )
         return self.time(max(steps, default=0))
+
+    def is_followed_by(self, body: Box, time_s: float) -> bool:
+        """Whether a body in ego's way is behind where ego is by then at its speed."""
+        return body.d_min < self.ego_d < body.d_max and body.s_max < self.ego_speed * time_s
 
     def boxes(self, outlines: Sequence[Points]) -> list[Box | None]:
         """The bounds of outlines in the scenario; None far from the road."""
@@ -146,8 +152,10 @@ def _motion(
         return None
     times = [view.time(step) for step in steps]
     known = list(boxes)
-    last = known[-1]
-    if times[-1] >= view.until_s - _LOST_S and last is not None:
+    last, is_lost = known[-1], times[-1] < view.until_s
+    # Of who follows nobody knows how it would have braked for ego
+    goes_on = last is not None and not (is_lost and view.is_followed_by(last, times[-1]))
+    if times[-1] >= view.until_s - _LOST_S and last is not None and goes_on:
         goes_on_s = view.until_s - times[-1] + GOES_ON_S
         along = _speed(times, known) * goes_on_s
         times.append(times[-1] + goes_on_s)
