@@ -151,8 +151,9 @@ def test_all_examples_the_other_way(formula, turned_round, tmp_path, capsys):
         f"rulebook stops signal red, stop hard rule r {{ require {formula} "
         "accept { red and stop } reject { red and not stop } }"
     )
-    _, out, _ = run(capsys, str(tmp_path / "stops.rules"))
-    assert ("all examples of rule `r` come out the other way" in out) == turned_round
+    for form in ("full", "junit"):
+        _, out, _ = run(capsys, str(tmp_path / "stops.rules"), "--output-format", form)
+        assert ("all examples of rule `r` come out the other way" in out) == turned_round
 
 
 def test_junit(odd, capsys):

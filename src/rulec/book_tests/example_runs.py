@@ -70,6 +70,18 @@ class ExampleRun(Rows):
         """Tell whether the rule itself was asked for, rather than some examples of it."""
         return _is_wanted([rule.name], self.patterns)
 
+    def turned_round(self) -> frozenset[str]:
+        """The rules that reject what their examples accept, and accept what these reject."""
+        own: dict[str, list[ExampleOutcome]] = {}
+        for outcome in self.outcomes:
+            own.setdefault(outcome.rule.name, []).append(outcome)
+        return frozenset(
+            rule
+            for rule, outcomes in own.items()
+            if not any(outcome.passed for outcome in outcomes)
+            and len({outcome.example.accepts for outcome in outcomes}) > 1
+        )
+
     def rows(self) -> list[dict[str, Any]]:
         """One row an example."""
         return [

@@ -139,7 +139,7 @@ class NavigationGraph:
         return tuple(
             tuple(
                 tuple(
-                    least[p + 1][j] + (0 if weight and self.is_free(p, i, j) else weight)
+                    least[p + 1][j] + (0 if weight and self.costs_nothing(p, i, j) else weight)
                     for weight, j in zip(row, onward, strict=True)
                 )
                 for i, (row, onward) in enumerate(zip(weights, followers, strict=True))
@@ -147,8 +147,8 @@ class NavigationGraph:
             for p, (weights, followers) in enumerate(zip(rows, self.successors, strict=True))
         )
 
-    def is_free(self, p: int, i: int, j: int) -> bool:
-        """Whether going on from cell i of layer p to cell j of the next one costs no change.
+    def costs_nothing(self, p: int, i: int, j: int) -> bool:
+        """Whether no change counts from cell i of layer p to cell j of the next one.
 
         Its surface alone differs, or where ego is beside those who are in other lanes all along.
         """
@@ -157,7 +157,7 @@ class NavigationGraph:
         changed = [name for name in before.keys() & after.keys() if before[name] != after[name]]
         if here.surface == there.surface and not changed:
             return False
-        return all(_is_beside(before[name], after[name]) for name in changed)
+        return all(_keeps_its_side(before[name], after[name]) for name in changed)
 
     def _states(self, layer: Layer) -> tuple[State, ...]:
         signals = self.signals_of({name: self.objects[name] for name in layer.objects})
@@ -223,8 +223,8 @@ def valuation(cell: Cell, names: Sequence[str], code: bytes) -> State:
     }
 
 
-def _is_beside(before: str | tuple[str, str], after: str | tuple[str, str]) -> bool:
-    """Whether both say the same side of an object, and none that ego is in its lane."""
+def _keeps_its_side(before: str | tuple[str, str], after: str | tuple[str, str]) -> bool:
+    """Whether ego is on the same side of an object both times, and not in its lane."""
     if isinstance(before, str) or isinstance(after, str):
         return False
     return before[1] == after[1] != "same_lane"

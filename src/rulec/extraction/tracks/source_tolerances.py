@@ -101,13 +101,13 @@ _MOST_SIGMAS = 2.0
 _NGSIM = re.compile(r"USA_(US101|I80|Lanker|Peach)")
 
 
-def tolerances_of(recording: Recording, known_of_it: WholeRecording | None = None) -> Tolerances:
+def tolerances_of(recording: Recording, whole: WholeRecording | None = None) -> Tolerances:
     """The tolerances of a recording, by its form, by where it was made, and by what it says.
 
-    And by the noise that its tracks have, if that is more. ``known_of_it`` is ``whole_recording``'s
-    answer, if that is known.
+    And by the noise that its tracks have, if that is more. ``whole`` is what ``whole_recording``
+    says of it, if that is known already.
     """
-    whole = known_of_it or whole_recording(recording)
+    whole = whole or whole_recording(recording)
     if recording.form == "SUMO data":
         known = rounded_to(recording.rounding or USUAL_ROUNDING)
     else:

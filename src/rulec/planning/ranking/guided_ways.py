@@ -101,7 +101,7 @@ def guided_ways(
 def change_cost(graph: NavigationGraph, p: int, node: int, target: int) -> float:
     """What going from a cell of layer ``p`` to one of the next costs by its margin."""
     margin = graph.margins[p][node][graph.successors[p][node].index(target)]
-    if margin is None or graph.is_free(p, node, target):
+    if margin is None or graph.costs_nothing(p, node, target):
         return 0.0
     return 1 / (margin * graph.step_s)
 

@@ -84,7 +84,7 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
     step_s = time_step(path, data.moments)
     types = read_vehicle_types(demand_beside(path, data.head))
     unknown: set[str] = set()
-    rounding = _rounding(data)
+    rounding = _rounding(data)  # while it has tracks
     participants = tuple(_participants(data, types, step_s, unknown))
     replaced = programmes_beside(path, data.head)
     # What is not there may have programmes for each of them

@@ -115,7 +115,8 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
     if least is not None:
         lines.append(f"emergency   every maneuver brakes by more than {least:.1f} m/s²")
     lines.append(f"computed in {seconds:.3f} s")
-    if answers.listed == [] and (maneuvers.satisfying or maneuvers.open):
+    is_bare = answers.listed is not None and not answers.listed
+    if is_bare and (maneuvers.satisfying or maneuvers.open):
         way_out = "; `--extent body` leaves more room" if graph.extent == "lane" else ""
         lines.append(
             f"listed      none: no trajectory was found along those that cost least{way_out}"

@@ -42,12 +42,7 @@ def as_text(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]
         for run in runs
         for outcome in run.outcomes
     ]
-    problems = [
-        failure(outcome, run.rulebook.name, turned_round=outcome.rule.name in _turned_round(run))
-        for run in runs
-        for outcome in run.outcomes
-        if not outcome.passed
-    ]
+    problems = [problem for run in runs for problem in failures(run).values()]
     if problems:
         details = render_diagnostics(
             problems, wants_color(sys.stdout), summary=False, columns=excerpt_width(sys.stdout)
@@ -86,22 +81,17 @@ def coverage_in_words(runs: Sequence[ExampleRun], covered: Sequence[Sequence[Rul
     return f"coverage{own}, {with_others} with those that are inherited"
 
 
-def _turned_round(run: ExampleRun) -> frozenset[str]:
-    """The rules that reject all that their examples accept, and accept all that these reject."""
-    own: dict[str, list[ExampleOutcome]] = {}
-    for outcome in run.outcomes:
-        own.setdefault(outcome.rule.name, []).append(outcome)
-    return frozenset(
-        rule
-        for rule, outcomes in own.items()
-        if not any(outcome.passed for outcome in outcomes)
-        and len({outcome.example.accepts for outcome in outcomes}) > 1
-    )
+def failures(run: ExampleRun) -> dict[int, Diagnostic]:
+    """The diagnostics of a run's failing examples, by their places among its outcomes."""
+    turned_round = run.turned_round()
+    return {
+        number: _failure(outcome, run.rulebook.name, turned_round=outcome.rule.name in turned_round)
+        for number, outcome in enumerate(run.outcomes)
+        if not outcome.passed
+    }
 
 
-def failure(
-    example_outcome: ExampleOutcome, rulebook: str, *, turned_round: bool = False
-) -> Diagnostic:
+def _failure(example_outcome: ExampleOutcome, rulebook: str, *, turned_round: bool) -> Diagnostic:
     """The diagnostic of a failing, perhaps inherited, example.
 
     ``turned_round``: all examples of its rule come out the other way.

@@ -7,10 +7,11 @@ from xml.etree import ElementTree
 
 from rulec.book_tests.example_coverage import RuleCoverage, asked_of, percent
 from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun
+from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.diagnostic import at
 from rulec.files import from_here
 from rulec.report.findings.diagnostics_text import render_diagnostics
-from rulec.report.tests.example_text import Besides, coverage_lines, failure
+from rulec.report.tests.example_text import Besides, coverage_lines, failures
 from rulec.report.text.xml_text import HEAD, element, xml_text
 
 
@@ -34,8 +35,9 @@ def as_junit(
             properties = ElementTree.SubElement(suite, "properties")
             part = f"{percent(asked_of(covered[number], run.patterns)):.3f}"
             ElementTree.SubElement(properties, "property", {"name": "coverage", "value": part})
-        for outcome in run.outcomes:
-            _case(suite, run.rulebook.name, outcome)
+        failing = failures(run)
+        for index, outcome in enumerate(run.outcomes):
+            _case(suite, run.rulebook.name, outcome, failing.get(index))
         if covered is not None:
             lines = coverage_lines(covered[number], run.rulebook.vocabulary)
             output = ElementTree.SubElement(suite, "system-out")
@@ -71,7 +73,12 @@ def _counts(runs: Sequence[ExampleRun], *, errors: int = 0, short: int = 0) -> d
     }
 
 
-def _case(suite: ElementTree.Element, rulebook: str, example_outcome: ExampleOutcome) -> None:
+def _case(
+    suite: ElementTree.Element,
+    rulebook: str,
+    example_outcome: ExampleOutcome,
+    problem: Diagnostic | None,
+) -> None:
     attributes = {
         "classname": f"{rulebook}.{example_outcome.rule.name}",
         "name": example_outcome.name,
@@ -82,8 +89,7 @@ def _case(suite: ElementTree.Element, rulebook: str, example_outcome: ExampleOut
     case = ElementTree.SubElement(
         suite, "testcase", {name: xml_text(value) for name, value in attributes.items()}
     )
-    if not example_outcome.passed:
-        problem = failure(example_outcome, rulebook)
+    if problem is not None:
         attributes = {"type": problem.code, "message": xml_text(problem.message)}
         element = ElementTree.SubElement(case, "failure", attributes)
         element.text = xml_text(render_diagnostics([problem], summary=False))

@@ -39,7 +39,7 @@ class Spots(NamedTuple):
     """States of the stack, and the cells of the variables' objects in each.
 
     ``whole`` are all states, or all cells, in their order; of a ``kind`` are the cells of all
-    objects of that type.
+    objects of that type, of any if it is empty.
     """
 
     states: Places
@@ -60,7 +60,6 @@ class StackReader:
         self.stack = stack
         self._numbers: dict[int, Array | int] = {}
         self._of_kind: dict[tuple[int, str], Array] = {}
-        self._in_cells: dict[int, Array] = {}
         self._changes: dict[int, Flags | None] = {}
         self._digits: dict[int, int] = {}
         self.met_values = MetValues(stack)
@@ -72,7 +71,7 @@ class StackReader:
 
     def every_cell_of(self, variable: str) -> Spots:
         """All cells, for a variable."""
-        return Spots(self.stack.state_of, {variable: self._every_cell}, whole=True)
+        return Spots(self.stack.state_of, {variable: self._every_cell}, whole=True, kind="")
 
     def numbers(self, read: StackedRead, spots: Spots | None) -> Numbers:
         """The numbers of a read at some spots, or in all states; one if they are all the same.
@@ -88,8 +87,6 @@ class StackReader:
             found = self._numbers[read.key] = self._everywhere(read)
         if spots is None or not isinstance(found, np.ndarray):
             return found
-        if spots.whole and spots.cells:
-            return found if read.variables else self._in_every_cell(read, found)
         if spots.kind is None:
             return found.take(spots.cells[read.variables[0]] if read.variables else spots.states)
         key = read.key, spots.kind
@@ -98,12 +95,6 @@ class StackReader:
             is_every = bool(read.variables) and len(own) == len(found)
             self._of_kind[key] = found if is_every else found.take(own)
         return self._of_kind[key]
-
-    def _in_every_cell(self, read: StackedRead, numbers: Array) -> Array:
-        """The numbers of a read of no object in the state of each cell."""
-        if read.key not in self._in_cells:
-            self._in_cells[read.key] = numbers.take(self.stack.state_of)
-        return self._in_cells[read.key]
 
     def changes(self, read: StackedRead) -> Flags | None:
         """The cells whose number of a read is not that of the cell before; None if there are none.
