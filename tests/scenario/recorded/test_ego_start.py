@@ -6,7 +6,12 @@ from math import pi
 import pytest
 
 from rulec.diagnostics import RulecError
-from rulec.scenario.recorded.ego_start import ego_size, ego_start, reference_lanelet
+from rulec.scenario.recorded.ego_start import (
+    ego_motion,
+    ego_size,
+    ego_start,
+    reference_lanelet,
+)
 from rulec.scenario.scenario_model import Choice
 from support.builders.recordings import recording, straight, vehicle
 
@@ -78,3 +83,17 @@ def test_the_lanelet_is_the_one_under_ego_or_the_one_chosen():
     ]:
         with pytest.raises(RulecError, match=message):
             reference_lanelet(FOUND, choice, state, "file")
+
+
+def test_who_goes_back_along_its_lanelet_starts_nowhere():
+    def moving(speed, heading):
+        own = start(ego=7)
+        return replace(own, state=replace(own.state, speed=speed, heading=heading))
+
+    # Turning round, or backing out of a place to park
+    assert ego_motion(FOUND, moving(1.5, pi), 0.0, "1", "file")["speed"] == 0
+    assert ego_motion(FOUND, moving(9.0, pi / 2), 0.0, "1", "file")["speed"] == pytest.approx(0)
+    for speed, heading in [(9.0, pi), (-9.0, 0.0)]:
+        with pytest.raises(RulecError, match="ego goes back along lanelet 1, at 9.0 m/s") as caught:
+            ego_motion(FOUND, moving(speed, heading), 0.0, "1", "file")
+        assert caught.value.diagnostics[0].code == "R0612"

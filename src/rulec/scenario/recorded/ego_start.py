@@ -21,6 +21,9 @@ _FARTHEST = 1e15
 
 _SAME_PLACE_M = 0.1
 
+_AGAINST_MPS = 2.0
+"""Who goes back faster does not turn or park, but drives on the oncoming side, or reverses."""
+
 
 @dataclass(frozen=True, slots=True)
 class EgoStart:
@@ -118,18 +121,28 @@ class EgoMotionFields(TypedDict):
     bounds: MotionBounds
 
 
-def ego_motion(recording: recorded.Recording, start: EgoStart, heading: float) -> EgoMotionFields:
+def ego_motion(
+    recording: recorded.Recording, start: EgoStart, heading: float, reference: str, file: str
+) -> EgoMotionFields:
     """Ego's speed along and across a road that leads to ``heading`` (rad), and its bounds.
 
-    Those of a car, unless ego takes the part of somebody of another type.
+    Those of a car, unless ego takes the part of somebody of another type. Raises RulecError R0612
+    for one that goes back along its lanelet, the ``reference``: maneuvers lead ahead.
     """
     types = (body.object_types for body in recording.participants if body.id == start.participant)
     bounds = bounds_of(next(types, ()))
     speed, turned = start.state.speed, start.state.heading - heading
     if not isfinite(speed):
         return {"speed": None, "lateral_speed": 0.0, "bounds": bounds}
-    ahead, sideways = max(speed * cos(turned), 0.0), speed * sin(turned)
-    return {"speed": ahead, "lateral_speed": sideways, "bounds": bounds}
+    ahead, sideways = speed * cos(turned), speed * sin(turned)
+    if ahead < -_AGAINST_MPS:
+        raise choice_error(
+            f"ego goes back along lanelet {reference}, at {-ahead:.1f} m/s",
+            "choose with --at-time a moment at which it goes the way of its lane, with --reference "
+            "a lanelet that leads its way, or another ego with --ego",
+            file,
+        )
+    return {"speed": max(ahead, 0.0), "lateral_speed": sideways, "bounds": bounds}
 
 
 def reference_lanelet(

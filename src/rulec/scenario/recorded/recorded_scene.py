@@ -94,7 +94,7 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
     stretches = tuple(Stretch("crossing", (s0 - ego_s, s1 - ego_s)) for s0, s1 in crossings)
     road = Road((low - ego_s, high - ego_s), bounds, stretches, lanes.missing(low, high, ego_s))
     at_s = start.step * recording.step_s
-    motion = starts.ego_motion(recording, start, line.heading_at(ego_s))
+    motion = starts.ego_motion(recording, start, line.heading_at(ego_s), own, file)
     view = TrafficView(
         recording=recording,
         line=line,
