@@ -10,7 +10,16 @@ import pytest
 from rulec.diagnostics import RulecError
 from rulec.partition import navigation_graph
 from rulec.planning.product.graph_product import count_paths
-from rulec.scenario import Box, ConstantAcceleration, Ego, Obstacle, Road, Scenario, Stretch
+from rulec.scenario import (
+    Account,
+    Box,
+    ConstantAcceleration,
+    Ego,
+    Obstacle,
+    Road,
+    Scenario,
+    Stretch,
+)
 
 CYCLIST = Obstacle("c", "cyclist", 2.0, 0.6, ConstantAcceleration(20.0, -1.5))
 ROAD = Road((0.0, 40.0), (-2.0, 2.0))
@@ -89,3 +98,59 @@ def test_an_ego_for_which_the_road_has_no_room(width):
     (problem,) = caught.value.diagnostics
     assert problem.code == "R0607"
     assert problem.message == f"ego is {width:g} m wide, and the road is no wider"
+
+
+CAR = Obstacle("c", "car", 4.0, 1.8, ConstantAcceleration(20.0, -2.6))
+PARKED = replace(SCENE, obstacles=(CAR,), goal=Box(30.0, 40.0, -2.0, 2.0))
+"""Beside the lane, which it reaches 0.3 m into: 3.7 m are free."""
+
+
+def left_of_it(scene, extent="room", **options):
+    """Where ego's centre may be beside it, by the bounds of that cell; None if there is none."""
+    layers = navigation_graph(scene, partition="fine", extent=extent, **options).layers
+    cells = [cell for layer in layers for cell in layer.cells]
+    found = [cell for cell in cells if cell.signature == {"c": ("beside", "left_of")}]
+    return (found[0].bounds.d_min, found[0].bounds.d_max) if found else None
+
+
+def of_car(d, **changes):
+    car = replace(CAR, motion=ConstantAcceleration(20.0, d), **changes)
+    return replace(PARKED, ego=Ego(5.0, 0.0, 4.0, 1.8), obstacles=(car,))
+
+
+def test_ego_passes_in_a_lane_that_another_reaches_into_where_it_has_room():
+    assert left_of_it(of_car(-2.6), "lane") is None
+    # Half of ego's width and 0.25 m beside its side at -1.7, up to the lane's bound
+    assert left_of_it(of_car(-2.6)) == pytest.approx((-0.55, 2.0))
+    # 2.3 m are free beside its side at -0.3: twice 0.25 more than ego's width; then no longer
+    assert left_of_it(of_car(-2.5, width=4.399)) == pytest.approx((0.8495, 2.0))
+    assert left_of_it(of_car(-2.5, width=4.401)) is None
+
+
+def test_ego_does_not_pass_within_the_lane_of_another():
+    """Its middle is on the lane, however near to the edge."""
+    assert left_of_it(of_car(-2.01)) is not None
+    assert left_of_it(of_car(-1.99)) is None
+
+
+def test_with_room_ego_is_as_wide_as_its_bounds_say_if_nobody_says_how_wide_it_is():
+    nobody = replace(of_car(-2.6), ego=Ego(5.0, 0.0, speed=14.0))
+    assert left_of_it(nobody) == pytest.approx((-1.45, 2.0))
+    assert left_of_it(nobody, bounds="car")[0] == pytest.approx(-1.45 + 1.61 / 2)
+    assert left_of_it(nobody, bounds="truck")[0] == pytest.approx(-1.45 + 2.55 / 2)
+
+
+def test_the_road_keeps_its_outer_bounds_with_room():
+    """As with whole lanes, where ego's centre may be at a mark."""
+    on_the_left = of_car(2.6)
+    cells = navigation_graph(on_the_left, partition="fine", extent="room").layers[0].cells
+    assert min(cell.bounds.d_min for cell in cells) == -2.0
+
+
+def test_only_recorded_scenes_within_bounds_have_room_unless_it_is_asked_for():
+    assert navigation_graph(of_car(-2.6)).extent == "lane"
+    assert navigation_graph(of_car(-2.6), bounds="car").extent == "lane"
+    recorded = replace(of_car(-2.6), account=Account("1", 1, 0, 4.0, {}))
+    assert navigation_graph(recorded, bounds="car").extent == "room"
+    assert navigation_graph(recorded, bounds="none").extent == "lane"
+    assert navigation_graph(recorded, bounds="car", extent="lane").extent == "lane"

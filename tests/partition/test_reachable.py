@@ -21,11 +21,13 @@ def holds(interval, value):
 
 def check_kept(scenario, bounds, partition, chance, number):
     """Each motion's cells are kept, and its places and speeds in their sets: how many were."""
-    whole = navigation_graph(scenario, partition=partition, bounds="none", step_s=None)
+    extent = "lane" if scenario.account is None else "room"
+    whole = navigation_graph(scenario, partition=partition, bounds="none", extent=extent)
     kept = navigation_graph(
         scenario,
         partition=partition,
         bounds=bounds,
+        extent=extent,
         step_s=whole.step_s,
         horizon_s=whole.step_s * (len(whole.layers) - 1),
     )

@@ -80,7 +80,7 @@ def _openings(graph: NavigationGraph) -> Iterator[str]:
             yield f"--step {step:g}"
             break
         finer *= 2
-    if graph.extent == "lane" and _opens(graph, {"extent": "body"}):
+    if graph.extent != "body" and _opens(graph, {"extent": "body"}):
         yield "--extent body"
     if graph.adjacency != "touch" and _opens(graph, {"adjacency": "touch"}):
         yield "--adjacency touch"

@@ -34,12 +34,12 @@ if TYPE_CHECKING:
 FINEST_S = Fraction(1, 20)
 """Where no path is left the step of a recorded scene is halved, down to this (s)."""
 
-
-COMFORTABLE = 4.0
-"""And where no path is left that takes no more acceleration and braking than this (m/s²),"""
+GENTLE, COMFORTABLE = 2.0, 4.0
+"""So it is where none is left that takes no more acceleration and braking than this (m/s²),"""
 
 COMFORTABLE_S = Fraction(1, 8)
-"""down to this (s)."""
+"""down to this (s); of such steps the longest one with a gentle path counts, or a comfortable one.
+"""
 
 
 class GraphOptions(TypedDict, total=False):
@@ -47,7 +47,7 @@ class GraphOptions(TypedDict, total=False):
 
     partition: PartitionName | None
     adjacency: cell_links.AdjacencyName
-    extent: ExtentName
+    extent: ExtentName | None
     step_s: float | None
     horizon_s: float | None
     bounds: MotionBounds | str | None
@@ -59,7 +59,7 @@ def navigation_graph(
     *,
     partition: PartitionName | None = None,
     adjacency: cell_links.AdjacencyName = "touch",
-    extent: ExtentName = "lane",
+    extent: ExtentName | None = None,
     step_s: float | None = None,
     horizon_s: float | None = None,
     bounds: MotionBounds | str | None = None,
@@ -68,12 +68,13 @@ def navigation_graph(
 
     ``partition`` is ``paper`` (behind, in front, left, right; if none is given) or ``fine``
     (station and lateral); ``adjacency``, when two cells are next to each other, ``touch``, ``edge``
-    or ``forward``; ``extent``, how wide obstacles are, ``lane`` (all lanes that they touch) or
-    ``body``. Planning interval and horizon (s) are the scenario's unless given; in a recorded scene
-    the interval is then the longest one up to that which leaves ego a place to start, or half of
-    that, and so on, where no path would be left. Within
-    ``bounds`` of ego's motion, the scenario's unless given, only what ego can drive is kept; a text
-    is read as ``read_bounds`` does, and ``none`` keeps everything.
+    or ``forward``; ``extent``, how wide obstacles are, ``lane`` (all lanes that they touch),
+    ``room`` (without where ego has room beside them) or ``body``: if none is given ``room`` in a
+    recorded scene within bounds, else ``lane``. Planning interval and horizon (s) are the
+    scenario's unless given; in a recorded scene the interval is then the longest one up to that
+    which leaves ego a place to start, or half of that, and so on, where no gentle path would be
+    left. Within ``bounds`` of ego's motion, the scenario's unless given, only what ego can drive is
+    kept; a text is read as ``read_bounds`` does, and ``none`` keeps everything.
 
     Raises RulecError R0606 if horizon and step do not fit together, R0607 if ego has no start cell,
     R0608 for an unknown partition, adjacency or extent, R0770 for bounds that make no sense, R0718
@@ -90,19 +91,25 @@ def navigation_graph(
     )
     if step_s is not None or scenario.account is None:
         return _cut(plan, times)
-    free = step_that_leaves_room(scenario, times, plan.partition, extent)
+    free = step_that_leaves_room(plan.scenario, times, plan.partition, plan.extent)
     if free is not None:
         times = _in_steps_of(free.step, times)
-    first = alive = None
-    while times.step >= FINEST_S:
-        graph = _cut(plan, times)
-        first = first or graph
-        if graph.leads_to_a_goal:
-            alive = alive or graph
-            if times.step < COMFORTABLE_S or _comfortable(graph):
-                return graph if times.step >= COMFORTABLE_S else alive
+    graphs: list[NavigationGraph] = []
+    for most, finest in ((GENTLE, COMFORTABLE_S), (COMFORTABLE, COMFORTABLE_S), (None, FINEST_S)):
+        for number, halved in enumerate(_halved(times, finest)):
+            if number == len(graphs):
+                graphs.append(_cut(plan, halved))
+            graph = graphs[number]
+            if graph.leads_to_a_goal and (most is None or _has_way_of(most, graph)):
+                return graph
+    return graphs[0] if graphs else _cut(plan, times)
+
+
+def _halved(times: Timing, finest: Fraction) -> Iterator[Timing]:
+    """The same horizon in these steps, in half of them, and so on."""
+    while times.step >= finest:
+        yield times
         times = _in_steps_of(times.step / 2, times)
-    return alive or first or _cut(plan, times)
 
 
 def has_way(scenario: Scenario, **options: Unpack[GraphOptions]) -> bool:
@@ -123,15 +130,15 @@ def has_way_within(graph: NavigationGraph, bounds: MotionBounds) -> bool:
     return reachable(graph, bounds).leads_to_a_goal
 
 
-def _comfortable(graph: NavigationGraph) -> bool:
-    """Whether, if ego's motion has bounds, some way takes no more than ``COMFORTABLE``."""
+def _has_way_of(most: float, graph: NavigationGraph) -> bool:
+    """Whether, if ego's motion has bounds, some way may take no more (m/s²) than this."""
     own = graph.bounds
     if own is None:
         return True
     limits = replace(
         own,
-        acceleration=min(own.acceleration, COMFORTABLE),
-        braking=min(own.braking, COMFORTABLE),
+        acceleration=min(own.acceleration, most),
+        braking=min(own.braking, most),
     )
     return has_way_within(graph, limits)
 
@@ -152,7 +159,7 @@ def _planned(
     *,
     partition: PartitionName | None = None,
     adjacency: cell_links.AdjacencyName = "touch",
-    extent: ExtentName = "lane",
+    extent: ExtentName | None = None,
     step_s: float | None = None,
     horizon_s: float | None = None,
     bounds: MotionBounds | str | None = None,
@@ -160,6 +167,10 @@ def _planned(
     own = scenario.ego.bounds
     bounds = read_bounds(bounds, own) if isinstance(bounds, str) else bounds or own
     partition = partition or "paper"
+    if extent is None:
+        extent = "room" if bounds is not None and scenario.account is not None else "lane"
+    if bounds not in (None, own):
+        scenario = replace(scenario, ego=replace(scenario.ego, bounds=bounds))
     for what, name, names_type in (
         ("partition", partition, PartitionName),
         ("adjacency", adjacency, cell_links.AdjacencyName),

@@ -94,6 +94,6 @@ def test_who_goes_back_along_its_lanelet_starts_nowhere():
     assert ego_motion(FOUND, moving(1.5, pi), 0.0, "1", "file")["speed"] == 0
     assert ego_motion(FOUND, moving(9.0, pi / 2), 0.0, "1", "file")["speed"] == pytest.approx(0)
     for speed, heading in [(9.0, pi), (-9.0, 0.0)]:
-        with pytest.raises(RulecError, match="ego goes back along lanelet 1, at 9.0 m/s") as caught:
+        with pytest.raises(RulecError, match=r"back along lanelet 1, at 9\.0 m/s") as caught:
             ego_motion(FOUND, moving(speed, heading), 0.0, "1", "file")
         assert caught.value.diagnostics[0].code == "R0612"

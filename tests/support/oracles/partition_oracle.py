@@ -14,6 +14,7 @@ from rulec.scenario import Footprints, Obstacle, Scenario, Trajectory
 
 HAIR = 1e-5
 FAR = 1000.0
+CLEARANCE = 0.25
 
 
 @dataclass(frozen=True)
@@ -102,7 +103,14 @@ def lanes(scenario: Scenario):
 
 def width(scenario: Scenario, extent: str):
     """How far from its centre ego keeps what is beside it."""
-    return scenario.ego.width / 2 if extent == "body" else 0.0
+    ego = scenario.ego
+    own = {"lane": 0.0, "body": ego.width, "room": ego.width or (ego.bounds and ego.bounds.width)}
+    return (own[extent] or 0.0) / 2 + (CLEARANCE if extent == "room" else 0.0)
+
+
+def verge(scenario: Scenario, extent: str):
+    """How far from its centre ego keeps the road's outer bounds."""
+    return width(scenario, extent) if extent == "body" else 0.0
 
 
 def road_for(scenario: Scenario, extent: str):
@@ -111,7 +119,7 @@ def road_for(scenario: Scenario, extent: str):
     Where ego starts closer to a verge than that, it may stay as close.
     """
     low, high = scenario.road.lanes[0], scenario.road.lanes[-1]
-    wide = width(scenario, extent)
+    wide = verge(scenario, extent)
     right = low + min(wide, scenario.ego.d - low)
     left = high - min(wide, high - scenario.ego.d)
     road = shapely.union_all([piece for _, _, piece in lanes(scenario)])
@@ -136,16 +144,26 @@ def taken(scenario, obstacle, start: float, end: float, partition: str, extent: 
     half = width(scenario, extent)
     if extent == "body":
         wide = (s0, s1, d0 - half, d1 + half)
+    if extent == "room":
+        # Of the outermost lanes that it touches, each that its middle is beside, and ego fits in
+        outermost = [min(touched), max(touched)]
+        free = [(outermost[0][0], d0), (d1, outermost[1][1])]
+        fits = [high - low >= 2 * half for low, high in free]
+        beside = [(d0 + d1) / 2 > outermost[0][1], (d0 + d1) / 2 < outermost[1][0]]
+        right = d0 - half if fits[0] and beside[0] else outermost[0][0]
+        left = d1 + half if fits[1] and beside[1] else outermost[1][1]
+        wide = (s0, s1, right, left)
     if partition == "fine" or obstacle.type != "pedestrian":
         return wide, 0
     turned = {0: 0, 45: 90, 90: 90, 180: 180, -90: -90, -135: -90}[obstacle.walking_direction]
     if turned in (0, 180):
         return wide, turned
-    for stretch in scenario.road.surfaces if extent == "lane" else ():
+    for stretch in scenario.road.surfaces if extent != "body" else ():
         c0, c1 = stretch.s
         if min(c1, s1) - max(c0, s0) > HAIR:
             s0, s1 = min(s0, c0), max(s1, c1)
-    return (s0, s1, d0 - half, d1 + half), turned
+    aside = half if extent == "body" else 0.0
+    return (s0, s1, d0 - aside, d1 + aside), turned
 
 
 def regions(box, angle, partition):

@@ -140,11 +140,12 @@ cell_options = combined(
             help="Four regions around an obstacle, or eight.  [default: what the rulebook reads; "
             "paper without one]",
         ),
-        choice_option(
+        click.option(
             "--extent",
-            ["lane", "body"],
-            "How wide obstacles are: all of the lanes that they touch, or what they sweep, "
-            "and half of ego's width to either side.",
+            type=click.Choice(["lane", "room", "body"]),
+            help="How wide obstacles are: all of the lanes that they touch; those, but for where "
+            "ego has room beside them in a lane; or what they sweep, and half of ego's width to "
+            "either side.  [default: room in a recorded scene with bounds, else lane]",
         ),
         choice_option(
             "--adjacency",
@@ -196,8 +197,9 @@ cell_options = combined(
             type=click.FloatRange(min=0, max=100),
             callback=finite,
             metavar="M",
-            help="In a recorded scene: how wide ego is, in m, which counts with `--extent body`.  "
-            "[default: as wide as the vehicle that it is, if any; else a point]",
+            help="In a recorded scene: how wide ego is, in m, which counts with `--extent room` "
+            "and `body`.  [default: as wide as the vehicle that it is, if any; else as its bounds "
+            "say with `room`, and a point with `body`]",
         ),
         click.option(
             "--congested-below",

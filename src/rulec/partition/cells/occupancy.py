@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from itertools import chain, count, pairwise
 
 from rulec.partition.cells.regions import OCCUPIED, ExtentName, PartitionName, Region, region_of
-from rulec.partition.cells.roadway import Roadway, Snap, roadway, snap_table, snapped
+from rulec.partition.cells.roadway import CLEARANCE_M, Roadway, Snap, roadway, snap_table, snapped
 from rulec.scenario import Box, Obstacle, Scenario
 from rulec.scenario.motion import swept
 from rulec.scenario.time_grid import Timing
@@ -89,8 +89,9 @@ def scene(
         for interval in (*layers, *moments)
         if (body := swept(obstacle, *interval)) is not None
     }
-    half = scenario.ego.width / 2 if extent == "body" else 0.0
-    wide = {key: _wider(body, half) for key, body in bodies.items()} if extent == "body" else {}
+    half = _half_width(scenario, extent)
+    aside = half + CLEARANCE_M if extent == "room" else half
+    wide = {key: _wider(body, aside) for key, body in bodies.items()}
     free = _narrower(scenario.road.outline, half, scenario.ego.d)
     s, d = _snaps(scenario, [*bodies.values(), *wide.values(), free])
     road = roadway(scenario.road, free, s, d)
@@ -106,7 +107,8 @@ def scene(
                 interval=looking,
                 partition=partition,
                 roadway=road,
-                body_wide=snapped(wide[i, interval], s, d) if wide else None,
+                extent=extent,
+                wide=snapped(wide[i, interval], s, d),
             )
             if region is not None and i >= likeliest:  # which may be entered
                 table = region.table.replace(bytes([OCCUPIED]), bytes([HIT]))
@@ -132,6 +134,15 @@ def scene(
         s=s,
         d=d,
     )
+
+
+def _half_width(scenario: Scenario, extent: ExtentName) -> float:
+    """Half of ego's width (m), so far as that counts; with ``room`` its bounds may tell it."""
+    ego = scenario.ego
+    width = ego.width
+    if extent == "room" and not width and ego.bounds is not None:
+        width = ego.bounds.width
+    return 0.0 if extent == "lane" else width / 2
 
 
 def _wider(body: Box, half: float) -> Box:

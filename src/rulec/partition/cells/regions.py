@@ -19,8 +19,9 @@ from rulec.scenario.paper_words import LATERALS, PAPER_TABLES, STATIONS
 
 PartitionName = Literal["paper", "fine"]
 
-ExtentName = Literal["lane", "body"]
-"""How wide an obstacle is taken to be: as the lanes that it touches, or as what it sweeps."""
+ExtentName = Literal["lane", "room", "body"]
+"""How wide an obstacle is taken to be: as the lanes that it touches, as those without the rest of
+one in which ego has room beside it, or as what it sweeps."""
 
 OCCUPIED = ord("o")
 
@@ -53,19 +54,23 @@ def region_of(
     interval: tuple[float, float],
     partition: PartitionName,
     roadway: Roadway,
-    body_wide: Box | None = None,
+    extent: ExtentName,
+    wide: Box,
 ) -> Region | None:
     """Region of an obstacle that sweeps ``body``; None off the road.
 
-    It takes the lanes that it touches, or ``body_wide`` if that is given.
+    ``wide`` is the body and what ego's centre needs to either side.
     """
     lanes = roadway.lanes_touched(body)
     if lanes is None:
         return None
-    taken = body_wide or Box(body.s_min, body.s_max, *lanes)
+    if extent == "room":
+        lanes = roadway.without_room(lanes, body, wide)
+    taken = wide if extent == "body" else Box(body.s_min, body.s_max, *lanes)
     if partition == "fine":
         return Region(index, taken, _FINE)
     direction = facing(obstacle, *interval) if obstacle.walks else "along"
     if direction in ("left", "right"):
-        taken = body_wide or Box(*roadway.crossing_touched(body), body.d_min, body.d_max)
+        crossing = Box(*roadway.crossing_touched(body), body.d_min, body.d_max)
+        taken = wide if extent == "body" else crossing
     return Region(index, taken, PAPER_TABLES[direction])

@@ -16,6 +16,9 @@ from rulec.scenario import Box, Road
 EPSILON_M = 1e-6
 """Coordinates this close (m) are one place; rounding errors are a hundred times smaller."""
 
+CLEARANCE_M = 0.25
+"""So far (m) ego keeps from who reaches into its lane, and from the other bound of that."""
+
 Snap = dict[float, float]
 
 
@@ -65,6 +68,22 @@ class Roadway:
             if self._is_on_lane(body, right, left)
         ]
         return (touched[0][0], touched[-1][1]) if touched else None
+
+    def without_room(self, lanes: tuple[float, float], body: Box, wide: Box) -> tuple[float, float]:
+        """Bounds of the lanes that a body touches, without the rest of one that it reaches into.
+
+        That is one in which its middle is not, and ego has room beside it: ``wide`` is the body and
+        half of what ego needs to either side.
+        """
+        right, left = lanes
+        middle, needed = (body.d_min + body.d_max) / 2, 2 * (wide.d_max - body.d_max)
+        after_first = self.lanes[self.lanes.index(right) + 1]
+        before_last = self.lanes[self.lanes.index(left) - 1]
+        if middle > after_first and body.d_min - right >= needed:
+            right = wide.d_min
+        if middle < before_last and left - body.d_max >= needed:
+            left = wide.d_max
+        return right, left
 
     def crossing_touched(self, body: Box) -> tuple[float, float]:
         """Extent of a body in ``s``, widened to the crossings it overlaps."""

@@ -21,7 +21,8 @@ PIECE_S = 0.1
 """Accelerations last so long at most."""
 
 PER_JERK, PER_LANE, PER_END = 0.25, 0.2, 0.1
-"""What a mean jerk of 1 m/s³ costs, a metre beside a lane's middle, 1 m/s off ego's at the end."""
+"""What a mean jerk of 1 m/s³ costs, a metre beside a lane's middle, at the end 1 m/s off ego's
+speed, or across the road."""
 
 COMFORTABLE, PER_HARD = 4.0, 4.0
 """No harder (m/s²) than this is usual; and what each m/s² above it costs more."""
@@ -58,9 +59,10 @@ class MotionProgram:
         self.count = self._parts * (len(graph.layers) - 1)
         self._motion = ego_motion(graph.scenario.ego, bounds, graph.step_s, len(graph.layers))
         # Pieces' accelerations along and across, the greatest up to what is usual and beyond,
-        # changes of both, speeds' distances, distances from lanes, the speed at the start.
+        # changes of both, speeds' distances, distances from lanes, the speed across at the end, the
+        # one along at the start.
         n, layers = self.count, len(graph.layers) - 1
-        self.at = np.cumsum([0, n, n, 2, n - 1, n - 1, n, layers])
+        self.at = np.cumsum([0, n, n, 2, n - 1, n - 1, n, layers, 1])
         self.size = int(self.at[-1]) + 1
         self.layers_s = np.array([layer.start_s for layer in graph.layers])
 
@@ -112,6 +114,7 @@ class MotionProgram:
         cost[at[5] : at[6]] = PER_SPEED / n
         cost[at[6] - 1] += PER_END
         cost[at[6] : at[7]] = PER_LANE / max(len(self.graph.layers) - 1, 1)
+        cost[at[7]] = PER_END
         every = np.eye(self.size)[: at[2]]
         if braking_only:
             cost[:] = 0.0
@@ -139,6 +142,10 @@ class MotionProgram:
         wanted = speeds.rows.copy()
         wanted[:, -1] = 0.0
         self._absolute(program, wanted, np.arange(at[5], at[6]))
+        for sign in (1.0, -1.0):
+            last = sign * sideways.rows[-1:]
+            last[0, at[7]] = -1.0
+            program.add(last, np.array([-np.inf]), -sign * sideways.fixed[-1:])
         return program
 
     def in_cells(self, cells: Sequence[Cell]) -> Bounded:

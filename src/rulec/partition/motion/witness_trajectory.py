@@ -229,7 +229,7 @@ class WitnessSearch:
                 jerk=cost_of(PER_JERK / (motion.count * motion.piece), 3, 5),
                 speed=cost_of(PER_SPEED / motion.count, 5, 6)
                 + PER_END * float(solution.values[at[6] - 1]),
-                lane=cost_of(PER_LANE / max(len(cells) - 1, 1), 6, 7),
+                lane=cost_of(PER_LANE / max(len(cells) - 1, 1), 6, 7) + cost_of(PER_END, 7, 8),
                 goal=PER_GOAL * float(in_goal / times[-1]),
             ),
         )

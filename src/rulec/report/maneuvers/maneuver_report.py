@@ -117,7 +117,7 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
     lines.append(f"computed in {seconds:.3f} s")
     is_bare = answers.listed is not None and not answers.listed
     if is_bare and (maneuvers.satisfying or maneuvers.open):
-        way_out = "; `--extent body` leaves more room" if graph.extent == "lane" else ""
+        way_out = "; `--extent body` leaves more room" if graph.extent != "body" else ""
         lines.append(
             f"listed      none: no trajectory was found along those that cost least{way_out}"
         )
