@@ -169,9 +169,10 @@ class _RecordingJudge:
 
     def pieces(self, tell: Callable[[int, int], object]) -> Iterator[Piece]:
         """A piece for each drive that has something to say, and the recording."""
-        for number, answer in enumerate(self._verdicts.answers(), 1):
+        # No name for a verdict here: it would keep the arrays of its drives until the next one.
+        for number, pieces in enumerate(map(self._of_drive, self._verdicts.answers()), 1):
             tell(number, len(self._verdicts.egos))
-            yield from self._of_drive(answer)
+            yield from pieces
         yield self._whole()
 
     def pieces_side_by_side(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -19,10 +18,7 @@ from rulec.extraction.tracks.tracks import Flags
 from rulec.recordings.recording import Side
 from rulec.trace.end_to_end import EndToEnd
 from rulec.trace.laid_out import LaidOut, columns_of, one_behind_the_other
-
-_MOST_KEPT_BYTES = 31 << 20
-"""A little less than glibc's greatest threshold."""
-
+from rulec.trace.plain_arrays import keep_freed_memory
 
 def drive_context(
     surroundings: Surroundings, places: RoadPlaces, side: Side, ego: int, columns: slice
@@ -113,17 +109,6 @@ def drives_context(
         surroundings=surroundings,
         alone=egos.alone,
     )
-
-
-@cache
-def keep_freed_memory() -> None:
-    """Let what is freed be kept for the arrays that come next, once in a process.
-
-    The C library of Linux gives back to the system what is free beyond a threshold, and to take it
-    again, page by page, is slow: it was a twelfth of the time of scores. It raises the threshold
-    when so much is freed at once, of which nothing is ever written.
-    """
-    np.empty(_MOST_KEPT_BYTES, dtype=np.uint8)
 
 
 def _near(places: RoadPlaces, ranges: Sequence[slice], ego: RoadExtents) -> tuple[Flags, Flags]:

@@ -70,7 +70,9 @@ def read_recordings(source: RecordingSource) -> Iterator[Recording]:
     from rulec.recordings.adjacency import with_side
     from rulec.recordings.doubts.motion_doubts import with_doubts
     from rulec.recordings.doubts.road_doubts import check_near
+    from rulec.trace.plain_arrays import keep_freed_memory
 
+    keep_freed_memory()
     form = _format_of(source)
 
     def looked_at(recording: Recording) -> Recording:

@@ -1,8 +1,9 @@
-"""Functions of arrays that NumPy has, too, but loads its masked arrays for, which takes 14 ms."""
+"""What NumPy does slowly: functions for which it loads its masked arrays, and memory for arrays."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any, TypeVar
 
 import numpy as np
@@ -14,6 +15,20 @@ _INT16_MAX = np.iinfo(np.int16).max
 
 _MOST_EMPTY = 8
 """Rows of groups, and tables of numbers, may take so many times the room of their values."""
+
+_MOST_KEPT_BYTES = 31 << 20
+"""A little less than glibc's greatest threshold."""
+
+
+@cache
+def keep_freed_memory() -> None:
+    """Let what is freed be kept for the arrays that come next, once in a process.
+
+    The C library of Linux gives back to the system what is free beyond a threshold, and to take it
+    again, page by page, is slow: it was a twelfth of the time of scores. It raises the threshold
+    when so much is freed at once, of which nothing is ever written.
+    """
+    np.empty(_MOST_KEPT_BYTES, dtype=np.uint8)
 
 
 def distinct(values: NDArray[_Number]) -> NDArray[_Number]:

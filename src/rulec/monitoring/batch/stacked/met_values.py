@@ -71,8 +71,9 @@ class MetValues:
         """
         return fold(formula, self._anywhere)
 
-    @cached_property
+    @property
     def _anywhere(self) -> Algebra[Truth]:
+        # Not kept: in a circle with these values it would keep all columns after their verdicts.
         return replace(KLEENE_COLUMNS, proposition=self._truth, identity=lambda _: _TRUE)
 
     def _truth(self, part: ltl.Proposition) -> Truth:
