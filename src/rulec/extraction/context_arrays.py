@@ -20,6 +20,7 @@ from rulec.trace.end_to_end import EndToEnd
 from rulec.trace.laid_out import LaidOut, columns_of, one_behind_the_other
 from rulec.trace.plain_arrays import keep_freed_memory
 
+
 def drive_context(
     surroundings: Surroundings, places: RoadPlaces, side: Side, ego: int, columns: slice
 ) -> DriveContext:

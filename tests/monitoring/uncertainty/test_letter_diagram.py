@@ -1,5 +1,6 @@
 """A diagram of letters has the classes that the table of letters has, however long that is."""
 
+from itertools import product
 from random import Random
 
 import pytest
@@ -7,6 +8,12 @@ import pytest
 from rulec.automata.mealy_monitor import Read
 from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiagram
+
+
+def diagram_of(sizes, letters):
+    reads = [Read(f"x{n}", (), tuple(f"{n} {k}" for k in range(s))) for n, s in enumerate(sizes)]
+    rows = ((0,) * 4,)
+    return LetterDiagram(OutcomeMachine(tuple(reads), letters, rows, rows, frozenset({0})))
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -21,9 +28,7 @@ def test_the_classes_of_a_cube_are_those_of_its_letters(seed):
     if seed % 2:
         letters = tuple(letters[: len(letters) // 4 or 1] * 4)[: len(digits)]
         letters += (2,) * (len(digits) - len(letters))
-    reads = [Read(f"x{n}", (), tuple(f"{n} {k}" for k in range(s))) for n, s in enumerate(sizes)]
-    machine = OutcomeMachine(tuple(reads), letters, ((0,) * 4,), ((0,) * 4,), frozenset({0}))
-    diagram = LetterDiagram(machine)
+    diagram = diagram_of(sizes, letters)
     for _ in range(30):
         cube = [random.randrange(1, 1 << size) for size in sizes]
         met = {
@@ -32,3 +37,27 @@ def test_the_classes_of_a_cube_are_those_of_its_letters(seed):
             if all(mask >> digit & 1 for mask, digit in zip(cube, own, strict=True))
         }
         assert diagram.nodes(cube) == sum(1 << letter + 1 for letter in met)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_read_does_not_matter_where_no_class_changes_with_its_digit(seed):
+    random = Random(seed)
+    sizes = [random.choice([2, 2, 3]) for _ in range(random.randrange(1, 6))]
+    digits = [own[::-1] for own in product(*map(range, sizes[::-1]))]  # the first read is fastest
+    # Of some reads the letters tell nothing, of others they do only where another one is 1
+    told = [n for n in range(len(sizes)) if random.random() < 0.6]
+    table = {own: random.choice([-1, 0, 1]) for own in product(*[range(sizes[n]) for n in told])}
+    letters = tuple(table[tuple(own[n] for n in told)] for own in digits)
+    if seed % 2:
+        letters = tuple(max(letter, own[0]) for letter, own in zip(letters, digits, strict=True))
+    class_of = dict(zip(digits, letters, strict=True))
+    diagram = diagram_of(sizes, letters)
+    for _ in range(30):
+        cube = [random.randrange(1, 1 << size) for size in sizes]
+        for read in range(len(sizes)):
+            met = {}
+            for own, letter in class_of.items():
+                if all(mask >> digit & 1 for mask, digit in zip(cube, own, strict=True)):
+                    met.setdefault((*own[:read], *own[read + 1 :]), set()).add(letter)
+            does_not_matter = all(len(classes) == 1 for classes in met.values())
+            assert diagram.is_indifferent(cube, read) == does_not_matter

@@ -65,6 +65,8 @@ class Dependence:
         every = frozenset(names)
         if not self.decides(every):
             return None
+        names = [name for name in names if not self.is_idle(name)]
+        every = frozenset(names)
         without = {name: self._decides(every - {name}, thoroughly=False) for name in names}
         surely = tuple([name for name in names if without[name] is False])
         # If these decide, so do they with any others: none of which is needed.
@@ -82,6 +84,18 @@ class Dependence:
                 if self.decides(frozenset((*needed, *more))):
                     return tuple([name for name in names if name in needed or name in more])
         return None
+
+    def is_idle(self, name: str) -> bool:
+        """Whether a name is in no smallest set that decides, as single letters tell.
+
+        So it is if no value of it ever makes a difference to the rule's machine, whatever all else
+        is: completions that agree on other names come out as ones do that agree on it, too.
+        """
+        if name == BEFORE or any(name in constants for _, constants in self._alternatives):
+            return False
+        words = [word for word, _ in self._alternatives]
+        about = [n for n, names in enumerate(self._unknown) if name in names]
+        return all(self._runs.are_indifferent(words, read) for read in about)
 
     def needs(self, name: str, every: frozenset[str]) -> bool:
         """Whether all others of these names do not decide, as few pairs tell."""

@@ -161,6 +161,9 @@ class UncertainMachine:
         others = doubtful - names
         every = doubtful | {BEFORE} if len(self.machine.starts) > 1 else doubtful
         dependence = Dependence(self._runs, alternatives, unknown)
+        if not dependence.decides(every):
+            return others
+        others = frozenset([name for name in others if not dependence.is_idle(name)])
         if all(dependence.needs(name, every) for name in others):
             return others
         found = dependence.smallest(self._in_order(doubtful, order))

@@ -62,6 +62,16 @@ class LetterClasses:
         first, second = self.groups(one, fixed), self.groups(other, fixed)
         return frozenset([(first[part], second[part]) for part in first.keys() & second])
 
+    def are_indifferent(self, letters: Sequence[Letters], read: int) -> bool:
+        """Whether all these letters leave a read the same digits, which never tell classes apart.
+
+        Whatever the digits of all other reads are, that is.
+        """
+        cubes = {cube for own in letters for cube in own}
+        if len({cube[read] for cube in cubes}) > 1:
+            return False
+        return all(self.diagram.is_indifferent(cube, read) for cube in cubes)
+
     def groups(self, letters: Letters, fixed: tuple[int, ...]) -> Mapping[Cube, int]:
         """The classes of letters by the digits, as bits, of ``fixed`` reads."""
         key = letters, fixed

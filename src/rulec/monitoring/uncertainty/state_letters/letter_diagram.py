@@ -83,6 +83,27 @@ class LetterDiagram:
                 reached = {(step(read, x, own), step(read, y, their)) for x, y in reached}
         return reached
 
+    def is_indifferent(self, cube: Sequence[int], read: int) -> bool:
+        """Whether the letters of a cube are of the same class whichever of its digits a read has.
+
+        So they are if what follows on one of the read's digits follows on all of them.
+        """
+        here = self.start
+        for level in range(self._n_reads - 1, read, -1):
+            here = self.step(level, here, cube[level])
+        first, *others = bits_of(cube[read])
+        rows = [self._children[read][node] for node in bits_of(here)]
+        pairs = {(row[first], row[other]) for row in rows for other in others}
+        for level in range(read - 1, -1, -1):
+            children, digits = self._children[level], bits_of(cube[level])
+            pairs = {
+                (children[one][digit], children[other][digit])
+                for one, other in pairs
+                if one != other
+                for digit in digits
+            }
+        return all(one == other for one, other in pairs)
+
     def step(self, read: int, here: int, digits: int) -> int:
         """The nodes behind some nodes and some digits of a read, all as bits."""
         key = read, here, digits
