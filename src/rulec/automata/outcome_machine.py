@@ -99,11 +99,10 @@ class OutcomeMachine:
     @cached_property
     def below(self) -> tuple[int, ...]:
         """For each state those, as bits, from which no word comes to more."""
-        found = [0] * len(self.above)
-        for state, above in enumerate(self.above):
-            for other in bits_of(above):
-                found[other] |= 1 << state
-        return tuple(found)
+        # The columns of rows of bits: as text, whose first digit is the last state's.
+        size = len(self.above)
+        rows = [f"{above:0{size}b}" for above in reversed(self.above)]
+        return tuple([int("".join(column), 2) for column in zip(*rows, strict=True)][::-1])
 
     def least(self, states: int) -> int:
         """The least of these states, all as bits; of equivalent ones the first."""
