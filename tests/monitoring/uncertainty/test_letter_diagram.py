@@ -1,5 +1,6 @@
 """A diagram of letters has the classes that the table of letters has, however long that is."""
 
+from collections import Counter
 from itertools import product
 from random import Random
 
@@ -29,6 +30,7 @@ def test_the_classes_of_a_cube_are_those_of_its_letters(seed):
         letters = tuple(letters[: len(letters) // 4 or 1] * 4)[: len(digits)]
         letters += (2,) * (len(digits) - len(letters))
     diagram = diagram_of(sizes, letters)
+    assert diagram.n_letters() == Counter(letters)
     for _ in range(30):
         cube = [random.randrange(1, 1 << size) for size in sizes]
         met = {

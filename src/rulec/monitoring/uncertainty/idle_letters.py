@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Sequence
 
 from rulec.automata.outcome_machine import KEPT, SetMonitor
@@ -43,10 +42,10 @@ def idle_letters(monitor: SetMonitor, diagram: LetterDiagram) -> IdleLetters:
         steps = (monitor.step(here, classes) for here in (monitor.start, home))
         return all(step.states == home and step.worst == KEPT for step in steps)
 
-    weights = Counter(machine.letters)
+    weights = diagram.n_letters()
     singles = range(machine.n_classes)
     homes = dict.fromkeys([monitor.start])
     homes |= dict.fromkeys(monitor.step(monitor.start, 1 << n).states for n in singles)
-    worth = {home: sum(weights[n] for n in singles if stays(home, 1 << n)) for home in homes}
+    worth = {home: sum(weights.get(n, 0) for n in singles if stays(home, 1 << n)) for home in homes}
     best = max(worth, key=worth.__getitem__)
     return IdleLetters(diagram, lambda classes: stays(best, classes))

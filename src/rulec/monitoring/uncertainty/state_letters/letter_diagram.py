@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from array import array
 from collections import defaultdict
-from collections.abc import Sequence, Set
+from collections.abc import Mapping, Sequence, Set
 from itertools import count
 from math import prod
 
@@ -82,6 +82,17 @@ class LetterDiagram:
             else:
                 reached = {(step(read, x, own), step(read, y, their)) for x, y in reached}
         return reached
+
+    def n_letters(self) -> Mapping[int, int]:
+        """How many letters each class has, by its number."""
+        here = {self.start.bit_length() - 1: 1}
+        for children in reversed(self._children):
+            below: defaultdict[int, int] = defaultdict(int)
+            for node, n_own in here.items():
+                for child in children[node]:
+                    below[child] += n_own
+            here = below
+        return {node - 1: n_own for node, n_own in here.items()}
 
     def is_indifferent(self, cube: Sequence[int], read: int) -> bool:
         """Whether the letters of a cube are of the same class whichever of its digits a read has.
