@@ -60,17 +60,17 @@ class OutcomeMachine:
 
     def _never_left(self, outcome: int) -> frozenset[int]:
         """The states from which every word comes to this."""
+        outputs, successors = self.outputs, self.successors
+        found = {state for state, row in enumerate(outputs) if row.count(outcome) == len(row)}
         before: dict[int, list[int]] = {}
-        for state, targets in enumerate(self.successors):
-            for target in set(targets):
+        for state in found:
+            for target in set(successors[state]):
                 before.setdefault(target, []).append(state)
-        waiting = [state for state, row in enumerate(self.outputs) if set(row) != {outcome}]
-        left = set(waiting)
-        for state in waiting:
-            fresh = set(before.get(state, ())) - left
-            left |= fresh
+        for left in (waiting := [target for target in before if target not in found]):
+            fresh = found.intersection(before.get(left, ()))
+            found -= fresh
             waiting += fresh
-        return frozenset(range(len(self.outputs))) - left
+        return frozenset(found)
 
     @cached_property
     def above(self) -> tuple[int, ...]:
@@ -270,11 +270,11 @@ class SetMonitor:
         key = number, classes
         known = self._steps.get(key)
         if known is None:
-            symbols = [n for n in range(classes.bit_length()) if classes >> n & 1]
-            machine = self.machine
-            pairs = [(state, symbol) for state in self._sets[number] for symbol in symbols]
-            outcomes = {machine.outputs[state][symbol] for state, symbol in pairs}
-            targets = {machine.successors[state][symbol] for state, symbol in pairs}
+            symbols, states, machine = bits_of(classes), self._sets[number], self.machine
+            rows = [machine.outputs[state] for state in states]
+            outcomes = {row[symbol] for row in rows for symbol in symbols}
+            rows = [machine.successors[state] for state in states]
+            targets = {row[symbol] for row in rows for symbol in symbols}
             known = OutcomeRange(self.number(*targets), min(outcomes), max(outcomes))
             self._steps[key] = known
         return known
