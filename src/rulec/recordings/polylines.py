@@ -1,11 +1,12 @@
-"""Lines through points."""
+"""Lines through points, and places in areas."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 import numpy as np
-from numpy import float64
+import shapely
+from numpy import float64, intp
 from numpy.typing import NDArray
 
 from rulec.recordings.recording import Points
@@ -102,3 +103,15 @@ def _parts(points: Points) -> NDArray[float64]:
     ways = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))))
     parts: NDArray[float64] = ways / ways[-1]
     return parts
+
+
+def places_in(
+    areas: Sequence[shapely.Geometry], x: NDArray[float64], y: NDArray[float64]
+) -> tuple[NDArray[intp], NDArray[intp]]:
+    """Which places are in which areas: the numbers of both, a pair each."""
+    points, own = shapely.points(x, y), np.array(areas, dtype=object)
+    places, numbers = shapely.STRtree(own).query(points)
+    # A tree prepares what it is asked about, the places; that takes ten times as long.
+    shapely.prepare(own)
+    inside = shapely.intersects(own[numbers], points[places])
+    return places[inside], numbers[inside]

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from itertools import pairwise, product
 
 import numpy as np
-import shapely
 from numpy import intp
 from numpy.typing import NDArray
 
@@ -16,6 +15,7 @@ from rulec.extraction.signals.measured_numbers import own_widths
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.recordings.polylines import places_in
 from rulec.recordings.recording import Lanelet, LaneMark, is_lane
 from rulec.scenario.recorded.route import lanelet_area
 from rulec.trace.plain_arrays import distinct
@@ -179,12 +179,11 @@ def _on_a_lane_beside(context: DriveContext, asked: NDArray[intp]) -> Flags:
     lanes = context.recording.lanelets.values() if asked.size else ()
     areas = [lanelet_area(lane) for lane in lanes if is_lane(lane) and lane.id not in own]
     if areas:
-        tree = shapely.STRtree(areas)
         half, heading = own_widths(context)[asked] / 2, context.ego.heading[0, asked]
         for side in (-half, half):
             x = context.ego.x[0, asked] - side * np.sin(heading)
             y = context.ego.y[0, asked] + side * np.cos(heading)
-            found[asked[tree.query(shapely.points(x, y), predicate="intersects")[0]]] = True
+            found[asked[places_in(areas, x, y)[0]]] = True
     return found
 
 

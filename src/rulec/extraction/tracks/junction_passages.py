@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.tracks.junctions import Interval, Junction, JunctionWay, junctions_of
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
+from rulec.recordings.polylines import places_in
 from rulec.recordings.recording import Recording
 from rulec.recordings.track import TrackOutlines, outlines_on_track
 from rulec.scenario.recorded.reference_line import turn
@@ -255,9 +256,8 @@ def junction_passages(
     )
     rows, columns = np.nonzero(tracks.present & moving[:, None])
     if junctions and len(rows):
-        points = shapely.points(tracks.x[rows, columns], tracks.y[rows, columns])
         areas = [junction.area for junction in junctions]
-        at, where = shapely.STRtree(areas).query(points, predicate="intersects")
+        at, where = places_in(areas, tracks.x[rows, columns], tracks.y[rows, columns])
         for number in distinct(where).tolist():
             inside = np.zeros(tracks.present.shape, dtype=bool)
             chosen = at[where == number]

@@ -13,7 +13,6 @@ from operator import itemgetter
 from typing import Any, TypeAlias, cast
 
 import numpy as np
-import shapely
 from numpy import bool_, float64, intp
 from numpy.typing import NDArray
 
@@ -21,6 +20,7 @@ from rulec.extraction.recording_parts import looked_at
 from rulec.extraction.tracks.source_tolerances import Tolerances, tolerances_of
 from rulec.extraction.tracks.track_motion import Poses, motion_of
 from rulec.extraction.traffic_thresholds import Thresholds
+from rulec.recordings.polylines import places_in
 from rulec.recordings.recording import Lanelet, Participant, Points, Recording, is_lane
 from rulec.recordings.track import TrackOutlines, outlines_on_track
 from rulec.scenario.recorded.joined_outlines import JoinedOutlines
@@ -355,8 +355,7 @@ def _inside(flags: Flags, x: Floats, y: Floats, lanelets: Iterable[Lanelet]) -> 
     inside = np.zeros(flags.shape, dtype=bool)
     rows, columns = np.nonzero(flags)
     if len(rows) and (areas := [lanelet_area(lanelet) for lanelet in lanelets]):
-        points = shapely.points(x[rows, columns], y[rows, columns])
-        at, _ = shapely.STRtree(areas).query(points, predicate="intersects")
+        at, _ = places_in(areas, x[rows, columns], y[rows, columns])
         inside[rows[at], columns[at]] = True
     return inside
 

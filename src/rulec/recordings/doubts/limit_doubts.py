@@ -10,6 +10,7 @@ import shapely
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.recordings.polylines import places_in
 from rulec.recordings.recording import Lanelet, Recording, is_lane
 from rulec.recordings.track import Track
 from rulec.trace.plain_arrays import median, quantile
@@ -77,13 +78,12 @@ def _shares(
     Where lanes lie above each other by the highest of their limits, and by the lowest.
     """
     outlines = [shapely.Polygon(np.vstack((one.left, one.right[::-1]))) for one in lanes]
-    tree = shapely.STRtree(outlines)
     every = max(1, round(_EVERY_S / step_s))
     shares: tuple[list[float], list[float]] = ([], [])
     for track in tracks:
         ways = np.hypot(*np.diff(track.rows[:, :2], axis=0).T)
         speeds = (ways / (np.diff(track.steps) * step_s))[::every]
-        rows, lane = tree.query(shapely.points(track.rows[1::every, :2]), predicate="intersects")
+        rows, lane = places_in(outlines, *track.rows[1::every, :2].T)
         if not len(rows):
             continue
         highest, lowest = np.zeros(len(speeds)), np.full(len(speeds), np.inf)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rulec.diagnostics import SourceLocation
 from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.polylines import places_in
 from rulec.recordings.recording import Lanelet, Participant, Points, Recording, is_lane
 from rulec.recordings.recording_messages import OTHER_NET
 from rulec.recordings.track import Track, TrackStates
@@ -141,13 +142,13 @@ class _Roads:
 
     def __init__(self, lanes: Sequence[Lanelet]) -> None:
         outlines = [np.vstack((one.left, one.right[::-1])) for one in lanes]
-        self._tree = shapely.STRtree([shapely.Polygon(line).buffer(0) for line in outlines])
+        self._areas = [shapely.Polygon(line).buffer(0) for line in outlines]
         self._middles = [one.centre for one in lanes]
 
     def shares(self, bodies: Sequence[Moves]) -> tuple[float, float]:
         """Of the places of each body those on a lane, and on one along it, in the mean."""
         moves = np.concatenate(bodies)
-        rows, lanes = self._tree.query(shapely.points(moves[:, :2]), predicate="intersects")
+        rows, lanes = places_in(self._areas, *moves[:, :2].T)
         on, along = np.zeros((2, len(moves)), dtype=bool)
         on[rows] = True
         for lane in distinct(lanes).tolist():
