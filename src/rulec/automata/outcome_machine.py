@@ -101,8 +101,8 @@ class OutcomeMachine:
         """For each state those, as bits, from which no word comes to more."""
         # The columns of rows of bits: as text, whose first digit is the last state's.
         size = len(self.above)
-        rows = [f"{above:0{size}b}" for above in reversed(self.above)]
-        return tuple([int("".join(column), 2) for column in zip(*rows, strict=True)][::-1])
+        digits = "".join([f"{above:0{size}b}" for above in reversed(self.above)])
+        return tuple([int(digits[place::size], 2) for place in reversed(range(size))])
 
     def least(self, states: int) -> int:
         """The least of these states, all as bits; of equivalent ones the first."""
