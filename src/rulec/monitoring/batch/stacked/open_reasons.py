@@ -45,7 +45,7 @@ class StackedReasons:
 
     def beyond(self, words: StackedWords, place: int, names: Set[str]) -> frozenset[str]:
         """On what it depends but for these names, told without finding all reasons."""
-        if unknown_names(words, place) <= names:
+        if not _are_more_unknown(words, place, names):
             return frozenset()
         possible, constants, _ = self._possible_words(words, place)
         return words.rule.machine.depends_beyond(possible, constants, self._order, names)
@@ -182,20 +182,16 @@ class StackedReasons:
         return found
 
 
-def unknown_names(words: StackedWords, place: int) -> frozenset[str]:
-    """All names of which something is unknown to one of these words, and perhaps others."""
+def _are_more_unknown(words: StackedWords, place: int, names: Set[str]) -> bool:
+    """Whether something of other names than these is unknown to one of these words, or may be."""
+    if any(name not in names for supposed in words.supposed for name, _ in supposed):
+        return True
     own = slice(int(words.bounds[place]), int(words.bounds[place + 1]))
-    rule, found = words.rule, set[str]()
-    for numbers in words.numbers:
-        for n, read in enumerate(rule.reads):
-            if not found.issuperset(read.names):
-                column = numbers[n]
-                part = column[own] if isinstance(column, np.ndarray) else column
-                if rule.letters.are_partial({n: part}, (n,)).any():
-                    found.update(read.names)
-    for supposed in words.supposed:
-        found.update(name for name, _ in supposed)
-    return frozenset(found)
+    rule = words.rule
+    others = [n for n, read in enumerate(rule.reads) if not names >= {*read.names}]
+    columns = [(n, numbers[n]) for numbers in words.numbers for n in others]
+    parts = ((n, x[own] if isinstance(x, np.ndarray) else x) for n, x in columns)
+    return any(rule.letters.are_partial({n: part}, (n,)).any() for n, part in parts)
 
 
 def _asked_in(body: ltl.Formula) -> Iterator[tuple[str, tuple[str, ...]]]:
