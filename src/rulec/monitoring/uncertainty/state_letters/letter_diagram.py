@@ -8,10 +8,9 @@ are met.
 
 from __future__ import annotations
 
-from array import array
 from collections import defaultdict
-from collections.abc import Mapping, Sequence, Set
-from itertools import count
+from collections.abc import Iterable, Mapping, Sequence, Set
+from itertools import chain, count
 from math import prod
 
 from rulec.automata.outcome_machine import OutcomeMachine, bits_of
@@ -21,7 +20,7 @@ MOST_STEPS = 1 << 18
 
 
 _BLOCK = 1 << 5
-"""Parts of so many letters, or a few more, are told apart by their bytes."""
+"""Parts of so many letters, or a few more, are told apart as a whole."""
 
 
 class LetterDiagram:
@@ -33,13 +32,13 @@ class LetterDiagram:
         sizes = [read.size for read in machine.reads]
         few = next((n for n in range(len(sizes)) if prod(sizes[:n]) >= _BLOCK), len(sizes))
         # Large tables say the same again and again: parts of them are gone into once.
-        blocks = _blocks(machine.letters, prod(sizes[:few]))
-        distinct = dict.fromkeys(blocks)
-        below = array("i", b"".join(distinct)).tolist()
+        letters, width = machine.letters, prod(sizes[:few])
+        blocks = [letters[start : start + width] for start in range(0, len(letters), width)]
+        distinct, places = _distinct(blocks)
+        below = list(chain.from_iterable(distinct))
         for size in sizes[:few]:
             below = self._add_level(below, size)
-        nodes = dict(zip(distinct, below, strict=True))
-        below = [nodes[block] for block in blocks]
+        below = [below[place] for place in places]
         for size in sizes[few:]:
             below = self._add_level(below, size)
         if self._children:
@@ -131,15 +130,14 @@ class LetterDiagram:
         return known
 
 
-def _blocks(letters: Sequence[int], size: int) -> list[bytes]:
-    data = array("i", letters).tobytes()
-    step = size * array("i").itemsize
-    return [data[start : start + step] for start in range(0, len(data), step)]
-
-
 def _distinct_rows(numbers: Sequence[int], width: int) -> tuple[list[tuple[int, ...]], list[int]]:
     """The rows of so many numbers that there are, and the place of each among them."""
+    return _distinct(zip(*[iter(numbers)] * width, strict=True))
+
+
+def _distinct(rows: Iterable[tuple[int, ...]]) -> tuple[list[tuple[int, ...]], list[int]]:
+    """The different rows, and the place of each row among them."""
     # A row that is not there yet gets the next number; without a line of Python for each.
     places: defaultdict[tuple[int, ...], int] = defaultdict(count().__next__)
-    found = list(map(places.__getitem__, zip(*[iter(numbers)] * width, strict=True)))
+    found = list(map(places.__getitem__, rows))
     return list(places), found
