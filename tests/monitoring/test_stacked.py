@@ -1,6 +1,8 @@
 """Traces in arrays, judged together whatever their objects, get the verdicts of each."""
 
+import gc
 import itertools
+import weakref
 from dataclasses import replace
 from fractions import Fraction
 from unittest.mock import patch
@@ -12,6 +14,8 @@ from hypothesis import Phase, given, settings
 import rulec
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.stacked import instances, stacked_rule
+from rulec.monitoring.batch.stacked import verify_arrays as judging
+from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.monitoring.batch.stacked.verify_arrays import verify_arrays
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.monitoring.verify import verify_or_reason
@@ -99,6 +103,30 @@ def test_arrays_say_what_the_states_say():
     )
     trace = Trace("t", 0.5, {"a": "car", "b": "car"}, states, {"b": (0, 1)}, ends="cut")
     assert in_arrays(trace, book.vocabulary).trace() == trace
+
+
+def test_columns_are_let_go_with_the_verdicts_that_need_them(monkeypatch):
+    """In a circle they would stay until somebody looks for circles, which takes long."""
+    stacks = []
+
+    def noted(*given):
+        stack = Stack(*given)
+        stacks.append(weakref.ref(stack))
+        return stack
+
+    monkeypatch.setattr(judging, "Stack", noted)
+    book = rulec.compile(rulec.parse_rulebook(BOOK))
+    states = ({"speed": 3.0, "parked": {"a": UNKNOWN, "b": True}},) * 2
+    trace = Trace("t", 0.5, {"a": "car", "b": "car"}, states, ends="cut")
+    gc.disable()
+    try:
+        answers = verify_arrays([in_arrays(trace, book.vocabulary)], book)
+        assert answers[0].open
+        assert [stack() is not None for stack in stacks] == [True]
+        del answers
+        assert [stack() for stack in stacks] == [None]
+    finally:
+        gc.enable()
 
 
 BOOK = """\
