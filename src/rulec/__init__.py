@@ -117,8 +117,8 @@ if TYPE_CHECKING:
     from rulec.rulebook.rulebook_model import Variable as Variable
     from rulec.scenario import Choice as Choice
     from rulec.scenario import Scenario as Scenario
+    from rulec.scoring.candidate_score import CandidateScore as CandidateScore
     from rulec.scoring.score_margins import RuleMargin as RuleMargin
-    from rulec.scoring.scores import CandidateScore as CandidateScore
     from rulec.scoring.scores import Scores as Scores
     from rulec.scoring.traffic_world import TrafficWorld as TrafficWorld
     from rulec.trace import Trace as Trace
@@ -192,8 +192,9 @@ _HOME = {
     "rulec.recordings.recording_format": "RecordingSource",
     "rulec.recordings.road_map": "RoadMap",
     "rulec.recordings.tracks.track_table": "recording_from_columns",
+    "rulec.scoring.candidate_score": "CandidateScore",
     "rulec.scoring.score_margins": "RuleMargin",
-    "rulec.scoring.scores": "CandidateScore Scores",
+    "rulec.scoring.scores": "Scores",
     "rulec.scoring.traffic_world": "TrafficWorld",
     "rulec.trace": "Trace TraceGraph",
     "rulec.trace.trace_columns": "TraceCells TraceColumns layout_of",

@@ -16,6 +16,7 @@ from rulec.monitoring.verdict import Verdict
 from rulec.recordings.building import build_lanelet, build_participant, build_recording
 from rulec.recordings.recording_files import read_recording
 from rulec.recordings.recording_format import RecordingSource
+from rulec.scoring.charges import columns_of
 from rulec.scoring.score import score
 from rulec.scoring.traffic_world import TrafficWorld
 from rulec.vocabulary.partial_values import UNKNOWN
@@ -189,3 +190,38 @@ def test_many_candidates_come_to_what_few_do(monkeypatch):
     assert few.rows() == many.rows()
     assert few.margins(2) == many.margins(2)
     assert pickle.loads(pickle.dumps(many.candidates[1])).open == few.candidates[1].open
+
+
+def counted(candidates):
+    found = columns_of(candidates, GERMAN)
+    return [x.tolist() for x in (*found.violated, *found.open, found.off_road, found.late)]
+
+
+@pytest.mark.parametrize("most_cells", [candidate_drives.MOST_CELLS, 1])
+@pytest.mark.parametrize("speed", [10.0, 20.0])
+def test_what_is_counted_is_what_scores_say(monkeypatch, speed, most_cells):
+    """By the columns, of which no score has been made, and by all scores; also if ego was fast."""
+    monkeypatch.setattr(candidate_drives, "MOST_CELLS", most_cells)
+    world = street([car("slow", 6.0, x=30.0), car("near", 9.0, x=-25.0)], speed=speed)
+    turns = [(a, t) for a in (-3.0, 0.0, 4.0) for t in (0.0, 0.5)]
+    futures = np.array([driven(world.past[-1], [own] * 8) for own in turns])
+    found = score(futures, world, GERMAN, world.past)
+    assert bool(found.violated_before) == (speed > 10)
+    before = counted(found.candidates)
+    every = tuple(found.candidates)
+    assert before == counted(found.candidates) == counted(every)
+    assert found.allowed.tolist() == [one.satisfied is True for one in every]
+    assert found.perhaps_allowed.tolist() == [
+        one.satisfied is not False and not one.off_road for one in every
+    ]
+    whose, which, of_open, doubtful, off_road, _ = before
+    rules = [rule.name for rule in GERMAN.rules]
+    for numbers, places, charged in (
+        (whose, which, [own.violations for own in every]),
+        (of_open, doubtful, [own.open for own in every]),
+    ):
+        assert [(number, rules[place]) for number, place in zip(numbers, places, strict=True)] == [
+            (number, one.rule) for number, own in enumerate(charged) for one in own
+        ]
+        assert numbers
+    assert any(off_road)

@@ -14,7 +14,8 @@ from rulec.extraction.drives import NoDrive
 from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.to_trace import Drive
 from rulec.logic.free_names import names_of
-from rulec.monitoring.batch.stacked.verify_arrays import verify_arrays
+from rulec.monitoring.batch.findings import JudgedTrace
+from rulec.monitoring.batch.stacked.verify_arrays import answer_to, judge_arrays, verify_arrays
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation, agreed
 from rulec.recordings.recording import Recording
 from rulec.trace.trace_arrays import TraceArrays
@@ -58,6 +59,18 @@ class DriveVerdict:
 
     drive: Drive
     answer: Verdict | NotJudged
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedDrive:
+    """A drive of which it is known what it does not keep, or the answer to it."""
+
+    drive: Drive
+    judged: JudgedTrace | Verdict | NotJudged
+
+    def with_verdict(self) -> DriveVerdict:
+        """The drive and its verdict."""
+        return DriveVerdict(self.drive, answer_to(self.judged, self.drive.arrays))
 
 
 class RecordingVerdicts(Rows):
@@ -133,23 +146,38 @@ def verified(
     drives: Sequence[Drive | NoDrive], roundings: Sequence[CompiledRulebook]
 ) -> Iterator[DriveVerdict | NoDrive]:
     """The verdicts of a rulebook, rounded to their step, on drives together."""
+    for one in judged_drives(drives, roundings):
+        yield one.with_verdict() if isinstance(one, JudgedDrive) else one
+
+
+def judged_drives(
+    drives: Sequence[Drive | NoDrive], roundings: Sequence[CompiledRulebook]
+) -> Iterator[JudgedDrive | NoDrive]:
+    """The same drives, whose verdicts are made when they are asked for."""
     traces = [drive.arrays for drive in drives if isinstance(drive, Drive)]
-    answers = agreed_answers(traces, roundings)
+    judged = iter(_judged(traces, roundings))
     for drive in drives:
-        yield DriveVerdict(drive, next(answers)) if isinstance(drive, Drive) else drive
+        yield JudgedDrive(drive, next(judged)) if isinstance(drive, Drive) else drive
 
 
 def agreed_answers(
     traces: Sequence[TraceArrays], roundings: Sequence[CompiledRulebook]
-) -> Iterator[Verdict | NotJudged]:
+) -> list[Verdict | NotJudged]:
     """What a rulebook, rounded to their step, says of each trace."""
-    for answers in zip(*(verify_arrays(traces, rules) for rules in roundings), strict=True):
-        yield _agreed(answers)
+    judged = _judged(traces, roundings)
+    return [answer_to(own, trace) for own, trace in zip(judged, traces, strict=True)]
+
+
+def _judged(
+    traces: Sequence[TraceArrays], roundings: Sequence[CompiledRulebook]
+) -> list[JudgedTrace | Verdict | NotJudged]:
+    if len(roundings) == 1:
+        return judge_arrays(traces, roundings[0])
+    every = zip(*(verify_arrays(traces, rules) for rules in roundings), strict=True)
+    return [_agreed(answers) for answers in every]
 
 
 def _agreed(answers: Sequence[Verdict | NotJudged]) -> Verdict | NotJudged:
-    if len(answers) == 1:
-        return answers[0]
     verdicts = [answer for answer in answers if isinstance(answer, Verdict)]
     return agreed(verdicts) if len(verdicts) == len(answers) else answers[0]
 

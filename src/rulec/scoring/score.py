@@ -15,18 +15,21 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import (
     DriveVerdict,
+    JudgedDrive,
     agreed_answers,
+    judged_drives,
     names_read,
     rounded_rulebooks,
-    verified,
 )
 from rulec.extraction.to_trace import Drive, TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_participant
 from rulec.files import no_garbage_collection
 from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict, Violation
 from rulec.recordings.recording import Participant
+from rulec.scoring.candidate_score import CandidateScore
+from rulec.scoring.charges import CandidateCharges, CandidateScores, at, forget_reasons
 from rulec.scoring.scored_again import without_drives
-from rulec.scoring.scores import CandidateScore, Scores
+from rulec.scoring.scores import Scores
 from rulec.scoring.traffic_world import TrafficWorld
 
 _Key = tuple[str, tuple[str, ...]]
@@ -74,38 +77,53 @@ def _scored(
         bodies.insert(0, world.body_at(past, steps[0]))
     roundings = rounded_rulebooks(rules, world.recording.step_s)
     beside, back = world.beside_lanes(paths), world.drives_back(paths, past)
-    scores: dict[int, CandidateScore] = {}
+    again = partial(_by_itself, paths, past, world, rules)
+    half = first + n_states // 2
+    found: dict[int, CandidateCharges | CandidateScore] = {}
+    is_awaited = is_asked
     for block in _judged(bodies, world, roundings, steps):
-        is_every = len(block) == len(bodies)
-        if is_asked and not scores:
-            ((_, alone), *block) = block
-            before = tuple([one for _, verdict in _verdicts(alone) for one in verdict.violations])
-        charged = [
-            _charged(at, own, first, beside[at], back[at])
-            for at, own in ((number - is_asked, own) for number, own in block)
-        ]
-        half = first + n_states // 2
-        for found in _anew(charged, before, roundings, (first, half)):
-            again = partial(_by_itself, paths[found.number], past, world, rules)
-            # What is among many is mostly looked at no more
-            scores[found.number] = found if is_every else without_drives(found, again)
+        # What is among many is mostly looked at no more
+        is_kept = len(block) == len(bodies)
+        if is_awaited:
+            before, is_awaited = _violated(block.pop(0)[1]), False
+        block = [(number - is_asked, own) for number, own in block]
+        charges = _charges(block, first, (beside, back))
+        if before:
+            scores = _anew([one.score() for one in charges], before, roundings, (first, half))
+            if not is_kept:
+                scores = [
+                    without_drives(one, len(one.drives), partial(again, one.number))
+                    for one in scores
+                ]
+            found.update({one.number: one for one in scores})
+            del scores
+        else:
+            found.update({x.number: x if is_kept else x.later(again) for x in charges})
+        if not is_kept:
+            forget_reasons(charges)
         # Before the next ones are made
-        del block, charged, found
+        del block, charges
     # The next candidates are mostly asked about after the same past.
     known[world] = about, before
-    ordered = tuple([scores[number] for number in range(len(paths))])
+    ordered = CandidateScores([found[number] for number in range(len(paths))])
     return Scores(roundings[0], ordered, before, paths, first)
 
 
 def _by_itself(
-    path: NDArray[np.float64],
+    paths: NDArray[np.float64],
     past: NDArray[np.float64],
     world: TrafficWorld,
     rules: CompiledRulebook,
+    number: int,
 ) -> CandidateScore:
-    """What one candidate comes to, with its drives."""
-    (found,) = _scored(path[None], past, world, rules).candidates
+    """What one of the candidates comes to, with its drives."""
+    (found,) = _scored(paths[number : number + 1], past, world, rules).candidates
     return found
+
+
+def _violated(drives: Sequence[JudgedDrive | NoDrive]) -> tuple[Violation, ...]:
+    made = [one.with_verdict() for one in drives if isinstance(one, JudgedDrive)]
+    return tuple([one for _, verdict in _verdicts(made) for one in verdict.violations])
 
 
 def _judged(
@@ -113,8 +131,8 @@ def _judged(
     world: TrafficWorld,
     roundings: Sequence[CompiledRulebook],
     steps: tuple[int, int],
-) -> Iterator[list[tuple[int, tuple[DriveVerdict | NoDrive, ...]]]]:
-    """The verdicts on the drives of some bodies at a time, by number, of which 0 is the first."""
+) -> Iterator[list[tuple[int, list[JudgedDrive | NoDrive]]]]:
+    """What the drives come to of some bodies at a time, by number, of which 0 is the first."""
     rules = roundings[0]
     drives, mirrored = world.drives(rules.traffic, *steps)
     if mirrored:
@@ -123,19 +141,9 @@ def _judged(
     names = names_read(rules)
     writer = TraceWriter(rules.vocabulary, names, wanted.assumed, wanted.defaults)
     for block in drives.in_blocks(bodies, writer):
-        answers = _verified([own for _, own in block], roundings)
-        numbers = [number for number, _ in block]
-        del block
-        yield list(zip(numbers, answers, strict=True))
-        del answers
-
-
-def _verified(
-    drives: Sequence[tuple[Drive | NoDrive, ...]], roundings: Sequence[CompiledRulebook]
-) -> Iterator[tuple[DriveVerdict | NoDrive, ...]]:
-    answers = verified([drive for own in drives for drive in own], roundings)
-    for own in drives:
-        yield tuple([next(answers) for _ in own])
+        judged = judged_drives([drive for _, own in block for drive in own], roundings)
+        yield [(number, [next(judged) for _ in own]) for number, own in block]
+        del block, judged
 
 
 def _verdicts(
@@ -146,52 +154,50 @@ def _verdicts(
             yield one.drive, one.answer
 
 
-def _charged(
-    number: int,
-    drives: tuple[DriveVerdict | NoDrive, ...],
+def _charges(
+    block: Sequence[tuple[int, Sequence[JudgedDrive | NoDrive]]],
     first: int,
-    beside: NDArray[np.bool_],
-    back: NDArray[np.bool_],
-) -> CandidateScore:
-    """A candidate from a step on, charged with all that is violated.
+    off_lanes: tuple[NDArray[np.bool_], NDArray[np.bool_]],
+) -> list[CandidateCharges]:
+    """Candidates from a step on, by number, charged with all that their drives violate.
 
-    ``beside`` flags its states that are beside all lanes, ``back`` those in which it drives back.
+    ``off_lanes`` flags the states of all that are beside all lanes, and in which ego drives back.
     """
-    violations: list[Violation] = []
-    doubtful: list[OpenVerdict] = []
-    not_judged = {}
-    on_road = np.zeros(len(beside), dtype=bool)
-    for drive, verdict in _verdicts(drives):
-        begins = drive.first_step - first
-        on_road[max(begins, 0) : max(begins + drive.arrays.n_states, 0)] = True
-        violations += [_at(violation, begins) for violation in verdict.violations]
-        doubtful += verdict.open
-        not_judged.update({one.rule: one for one in verdict.not_judged})
-    reasons = [one.why for one in drives if isinstance(one, NoDrive)]
-    reasons += [
-        str(one.answer.error)
-        for one in drives
-        if isinstance(one, DriveVerdict) and isinstance(one.answer, NotJudged)
-    ]
+    members = np.array([number for number, _ in block], dtype=np.intp)
+    beside, back = (flags[members] for flags in off_lanes)
+    on_road, begins = np.zeros(beside.shape, dtype=bool), []
+    for row, (_, drives) in zip(on_road, block, strict=True):
+        begins.append(
+            [x.drive.first_step - first if isinstance(x, JudgedDrive) else 0 for x in drives]
+        )
+        for one, start in zip(drives, begins[-1], strict=True):
+            if isinstance(one, JudgedDrive) and not isinstance(one.judged, NotJudged):
+                row[max(start, 0) : max(start + one.drive.arrays.n_states, 0)] = True
     off_road = beside | ~on_road
-    if off_road.any() and not reasons:
+    leave, go_back = (np.any(flags, axis=1).tolist() for flags in (off_road, back))
+    counts = np.sum(off_road | back, axis=1).tolist()
+    return [
+        CandidateCharges(
+            number,
+            drives,
+            begins[row],
+            off_road=counts[row],
+            why=_why(drives, leaves=leave[row], goes_back=go_back[row]),
+        )
+        for row, (number, drives) in enumerate(block)
+    ]
+
+
+def _why(drives: Sequence[JudgedDrive | NoDrive], *, leaves: bool, goes_back: bool) -> str:
+    """Why states of a candidate are not judged, or off the road."""
+    reasons = [one.why for one in drives if isinstance(one, NoDrive)]
+    judged = [one.judged for one in drives if isinstance(one, JudgedDrive)]
+    reasons += [str(one.error) for one in judged if isinstance(one, NotJudged)]
+    if leaves and not reasons:
         reasons = ["it leaves the lanes that lead its way"]
-    if back.any():
+    if goes_back:
         reasons.append("it drives backwards, faster than at walking pace")
-    return CandidateScore(
-        number,
-        violations=tuple(violations),
-        open=tuple(doubtful),
-        not_judged=tuple(not_judged.values()),
-        off_road=int((off_road | back).sum()),
-        why="; ".join(reasons),
-        drives=drives,
-    )
-
-
-def _at(violation: Violation, begins: int) -> Violation:
-    step = violation.step
-    return replace(violation, step=step + begins) if begins and step is not None else violation
+    return "; ".join(reasons)
 
 
 def _anew(
@@ -215,14 +221,14 @@ def _anew(
         for drive, _ in _verdicts(found.drives)
         if drive.first_step + drive.arrays.n_states > begin
     ]
-    answers = agreed_answers([drive.arrays.since(at) for _, at, drive in futures], roundings)
+    answers = agreed_answers([drive.arrays.since(since) for _, since, drive in futures], roundings)
     late = _mended_after([(number, drive) for number, _, drive in futures], known, roundings, steps)
     violations: dict[int, list[Violation]] = {}
     doubtful: dict[int, list[OpenVerdict]] = {}
-    for (number, at, drive), answer in zip(futures, answers, strict=True):
+    for (number, since, drive), answer in zip(futures, answers, strict=True):
         if isinstance(answer, Verdict):
-            begins = drive.first_step + at - first
-            own = [_at(one, begins) for one in answer.violations if _key(one) in known]
+            begins = drive.first_step + since - first
+            own = [at(one, begins) for one in answer.violations if _key(one) in known]
             violations.setdefault(number, []).extend(own)
             doubtful.setdefault(number, []).extend(x for x in answer.open if _key(x) in known)
     return [

@@ -10,7 +10,7 @@ from typing import TypeAlias, overload
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict
 from rulec.monitoring.verdict import OpenReasons, OpenVerdict
-from rulec.scoring.scores import CandidateScore
+from rulec.scoring.candidate_score import CandidateScore
 
 _OneDrive: TypeAlias = DriveVerdict | NoDrive
 
@@ -60,7 +60,9 @@ class _LaterDrives(Sequence[_OneDrive]):
         return tuple, (self.again.found.drives,)
 
 
-def without_drives(found: CandidateScore, scored: Callable[[], CandidateScore]) -> CandidateScore:
+def without_drives(
+    found: CandidateScore, n_drives: int, scored: Callable[[], CandidateScore]
+) -> CandidateScore:
     """A candidate's score without its drives and reasons, which ``scored`` finds again."""
     again = _Again(scored)
     doubtful = [
@@ -69,5 +71,5 @@ def without_drives(found: CandidateScore, scored: Callable[[], CandidateScore]) 
         )
         for place, one in enumerate(found.open)
     ]
-    drives = _LaterDrives(again, len(found.drives))
+    drives = _LaterDrives(again, n_drives)
     return replace(found, open=tuple(doubtful), drives=drives)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -14,47 +14,15 @@ from numpy.typing import NDArray
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.diagnostics import did_you_mean
 from rulec.diagnostics.argument_kinds import expected, finite
-from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import DriveVerdict
-from rulec.monitoring.verdict import OpenVerdict, RuleNotJudged, Violation
+from rulec.monitoring.verdict import Violation
 from rulec.planning.ranking.penalties import PenaltyOrder, PenaltyRank, ranks_of
+from rulec.scoring.candidate_score import CandidateScore
+from rulec.scoring.charges import Charged, ScoreColumns, columns_of
 from rulec.scoring.score_margins import RuleMargin, margins_of
-from rulec.value_display import Rows, short_repr
+from rulec.value_display import Rows
 
 _MOST_WORTH = 1_000_000
-
-
-@dataclass(frozen=True, slots=True)
-class CandidateScore:
-    """What one candidate comes to, by its ``number``, after what was before.
-
-    ``violations`` and ``open`` verdicts are those that it is charged with; the step of a violation
-    is a state of the candidate, from 0, before 0 one of the past, None if its end decides.
-    ``not_judged`` are rules that the world tells too little for. ``off_road`` of its states are in
-    no drive, because ego is on no lane there that leads its way, so that no rule is judged in
-    these, or with ego's middle beside all lanes, or driven backwards; ``why`` says more. ``drives``
-    are what ``verify_recording`` gives of past and candidate; of many candidates they are made when
-    they are asked for. ``late`` states pass before what the past has violated is kept for good.
-    """
-
-    __repr__ = short_repr
-
-    number: int
-    violations: tuple[Violation, ...]
-    open: tuple[OpenVerdict, ...]
-    not_judged: tuple[RuleNotJudged, ...]
-    off_road: int
-    why: str
-    drives: Sequence[DriveVerdict | NoDrive]
-    late: int = 0
-
-    @property
-    def satisfied(self) -> bool | None:
-        """Whether no hard rule is violated; None if one is open, or not judged all the way."""
-        if any(violation.strength == "hard" for violation in self.violations):
-            return False
-        is_open = any(result.strength == "hard" for result in self.open)
-        return None if is_open or self.off_road else True
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +35,7 @@ class Scores(Rows):
     """
 
     rules: CompiledRulebook = field(repr=False)
-    candidates: tuple[CandidateScore, ...]
+    candidates: Sequence[CandidateScore]
     violated_before: tuple[Violation, ...]
     paths: NDArray[float64] = field(repr=False)
     _first: int = field(repr=False)
@@ -90,17 +58,17 @@ class Scores(Rows):
     @cached_property
     def penalties(self) -> NDArray[float64]:
         """The weights of what each candidate (row) violates for sure, by rank (column)."""
-        return self._weights(lambda found: found.violations)
+        return self._weights(self._columns.violated)
 
     @cached_property
     def penalties_at_most(self) -> NDArray[float64]:
         """The same with what is open, as if that were violated."""
-        return self._weights(lambda found: (*found.violations, *found.open))
+        return self._weights(self._columns.violated, self._columns.open)
 
     @cached_property
     def off_road(self) -> NDArray[intp]:
         """How many states of each candidate are on no lane that leads its way, or beside all."""
-        return np.array([found.off_road for found in self.candidates], dtype=intp)
+        return self._columns.off_road
 
     @cached_property
     def allowed(self) -> NDArray[bool_]:
@@ -108,12 +76,13 @@ class Scores(Rows):
 
         What is open may be violated: who straddles two lanes shall gain nothing by it.
         """
-        return np.array([found.satisfied is True for found in self.candidates], dtype=bool)
+        return self.perhaps_allowed & ~self._are_hard(self._columns.open)
 
     @cached_property
     def perhaps_allowed(self) -> NDArray[bool_]:
         """Flags of candidates that stay on the road, and violate no hard rule for sure."""
-        return np.array([x.satisfied is not False and not x.off_road for x in self.candidates])
+        allowed: NDArray[bool_] = ~self._are_hard(self._columns.violated) & (self.off_road == 0)
+        return allowed
 
     @cached_property
     def places(self) -> NDArray[intp]:
@@ -156,7 +125,7 @@ class Scores(Rows):
             depths[rank] = max(below, default=0)
         factors = np.array([float(worth) ** depth for depth in depths])
         beyond = float(worth) ** (max(depths, default=0) + 1)
-        late = np.array([found.late for found in self.candidates]) / (self.paths.shape[1] + 1)
+        late = self._columns.late / (self.paths.shape[1] + 1)
         charged = self.penalties_at_most @ factors + beyond * self.off_road + late
         rewards: NDArray[float64] = -charged
         return rewards + 0.0
@@ -204,16 +173,24 @@ class Scores(Rows):
             raise ValueError(f"{self.rules.name} has no rule `{rule:.40}`" + (hint and f"; {hint}"))
         return [_outcome(found, rule) for found in self.candidates]
 
-    def _weights(self, charged: Any) -> NDArray[float64]:
-        columns: Mapping[str, tuple[int, float]] = {
-            rule.name: (self._order.of(rule), float(rule.weight)) for rule in self.rules.rules
-        }
+    @cached_property
+    def _columns(self) -> ScoreColumns:
+        return columns_of(self.candidates, self.rules)
+
+    def _weights(self, *charged: Charged) -> NDArray[float64]:
+        ranks = np.array([self._order.of(rule) for rule in self.rules.rules], dtype=intp)
+        weights = np.array([float(rule.weight) for rule in self.rules.rules])
         penalties = np.zeros((len(self), len(self.ranks)))
-        for row, found in zip(penalties, self.candidates, strict=True):
-            for result in charged(found):
-                column, weight = columns[result.rule]
-                row[column] += weight
+        for whose, rules in charged:
+            np.add.at(penalties, (whose, ranks[rules]), weights[rules])
         return penalties
+
+    def _are_hard(self, charged: Charged) -> NDArray[bool_]:
+        """Flags of candidates that are charged with hard rules."""
+        are_hard = np.array([rule.strength == "hard" for rule in self.rules.rules], dtype=bool)
+        found = np.zeros(len(self), dtype=bool)
+        found[charged.candidates[are_hard[charged.rules]]] = True
+        return found
 
     @property
     def _comparable(self) -> tuple[Sequence[Any], ...]:
@@ -223,7 +200,7 @@ class Scores(Rows):
         def whole(penalties: NDArray[float64]) -> list[tuple[int, ...]]:
             return [tuple(row) for row in np.rint(penalties / unit).astype(int).tolist()]
 
-        late = [found.late for found in self.candidates]
+        late = self._columns.late.tolist()
         return self.off_road.tolist(), whole(self.penalties_at_most), whole(self.penalties), late
 
     def _is_less(self, one: Any, other: Any) -> bool:

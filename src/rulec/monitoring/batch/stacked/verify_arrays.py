@@ -9,34 +9,34 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from itertools import repeat
-from operator import itemgetter
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRulebook, check_step
-from rulec.automata.outcome_machine import VIOLATED
+from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook, check_step
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError
 from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.columns.columnize import UnencodableError
+from rulec.monitoring.batch.findings import (
+    Findings,
+    Found,
+    JudgedTrace,
+    Place,
+    Reasons,
+    RuleFindings,
+)
 from rulec.monitoring.batch.stacked.contradictions import contradicted
 from rulec.monitoring.batch.stacked.joined_traces import side_by_side
 from rulec.monitoring.batch.stacked.open_reasons import StackedReasons
 from rulec.monitoring.batch.stacked.simple_rules import SimpleRules
 from rulec.monitoring.batch.stacked.stack import Stack
 from rulec.monitoring.batch.stacked.stack_reader import StackReader
-from rulec.monitoring.batch.stacked.stacked_outcomes import (
-    StackedOutcomes,
-    StackedWords,
-    outcomes,
-)
+from rulec.monitoring.batch.stacked.stacked_outcomes import StackedOutcomes, outcomes
 from rulec.monitoring.batch.stacked.stacked_rule import ReadKeys, StackedRule
 from rulec.monitoring.state_validation import check_objects, check_told
 from rulec.monitoring.uncertainty.judged_rules import JudgedRules, judged_rules
-from rulec.monitoring.uncertainty.uncertain_machine import Answer as RuleAnswer
-from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict, Violation
+from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace.shared_columns import SharedColumns
 from rulec.trace.trace_arrays import TraceArrays
@@ -48,18 +48,25 @@ if TYPE_CHECKING:
 
 Answer: TypeAlias = Verdict | NotJudged
 
-Found: TypeAlias = Violation | OpenVerdict
-
-_Placed: TypeAlias = tuple[tuple[int, ...], Found]
-"""What is not kept, after the places of its rule and of its objects."""
-
-
-_PLACE = itemgetter(0)
-
 
 def verify_arrays(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> list[Answer]:
     """Answers for traces in arrays, in their order: a verdict, or a ``NotJudged``."""
-    answers: list[Answer | None] = [None] * len(traces)
+    judged = judge_arrays(traces, rulebook)
+    return [answer_to(own, trace) for own, trace in zip(judged, traces, strict=True)]
+
+
+def answer_to(judged: JudgedTrace | Answer, trace: TraceArrays) -> Answer:
+    """The answer to a trace that has been judged."""
+    if isinstance(judged, JudgedTrace):
+        return judged.findings.verdict(judged.number, trace)
+    return judged
+
+
+def judge_arrays(
+    traces: Sequence[TraceArrays], rulebook: CompiledRulebook
+) -> list[JudgedTrace | Answer]:
+    """The same, but for verdicts that can be made when somebody asks for them."""
+    answers: list[JudgedTrace | Answer | None] = [None] * len(traces)
     groups: dict[object, list[int]] = {}
     known: dict[int, frozenset[str]] = {}
     for place in side_by_side(traces):
@@ -69,12 +76,13 @@ def verify_arrays(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> 
         groups.setdefault(key, []).append(place)
     for places in groups.values():
         together = [traces[place] for place in places]
+        judged: Sequence[JudgedTrace | Answer]
         try:
-            verdicts = _StackedRun(together, rulebook).verdicts()
+            judged = _StackedRun(together, rulebook).judged()
         except (UnencodableError, RulecError):
-            verdicts = _by_states(together, rulebook)
-        for place, verdict in zip(places, verdicts, strict=True):
-            answers[place] = verdict
+            judged = _by_states(together, rulebook)
+        for place, own in zip(places, judged, strict=True):
+            answers[place] = own
     return [answer for answer in answers if answer is not None]
 
 
@@ -126,13 +134,17 @@ class _StackedRun:
         self._judged = self._ready.judged
         self._stack = Stack(traces, self._judged.vocabulary, self._ready.defaults)
         self._reader = StackReader(self._stack)
-        self._reasons = StackedReasons(self._reader)
         self._closely = [_CloseLook(trace, rules) for trace in traces]
-        self._found: list[list[_Placed]] = [[] for _ in traces]
+        whole: list[int] = []
+        if example.ends == "complete" and example.told is None:
+            whole = [number for number, trace in enumerate(traces) if not trace.is_partial]
+        names = self._stack.names
+        self._findings = Findings(self._judged, len(traces), names, frozenset(whole))
+        self._reasons = StackedReasons(self._reader)
         self._odd: set[int] = set()
 
-    def verdicts(self) -> list[Answer]:
-        """The answers."""
+    def judged(self) -> list[JudgedTrace | Answer]:
+        """The traces with what has been found, and the answers to odd ones."""
         simple = self._ready.simple_rules(frozenset(self._stack.untold(self._ready.names)))
         self._odd |= contradicted(simple.facts, self._reader)
         busy = simple.busy(self._reader)
@@ -147,52 +159,47 @@ class _StackedRun:
         return [
             _by_its_states(trace, self._whole_rulebook)
             if number in self._odd
-            else self._verdict(number)
+            else JudgedTrace(self._findings, number)
             for number, trace in enumerate(self._traces)
         ]
 
     def _add(self, rule_number: int, outcomes: StackedOutcomes) -> None:
-        words, stack = outcomes.words, self._stack
-        instances, variables = words.instances, words.rule.variables
-        at = np.array(outcomes.places, dtype=np.intp)
-        traces = instances.traces[at]
-        begins = (instances.firsts[at] - stack.begins[traces]).tolist()
-        objects = [own[at].tolist() for own in instances.objects]
-        choices = zip(*objects, strict=True) if objects else repeat(())
-        for place, answer, number, begin, chosen in zip(
-            outcomes.places, outcomes.answers, traces.tolist(), begins, choices, strict=False
-        ):
-            if number in self._odd:
-                continue
-            names = [stack.names[item] for item in chosen]
-            binding = dict(zip(variables, names, strict=True))
-            found = self._found_in(words, place, answer, (number, begin), binding)
-            if found is not None:
-                self._found[number].append(((rule_number, *chosen), found))
+        words, findings = outcomes.words, self._findings
+        rule, instances = words.rule.rule, words.instances
+        told = [at for at, answer in enumerate(outcomes.answers) if answer is not None]
+        places = [outcomes.places[at] for at in told]
+        chosen = np.array(places, dtype=np.intp)
+        traces = instances.traces[chosen]
+        findings.add(
+            RuleFindings(
+                number=rule_number,
+                rule=rule,
+                answers=[answer for answer in outcomes.answers if answer is not None],
+                places=places,
+                traces=traces,
+                begins=instances.firsts[chosen] - self._stack.begins[traces],
+                objects=[own[chosen] for own in instances.objects],
+                reasons=Reasons(
+                    partial(self._reasons.of, words), partial(self._reasons.beyond, words)
+                ),
+            )
+        )
+        for place in sorted({*outcomes.places}.difference(places)):
+            about = [int(own[place]) for own in instances.objects]
+            self._add_odd(int(instances.traces[place]), rule, (rule_number, *about))
 
-    def _found_in(
-        self,
-        words: StackedWords,
-        place: int,
-        answer: RuleAnswer | None,
-        at: tuple[int, int],
-        binding: dict[str, str],
-    ) -> Found | None:
-        """What one of some words comes to, ``at`` its trace and the state that it begins in."""
-        rule, (number, begin) = words.rule.rule, at
-        if answer is None:
-            try:
-                return self._closely[number].answer(rule.name, binding)
-            except RulecError:
-                self._odd.add(number)
-                return None
-        if answer.best == VIOLATED:
-            step = None if answer.step is None else answer.step + begin
-            return Violation(rule.name, rule.strength, binding, step)
-        why = partial(self._reasons.of, words, place)
-        are_two = answer.best != answer.worst
-        beyond = partial(self._reasons.beyond, words, place) if are_two else None
-        return OpenVerdict.explained_later(rule.name, rule.strength, binding, why, beyond=beyond)
+    def _add_odd(self, number: int, rule: CompiledRule, place: Place) -> None:
+        """Add what a choice of objects comes to of which arrays do not tell."""
+        if number in self._odd:
+            return
+        binding = self._findings.binding(rule, place[1:])
+        try:
+            found = self._closely[number].answer(rule.name, binding)
+        except RulecError:
+            self._odd.add(number)
+            return
+        if found is not None:
+            self._findings.add_single(number, place, found)
 
     def _add_closely(self, rule_number: int, rule: StackedRule) -> None:
         for number, close in enumerate(self._closely):
@@ -201,19 +208,8 @@ class _StackedRun:
             except RulecError:
                 self._odd.add(number)
                 continue
-            self._found[number] += [
-                ((rule_number, place), found) for place, found in enumerate(answers)
-            ]
-
-    def _verdict(self, number: int) -> Verdict:
-        found = [result for _, result in sorted(self._found[number], key=_PLACE)]
-        trace, judged = self._traces[number], self._judged
-        violations = tuple([result for result in found if isinstance(result, Violation)])
-        if trace.ends == "complete" and trace.told is None and not trace.is_partial:
-            return Verdict(trace.id, violations)
-        doubtful = tuple([result for result in found if isinstance(result, OpenVerdict)])
-        presumed = tuple([name for name in judged.presumed if not trace.says(name)])
-        return Verdict(trace.id, violations, doubtful, judged.not_judged, presumed)
+            for place, found in enumerate(answers):
+                self._findings.add_single(number, (rule_number, place), found)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,0 +1,191 @@
+"""What candidates are charged with: columns for all, and each by itself when somebody asks."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import NamedTuple, TypeAlias, overload
+
+import numpy as np
+from numpy import bool_, intp
+from numpy.typing import NDArray
+
+from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
+from rulec.extraction.drives import NoDrive
+from rulec.extraction.recording_verdicts import DriveVerdict, JudgedDrive
+from rulec.monitoring.batch.findings import Findings, JudgedTrace
+from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict, Violation
+from rulec.scoring.candidate_score import CandidateScore
+from rulec.scoring.scored_again import without_drives
+
+_NOBODY = -1
+
+
+_Judged: TypeAlias = JudgedTrace | Verdict | NotJudged
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CandidateCharges:
+    """A candidate of which it is known what it does not keep; its score is made when asked for.
+
+    Of its ``drives``, which begin in these of its states, only what they come to is kept if there
+    are many candidates: all else of one is found ``again``, by its number.
+    """
+
+    number: int
+    drives: Sequence[JudgedDrive | _Judged | NoDrive]
+    begins: Sequence[int]
+    off_road: int
+    why: str
+    again: Callable[[int], CandidateScore] | None = None
+
+    def later(self, again: Callable[[int], CandidateScore]) -> CandidateCharges:
+        """The same without the drives, which are found ``again``."""
+        return replace(self, drives=list(map(_judged, self.drives)), again=again)
+
+    def score(self) -> CandidateScore:
+        """What the candidate comes to."""
+        drives = [x.with_verdict() if isinstance(x, JudgedDrive) else x for x in self.drives]
+        violations: list[Violation] = []
+        doubtful: list[OpenVerdict] = []
+        not_judged = {}
+        for begins, drive in zip(self.begins, drives, strict=True):
+            answer = drive.answer if isinstance(drive, DriveVerdict) else drive
+            if isinstance(answer, JudgedTrace):
+                answer = answer.nameless()
+            if isinstance(answer, Verdict):
+                violations += [at(violation, begins) for violation in answer.violations]
+                doubtful += answer.open
+                not_judged.update({one.rule: one for one in answer.not_judged})
+        found = CandidateScore(
+            self.number,
+            violations=tuple(violations),
+            open=tuple(doubtful),
+            not_judged=tuple(not_judged.values()),
+            off_road=self.off_road,
+            why=self.why,
+            drives=tuple([x for x in drives if isinstance(x, DriveVerdict | NoDrive)]),
+        )
+        if self.again is None:
+            return found
+        return without_drives(found, len(drives), partial(self.again, self.number))
+
+
+def _judged(drive: JudgedDrive | _Judged | NoDrive) -> _Judged | NoDrive:
+    return drive.judged if isinstance(drive, JudgedDrive) else drive
+
+
+def at(violation: Violation, begins: int) -> Violation:
+    """A violation by a drive that begins in this state of a candidate, in its states."""
+    step = violation.step
+    return replace(violation, step=step + begins) if begins and step is not None else violation
+
+
+class CandidateScores(Sequence[CandidateScore]):
+    """The scores of candidates in their order, each made when it is first asked for."""
+
+    def __init__(self, charges: Sequence[CandidateCharges | CandidateScore]) -> None:
+        self.charges = list(charges)
+
+    def __len__(self) -> int:
+        return len(self.charges)
+
+    @overload
+    def __getitem__(self, number: int) -> CandidateScore: ...
+
+    @overload
+    def __getitem__(self, number: slice) -> tuple[CandidateScore, ...]: ...
+
+    def __getitem__(self, number: int | slice) -> CandidateScore | tuple[CandidateScore, ...]:
+        if isinstance(number, slice):
+            return tuple([self[k] for k in range(*number.indices(len(self)))])
+        found = self.charges[number]
+        if isinstance(found, CandidateCharges):
+            found = self.charges[number] = found.score()
+        return found
+
+    def __eq__(self, other: object) -> bool:
+        """Whether they are the same scores."""
+        return isinstance(other, Sequence) and tuple(self) == tuple(other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[type[CandidateScores], tuple[list[CandidateScore]]]:
+        return CandidateScores, (list(self),)
+
+
+def forget_reasons(charges: Sequence[CandidateCharges]) -> None:
+    """Forget why what candidates leave open is so, for which all that they say is kept."""
+    judged = [own for one in charges for own in map(_judged, one.drives)]
+    for findings in {own.findings for own in judged if isinstance(own, JudgedTrace)}:
+        findings.forget_reasons()
+
+
+class Charged(NamedTuple):
+    """What candidates are charged with, each choice of objects by itself: whom, and which rule.
+
+    Both are numbers from 0; candidates ascend.
+    """
+
+    candidates: NDArray[intp]
+    rules: NDArray[intp]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ScoreColumns:
+    """What all candidates come to: what they violate and what is open, states off the road, late.
+
+    As many are ``late`` as pass before what the past has violated is kept for good.
+    """
+
+    violated: Charged
+    open: Charged
+    off_road: NDArray[intp]
+    late: NDArray[intp]
+
+
+def columns_of(candidates: Sequence[CandidateScore], rules: CompiledRulebook) -> ScoreColumns:
+    """What all candidates come to, for which no score need be made."""
+    charges = candidates.charges if isinstance(candidates, CandidateScores) else candidates
+    places = {rule.name: place for place, rule in enumerate(rules.rules)}
+    whose, which, are_violated = map(np.concatenate, zip(*_rows(charges, places), strict=True))
+    order = np.argsort(whose, kind="stable")
+    violated, doubtful = order[are_violated[order]], order[~are_violated[order]]
+    late = [one.late if isinstance(one, CandidateScore) else 0 for one in charges]
+    return ScoreColumns(
+        Charged(whose[violated], which[violated]),
+        Charged(whose[doubtful], which[doubtful]),
+        off_road=np.array([one.off_road for one in charges], dtype=intp),
+        late=np.array(late, dtype=intp),
+    )
+
+
+_Rows: TypeAlias = tuple[NDArray[intp], NDArray[intp], NDArray[bool_]]
+"""Candidates, a rule for each, and whether it is violated."""
+
+
+def _rows(
+    charges: Sequence[CandidateCharges | CandidateScore], places: Mapping[str, int]
+) -> Iterator[_Rows]:
+    """All that candidates are charged with; ``places`` are the numbers of rules."""
+    told: list[tuple[int, int, bool]] = []
+    judged: dict[Findings, dict[int, int]] = defaultdict(dict)
+    for number, one in enumerate(charges):
+        for own in map(_judged, one.drives) if isinstance(one, CandidateCharges) else (one,):
+            if isinstance(own, JudgedTrace):
+                judged[own.findings][own.number] = number
+            elif isinstance(own, Verdict | CandidateScore):
+                told += [(number, places[found.rule], True) for found in own.violations]
+                told += [(number, places[found.rule], False) for found in own.open]
+    whose, which, are_violated = np.array(told, dtype=intp).reshape(-1, 3).T
+    yield whose, which, are_violated.astype(bool)
+    for findings, numbers in judged.items():
+        candidate_of = np.full(findings.n_traces, _NOBODY)
+        candidate_of[list(numbers)] = list(numbers.values())
+        for rule, traces, own_violated in findings.charged():
+            own_ones = candidate_of[traces]
+            there = own_ones != _NOBODY
+            own_ones = own_ones[there]
+            yield own_ones, np.full(len(own_ones), places[rule]), own_violated[there]
