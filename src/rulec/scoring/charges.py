@@ -43,7 +43,10 @@ class CandidateCharges:
 
     def later(self, again: Callable[[int], CandidateScore]) -> CandidateCharges:
         """The same without the drives, which are found ``again``."""
-        return replace(self, drives=list(map(_judged, self.drives)), again=again)
+        judged = list(map(_judged, self.drives))
+        return CandidateCharges(
+            self.number, judged, self.begins, off_road=self.off_road, why=self.why, again=again
+        )
 
     def score(self) -> CandidateScore:
         """What the candidate comes to."""

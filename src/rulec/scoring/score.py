@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -24,6 +24,8 @@ from rulec.extraction.recording_verdicts import (
 from rulec.extraction.to_trace import Drive, TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_participant
 from rulec.files import no_garbage_collection
+from rulec.logic.free_names import names_of
+from rulec.monitoring.uncertainty.state_letters.related_facts import related_facts
 from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict, Violation
 from rulec.recordings.recording import Participant
 from rulec.scoring.candidate_score import CandidateScore
@@ -31,9 +33,13 @@ from rulec.scoring.charges import CandidateCharges, CandidateScores, at, forget_
 from rulec.scoring.scored_again import without_drives
 from rulec.scoring.scores import Scores
 from rulec.scoring.traffic_world import TrafficWorld
+from rulec.trace.trace_arrays import TraceArrays
 
 _Key = tuple[str, tuple[str, ...]]
 """A rule, and the objects of its variables."""
+
+_MOST_BOOKS = 1 << 6
+"""Rulebooks with some rules that are kept before all are forgotten."""
 
 _Pasts: TypeAlias = "WeakKeyDictionary[TrafficWorld, tuple[Any, tuple[Violation, ...]]]"
 """By worlds the last past that was asked about, and what it violates by itself."""
@@ -215,19 +221,20 @@ def _anew(
     known = {_key(violation) for violation in before}
     if not known:
         return scores
+    books, names = _of_rules(frozenset(rule for rule, _ in known), roundings)
     futures = [
-        (number, max(begin - drive.first_step, 0), drive)
+        _Future(number, drive.first_step, drive.arrays.said_by(names))
         for number, found in enumerate(scores)
         for drive, _ in _verdicts(found.drives)
         if drive.first_step + drive.arrays.n_states > begin
     ]
-    answers = agreed_answers([drive.arrays.since(since) for _, since, drive in futures], roundings)
-    late = _mended_after([(number, drive) for number, _, drive in futures], known, roundings, steps)
+    answers = agreed_answers([one.since(begin) for one in futures], books)
+    late = _mended_after(futures, known, books, steps)
     violations: dict[int, list[Violation]] = {}
     doubtful: dict[int, list[OpenVerdict]] = {}
-    for (number, since, drive), answer in zip(futures, answers, strict=True):
+    for future, answer in zip(futures, answers, strict=True):
         if isinstance(answer, Verdict):
-            begins = drive.first_step + since - first
+            number, begins = future.number, max(begin, future.first_step) - first
             own = [at(one, begins) for one in answer.violations if _key(one) in known]
             violations.setdefault(number, []).extend(own)
             doubtful.setdefault(number, []).extend(x for x in answer.open if _key(x) in known)
@@ -248,10 +255,48 @@ def _anew(
     ]
 
 
+class _Future(NamedTuple):
+    """What a candidate's drive says by the names that some rules read, and the step it begins in.
+
+    The number is the candidate's.
+    """
+
+    number: int
+    first_step: int
+    trace: TraceArrays
+
+    def since(self, step: int) -> TraceArrays:
+        """The drive from a step on, as if nothing were known of what was before."""
+        return self.trace.since(max(step - self.first_step, 0))
+
+
+class _Books(NamedTuple):
+    """Rulebooks with some of their rules, and the names that these and facts about them read."""
+
+    roundings: Sequence[CompiledRulebook]
+    names: frozenset[str]
+
+
+def _of_rules(rules: frozenset[str], roundings: Sequence[CompiledRulebook]) -> _Books:
+    """Rulebooks with only these rules, which are mostly the same again."""
+    known: dict[frozenset[str], _Books] = roundings[0].prepared.setdefault(_Books, {})
+    if rules not in known:
+        if len(known) >= _MOST_BOOKS:
+            known.clear()
+        books = [
+            replace(book, rules=tuple([rule for rule in book.rules if rule.name in rules]))
+            for book in roundings
+        ]
+        read = frozenset().union(*[names_of(rule.formula) for rule in books[0].rules])
+        facts = related_facts(read, books[0].axioms)
+        known[rules] = _Books(books, read.union(*[names_of(fact.formula) for fact in facts]))
+    return known[rules]
+
+
 def _mended_after(
-    drives: Sequence[tuple[int, Drive]],
+    futures: Sequence[_Future],
     known: Collection[_Key],
-    roundings: Sequence[CompiledRulebook],
+    books: Sequence[CompiledRulebook],
     steps: tuple[int, int],
 ) -> dict[int, int]:
     """How many states of candidates, by number, pass before what was violated is kept for good.
@@ -260,19 +305,18 @@ def _mended_after(
     at a time.
     """
     first, begin = steps
-    low, high = np.zeros(len(drives), dtype=int), np.full(len(drives), begin - first)
+    low, high = np.zeros(len(futures), dtype=int), np.full(len(futures), begin - first)
     while (low < high).any():
         middle = (low + high) // 2
-        futures = [
-            drive.arrays.since(max(first + after - drive.first_step, 0))
-            for after, (_, drive) in zip(middle.tolist(), drives, strict=True)
+        traces = [
+            own.since(first + after) for after, own in zip(middle.tolist(), futures, strict=True)
         ]
-        is_kept = np.array([_keeps(one, known) for one in agreed_answers(futures, roundings)])
+        is_kept = np.array([_keeps(one, known) for one in agreed_answers(traces, books)])
         low, high = np.where(is_kept, low, middle + 1), np.where(is_kept, middle, high)
         low = np.minimum(low, high)
     late: dict[int, int] = {}
-    for (number, _), states in zip(drives, low.tolist(), strict=True):
-        late[number] = max(states, late.get(number, 0))
+    for future, states in zip(futures, low.tolist(), strict=True):
+        late[future.number] = max(states, late.get(future.number, 0))
     return late
 
 

@@ -150,6 +150,22 @@ class TraceArrays:
             said &= np.repeat(self.only[name], np.diff(self.starts))
         return said
 
+    def said_by(self, names: Set[str]) -> TraceArrays:
+        """What is said by these names only."""
+
+        def of(values: Mapping[str, Any]) -> dict[str, Any]:
+            return {name: values[name] for name in values if name in names}
+
+        return replace(
+            self,
+            world=of(self.world),
+            about=of(self.about),
+            unknown=of(self.unknown),
+            absent=of(self.absent),
+            bounds=of(self.bounds),
+            only=of(self.only),
+        )
+
     def part(self, names: Set[str], items: Set[str]) -> TraceArrays:
         """What is said by these names, of the world and of these objects."""
         kept = np.array([item in items for item in self.objects], dtype=bool)
