@@ -65,10 +65,13 @@ class TraceArrays:
         if not state:
             return self
         there = self.spans[:, 1] >= state
-        lengths = np.diff(self.starts)
-        # Of each value the state that it is in, and whether its object is there later
-        numbers = np.arange(int(self.starts[-1])) - np.repeat(self.starts[:-1], lengths)
-        kept = numbers + np.repeat(self.spans[:, 0], lengths) >= state
+        kept: Flags | slice = slice(None)
+        if self.about:
+            starts = self.starts
+            lengths = np.diff(starts)
+            # Of each value the state that it is in, and whether its object is there later
+            numbers = np.arange(int(starts[-1])) - np.repeat(starts[:-1], lengths)
+            kept = numbers + np.repeat(self.spans[:, 0], lengths) >= state
 
         def part(name: str, values: Array) -> Array:
             return values[kept] if name in self.about else values[state:]
