@@ -12,6 +12,7 @@ import pytest
 from hypothesis import Phase, given, settings
 
 import rulec
+from rulec.extraction.recording_verdicts import some_rules
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.stacked import instances, stacked_rule
 from rulec.monitoring.batch.stacked import verify_arrays as judging
@@ -80,6 +81,31 @@ def test_together_they_get_the_verdicts_of_each(chance):
             others = one.depends_beyond(some)
             assert others == set(one.depends_on) - some
     assert [in_plain_words(answer) for answer in answers] == expected
+
+
+@given(seeds)
+@settings(phases=[Phase.generate], max_examples=settings().max_examples // 4)
+def test_a_rule_comes_to_the_same_without_others_and_what_these_read(chance):
+    book = rulebook(chance, Fraction(1))
+    compiled = compile_here(book, Fraction(1))
+    chosen = frozenset(rule.name for rule in compiled.rules if chance.random() < 0.5)
+    (smaller,), names = some_rules(chosen, [compiled])
+    read = {n for x in (*book.rules, *book.axioms) for n in names_in(x.formula)}
+    for whole in traces(chance, Fraction(1))[:3]:
+        dark = blurred(chance, without_pairs(whole, book.vocabulary), read, most=12)
+        own = seen(chance, without_pairs(dark, book.vocabulary), book.vocabulary.declarations)
+        try:
+            arrays = in_arrays(own, book.vocabulary)
+        except CannotSayError:
+            continue
+        answers = verify_arrays([arrays], compiled) + verify_arrays(
+            [arrays.said_by(names)], smaller
+        )
+        if not isinstance(answers[0], NotJudged):
+            every, some = answers
+            assert some.violations == tuple(x for x in every.violations if x.rule in chosen)
+            assert some.open == tuple(x for x in every.open if x.rule in chosen)
+            assert some.not_judged == tuple(x for x in every.not_judged if x.rule in chosen)
 
 
 @pytest.mark.parametrize("count", [1, 3])

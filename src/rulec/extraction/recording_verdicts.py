@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rulec.automata.bundle.bundle_messages import OTHER_STEP
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
@@ -16,6 +16,7 @@ from rulec.extraction.to_trace import Drive
 from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.findings import JudgedTrace
 from rulec.monitoring.batch.stacked.verify_arrays import answer_to, judge_arrays, verify_arrays
+from rulec.monitoring.uncertainty.state_letters.related_facts import related_facts
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation, agreed
 from rulec.recordings.recording import Recording
 from rulec.trace.trace_arrays import TraceArrays
@@ -23,6 +24,9 @@ from rulec.value_display import Rows, short_repr
 
 if TYPE_CHECKING:
     from rulec.monitoring.explain.explanation import Explanation
+
+_MOST_KEPT = 1 << 6
+"""Choices of rules that are kept before all are forgotten."""
 
 MOST_STATES = 1 << 13
 """Drives are verified together once they have this many states; more take more memory."""
@@ -140,6 +144,32 @@ def names_read(rulebook: CompiledRulebook) -> frozenset[str]:
         known = frozenset().union(*map(names_of, formulas))
         rulebook.prepared[names_read] = known
     return known
+
+
+class SomeRules(NamedTuple):
+    """Rulebooks with some of their rules, and the names that these and facts about them read.
+
+    What traces say by these names is enough to judge them, unless it contradicts other facts.
+    """
+
+    roundings: Sequence[CompiledRulebook]
+    names: frozenset[str]
+
+
+def some_rules(names: frozenset[str], roundings: Sequence[CompiledRulebook]) -> SomeRules:
+    """The rules of these names, of a rulebook that is rounded; they are mostly the same again."""
+    known: dict[frozenset[str], SomeRules] = roundings[0].prepared.setdefault(SomeRules, {})
+    if names not in known:
+        if len(known) >= _MOST_KEPT:
+            known.clear()
+        books = [
+            replace(book, rules=tuple([rule for rule in book.rules if rule.name in names]))
+            for book in roundings
+        ]
+        read = frozenset().union(*[names_of(rule.formula) for rule in books[0].rules])
+        facts = related_facts(read, books[0].axioms)
+        known[names] = SomeRules(books, read.union(*[names_of(fact.formula) for fact in facts]))
+    return known[names]
 
 
 def verified(

@@ -20,12 +20,11 @@ from rulec.extraction.recording_verdicts import (
     judged_drives,
     names_read,
     rounded_rulebooks,
+    some_rules,
 )
 from rulec.extraction.to_trace import Drive, TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_participant
 from rulec.files import no_garbage_collection
-from rulec.logic.free_names import names_of
-from rulec.monitoring.uncertainty.state_letters.related_facts import related_facts
 from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict, Violation
 from rulec.recordings.recording import Participant
 from rulec.scoring.candidate_score import CandidateScore
@@ -37,9 +36,6 @@ from rulec.trace.trace_arrays import TraceArrays
 
 _Key = tuple[str, tuple[str, ...]]
 """A rule, and the objects of its variables."""
-
-_MOST_BOOKS = 1 << 6
-"""Rulebooks with some rules that are kept before all are forgotten."""
 
 _Pasts: TypeAlias = "WeakKeyDictionary[TrafficWorld, tuple[Any, tuple[Violation, ...]]]"
 """By worlds the last past that was asked about, and what it violates by itself."""
@@ -221,7 +217,7 @@ def _anew(
     known = {_key(violation) for violation in before}
     if not known:
         return scores
-    books, names = _of_rules(frozenset(rule for rule, _ in known), roundings)
+    books, names = some_rules(frozenset(rule for rule, _ in known), roundings)
     futures = [
         _Future(number, drive.first_step, drive.arrays.said_by(names))
         for number, found in enumerate(scores)
@@ -268,29 +264,6 @@ class _Future(NamedTuple):
     def since(self, step: int) -> TraceArrays:
         """The drive from a step on, as if nothing were known of what was before."""
         return self.trace.since(max(step - self.first_step, 0))
-
-
-class _Books(NamedTuple):
-    """Rulebooks with some of their rules, and the names that these and facts about them read."""
-
-    roundings: Sequence[CompiledRulebook]
-    names: frozenset[str]
-
-
-def _of_rules(rules: frozenset[str], roundings: Sequence[CompiledRulebook]) -> _Books:
-    """Rulebooks with only these rules, which are mostly the same again."""
-    known: dict[frozenset[str], _Books] = roundings[0].prepared.setdefault(_Books, {})
-    if rules not in known:
-        if len(known) >= _MOST_BOOKS:
-            known.clear()
-        books = [
-            replace(book, rules=tuple([rule for rule in book.rules if rule.name in rules]))
-            for book in roundings
-        ]
-        read = frozenset().union(*[names_of(rule.formula) for rule in books[0].rules])
-        facts = related_facts(read, books[0].axioms)
-        known[rules] = _Books(books, read.union(*[names_of(fact.formula) for fact in facts]))
-    return known[rules]
 
 
 def _mended_after(
