@@ -168,6 +168,22 @@ def test_who_is_abreast_comes_to_the_narrowing_with_ego(xs, told):
     assert ("?" if unknown[1] else "FT"[int(abreast[1])]) == told
 
 
+def test_who_is_beside_ego_beyond_the_narrowing_is_on_another_lane():
+    """The two left lanes of three become one, beside which the right one goes on, moved left."""
+    road = [
+        straight(1, 0, 100, 0, left_of=2, successors=(6,)),
+        straight(2, 0, 100, 4, right_of=1, left_of=4, successors=(3,)),
+        straight(4, 0, 100, 8, right_of=2, successors=(3,)),
+        straight(3, 100, 250, 8, predecessors=(2, 4), right_of=6),
+        straight(6, 100, 250, 4, predecessors=(1,), left_of=3),
+    ]
+    ego = vehicle(7, {0: (95, 8), 1: (97, 8), 2: (104, 8)})
+    other = vehicle(1, {0: (97, 0), 1: (100, 4), 2: (106, 4)})
+    told = merge_signals(context_of(recording(road, [ego, other]), ("4", "3")))
+    assert told.world["narrowing"].tolist() == [True, True, False]
+    assert not told.about["abreast_at_narrowing"].any()
+
+
 def test_a_drive_of_one_state_and_one_that_begins_beyond():
     assert signals(lanes(), xs=(90,)).world["narrowing"].tolist() == [True]
     found = signals(lanes(), xs=(120, 152))

@@ -46,6 +46,8 @@ def _narrowings(context: DriveContext) -> SignalColumns:
         other = np.where(lane == right, right + 1, right)
         there, lost = _there_with_ego(context, place) if before.any() else (False, False)
         beside = before & _beside_in(context, other) if before.any() else False
+        # Beyond it other lanes may be beside the one that two have become
+        beside &= context.extents.s_max <= place
         if sure:
             narrowing |= before
             merged |= on_one & (front > place) & (front <= place + reach)
