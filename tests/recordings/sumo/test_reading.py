@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rulec import read_recording
+from rulec.extraction.tracks.driven_road import junction_lanelets
 from rulec.recordings.sumo.vehicle_types import CLASSES, read_vehicle_types, vehicle_type
 from rulec.recordings.track import rectangles
 from support.builders.sumo_files import body, data, moment, written
@@ -272,6 +273,36 @@ def test_who_is_not_in_data_of_a_part_of_the_traffic_may_be_there(tmp_path, opti
     # What the net has is told all the same
     assert "light" in found.complete
     assert any(f"--{option}:" in remark for remark in found.remarks) != whole
+
+
+def test_where_a_net_has_no_junction_lanes_that_become_one_are_none(tmp_path):
+    """Its nodes say where roads meet: nobody looks for junctions where lanes lie on each other."""
+    one, two = (
+        f'<edge id=":x_{n}" function="internal"><lane id=":x_{n}_0" index="0" speed="30"'
+        f' shape="200,{y} 204,-4.80"/></edge>'
+        for n, y in enumerate((-4.8, -1.6))
+    )
+    road = "".join(
+        f'<edge id="{name}" from="{start}" to="{end}">'
+        + "".join(
+            f'<lane id="{name}_{n}" index="{n}" speed="30" shape="{x0},{y} {x1},{y}"/>'
+            for n, y in enumerate(ys)
+        )
+        + "</edge>"
+        for name, start, end, x0, x1, ys in (
+            ("in", "a", "x", 0, 200, (-4.8, -1.6)),
+            ("out", "x", "b", 204, 400, (-4.8,)),
+        )
+    )
+    links = "".join(
+        f'<connection from="in" to="out" fromLane="{n}" toLane="0" via=":x_{n}_0" dir="s" state="Z"/>'
+        f'<connection from=":x_{n}" to="out" fromLane="0" toLane="0" dir="s" state="M"/>'
+        for n in range(2)
+    )
+    found = read_recording(
+        written(tmp_path, data(moment(0, body())), net=f"<net>{one}{two}{road}{links}</net>")
+    )
+    assert junction_lanelets(found) == frozenset()
 
 
 @pytest.mark.parametrize(

@@ -40,8 +40,8 @@ from rulec.recordings.table_heads import head_of, is_fcd_head
 from rulec.recordings.track import Track, tracked
 
 ON_NETS = frozenset({"STOP", "YIELD", "PRIORITY", "GREEN_ARROW", "light", "rail", "roundabout"})
-ON_NETS |= {"lanes"}
-"""A net has every lane, sign, light and track."""
+ON_NETS |= {"lanes", "junctions"}
+"""A net has every lane, junction, sign, light and track."""
 
 COMPLETE = ON_NETS | {"officer", "arrivals"}
 """There is no officer at all in SUMO.
