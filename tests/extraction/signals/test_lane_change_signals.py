@@ -40,6 +40,20 @@ def test_who_follows_a_way_of_a_lane_that_forks_may_have_changed_to_none(x, know
     assert found.unknown["lane_change"][change] == (not known)
 
 
+@pytest.mark.parametrize(("x", "known"), [(76, False), (40, True)])
+def test_who_follows_a_way_to_where_two_become_one_may_have_changed_to_none(x, known):
+    """They do at 100 m; ego's middle is 2.2 m to the left of where it was 10 m before."""
+    road = [
+        straight(1, 0, 100, left_of=2, successors=(3,)),
+        straight(2, 0, 100, 4, right_of=1, successors=(3,)),
+        straight(3, 100, 300, 4, predecessors=(1, 2)),
+    ]
+    ego = vehicle(7, {k: (x + 5.0 * k, min(1.1 * k, 4)) for k in range(6)})
+    found = lane_change_signals(context_of(recording(road, [ego]), ("2", "3")))
+    (change,) = np.flatnonzero(found.world["lane_change"])
+    assert found.unknown["lane_change"][change] == (not known)
+
+
 @pytest.mark.parametrize(("y", "known"), [(0.0, False), (-2.5, True)])
 def test_who_follows_a_way_that_parts_slowly_may_have_changed_to_none(y, known):
     """The ways are 4 m apart 60 m behind the fork, where the road goes on straight.

@@ -45,6 +45,18 @@ def test_at_most_four_lanelets_lie_between_two_states():
     assert stretches(lanes, 5, 55) == [(0, 0, ("0",), (0,)), (1, 1, ("5",), (0,))]
 
 
+def test_where_two_lanes_become_one_the_road_is_ego_s_way():
+    """It was longer on the right one of them, but came out of the left one: it changed lanes once."""
+    lanes = [
+        straight(1, 0, 100, 0, left_of=2, successors=(3,)),
+        straight(2, 0, 100, 4, right_of=1, successors=(3,)),
+        straight(3, 100, 250, 4, predecessors=(1, 2)),
+    ]
+    places = [*((x, 0) for x in range(5, 75, 5)), (80, 4), (90, 4), (97, 4), (110, 4), (120, 4)]
+    ((_, _, route, _),) = stretches(lanes, *places)
+    assert route == ("2", "3")
+
+
 TURNS = [
     # Into the left lane 2 from 1, and out of the right one, 3, into 4
     lanelet(1, [(0, 4), (100, 4)], successors=("2",)),

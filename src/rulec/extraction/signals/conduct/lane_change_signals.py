@@ -40,7 +40,7 @@ _JUST_STOOD_S = 1.0
 """Who stood so short a time ago has not driven over a mark since: it slid there as it stood."""
 
 _FORK_M = 15.0
-"""So far behind where a lane has forked its ways lie over each other."""
+"""So far behind where a lane has forked its ways lie over each other, as before two become one."""
 
 _ASKEW_RAD = np.radians(10.0)
 """Nobody's body lies so far askew in its lane but in a turn."""
@@ -52,7 +52,7 @@ def _lane_change(context: DriveContext) -> SignalColumns:
     """Whether ego has changed lanes; unknown within tolerances, and of who turns round or off.
 
     Its body swings over the lanes of the road that it comes to. Nor does anybody know where a lane
-    has just forked: ego may follow one of its ways.
+    has just forked, or two become one: ego may follow one of its ways.
     """
     changes = _changes(context)
     unknown = np.zeros(context.states, dtype=bool)
@@ -62,7 +62,7 @@ def _lane_change(context: DriveContext) -> SignalColumns:
         states = np.flatnonzero(changes & ~unknown)
         pieces = context.road.piece(context.ego_extents.s[0, states])
         for change, piece in zip(states.tolist(), pieces.tolist(), strict=True):
-            unknown[change] = _at_fork(context, change, piece)
+            unknown[change] = _at_fork(context, change, piece) or _at_merge(context, change, piece)
     return SignalColumns({"lane_change": changes}, unknown={"lane_change": unknown})
 
 
@@ -92,6 +92,23 @@ def _at_fork(context: DriveContext, change: int, last: int) -> bool:
         if set(one.predecessors) & set(other.predecessors):
             begin = float(road.borders[piece])
             return bool(s[change] - begin < _FORK_M) or _has_followed(context, after, begin, change)
+    return False
+
+
+def _at_merge(context: DriveContext, change: int, first: int) -> bool:
+    """True if the lanes that ego changes between become one less than ``_FORK_M`` ahead.
+
+    The ``first`` piece of the road is the one that it is in.
+    """
+    road, s = context.road, context.ego_extents.s[0]
+    before, after = context.steady_lane[change - 1 : change + 1].tolist()
+    for piece in range(first, len(road.rows)):
+        one, other = road.rows[piece][before], road.rows[piece][after]
+        near = float(road.borders[piece + 1]) - s[change] < _FORK_M
+        if one is None or other is None or not near:
+            return False
+        if set(one.successors) & set(other.successors):
+            return True
     return False
 
 

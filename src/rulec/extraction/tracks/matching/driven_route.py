@@ -1,9 +1,10 @@
 """The road under a matched path: lanelets end to end, of which ego may have left lanes.
 
 A change of lanes does not leave the road, so of each row of lanes one lanelet is chosen: those that
-lead to each other, where ego was fewest lanes away. Where no such lanelets lead all the way, as
-after a turn into one lane and before a turn from another, the road changes lanes itself, in a
-lanelet as long as possible.
+lead to each other, where ego was fewest lanes away. Where lanes become one, or one becomes several,
+it is the way that ego took: from another one ego would seem to change lanes there. Where no such
+lanelets lead all the way, as after a turn into one lane and before a turn from another, the road
+changes lanes itself, in a lanelet as long as possible.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.matching.map_matching import MatchedStretch
 from rulec.recordings.recording import Recording
 
-_SHIFT_COST, _SHORT_COST = 1e6, 1e5
+_SHIFT_COST, _SHORT_COST, _OTHER_WAY_COST = 1e6, 1e5, 1e4
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,12 +49,15 @@ class RouteStretch:
 class _Row:
     """Lanes beside each other, and how long each is (m).
 
-    ``away`` is how many lanes the states are away from each, in sum.
+    ``away`` is how many lanes the states are away from each, in sum; ``entered`` the one in which
+    ego's way comes there, ``left`` the one from which it goes on.
     """
 
     lanes: tuple[str, ...]
     away: tuple[int, ...]
     lengths: tuple[float, ...]
+    entered: str
+    left: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +110,7 @@ def route_stretches(
             sum([count * abs(k - own) for k, count in enumerate(states)])
             for own in range(len(lanes))
         ]
-        rows.append(_Row(lanes, tuple(away), tuple(map(graph.length, lanes))))
+        rows.append(_Row(lanes, tuple(away), tuple(map(graph.length, lanes)), piece[0], piece[-1]))
     start = 0
     while start < len(rows):
         stop, route = _cheapest(recording, rows, start)
@@ -137,7 +141,7 @@ def _cheapest(
         entries = {
             lane: choice
             for lane in row.lanes
-            if (choice := _entry(recording, best, lane, first=number == start)) is not None
+            if (choice := _entry(recording, best, lane, rows[start : number + 1][-2:])) is not None
         }
         if not entries:
             return number, _least(best).lanelets
@@ -156,11 +160,19 @@ def _least(best: dict[str, _Choice]) -> _Choice:
 
 
 def _entry(
-    recording: Recording, best: dict[str, _Choice], lane: str, *, first: bool
+    recording: Recording, best: dict[str, _Choice], lane: str, rows: Sequence[_Row]
 ) -> _Choice | None:
-    if first:
+    """The cheapest way into a lane of the last of one or two rows, from the one before if any."""
+    if len(rows) == 1:
         return _Choice(0.0, ())
-    leading = [c for exit_, c in best.items() if lane in recording.lanelets[exit_].successors]
+    before, row = rows
+    leading = []
+    for exit_, choice in best.items():
+        if lane in recording.lanelets[exit_].successors:
+            # They part or join beside ego's way
+            other_way = (exit_ == before.left) != (lane == row.entered)
+            cost = choice.cost + _OTHER_WAY_COST * other_way
+            leading.append(_Choice(cost, choice.lanelets))
     return min(leading, key=lambda choice: (choice.cost, choice.lanelets), default=None)
 
 
