@@ -234,7 +234,7 @@ def test_who_is_about_to_cross_when_first_seen_may_have_come_just_then():
     assert not unknown.any()
 
 
-def side_road(walker, stops_at=None):
+def side_road(walker, stops_at=None, more=()):
     """T, F or ? by step of 0.5 s: ego comes from the south, turns right at (0, 0), drives off."""
     inside = {"types": frozenset({"intersection"}), "junction": "x"}
     bend = [(8 - 8 * np.cos(a), -8 + 8 * np.sin(a)) for a in np.linspace(0, np.pi / 2, 7)]
@@ -243,6 +243,7 @@ def side_road(walker, stops_at=None):
         lanelet(2, bend, predecessors=("1",), successors=("3",), **inside),
         lanelet(3, [(8, 0), (80, 0)], predecessors=("2",)),
         lanelet(4, [(0, -8), (0, 40)], **inside),
+        *more,
     ]
     line = np.array([(0, -60), *bend, (80, 0)])
     way = 30 + 2.5 * np.arange(40)
@@ -270,6 +271,41 @@ def test_one_in_the_side_road_while_ego_goes_by():
 def test_one_that_ego_lets_go_while_it_waits_in_the_junction():
     slow = [y - 3 for y in CROSSES]
     assert side_road(slow, stops_at=64.0)[9] == "F"
+
+
+def test_one_behind_whom_ego_waits_though_it_is_as_far_along_the_road():
+    """As at the inner side of a bend; ego's front is 2 m ahead of its middle, 69 m along."""
+    slow = [y - 3 for y in CROSSES]
+    assert side_road(slow, stops_at=67.2)[9] == "F"
+    # Here it drives on though the other one has stopped in its lane
+    stands = [min(y, 0.0) for y in slow]
+    assert side_road(stands, stops_at=67.2)[9] == "T"
+
+
+def test_who_walks_on_a_corner_of_the_pavement_is_not_in_the_road():
+    """Ways of those who turn may lie over it, also where ego comes by."""
+    corner = lanelet(5, [(8, -2), (16, -2)], width=4, types=frozenset({"sidewalk"}))
+    walks = [-4.5 + 0.2 * k for k in range(40)]
+    assert side_road(walks)[9] == "T"
+    assert side_road(walks, more=[corner])[9] == "F"
+
+
+def test_who_gets_to_egos_lane_long_after_ego_may_not_have_to_be_let_across():
+    """Ego's front is 2 m before the crossing, its rear off it in 1 s; its lane ends at y = 2."""
+    for y, across, known in ((7, -1.4, True), (8, -1.4, False), (8, -1.9, True), (8, 0, False)):
+        places = {k: (60, y + 0.1 * across * k) for k in range(2)}
+        walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
+        ego = steady(7, 54, 0, speed=10.0, steps=2, step_s=0.1)
+        road = recording([*lanes(4), ZEBRA], [ego, walker], step_s=0.1)
+        found = crossing_signals(context_of(road))
+        assert found.values("crossing_use")[0, 0] == "on_crossing"
+        assert found.unknown["crossing_use"][0, 0] == (not known)
+
+
+@pytest.mark.parametrize(("y", "expected"), [(-1.7, "not_crossing"), (-1.5, "on_crossing")])
+def test_who_walks_along_the_edge_of_the_road_has_its_middle_hardly_in_it(y, expected):
+    """The lane's edge is at y = -2, and nobody's place is told better than to 0.4 m there."""
+    assert use(60, y, along=1.4) == expected
 
 
 def test_one_that_waits_until_ego_is_gone():

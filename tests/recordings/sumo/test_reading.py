@@ -295,8 +295,8 @@ def test_where_a_net_has_no_junction_lanes_that_become_one_are_none(tmp_path):
         )
     )
     links = "".join(
-        f'<connection from="in" to="out" fromLane="{n}" toLane="0" via=":x_{n}_0" dir="s" state="Z"/>'
-        f'<connection from=":x_{n}" to="out" fromLane="0" toLane="0" dir="s" state="M"/>'
+        f'<connection from="in" to="out" fromLane="{n}" toLane="0" via=":x_{n}_0" state="Z"/>'
+        f'<connection from=":x_{n}" to="out" fromLane="0" toLane="0" state="M"/>'
         for n in range(2)
     )
     found = read_recording(

@@ -63,7 +63,7 @@ class Tracks:
     ``x`` and ``y`` are centres (m), ``heading`` is in rad. Velocities (m/s) and accelerations
     (m/s²) are those of ``motion_of``, with their errors.
     ``on_lane`` and ``on_crosswalk``: is the middle of a vulnerable road user on a lane, of any
-    direction, or on a pedestrian crossing of the map?
+    direction, or on a pedestrian crossing of the map? Who walks on the pavement is on no lane.
     """
 
     participants: tuple[Participant, ...]
@@ -336,6 +336,11 @@ def tracks_of(
     users = present & types.of("vulnerable_user")[:, None]
     lanelets = recording.lanelets.values()
     crosswalks = (lanelet for lanelet in lanelets if "crosswalk" in lanelet.types)
+    on_crosswalk = _inside(users, x, y, crosswalks)
+    on_lane = _inside(users, x, y, filter(is_lane, lanelets))
+    # Where maps let the ways of those who turn lie over corners of the pavement
+    walkers = users & on_lane & ~on_crosswalk & types.of("pedestrian")[:, None]
+    on_lane &= ~_inside(walkers, x, y, (x for x in lanelets if "sidewalk" in x.types))
     return Tracks(
         participants=bodies,
         types=types,
@@ -346,8 +351,8 @@ def tracks_of(
         y=y,
         heading=heading,
         **{field.name: getattr(motion, field.name) for field in fields(motion)},
-        on_lane=_inside(users, x, y, filter(is_lane, lanelets)),
-        on_crosswalk=_inside(users, x, y, crosswalks),
+        on_lane=on_lane,
+        on_crosswalk=on_crosswalk,
     )
 
 

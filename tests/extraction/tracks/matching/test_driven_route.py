@@ -46,7 +46,7 @@ def test_at_most_four_lanelets_lie_between_two_states():
 
 
 def test_where_two_lanes_become_one_the_road_is_ego_s_way():
-    """It was longer on the right one of them, but came out of the left one: it changed lanes once."""
+    """It was longer on the right one of them, but came out of the left one."""
     lanes = [
         straight(1, 0, 100, 0, left_of=2, successors=(3,)),
         straight(2, 0, 100, 4, right_of=1, successors=(3,)),

@@ -2,7 +2,8 @@
 
 Intentions are not recorded. Who is on the crossing is on it, unless it walks away from
 ego's lane, which it has crossed then; who stands at the kerb beside it waits to cross; who walks
-towards it is about to, if it will be there soon.
+towards it is about to, if it will be there soon. Whether one that gets to ego's lane long after ego
+has left the crossing, as on the other side of a wide road, is to be let across is open.
 """
 
 from __future__ import annotations
@@ -24,6 +25,11 @@ from rulec.trace.plain_arrays import ranges
 _STOOD_S = 5.0
 """Who has stood for longer as ego comes, and does for as long after it, has not stopped for it."""
 
+_HAIR_MPS = 1e-3
+
+_WALKS_MPS = 1.4
+"""So fast people walk who do not wait."""
+
 _USES = ("not_crossing", "waiting_to_cross", "about_to_cross", "entering_crossing", "on_crossing")
 
 
@@ -37,7 +43,7 @@ def _crossing_use(context: DriveContext) -> SignalColumns:
         rows, used = rows[some], used[some]
         too_late, may_be = _too_late(context, rows, used)
         own[rows] = np.where(_past_ego(context, rows) | too_late, 0, used)
-        unsure[rows] = may_be & (own[rows] > 0)
+        unsure[rows] = (may_be | _is_far_off(context, rows)) & (own[rows] > 0)
     return SignalColumns(
         about={"crossing_use": own},
         only={"crossing_use": context.tracks.of_type("pedestrian")},
@@ -102,22 +108,27 @@ def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
     """Flags of those of these rows whose way ego takes from a state on, and where nobody knows.
 
     They are on the lanes of its direction, and not past its own, while ego goes by or up to
-    ``entering_s`` later; or have stood until it was gone, and gone then. Of whom ego does not reach
-    while both are seen nobody knows, nor whether one wants to cross who stands there since
-    ``_STOOD_S`` before ego comes, and stays for as long once it is gone.
+    ``entering_s`` later; or have stood until it was gone, and gone then. Not those behind whom ego
+    goes at walking pace, or waits, until they are across. Of whom ego does not reach while both are
+    seen nobody knows, nor whom it waits for yet; nor whether one wants to cross who stands there
+    since ``_STOOD_S`` before ego comes, and stays for as long once it is gone.
     """
     own, others = context.ego_extents, context.extents.part(rows, slice(None))
     spans, seen = context.spans, context.relevant[rows]
     limits, step_s = context.thresholds, context.recording.step_s
-    on_lanes, last = context.on_lanes[rows] & seen, spans.end - 1
+    on_lanes, last = context.on_lanes[rows] & context.tracks.on_lane[rows] & seen, spans.end - 1
     stands = context.tracks.speed[rows] * KMH < limits.standing_kmh
     comes = spans.next_state(seen & (own.s_max >= others.s_min))
     reached, at = comes < spans.end, np.minimum(comes, last)
     goes = np.minimum(spans.next_state(own.s_min > others.s_max), last)
     steps_on = spans.next_state(on_lanes)
-    off = ~on_lanes | _past_ego(context, rows)
+    # Who turns along the road, as at its corner, has crossed it
+    turns_along = ~stands & (np.abs(others.along) > np.abs(others.across))
+    off = ~on_lanes | _past_ego(context, rows) | turns_along
     # Across before ego comes, having been on its lanes
     let_go = np.take_along_axis(off, at, axis=1) & (steps_on < at)
+    across, waits_yet = _waited_for(context, at, goes, off)
+    let_go |= across & (steps_on < spans.end)
     by_then = np.minimum(goes + round(limits.entering_s / step_s), last)
     in_way = np.take_along_axis(spans.next_state(~off), at, axis=1) <= by_then
     waited = spans.next_state(stands & seen & ~on_lanes) <= np.minimum(steps_on, goes)
@@ -131,7 +142,26 @@ def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
     stays = (~waited | (moves > steps_on)) & (moves > np.minimum(goes + stood, last))
     lost = spans.next_state(~seen) <= np.minimum(soon, last)
     unseen = (steps_on >= spans.end) & (lost | (soon >= spans.end))
-    return taken, ~reached | (taken & stays) | (~let_go & ~taken & unseen)
+    return taken, ~reached | waits_yet | (taken & stays) | (~let_go & ~taken & unseen)
+
+
+def _waited_for(
+    context: DriveContext, at: NDArray[intp], goes: NDArray[intp], off: Flags
+) -> tuple[Flags, Flags]:
+    """Flags of those who are across before ego, at walking pace, is past them or goes faster.
+
+    Or are within ``entering_s``. And of those for whom it still waits as the drive ends. Ego comes to them in the states ``at``
+    and is past in those of ``goes``; they are out of its way in those of ``off``.
+    """
+    spans, last = context.spans, context.spans.end - 1
+    slow = context.ego.speed[0] * KMH <= context.thresholds.walking_pace_kmh
+    slows = spans.next_state(slow)[at]
+    waits, since = slows < goes, np.minimum(slows, last)
+    faster = spans.next_state(~slow)[since]
+    across = np.take_along_axis(spans.next_state(off), since, axis=1)
+    yet = waits & (faster >= spans.end) & (across >= spans.end)
+    soon = faster + round(context.thresholds.entering_s / context.recording.step_s)
+    return waits & (across <= np.minimum(soon, last)), yet
 
 
 @once
@@ -182,14 +212,16 @@ def _crossing_uses(
     to_road = np.maximum(-high_r, low_l).clip(0.0)
     walks = cells.of(tracks.speed) * KMH >= limits.standing_kmh
     # The speed towards the middle of the road, across it (m/s)
-    across, left = cells.of(others.across), (low_r + high_r) / 2 + (low_l + high_l) / 2
+    middle_r, middle_l = (low_r + high_r) / 2, (low_l + high_l) / 2
+    across, left = cells.of(others.across), middle_r + middle_l
     towards = np.where(left < 0, across, -across)
+    in_road = cells.of(context.on_lanes) & (np.minimum(middle_r, -middle_l) > limits.at_edge_m)
     crossing = cells.of(on_it) & cells.of(tracks.on_lane)
     waits = (to_road <= limits.kerb_m) & ~walks
     # Who walks along the pavement and drifts a little towards the road does not come to cross, nor
     # who does so at the very edge of a crossing
     approaches = walks & (towards > np.abs(cells.of(others.along)))
-    on = crossing & (cells.of(context.on_lanes) | ~walks | approaches)
+    on = crossing & (in_road | ~walks | approaches)
     soon = approaches & (to_road <= towards * limits.about_to_s)
     enters = soon & (to_road <= towards * limits.entering_s)
     uses.ravel()[own.places] = np.select([on, enters, soon, waits], [4, 3, 2, 1], 0)
@@ -262,6 +294,23 @@ def _past_ego(context: DriveContext, rows: NDArray[intp]) -> Flags:
     longest = round(context.thresholds.away_s / context.recording.step_s)
     past: Flags = (away > back) & (spans.columns - away <= longest)
     return past
+
+
+def _is_far_off(context: DriveContext, rows: NDArray[intp]) -> Flags:
+    """Flags of those of these rows that get to ego's lane long after ego has left the crossing.
+
+    Ego goes on as fast as it is, they walk towards it, and are ``held_up_s`` later.
+    """
+    others, bound = context.extents.part(rows, slice(None)), context.ego_lane
+    (_, right_of), (left_of, _) = others.from_bound(bound), others.from_bound(bound + 1)
+    comes_s = np.maximum(np.maximum(left_of, -right_of), 0.0) / np.maximum(
+        np.abs(others.across), _WALKS_MPS
+    )
+    _, end = next_crossing(context)
+    speed = np.maximum(context.ego_extents.along[0], _HAIR_MPS)
+    leaves_s = np.maximum(end - context.ego_extents.s_min[0], 0.0) / speed
+    far: Flags = comes_s > leaves_s + context.thresholds.held_up_s
+    return far
 
 
 def _behind_another(context: DriveContext, stopped: Flags) -> Flags:
