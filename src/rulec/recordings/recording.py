@@ -167,6 +167,9 @@ REGULATING = STOP_SIGNS | {"YIELD", "PRIORITY", "RIGHT_OF_WAY"}
 CYCLES_TOO = "cyclesAllowed"
 """The type of a lane that is reserved for others, and cycles may use as well."""
 
+TAXIS_TOO = "taxisAllowed"
+"""The type of a lane for buses that taxis may use as well."""
+
 STRAIGHT_ON = "straightOn"
 """The type of a way through a junction that the map calls straight on, however it bends."""
 

@@ -127,6 +127,10 @@ def test_walkers_go_both_ways_on_one_lanelet(tmp_path):
             {"participant__vehicle__bus": "yes", "participant__bicycle": "yes"},
             {"busLane", "cyclesAllowed", "urban"},
         ),
+        (
+            {"participant__vehicle__bus": "yes", "participant__vehicle__taxi": "yes"},
+            {"busLane", "taxisAllowed", "urban"},
+        ),
         ({"participant__vehicle__emergency": "yes"}, {"restricted_area", "urban"}),
         ({"participant__vehicle": "no"}, {"restricted_area", "urban"}),
         ({"subtype": "bus_lane", "participant__vehicle": "yes"}, {"urban"}),

@@ -98,11 +98,13 @@ def test_a_lane_for_buses_by_access(tmp_path):
     since_1_8 = '<access sOffset="0" rule="allow"><restriction type="bus"/></access>'
     deny = '<access sOffset="0" rule="deny" restriction="bus"/>'
     shared = access + access.replace("bus", "bicycle")
-    kinds = enumerate((access, since_1_8, deny, shared), 1)
+    taxis = access + access.replace("bus", "taxi")
+    kinds = enumerate((access, since_1_8, deny, shared, taxis), 1)
     lanes = section(*(lane(-number, more=more) for number, more in kinds))
     found = lanelets(tmp_path, road(1, lanes))
-    types = [found[f"1.0.-{number}"].types for number in range(1, 5)]
-    assert types == [{"busLane"}, {"busLane"}, set(), {"busLane", "cyclesAllowed"}]
+    types = [found[f"1.0.-{number}"].types for number in range(1, 6)]
+    assert types[:4] == [{"busLane"}, {"busLane"}, set(), {"busLane", "cyclesAllowed"}]
+    assert types[4] == {"busLane", "taxisAllowed"}
 
 
 def test_a_lane_for_both_directions(tmp_path):

@@ -12,7 +12,7 @@ from math import isfinite
 from types import MappingProxyType
 
 from rulec.recordings.encodings.speed_units import KMH, SPEED_UNITS
-from rulec.recordings.recording import CYCLES_TOO, LaneMark
+from rulec.recordings.recording import CYCLES_TOO, TAXIS_TOO, LaneMark
 
 _Tags = Mapping[str, str]
 
@@ -67,6 +67,8 @@ def _for_whom(allowed: set[str]) -> Iterator[str]:
         yield "busLane" if "vehicle:bus" in motorized else "restricted_area"
         if "bicycle" in allowed:
             yield CYCLES_TOO
+        if "vehicle:taxi" in motorized:
+            yield TAXIS_TOO
     elif not motorized and "pedestrian" in allowed:
         yield "sidewalk"
     elif not motorized and "bicycle" in allowed:

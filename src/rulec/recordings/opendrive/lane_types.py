@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from rulec.recordings.opendrive.content.elements import Lane, LaneSection, MapRoad, RoadType
-from rulec.recordings.recording import CYCLES_TOO
+from rulec.recordings.recording import CYCLES_TOO, TAXIS_TOO
 
 _DRIVING: tuple[str, ...] = ()
 LANE_TYPES: Mapping[str, tuple[str, ...]] = MappingProxyType(
@@ -57,10 +57,9 @@ def lane_types(section: LaneSection, lane: Lane, s: float) -> tuple[str, ...]:
     )
     if types or not allowed:
         return types
-    if allowed <= _BUSES:
-        return ("busLane",)
     if allowed & _BUSES and allowed <= _BUSES | _RIDERS:
-        return ("busLane", CYCLES_TOO)
+        cycles = (CYCLES_TOO,) if allowed & _RIDERS else ()
+        return ("busLane", *cycles, *((TAXIS_TOO,) if "taxi" in allowed else ()))
     if allowed <= _WALKERS:
         return ("sidewalk",)
     return ("bicycleLane",) if allowed <= _WALKERS | _RIDERS else types

@@ -12,7 +12,14 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from rulec.recordings.polylines import parallel_line, without_repeats
-from rulec.recordings.recording import CYCLES_TOO, STRAIGHT_ON, Lanelet, LaneMark, Points
+from rulec.recordings.recording import (
+    CYCLES_TOO,
+    STRAIGHT_ON,
+    TAXIS_TOO,
+    Lanelet,
+    LaneMark,
+    Points,
+)
 from rulec.recordings.sumo.lane_kinds import lane_kinds
 from rulec.recordings.sumo.net import NetConnection, NetEdge, NetLane, SumoNet
 from rulec.recordings.sumo.right_of_way import (
@@ -224,6 +231,8 @@ def _types(
         yield "busLane"
         if permitted & _RIDERS:
             yield CYCLES_TOO
+        if "taxi" in permitted:
+            yield TAXIS_TOO
     elif permitted <= _SERVICES:
         yield "shoulder"
     junction = junction_of(lane)

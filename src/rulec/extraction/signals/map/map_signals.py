@@ -28,7 +28,7 @@ from rulec.extraction.signals.signal_columns import (
 )
 from rulec.extraction.signals.signal_passes import SignalPasses, once_a_recording
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.recordings.recording import CROSSWALK, CYCLES_TOO, STOP_SIGNS, Lanelet
+from rulec.recordings.recording import CROSSWALK, CYCLES_TOO, STOP_SIGNS, TAXIS_TOO, Lanelet
 from rulec.scenario.recorded.route import lanelet_area
 from rulec.trace.plain_arrays import distinct
 
@@ -239,6 +239,8 @@ def _below_middle(context: DriveContext, middle: Floats, lane: NDArray[intp]) ->
         own = lanelets_at(context, middle, lane)
         cycles = context.spans.spread(context.ego.of_type("cyclist"))
         may = cycles & own.flags(_is_of(CYCLES_TOO))
+        taxis = context.spans.spread([one.type == "taxi" for one in context.ego.participants])
+        may |= taxis & own.flags(_is_of(TAXIS_TOO))
         for kind in kinds:
             surfaces[own.flags(_is_of(kind)) & ~may] = _SURFACES[kind]
     return surfaces
