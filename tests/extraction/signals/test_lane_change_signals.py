@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from rulec.extraction.signals.conduct.lane_change_signals import lane_change_signals
+from rulec.extraction.signals.ego_signals import ego_signals
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
@@ -375,7 +376,11 @@ def test_who_turns_off_swings_over_the_lanes_of_the_road_that_it_comes_to(headin
         for places, angle in ((north, np.pi / 2), (east, heading))
     )
     ego = replace(first, states=first.states | then.states, outlines=first.outlines | then.outlines)
-    found = lane_change_signals(context_of(recording(road, [ego]), ("1", "2", "3")))
+    context = context_of(recording(road, [ego]), ("1", "2", "3"))
+    found = lane_change_signals(context)
     changed = found.world["lane_change"] & (np.arange(8) >= 3)
+    across = ego_signals(context)
+    assert across.world["straddling"][3]
+    assert across.unknown["straddling"][3] == (not known)
     assert changed.any()
     assert bool((changed & ~found.unknown["lane_change"]).any()) == known

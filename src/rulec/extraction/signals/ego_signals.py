@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.conduct.manoeuvre_signals import goes_over_the_middle
 from rulec.extraction.signals.ego_lanelets import room_beside, travel_lanes_at, travel_lanes_first
+from rulec.extraction.signals.map.junction_signals import lies_askew_in_turn
 from rulec.extraction.signals.measured_numbers import own_speed, speed_bounds
 from rulec.extraction.signals.queues import lanes_that_go_on
 from rulec.extraction.signals.signal_columns import (
@@ -159,14 +160,18 @@ def _rank(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
 
 
 def _straddling(context: DriveContext) -> SignalColumns:
-    """Whether ego is in two lanes; unknown where places, or the map, decide it.
+    """Whether ego is in two lanes; unknown where places, or the map, decide it, or it turns off.
 
-    Also on its way over the middle of the road, to the lanes of the other direction or back.
+    Its body swings over the lanes of the road that it comes to then. Also on its way over the middle of the road, to the lanes of the other direction or back.
     """
     straddling, unknown = np.zeros((2, context.states), dtype=bool)
     states = np.flatnonzero(_near_a_bound(context))
     if len(states):
         straddling[states], unknown[states] = _in_two_lanes(context, states)
+        askew, spans = straddling & lies_askew_in_turn(context), context.spans
+        if askew.any():
+            # As long as it lies across the mark without a break before
+            unknown |= straddling & (spans.next_state(askew) < spans.next_state(~straddling))
     over = goes_over_the_middle(context)
     straddling, unknown = straddling | over, unknown & ~over
     return SignalColumns({"straddling": straddling}, unknown={"straddling": unknown})

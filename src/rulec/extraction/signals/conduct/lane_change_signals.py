@@ -19,7 +19,7 @@ from rulec.extraction.signals.conduct.manoeuvre_signals import (
 )
 from rulec.extraction.signals.conduct.squeezing_in import WayIn, squeezed
 from rulec.extraction.signals.conduct.turning_round import has_to_brake_for_turn
-from rulec.extraction.signals.map.junction_signals import turn_at
+from rulec.extraction.signals.map.junction_signals import lies_askew_in_turn
 from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Flags
@@ -42,9 +42,6 @@ _JUST_STOOD_S = 1.0
 _FORK_M = 15.0
 """So far behind where a lane has forked its ways lie over each other, as before two become one."""
 
-_ASKEW_RAD = np.radians(10.0)
-"""Nobody's body lies so far askew in its lane but in a turn."""
-
 _HAIR_M = 0.01
 
 
@@ -57,24 +54,13 @@ def _lane_change(context: DriveContext) -> SignalColumns:
     changes = _changes(context)
     unknown = np.zeros(context.states, dtype=bool)
     if changes.any():
-        swings = swings_round(context) | _lies_askew_in_turn(context)
+        swings = swings_round(context) | lies_askew_in_turn(context)
         unknown = _within_tolerance(context, changes) | (changes & swings)
         states = np.flatnonzero(changes & ~unknown)
         pieces = context.road.piece(context.ego_extents.s[0, states])
         for change, piece in zip(states.tolist(), pieces.tolist(), strict=True):
             unknown[change] = _at_fork(context, change, piece) or _at_merge(context, change, piece)
     return SignalColumns({"lane_change": changes}, unknown={"lane_change": unknown})
-
-
-def _lies_askew_in_turn(context: DriveContext) -> Flags:
-    """Flags of states in which ego's body, partly in a junction where it turns, is askew yet."""
-    (front,), (rear,) = context.ego_extents.s_max, context.ego_extents.s_min
-    turns = np.zeros(context.states, dtype=bool)
-    for start, end in context.road.junctions:
-        if turn_at(context, start, end) != "straight_on":
-            turns |= (front > start) & (rear < end)
-    askew: Flags = turns & (np.abs(context.ego_extents.turned[0]) > _ASKEW_RAD)
-    return askew
 
 
 def _at_fork(context: DriveContext, change: int, last: int) -> bool:

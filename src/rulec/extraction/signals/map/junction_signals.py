@@ -25,6 +25,9 @@ from rulec.trace.plain_arrays import distinct
 _SLOWEST_MPS = 5.0
 """Who stands at the end of a drive goes on so fast."""
 
+_ASKEW_RAD = np.radians(10.0)
+"""Nobody's body lies so far askew in its lane but in a turn."""
+
 _AMBER = "amber_light"
 
 COLOURS = {
@@ -256,6 +259,18 @@ def _may_have_sign(context: DriveContext) -> Flags:
     may |= context.spans.before(may)
     may &= moves
     return may
+
+
+@once
+def lies_askew_in_turn(context: DriveContext) -> Flags:
+    """Flags of states in which ego's body, partly in a junction where it turns, is askew yet."""
+    (front,), (rear,) = context.ego_extents.s_max, context.ego_extents.s_min
+    turns = np.zeros(context.states, dtype=bool)
+    for start, end in context.road.junctions:
+        if turn_at(context, start, end) != "straight_on":
+            turns |= (front > start) & (rear < end)
+    askew: Flags = turns & (np.abs(context.ego_extents.turned[0]) > _ASKEW_RAD)
+    return askew
 
 
 def turn_at(context: DriveContext, start: float, end: float) -> str:
