@@ -162,7 +162,8 @@ def _rank(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
 def _straddling(context: DriveContext) -> SignalColumns:
     """Whether ego is in two lanes; unknown where places, or the map, decide it, or it turns off.
 
-    Its body swings over the lanes of the road that it comes to then. Also on its way over the middle of the road, to the lanes of the other direction or back.
+    Its body swings over the lanes of the road that it comes to then. Also on its way over the
+    middle of the road, to the lanes of the other direction or back.
     """
     straddling, unknown = np.zeros((2, context.states), dtype=bool)
     states = np.flatnonzero(_near_a_bound(context))

@@ -150,8 +150,9 @@ def _waited_for(
 ) -> tuple[Flags, Flags]:
     """Flags of those who are across before ego, at walking pace, is past them or goes faster.
 
-    Or are within ``entering_s``. And of those for whom it still waits as the drive ends. Ego comes to them in the states ``at``
-    and is past in those of ``goes``; they are out of its way in those of ``off``.
+    Or are within ``entering_s``. And of those for whom it still waits as the drive ends. Ego comes
+    to them in the states ``at`` and is past in those of ``goes``; they are out of its way in those
+    of ``off``.
     """
     spans, last = context.spans, context.spans.end - 1
     slow = context.ego.speed[0] * KMH <= context.thresholds.walking_pace_kmh
