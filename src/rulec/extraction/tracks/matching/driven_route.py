@@ -1,10 +1,10 @@
 """The road under a matched path: lanelets end to end, of which ego may have left lanes.
 
 A change of lanes does not leave the road, so of each row of lanes one lanelet is chosen: those that
-lead to each other, where ego was fewest lanes away. Where lanes become one, or one becomes several,
-it is the way that ego took: from another one ego would seem to change lanes there. Where no such
-lanelets lead all the way, as after a turn into one lane and before a turn from another, the road
-changes lanes itself, in a lanelet as long as possible.
+lead to each other, where ego was fewest lanes away. Where lanes become one it is that by which ego
+came: from another one ego would seem to change lanes there. Where no such lanelets lead all the
+way, as after a turn into one lane and before a turn from another, the road changes lanes itself, in
+a lanelet as long as possible.
 """
 
 from __future__ import annotations
@@ -169,8 +169,8 @@ def _entry(
     leading = []
     for exit_, choice in best.items():
         if lane in recording.lanelets[exit_].successors:
-            # They part or join beside ego's way
-            other_way = (exit_ == before.left) != (lane == row.entered)
+            # It joins ego's way there, which comes out of another one
+            other_way = lane == row.entered and exit_ != before.left
             cost = choice.cost + _OTHER_WAY_COST * other_way
             leading.append(_Choice(cost, choice.lanelets))
     return min(leading, key=lambda choice: (choice.cost, choice.lanelets), default=None)
