@@ -353,9 +353,11 @@ def test_hazard_lights_of_a_drive_whose_file_contradicts_itself_are_not_known():
     assert changes(body=body).unknown["indicator"].tolist() == [False, True, True, False]
 
 
-@pytest.mark.parametrize(("heading", "known"), [(0.4, False), (0.1, True)])
-def test_who_turns_off_swings_over_the_lanes_of_the_road_that_it_comes_to(heading, known):
-    """A long vehicle turns right into a road of two lanes, its rear in the junction yet.
+@pytest.mark.parametrize(
+    ("heading", "length", "known"), [(0.4, 9, False), (0.1, 16, False), (0.1, 9, True)]
+)
+def test_who_turns_off_swings_over_the_lanes_of_the_road_that_it_comes_to(heading, length, known):
+    """A truck turns right into a road of two lanes, its rear in the junction yet.
 
     Its middle is beyond their mark in state 3, and back in state 5.
     """
@@ -372,7 +374,7 @@ def test_who_turns_off_swings_over_the_lanes_of_the_road_that_it_comes_to(headin
     north = {k: (0, -50 + 15 * k) for k in range(3)}
     east = {3: (12, 2.5), 4: (14, 2.5), 5: (16, 1), 6: (19, 0), 7: (22, 0)}
     first, then = (
-        vehicle(7, places, "truck", length=16, heading=angle)
+        vehicle(7, places, "truck", length=length, heading=angle)
         for places, angle in ((north, np.pi / 2), (east, heading))
     )
     ego = replace(first, states=first.states | then.states, outlines=first.outlines | then.outlines)

@@ -28,6 +28,9 @@ _SLOWEST_MPS = 5.0
 _ASKEW_RAD = np.radians(10.0)
 """Nobody's body lies so far askew in its lane but in a turn."""
 
+_SWEEPS_M = 10.0
+"""The middle of a longer body cuts the corner in a turn."""
+
 _AMBER = "amber_light"
 
 COLOURS = {
@@ -263,14 +266,19 @@ def _may_have_sign(context: DriveContext) -> Flags:
 
 @once
 def lies_askew_in_turn(context: DriveContext) -> Flags:
-    """Flags of states in which ego's body, partly in a junction where it turns, is askew yet."""
+    """Flags of states in which ego's body, partly in a junction where it turns, is askew yet.
+
+    Also where it drives onto a roundabout, or leaves it. The middle of a long body is off its lane
+    there though it lies along it.
+    """
     (front,), (rear,) = context.ego_extents.s_max, context.ego_extents.s_min
     turns = np.zeros(context.states, dtype=bool)
     for start, end in context.road.junctions:
-        if turn_at(context, start, end) != "straight_on":
+        if abs(context.road.turned(start, end, aside_m=1.0)) > 2 * _ASKEW_RAD:
             turns |= (front > start) & (rear < end)
-    askew: Flags = turns & (np.abs(context.ego_extents.turned[0]) > _ASKEW_RAD)
-    return askew
+    askew = np.abs(context.ego_extents.turned[0]) > _ASKEW_RAD
+    swings: Flags = turns & (askew | (front - rear > _SWEEPS_M))
+    return swings
 
 
 def turn_at(context: DriveContext, start: float, end: float) -> str:
