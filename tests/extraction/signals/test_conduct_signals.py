@@ -386,6 +386,17 @@ def test_who_holds_up_others():
     assert set(queue) == {"F"}
 
 
+def test_who_gains_speed_is_not_slow_for_good():
+    """From 2 to 14 m/s by 0.6 m/s² in 20 s, as a bus after its stop; half of the limit are 15."""
+    road = [straight(1, 0, 2500, limit_mps=30.0)]
+    way = [100 + 2 * t + 0.3 * t * t for t in np.arange(0, 20, 0.5)]
+    ego, follower = (
+        vehicle(n, {k: (x - d, 0) for k, x in enumerate(way)}) for n, d in ((7, 0), (8, 9))
+    )
+    found = told(reason_signals, "impedes_traffic", road, ego, follower, complete=SIMULATED)
+    assert "T" not in found
+
+
 def test_a_cycle_holds_up_nobody():
     """The law asks for no more than its rider's strength."""
     road = [straight(1, 0, 2500, limit_mps=13.9)]

@@ -287,14 +287,17 @@ def _motion(context: DriveContext, rows: NDArray[intp], states: NDArray[intp]) -
 def _impedes(context: DriveContext) -> SignalColumns:
     """Whether somebody follows ego, far below the limit for long without a reason.
 
-    Who rides a cycle has one: no law asks for more than its rider's strength.
+    Who rides a cycle has one: no law asks for more than its rider's strength. Who gains speed, as
+    after a stop, is not slow for good.
     """
     limit, speed = context.limit_mps, context.ego.speed[0]
     told = np.isfinite(limit)
     cycles = context.spans.spread([ego.type == "bicycle" for ego in context.ego.participants])
     followed = _followed(context) & ~cycles
     caused, perhaps = _causes(context)
-    far_slower = told & (speed < _FAR_SLOWER * limit) & moves(context) & ~caused & ~perhaps
+    gains = context.ego.acceleration[0] > context.thresholds.accelerating_mps2
+    slow = told & (speed < _FAR_SLOWER * limit) & moves(context)
+    far_slower = slow & ~gains & ~caused & ~perhaps
     steps = round(context.thresholds.preparing_s / context.recording.step_s)
     runs = context.spans.columns - context.spans.latest(~far_slower)
     impedes = followed & (runs > steps)
