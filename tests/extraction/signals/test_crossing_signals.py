@@ -3,6 +3,8 @@
 The crossing reaches from x = 58 to 62, over a road of one lane from y = -2 to 2.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -178,6 +180,16 @@ def test_who_stands_behind_another_one_may_have_stopped_for_that_one():
     assert signals.about["stopped_for_pedestrian"][:, 0].tolist() == [True, True, True, False]
     unknown = signals.unknown["stopped_for_pedestrian"][:, 0].tolist()
     assert unknown == [False, True, False, False]
+
+
+@pytest.mark.parametrize(("y", "stopped_for"), [(-4.0, False), (0.0, True)])
+def test_at_a_crossing_with_lights_who_waits_at_the_kerb_waits_for_these(y, stopped_for):
+    lit = replace(ZEBRA, types=ZEBRA.types | {"directed"})
+    walker = vehicle(8, {0: (60, y), 1: (60, y)}, "pedestrian", length=0.4, width=0.4)
+    bodies = [steady(7, 20, 0, steps=2), steady(9, 55, 0, speed=0, steps=2), walker]
+    road = recording([*lanes(1), lit], bodies)
+    signals = crossing_signals(context_of(replace(road, complete=frozenset({"light"}))))
+    assert bool(signals.about["stopped_for_pedestrian"][0, 0]) == stopped_for
 
 
 def test_vehicles_that_stand_before_the_crossing_have_stopped_for_a_pedestrian():

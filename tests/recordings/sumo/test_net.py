@@ -209,6 +209,24 @@ def test_where_more_is_allowed_within_a_junction_that_holds(tmp_path):
     assert found["in_1"].limit_mps * 3.6 == pytest.approx(50)
 
 
+@pytest.mark.parametrize(("behind", "kept"), [("bus", True), ("bus passenger", False)])
+def test_a_way_from_a_lane_for_buses_is_kept_for_them_if_the_lane_behind_it_is(
+    tmp_path, behind, kept
+):
+    text = ROAD_NET.replace(
+        '"in_1" index="1" disallow="pedestrian"', '"in_1" index="1" allow="bus"'
+    )
+    text = text.replace(
+        '":x_0_0" index="0" disallow="pedestrian"', '":x_0_0" index="0" allow="bus"'
+    )
+    text = text.replace(
+        '"out_1" index="1" disallow="pedestrian"', f'"out_1" index="1" allow="{behind}"'
+    )
+    found = lanelets(tmp_path, text)
+    assert "busLane" in found["in_1"].types
+    assert ("busLane" in found[":x_0_0"].types) == kept
+
+
 LIGHT = """\
 <tlLogic id="x" type="static" programID="0" offset="5">
   <phase duration="30" state="Gr"/><phase duration="3" state="yr"/><phase duration="7" state="rG"/>

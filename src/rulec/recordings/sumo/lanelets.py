@@ -7,7 +7,7 @@ leads there goes on, unless the net allows more there: less is how fast one gets
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Set
 
 import numpy as np
 
@@ -79,6 +79,11 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
     for connection in net.connections:
         links[connection.start].append(connection)
         entries[connection.end].append(connection)
+
+    def onward(lane: NetLane) -> list[Set[str]]:
+        ends = links[lane.id] if lane.edge.function == "internal" else []
+        return [_permitted(net.lanes[link.end]) for link in ends if link.end in net.lanes]
+
     lanelets = {}
     for lane in net.lanes.values():
         if lane.id not in there:
@@ -98,7 +103,7 @@ def net_lanelets(net: SumoNet, step_s: float) -> dict[str, Lanelet]:
             right_of=_neighbour(lane, -towards_left, there),
             types=frozenset(
                 (
-                    *_types(lane, net, junctions, entries[lane.id]),
+                    *_types(lane, net, junctions, entries[lane.id], onward(lane)),
                     *_place_types(origin.edge, net, lane),
                     *filter(None, [kinds.get(origin.id)]),
                     *([STRAIGHT_ON] if lane.id in straight and junction in junctions else ()),
@@ -209,9 +214,19 @@ def _junctions(net: SumoNet) -> set[str]:
     return {node for node, others in arms.items() if len(others) >= _ARMS and node in meet}
 
 
+def _is_for_buses(permitted: Set[str]) -> bool:
+    """True if these may use a lane, and with it buses, but not all."""
+    return bool(permitted & _BUSES) and not permitted & {"passenger", "private", "truck"}
+
+
 def _types(
-    lane: NetLane, net: SumoNet, junctions: set[str], entries: list[NetConnection]
+    lane: NetLane,
+    net: SumoNet,
+    junctions: set[str],
+    entries: list[NetConnection],
+    onward: Iterable[Set[str]],
 ) -> Iterator[str]:
+    """What a lane is for, and where. ``onward``: who may use the lanes behind a way in a node."""
     permitted = _permitted(lane)
     if lane.edge.function == "crossing":
         # Where walkers have to give way there is no crossing that gives them priority
@@ -227,7 +242,7 @@ def _types(
             yield "rail"
     elif permitted <= _WALKERS | _RIDERS:
         yield "sidewalk" if permitted & _WALKERS else "bicycleLane"
-    elif permitted & _BUSES and not permitted & {"passenger", "private", "truck"}:
+    elif _is_for_buses(permitted) and all(map(_is_for_buses, onward)):
         yield "busLane"
         if permitted & _RIDERS:
             yield CYCLES_TOO

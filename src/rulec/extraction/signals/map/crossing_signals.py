@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.map_signals import crossings_told, next_crossing
+from rulec.extraction.signals.map.zone_signals import crossings_lit
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.lane_sets import is_in
@@ -58,7 +59,9 @@ def _stopped_for_pedestrian(context: DriveContext) -> SignalColumns:
     stopped = np.zeros_like(context.relevant)
     if len(_pedestrians(context)):
         rows = _pedestrians(context)
-        waited_for = ((_used_ahead(context) > 0) & context.relevant[rows]).any(axis=0)
+        # Who waits or comes at a crossing with lights waits for these
+        least = np.where(_is_lit(context), _USES.index("entering_crossing"), 1)
+        waited_for = ((_used_ahead(context) >= least) & context.relevant[rows]).any(axis=0)
         states = np.flatnonzero(waited_for)
         stopped[:, states] = _stopped(context, states)
     return SignalColumns(
@@ -66,6 +69,14 @@ def _stopped_for_pedestrian(context: DriveContext) -> SignalColumns:
         only={"stopped_for_pedestrian": context.tracks.of_type("vehicle")},
         unknown={"stopped_for_pedestrian": _behind_another(context, stopped)},
     )
+
+
+def _is_lit(context: DriveContext) -> Flags:
+    """Flags of states in which a light directs the crossing ahead, or may do."""
+    (start, _), lit = next_crossing(context), np.zeros(context.states, dtype=bool)
+    for place, lights in crossings_lit(context).items():
+        lit |= (start == place) & any(lights)
+    return lit
 
 
 def _nearest_to_crossing(context: DriveContext) -> SignalColumns:

@@ -43,7 +43,7 @@ def _crossing_kind(context: DriveContext) -> SignalColumns:
     """
     (start, _), directed = next_crossing(context), np.zeros(context.states, dtype=bool)
     unknown = np.zeros(context.states, dtype=bool)
-    for place, (lit, unsure) in _crossings_lit(context).items():
+    for place, (lit, unsure) in crossings_lit(context).items():
         directed |= (start == place) & lit
         unknown |= (start == place) & unsure
     kinds = np.where(directed, "directed_crossing", "zebra")
@@ -51,7 +51,7 @@ def _crossing_kind(context: DriveContext) -> SignalColumns:
 
 
 @once_a_road
-def _crossings_lit(context: DriveContext) -> dict[float, tuple[bool, bool]]:
+def crossings_lit(context: DriveContext) -> dict[float, tuple[bool, bool]]:
     """Where each crossing of the road begins, whether a light directs it, and perhaps does."""
     # A net says itself which crossings have lights
     told = "light" in context.recording.complete
