@@ -294,6 +294,14 @@ def test_one_behind_whom_ego_waits_though_it_is_as_far_along_the_road():
     assert side_road(stands, stops_at=67.2)[9] == "T"
 
 
+@pytest.mark.parametrize(("y", "told"), [(5.5, "T"), (8.0, "?")])
+def test_who_waits_far_off_may_wait_for_others(y, told):
+    """It stands on the other half of the road, 3.5 m or 6 m off ego's lane: 2.5 s or 4.3 s."""
+    oncoming = lanelet(6, [(80, 6), (8, 6)], width=8)
+    walks = [*[y] * 18, *(y - 0.6 * k for k in range(22))]
+    assert side_road(walks, more=[oncoming])[9] == told
+
+
 def test_who_walks_on_a_corner_of_the_pavement_is_not_in_the_road():
     """Ways of those who turn may lie over it, also where ego comes by."""
     corner = lanelet(5, [(8, -2), (16, -2)], width=4, types=frozenset({"sidewalk"}))

@@ -27,6 +27,14 @@ def test_the_state_in_which_the_lane_is_another_one():
     assert changes(body=steady(7, 0, 0)).world["lane_change"].tolist() == [False] * 4
 
 
+def test_who_stands_changes_no_lanes():
+    """Its place drifts over the mark, as of who waits in a simulation of ways beside each other."""
+    drifts = vehicle(7, {k: (20, y) for k, y in enumerate([0, 1.2, 2.4, 2.6, 2.6, 2.6])})
+    found = lane_change_signals(context_of(recording(lanes(2), [drifts])))
+    (change,) = np.flatnonzero(found.world["lane_change"])
+    assert found.unknown["lane_change"][change]
+
+
 @pytest.mark.parametrize(("x", "known"), [(98, False), (180, True)])
 def test_who_follows_a_way_of_a_lane_that_forks_may_have_changed_to_none(x, known):
     """It forks at 100 m; ego's middle is 2.2 m to the left of where it was 10 m farther on."""

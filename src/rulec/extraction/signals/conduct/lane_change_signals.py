@@ -49,13 +49,15 @@ def _lane_change(context: DriveContext) -> SignalColumns:
     """Whether ego has changed lanes; unknown within tolerances, and of who turns round or off.
 
     Its body swings over the lanes of the road that it comes to. Nor does anybody know where a lane
-    has just forked, or two become one: ego may follow one of its ways.
+    has just forked, or two become one: ego may follow one of its ways; nor of who stands: its
+    places drift.
     """
     changes = _changes(context)
     unknown = np.zeros(context.states, dtype=bool)
     if changes.any():
         swings = swings_round(context) | lies_askew_in_turn(context)
-        unknown = _within_tolerance(context, changes) | (changes & swings)
+        stands = np.abs(context.ego_extents.along[0]) * KMH < context.thresholds.standing_kmh
+        unknown = _within_tolerance(context, changes) | (changes & (swings | stands))
         states = np.flatnonzero(changes & ~unknown)
         pieces = context.road.piece(context.ego_extents.s[0, states])
         for change, piece in zip(states.tolist(), pieces.tolist(), strict=True):

@@ -153,7 +153,10 @@ def _takes_way(context: DriveContext, rows: NDArray[intp]) -> tuple[Flags, Flags
     stays = (~waited | (moves > steps_on)) & (moves > np.minimum(goes + stood, last))
     lost = spans.next_state(~seen) <= np.minimum(soon, last)
     unseen = (steps_on >= spans.end) & (lost | (soon >= spans.end))
-    return taken, ~reached | waits_yet | (taken & stays) | (~let_go & ~taken & unseen)
+    # As on the other half of a wide road, where it may stand for others
+    far = np.take_along_axis(_comes_s(context, rows) > limits.held_up_s, goes, axis=1)
+    unsure = waits_yet | (taken & (stays | (far & ~in_way))) | (~let_go & ~taken & unseen)
+    return taken, ~reached | unsure
 
 
 def _waited_for(
@@ -313,16 +316,20 @@ def _is_far_off(context: DriveContext, rows: NDArray[intp]) -> Flags:
 
     Ego goes on as fast as it is, they walk towards it, and are ``held_up_s`` later.
     """
-    others, bound = context.extents.part(rows, slice(None)), context.ego_lane
-    (_, right_of), (left_of, _) = others.from_bound(bound), others.from_bound(bound + 1)
-    comes_s = np.maximum(np.maximum(left_of, -right_of), 0.0) / np.maximum(
-        np.abs(others.across), _WALKS_MPS
-    )
     _, end = next_crossing(context)
     speed = np.maximum(context.ego_extents.along[0], _HAIR_MPS)
     leaves_s = np.maximum(end - context.ego_extents.s_min[0], 0.0) / speed
-    far: Flags = comes_s > leaves_s + context.thresholds.held_up_s
+    far: Flags = _comes_s(context, rows) > leaves_s + context.thresholds.held_up_s
     return far
+
+
+def _comes_s(context: DriveContext, rows: NDArray[intp]) -> Floats:
+    """How soon (s) pedestrians of these rows get to ego's lane, if they walk towards it."""
+    others, bound = context.extents.part(rows, slice(None)), context.ego_lane
+    (_, right_of), (left_of, _) = others.from_bound(bound), others.from_bound(bound + 1)
+    way = np.maximum(np.maximum(left_of, -right_of), 0.0)
+    comes: Floats = way / np.maximum(np.abs(others.across), _WALKS_MPS)
+    return comes
 
 
 def _behind_another(context: DriveContext, stopped: Flags) -> Flags:
