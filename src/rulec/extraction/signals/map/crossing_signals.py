@@ -230,13 +230,14 @@ def _crossing_uses(
     middle_r, middle_l = (low_r + high_r) / 2, (low_l + high_l) / 2
     across, left = cells.of(others.across), middle_r + middle_l
     towards = np.where(left < 0, across, -across)
-    in_road = cells.of(context.on_lanes) & (np.minimum(middle_r, -middle_l) > limits.at_edge_m)
+    at_edge = np.minimum(middle_r, -middle_l) <= limits.at_edge_m
+    at_edge &= np.abs(across) < np.abs(cells.of(others.along))
     crossing = cells.of(on_it) & cells.of(tracks.on_lane)
     waits = (to_road <= limits.kerb_m) & ~walks
     # Who walks along the pavement and drifts a little towards the road does not come to cross, nor
     # who does so at the very edge of a crossing
     approaches = walks & (towards > np.abs(cells.of(others.along)))
-    on = crossing & (in_road | ~walks | approaches)
+    on = crossing & ((cells.of(context.on_lanes) & ~at_edge) | ~walks | approaches)
     soon = approaches & (to_road <= towards * limits.about_to_s)
     enters = soon & (to_road <= towards * limits.entering_s)
     uses.ravel()[own.places] = np.select([on, enters, soon, waits], [4, 3, 2, 1], 0)
