@@ -42,9 +42,9 @@ EXPECTED = {
         "de": {"speed_limit": 20.0, "crossing_overtaking": 47.3},
         "gb": {"speed_limit": 20.0},
     },
-    # Waits beside ew.4, which sets off, too, before it is past; then passes ew.2 on the left, beside
-    # which it comes on the crossing, at 54.3 s. For Britain ew.4 is not the nearest to the crossing,
-    # and ew.2 is beyond it
+    # Waits beside ew.4, which sets off, too, before it is past; then passes ew.2 on the left, to
+    # which it has come up on the crossing. For Britain ew.4 is not the nearest to the crossing, and
+    # ew.2 is beyond it
     "ew.5": {
         "de": {"speed_limit": 25.8, "crossing_overtaking": 54.3},
         "gb": {"speed_limit": 25.8},
