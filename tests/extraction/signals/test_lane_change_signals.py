@@ -27,6 +27,17 @@ def test_the_state_in_which_the_lane_is_another_one():
     assert changes(body=steady(7, 0, 0)).world["lane_change"].tolist() == [False] * 4
 
 
+@pytest.mark.parametrize(("states", "known"), [(4, False), (6, True)])
+def test_who_is_back_within_half_a_second_has_changed_no_lanes(states, known):
+    """Its middle is 1 m beyond the mark for 0.4 s or 0.6 s, as where headings jump."""
+    ys = [0.0] * 10 + [3.0] * states + [0.0] * 10
+    ego = vehicle(7, {k: (k, y) for k, y in enumerate(ys)})
+    found = lane_change_signals(context_of(recording(lanes(2), [ego], step_s=0.1)))
+    changed = np.flatnonzero(found.world["lane_change"])
+    assert len(changed) == 2
+    assert found.unknown["lane_change"][changed].tolist() == [not known] * 2
+
+
 def test_who_stands_changes_no_lanes():
     """Its place drifts over the mark, as of who waits in a simulation of ways beside each other."""
     drifts = vehicle(7, {k: (20, y) for k, y in enumerate([0, 1.2, 2.4, 2.6, 2.6, 2.6])})

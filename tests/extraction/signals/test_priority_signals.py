@@ -83,6 +83,16 @@ LINK = [
 """Two junctions 15 m apart, at the first of which a way crosses ego's just before the link."""
 
 
+def test_a_drive_that_breaks_in_a_junction():
+    """Where no lane leads on ego leaves the road, and is in the junction yet, on another drive."""
+    ego = vehicle(7, {k: (-50 + 2 * k, 0) for k in range(60)}, speed=10)
+    found = replace(recording(LINK, [ego]), complete=frozenset({"YIELD", "PRIORITY"}))
+    route = ("1", "2", "9", "10", "11")
+    told = priority_signals(context_of(found, route, until=24)).world["unregulated_junction"]
+    # Its front is 50 m before the first junction in state 0, its middle in it from state 20 on
+    assert told[20:].tolist() == [True] * 4
+
+
 @pytest.mark.parametrize("length", [4.5, 12.0, 18.0, 24.0])
 def test_nobody_is_in_the_way_at_the_next_junction_who_was_at_the_last_one(length):
     """The rear of a long one is still on that way when its front is at the next line."""

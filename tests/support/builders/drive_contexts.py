@@ -23,10 +23,13 @@ def driven_road(found, route, junctions=frozenset()):
     return road
 
 
-def context_of(found, route=("1",), side="right", ego=EGO, elsewhere=None, **thresholds):
+def context_of(
+    found, route=("1",), side="right", ego=EGO, elsewhere=None, until=None, **thresholds
+):
     """The context of ego's drive along a chain of lanelets, while ego is in the recording.
 
-    ``elsewhere``: flags of participants by step that drive on other roads.
+    Or up to before a step, ``until``. ``elsewhere``: flags of participants by step that drive on
+    other roads.
     """
     limits = replace(USUAL, **thresholds)
     tracks = tracks_of(found, limits)
@@ -38,7 +41,7 @@ def context_of(found, route=("1",), side="right", ego=EGO, elsewhere=None, **thr
     extents = road_extents(tracks, road)
     fastest = tracks.fastest
     places = RoadPlaces(road, tracks, extents, limits, elsewhere=elsewhere, fastest=fastest)
-    driven = slice(int(columns[0]), int(columns[-1]) + 1)
+    driven = slice(int(columns[0]), int(columns[-1]) + 1 if until is None else until)
     return drive_context(Surroundings(found, tracks), places, side, row, driven)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import shapely
 from numpy import intp
@@ -49,20 +51,32 @@ def _lane_change(context: DriveContext) -> SignalColumns:
     """Whether ego has changed lanes; unknown within tolerances, and of who turns round or off.
 
     Its body swings over the lanes of the road that it comes to. Nor does anybody know where a lane
-    has just forked, or two become one: ego may follow one of its ways; nor of who stands: its
-    places drift.
+    has just forked, or two become one: ego may follow one of its ways; nor of who stands, whose
+    places drift, or is back at once.
     """
     changes = _changes(context)
     unknown = np.zeros(context.states, dtype=bool)
     if changes.any():
         swings = swings_round(context) | lies_askew_in_turn(context)
         stands = np.abs(context.ego_extents.along[0]) * KMH < context.thresholds.standing_kmh
-        unknown = _within_tolerance(context, changes) | (changes & (swings | stands))
+        unknown = _within_tolerance(context, changes) | _there_and_back(context, changes)
+        unknown |= changes & (swings | stands)
         states = np.flatnonzero(changes & ~unknown)
         pieces = context.road.piece(context.ego_extents.s[0, states])
         for change, piece in zip(states.tolist(), pieces.tolist(), strict=True):
             unknown[change] = _at_fork(context, change, piece) or _at_merge(context, change, piece)
     return SignalColumns({"lane_change": changes}, unknown={"lane_change": unknown})
+
+
+def _there_and_back(context: DriveContext, changes: Flags) -> Flags:
+    """Flags of changes to a lane and back within ``_JUMP_S``: nobody drives so, but places jump."""
+    lane, spans = context.steady_lane, context.spans
+    back, states = np.zeros_like(changes), np.flatnonzero(changes)
+    for first, then in pairwise(states.tolist()):
+        returns = spans.number[first] == spans.number[then] and lane[first - 1] == lane[then]
+        if returns and (then - first) * context.recording.step_s < _JUMP_S:
+            back[[first, then]] = True
+    return back
 
 
 def _at_fork(context: DriveContext, change: int, last: int) -> bool:

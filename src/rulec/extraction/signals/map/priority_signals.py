@@ -165,7 +165,8 @@ def _next(context: DriveContext, passage: Passage) -> int:
 def _until_out(context: DriveContext, passage: Passage) -> slice:
     """The same states, and those after them in which ego's body is in the junction yet."""
     span, (rear,) = approach(context, passage), context.ego_extents.s_min
-    place = context.ego_extents.s[0, max(span.stop - 1, 0)]
+    # Drives may break in a junction
+    place = context.ego_extents.s[0, min(max(span.stop, 1), context.states) - 1]
     ends = [high for low, high in context.road.junctions if low <= place <= high]
     if not ends or span.stop >= context.states:
         return span
