@@ -136,6 +136,16 @@ def test_nobody_goes_to_a_lane_for_buses(kind, free):
     assert signals(lanes, ego(100, y=4), behind)["near_lane_is_free"][0] == free
 
 
+@pytest.mark.parametrize(("kind", "free"), [("busLane", "False"), ("urban", "True")])
+def test_a_bus_stays_on_its_own_lane(kind, free):
+    lanes = [
+        straight(1, 0, 600, left_of=2),
+        replace(straight(2, 0, 600, 4, right_of=1), types=frozenset({kind})),
+    ]
+    bus, behind = replace(ego(100, y=4), type="bus"), steady(9, 0, 4, 10.0)
+    assert signals(lanes, bus, behind)["near_lane_is_free"][0] == free
+
+
 @pytest.mark.parametrize(("kind", "free"), [("busLane", "?"), ("urban", "True")])
 def test_nobody_knows_whether_a_bus_has_to_use_a_lane_for_buses(kind, free):
     lanes = [straight(1, 0, 600, left_of=2, types=frozenset({kind})), two_lanes()[1]]

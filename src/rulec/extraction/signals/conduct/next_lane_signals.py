@@ -106,7 +106,8 @@ def _near_lane_is_free(context: DriveContext) -> Flags:
 
     It cannot go there across a solid line, as beside lanes for who turns off, nor to a bus lane or
     across one for cycles, nor, from a lane that is none, to one for who comes or leaves, nor to one
-    that leads elsewhere at the junction that ego gets to within ``preparing_s``.
+    that leads elsewhere at the junction that ego gets to within ``preparing_s``. A bus stays on its
+    own lane.
     """
     limits, others, taken = (
         context.thresholds,
@@ -121,8 +122,10 @@ def _near_lane_is_free(context: DriveContext) -> Flags:
     turned, _ = _sorted_ahead(context)
     on_ramp = own_lanelets(context).flags(lambda lanelet: not _RAMPS.isdisjoint(lanelet.types))
     ramp_beside = _is_beside(context, _RAMPS) & ~on_ramp
-    bus_lane_beside = _is_beside(context, _BUS_LANE) & ~context.ego_is("bus")
-    kept = parted | ramp_beside | bus_lane_beside | turned
+    buses = context.ego_is("bus")
+    bus_lane_beside = _is_beside(context, _BUS_LANE) & ~buses
+    for_buses = own_lanelets(context).flags(lambda lanelet: not _BUS_LANE.isdisjoint(lanelet.types))
+    kept = parted | ramp_beside | bus_lane_beside | (for_buses & buses) | turned
     cells = _on_lane(context, lane, np.flatnonzero(there & ~kept))
     station, gap = relations.station(context)[cells], relations.gap(context)[cells]
     own = np.maximum(context.ego_extents.along[0, cells[1]], 0.0)
