@@ -84,7 +84,7 @@ def classified(scenario, interval, partition, extent, s, d):
     near += [abs(d - x) for x in road.lanes] + [s, abs(40 - s)]
     off_the_verge = []
     for verge in (road.lanes[0], road.lanes[-1]):
-        closest = min(book.verge(scenario, extent), abs(scenario.ego.d - verge))
+        closest = min(book.width(scenario, extent), abs(scenario.ego.d - verge))
         near.append(abs(abs(d - verge) - closest))
         off_the_verge.append(abs(d - verge) > closest)
     if not all(off_the_verge):

@@ -120,10 +120,10 @@ def of_car(d, **changes):
 
 def test_ego_passes_in_a_lane_that_another_reaches_into_where_it_has_room():
     assert left_of_it(of_car(-2.6), "lane") is None
-    # Half of ego's width and 0.25 m beside its side at -1.7, up to the lane's bound
-    assert left_of_it(of_car(-2.6)) == pytest.approx((-0.55, 2.0))
+    # From half of ego's width and 0.25 m beside its side at -1.7 to half of that from the verge
+    assert left_of_it(of_car(-2.6)) == pytest.approx((-0.55, 1.1))
     # 2.3 m are free beside its side at -0.3: twice 0.25 more than ego's width; then no longer
-    assert left_of_it(of_car(-2.5, width=4.399)) == pytest.approx((0.8495, 2.0))
+    assert left_of_it(of_car(-2.5, width=4.399)) == pytest.approx((0.8495, 1.1))
     assert left_of_it(of_car(-2.5, width=4.401)) is None
 
 
@@ -140,11 +140,10 @@ def test_with_room_ego_is_as_wide_as_its_bounds_say_if_nobody_says_how_wide_it_i
     assert left_of_it(nobody, bounds="truck")[0] == pytest.approx(-1.45 + 2.55 / 2)
 
 
-def test_the_road_keeps_its_outer_bounds_with_room():
-    """As with whole lanes, where ego's centre may be at a mark."""
-    on_the_left = of_car(2.6)
-    cells = navigation_graph(on_the_left, partition="fine", extent="room").layers[0].cells
-    assert min(cell.bounds.d_min for cell in cells) == -2.0
+def test_ego_keeps_to_the_road_with_room_but_not_to_its_lane():
+    """Its centre may be at a mark between lanes, as with whole lanes."""
+    two = replace(of_car(-2.6), road=Road((0.0, 40.0), (-2.0, 2.0, 6.0)))
+    assert left_of_it(two) == pytest.approx((-0.55, 5.1))
 
 
 def test_only_recorded_scenes_within_bounds_have_room_unless_it_is_asked_for():

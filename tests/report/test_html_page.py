@@ -52,6 +52,15 @@ PAGE = written(
 )
 
 
+@pytest.mark.parametrize("depth", [12, 300])
+def test_lists_within_lists_are_shown_however_deep(depth):
+    nested = "\n".join("  " * k + f"- level {k}" for k in range(depth))
+    read = Read(as_html(f"{nested}\n\n# What follows\n", PageTexts("A book", "Contents")))
+    assert len(read.named("li")) >= depth
+    assert f"level {depth - 1}" in "".join(read.texts)
+    assert any("What follows" in text for text in read.texts)
+
+
 def test_the_contents_are_navigation_and_nothing_else_is():
     read = Read(as_html(PAGE, PageTexts("A book", "Contents")))
     assert len(read.named("nav")) == 1

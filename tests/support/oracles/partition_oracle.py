@@ -102,15 +102,15 @@ def lanes(scenario: Scenario):
 
 
 def width(scenario: Scenario, extent: str):
-    """How far from its centre ego keeps what is beside it."""
+    """How far from its centre ego keeps the road's outer bounds."""
     ego = scenario.ego
     own = {"lane": 0.0, "body": ego.width, "room": ego.width or (ego.bounds and ego.bounds.width)}
-    return (own[extent] or 0.0) / 2 + (CLEARANCE if extent == "room" else 0.0)
+    return (own[extent] or 0.0) / 2
 
 
-def verge(scenario: Scenario, extent: str):
-    """How far from its centre ego keeps the road's outer bounds."""
-    return width(scenario, extent) if extent == "body" else 0.0
+def aside(scenario: Scenario, extent: str):
+    """How far from its centre ego keeps others."""
+    return width(scenario, extent) + (CLEARANCE if extent == "room" else 0.0)
 
 
 def road_for(scenario: Scenario, extent: str):
@@ -119,7 +119,7 @@ def road_for(scenario: Scenario, extent: str):
     Where ego starts closer to a verge than that, it may stay as close.
     """
     low, high = scenario.road.lanes[0], scenario.road.lanes[-1]
-    wide = verge(scenario, extent)
+    wide = width(scenario, extent)
     right = low + min(wide, scenario.ego.d - low)
     left = high - min(wide, high - scenario.ego.d)
     road = shapely.union_all([piece for _, _, piece in lanes(scenario)])
@@ -141,7 +141,7 @@ def taken(scenario, obstacle, start: float, end: float, partition: str, extent: 
     if not touched:
         return None
     wide = (s0, s1, min(x[0] for x in touched), max(x[1] for x in touched))
-    half = width(scenario, extent)
+    half = aside(scenario, extent)
     if extent == "body":
         wide = (s0, s1, d0 - half, d1 + half)
     if extent == "room":
@@ -162,8 +162,8 @@ def taken(scenario, obstacle, start: float, end: float, partition: str, extent: 
         c0, c1 = stretch.s
         if min(c1, s1) - max(c0, s0) > HAIR:
             s0, s1 = min(s0, c0), max(s1, c1)
-    aside = half if extent == "body" else 0.0
-    return (s0, s1, d0 - aside, d1 + aside), turned
+    beside = half if extent == "body" else 0.0
+    return (s0, s1, d0 - beside, d1 + beside), turned
 
 
 def regions(box, angle, partition):

@@ -21,6 +21,9 @@ from rulec.report.text.pygments_lexer import RulecLexer
 
 _STYLE = Path(__file__).with_name("html_page.css")
 
+_MOST_NESTED = 800
+"""What lies deeper, two steps for a list in a list, is left out, and with it all that follows."""
+
 _LEXERS: dict[str, type[Lexer]] = {"rulec": RulecLexer, "diff": DiffLexer}
 
 
@@ -44,7 +47,8 @@ def as_html(
     ``figures`` are the SVG elements that stand for images, by their addresses. ``cell_class`` gives
     the class of a table's cell by its text, empty for none.
     """
-    parser = MarkdownIt("commonmark", {"html": False, "highlight": _highlighted}).enable("table")
+    options = {"html": False, "highlight": _highlighted, "maxNesting": _MOST_NESTED}
+    parser = MarkdownIt("commonmark", options).enable("table")
     tokens = parser.parse(markdown)
     _name_headings(tokens)
     _scope_cells(tokens)
