@@ -38,12 +38,17 @@ def test_who_is_back_within_half_a_second_has_changed_no_lanes(states, known):
     assert found.unknown["lane_change"][changed].tolist() == [not known] * 2
 
 
-def test_who_stands_changes_no_lanes():
-    """Its place drifts over the mark, as of who waits in a simulation of ways beside each other."""
-    drifts = vehicle(7, {k: (20, y) for k, y in enumerate([0, 1.2, 2.4, 2.6, 2.6, 2.6])})
-    found = lane_change_signals(context_of(recording(lanes(2), [drifts])))
+@pytest.mark.parametrize(("heading", "known"), [(0.0, False), (1.4, True)])
+def test_who_stands_changes_no_lanes(heading, known):
+    """Its place drifts over the mark, as of who waits in a simulation of ways beside each other.
+
+    Who has turned goes there, however slowly along the road.
+    """
+    places = {k: (20, y) for k, y in enumerate([0, 1.2, 2.4, 2.6, 2.6, 2.6])}
+    ego = vehicle(7, places, heading=heading)
+    found = lane_change_signals(context_of(recording(lanes(2), [ego])))
     (change,) = np.flatnonzero(found.world["lane_change"])
-    assert found.unknown["lane_change"][change]
+    assert found.unknown["lane_change"][change] == (not known)
 
 
 @pytest.mark.parametrize(("x", "known"), [(98, False), (180, True)])

@@ -24,7 +24,7 @@ from rulec.extraction.signals.conduct.turning_round import has_to_brake_for_turn
 from rulec.extraction.signals.map.junction_signals import lies_askew_in_turn
 from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
 from rulec.extraction.signals.signal_passes import SignalPasses
-from rulec.extraction.tracks.tracks import Flags
+from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.scenario.recorded.route import lanelet_area
 from rulec.trace.plain_arrays import distinct
 
@@ -58,7 +58,7 @@ def _lane_change(context: DriveContext) -> SignalColumns:
     unknown = np.zeros(context.states, dtype=bool)
     if changes.any():
         swings = swings_round(context) | lies_askew_in_turn(context)
-        stands = np.abs(context.ego_extents.along[0]) * KMH < context.thresholds.standing_kmh
+        stands = np.abs(_speed_ahead(context)) * KMH < context.thresholds.standing_kmh
         unknown = _within_tolerance(context, changes) | _there_and_back(context, changes)
         unknown |= changes & (swings | stands)
         states = np.flatnonzero(changes & ~unknown)
@@ -66,6 +66,13 @@ def _lane_change(context: DriveContext) -> SignalColumns:
         for change, piece in zip(states.tolist(), pieces.tolist(), strict=True):
             unknown[change] = _at_fork(context, change, piece) or _at_merge(context, change, piece)
     return SignalColumns({"lane_change": changes}, unknown={"lane_change": unknown})
+
+
+def _speed_ahead(context: DriveContext) -> Floats:
+    """How fast ego goes where it heads (m/s), by state: who slides sideways does not drive so."""
+    own = context.ego_extents
+    ahead: Floats = own.along[0] * np.cos(own.turned[0]) + own.across[0] * np.sin(own.turned[0])
+    return ahead
 
 
 def _there_and_back(context: DriveContext, changes: Flags) -> Flags:
