@@ -115,6 +115,9 @@ class CandidateScores(Sequence[CandidateScore]):
 
     __hash__ = None  # type: ignore[assignment]
 
+    def __repr__(self) -> str:
+        return f"CandidateScores({len(self):,} candidates)"
+
     def __reduce__(self) -> tuple[type[CandidateScores], tuple[list[CandidateScore]]]:
         return CandidateScores, (list(self),)
 
