@@ -148,7 +148,7 @@ def taken(scenario, obstacle, start: float, end: float, partition: str, extent: 
         # Of the outermost lanes that it touches, each that its middle is beside, and ego fits in
         outermost = [min(touched), max(touched)]
         free = [(outermost[0][0], d0), (d1, outermost[1][1])]
-        fits = [high - low >= 2 * half for low, high in free]
+        fits = [high - low >= 2 * half - 1e-6 for low, high in free]
         beside = [(d0 + d1) / 2 > outermost[0][1], (d0 + d1) / 2 < outermost[1][0]]
         right = d0 - half if fits[0] and beside[0] else outermost[0][0]
         left = d1 + half if fits[1] and beside[1] else outermost[1][1]

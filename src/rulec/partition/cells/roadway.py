@@ -76,7 +76,8 @@ class Roadway:
         half of what ego needs to either side.
         """
         right, left = lanes
-        middle, needed = (body.d_min + body.d_max) / 2, 2 * (wide.d_max - body.d_max)
+        middle = (body.d_min + body.d_max) / 2
+        needed = 2 * (wide.d_max - body.d_max) - EPSILON_M
         after_first = self.lanes[self.lanes.index(right) + 1]
         before_last = self.lanes[self.lanes.index(left) - 1]
         if middle > after_first and body.d_min - right >= needed:
