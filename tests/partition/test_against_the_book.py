@@ -14,7 +14,7 @@ from support.generators.random_scenarios import scenarios
 from support.oracles import partition_oracle as book
 
 partitions = st.sampled_from(["paper", "fine"])
-extents = st.sampled_from(["lane", "room", "body"])
+extents = st.sampled_from(["lane", "clearance", "body"])
 adjacencies = st.sampled_from(["touch", "edge", "forward"])
 
 

@@ -105,7 +105,7 @@ PARKED = replace(SCENE, obstacles=(CAR,), goal=Box(30.0, 40.0, -2.0, 2.0))
 """Beside the lane, which it reaches 0.3 m into: 3.7 m are free."""
 
 
-def left_of_it(scene, extent="room", **options):
+def left_of_it(scene, extent="clearance", **options):
     """Where ego's centre may be beside it, by the bounds of that cell; None if there is none."""
     layers = navigation_graph(scene, partition="fine", extent=extent, **options).layers
     cells = [cell for layer in layers for cell in layer.cells]
@@ -118,7 +118,7 @@ def of_car(d, **changes):
     return replace(PARKED, ego=Ego(5.0, 0.0, 4.0, 1.8), obstacles=(car,))
 
 
-def test_ego_passes_in_a_lane_that_another_reaches_into_where_it_has_room():
+def test_ego_passes_with_clearance_in_a_lane_that_another_reaches_into():
     assert left_of_it(of_car(-2.6), "lane") is None
     # From half of ego's width and 0.25 m beside its side at -1.7 to half of that from the verge
     assert left_of_it(of_car(-2.6)) == pytest.approx((-0.55, 1.1))
@@ -133,23 +133,23 @@ def test_ego_does_not_pass_within_the_lane_of_another():
     assert left_of_it(of_car(-1.99)) is None
 
 
-def test_with_room_ego_is_as_wide_as_its_bounds_say_if_nobody_says_how_wide_it_is():
+def test_with_clearance_ego_is_as_wide_as_its_bounds_say_if_nobody_says_how_wide_it_is():
     nobody = replace(of_car(-2.6), ego=Ego(5.0, 0.0, speed=14.0))
     assert left_of_it(nobody) == pytest.approx((-1.45, 2.0))
     assert left_of_it(nobody, bounds="car")[0] == pytest.approx(-1.45 + 1.61 / 2)
     assert left_of_it(nobody, bounds="truck")[0] == pytest.approx(-1.45 + 2.55 / 2)
 
 
-def test_ego_keeps_to_the_road_with_room_but_not_to_its_lane():
+def test_ego_keeps_to_the_road_with_clearance_but_not_to_its_lane():
     """Its centre may be at a mark between lanes, as with whole lanes."""
     two = replace(of_car(-2.6), road=Road((0.0, 40.0), (-2.0, 2.0, 6.0)))
     assert left_of_it(two) == pytest.approx((-0.55, 5.1))
 
 
-def test_only_recorded_scenes_within_bounds_have_room_unless_it_is_asked_for():
+def test_only_recorded_scenes_within_bounds_have_clearance_unless_it_is_asked_for():
     assert navigation_graph(of_car(-2.6)).extent == "lane"
     assert navigation_graph(of_car(-2.6), bounds="car").extent == "lane"
     recorded = replace(of_car(-2.6), account=Account("1", 1, 0, 4.0, {}))
-    assert navigation_graph(recorded, bounds="car").extent == "room"
+    assert navigation_graph(recorded, bounds="car").extent == "clearance"
     assert navigation_graph(recorded, bounds="none").extent == "lane"
     assert navigation_graph(recorded, bounds="car", extent="lane").extent == "lane"

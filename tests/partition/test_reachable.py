@@ -21,7 +21,7 @@ def holds(interval, value):
 
 def check_kept(scenario, bounds, partition, chance, number):
     """Each motion's cells are kept, and its places and speeds in their sets: how many were."""
-    extent = "lane" if scenario.account is None else "room"
+    extent = "lane" if scenario.account is None else "clearance"
     whole = navigation_graph(scenario, partition=partition, bounds="none", extent=extent)
     kept = navigation_graph(
         scenario,

@@ -75,7 +75,11 @@ def test_on_a_border_ego_starts_in_the_free_cell_to_the_left_and_ahead():
             "expected one of `touch`, `edge`, `forward`",
             "did you mean `edge`?",
         ),
-        ({"extent": "bodies"}, "expected one of `lane`, `room`, `body`", "did you mean `body`?"),
+        (
+            {"extent": "bodies"},
+            "expected one of `lane`, `clearance`, `body`",
+            "did you mean `body`?",
+        ),
     ],
 )
 def test_an_unknown_choice(options, expected, help_text):

@@ -69,12 +69,12 @@ def navigation_graph(
     ``partition`` is ``paper`` (behind, in front, left, right; if none is given) or ``fine``
     (station and lateral); ``adjacency``, when two cells are next to each other, ``touch``, ``edge``
     or ``forward``; ``extent``, how wide obstacles are, ``lane`` (all lanes that they touch),
-    ``room`` (without where ego has room beside them) or ``body``: if none is given ``room`` in a
-    recorded scene within bounds, else ``lane``. Planning interval and horizon (s) are the
-    scenario's unless given; in a recorded scene the interval is then the longest one up to that
-    which leaves ego a place to start, or half of that, and so on, where no gentle path would be
-    left. Within ``bounds`` of ego's motion, the scenario's unless given, only what ego can drive is
-    kept; a text is read as ``read_bounds`` does, and ``none`` keeps everything.
+    ``clearance`` (without where ego gets past beside them) or ``body``: if none is given
+    ``clearance`` in a recorded scene within bounds, else ``lane``. Planning interval and horizon
+    (s) are the scenario's unless given; in a recorded scene the interval is then the longest one up
+    to that which leaves ego a place to start, or half of that, and so on, where no gentle path
+    would be left. Within ``bounds`` of ego's motion, the scenario's unless given, only what ego can
+    drive is kept; a text is read as ``read_bounds`` does, and ``none`` keeps everything.
 
     Raises RulecError R0606 if horizon and step do not fit together, R0607 if ego has no start cell,
     R0608 for an unknown partition, adjacency or extent, R0770 for bounds that make no sense, R0718
@@ -100,7 +100,7 @@ def navigation_graph(
             if number == len(graphs):
                 graphs.append(_cut(plan, halved))
             graph = graphs[number]
-            if graph.leads_to_a_goal and (most is None or _has_way_of(most, graph)):
+            if graph.leads_to_a_goal and (most is None or _has_way_with(most, graph)):
                 return graph
     return graphs[0] if graphs else _cut(plan, times)
 
@@ -130,7 +130,7 @@ def has_way_within(graph: NavigationGraph, bounds: MotionBounds) -> bool:
     return reachable(graph, bounds).leads_to_a_goal
 
 
-def _has_way_of(most: float, graph: NavigationGraph) -> bool:
+def _has_way_with(most: float, graph: NavigationGraph) -> bool:
     """Whether, if ego's motion has bounds, some way may take no more (m/s²) than this."""
     own = graph.bounds
     if own is None:
@@ -168,7 +168,7 @@ def _planned(
     bounds = read_bounds(bounds, own) if isinstance(bounds, str) else bounds or own
     partition = partition or "paper"
     if extent is None:
-        extent = "room" if bounds is not None and scenario.account is not None else "lane"
+        extent = "clearance" if bounds is not None and scenario.account is not None else "lane"
     if bounds not in (None, own):
         scenario = replace(scenario, ego=replace(scenario.ego, bounds=bounds))
     for what, name, names_type in (

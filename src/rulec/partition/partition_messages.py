@@ -21,7 +21,7 @@ UNKNOWN_PARTITION = Code(
     "R0608",
     title="a partition, an adjacency or an extent is unknown",
     why="The partitions are `paper` and `fine`, the adjacencies `touch`, `edge` and `forward`, the "
-    "extents `lane`, `room` and `body`.",
+    "extents `lane`, `clearance` and `body`.",
     bad='import rulec\n\nrulec.navigation_graph("s1", partition="papre")\n',
     good='import rulec\n\nrulec.navigation_graph("s1", partition="paper")\n',
     kind="python",

@@ -17,7 +17,7 @@ _FINEST = 64
 
 _TAKEN: Mapping[ExtentName, str] = {
     "lane": "the whole width of its lanes",
-    "room": "the whole width of its lanes, if it leaves ego no room there",
+    "clearance": "the whole width of its lanes, if it leaves ego no room there",
     "body": "its own width, and half of ego's to either side",
 }
 

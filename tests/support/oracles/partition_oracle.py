@@ -104,13 +104,17 @@ def lanes(scenario: Scenario):
 def width(scenario: Scenario, extent: str):
     """How far from its centre ego keeps the road's outer bounds."""
     ego = scenario.ego
-    own = {"lane": 0.0, "body": ego.width, "room": ego.width or (ego.bounds and ego.bounds.width)}
+    own = {
+        "lane": 0.0,
+        "body": ego.width,
+        "clearance": ego.width or (ego.bounds and ego.bounds.width),
+    }
     return (own[extent] or 0.0) / 2
 
 
 def aside(scenario: Scenario, extent: str):
     """How far from its centre ego keeps others."""
-    return width(scenario, extent) + (CLEARANCE if extent == "room" else 0.0)
+    return width(scenario, extent) + (CLEARANCE if extent == "clearance" else 0.0)
 
 
 def road_for(scenario: Scenario, extent: str):
@@ -144,7 +148,7 @@ def taken(scenario, obstacle, start: float, end: float, partition: str, extent: 
     half = aside(scenario, extent)
     if extent == "body":
         wide = (s0, s1, d0 - half, d1 + half)
-    if extent == "room":
+    if extent == "clearance":
         # Of the outermost lanes that it touches, each that its middle is beside, and ego fits in
         outermost = [min(touched), max(touched)]
         free = [(outermost[0][0], d0), (d1, outermost[1][1])]

@@ -142,10 +142,11 @@ cell_options = combined(
         ),
         click.option(
             "--extent",
-            type=click.Choice(["lane", "room", "body"]),
+            type=click.Choice(["lane", "clearance", "body"]),
             help="How wide obstacles are: all of the lanes that they touch; those, but for where "
             "ego has room beside them in a lane; or what they sweep, and half of ego's width to "
-            "either side.  [default: room in a recorded scene with bounds, else lane]",
+            "either side.  [default: clearance in a recorded scene with "
+            "bounds, else lane]",
         ),
         choice_option(
             "--adjacency",
@@ -197,9 +198,9 @@ cell_options = combined(
             type=click.FloatRange(min=0, max=100),
             callback=finite,
             metavar="M",
-            help="In a recorded scene: how wide ego is, in m, which counts with `--extent room` "
-            "and `body`.  [default: as wide as the vehicle that it is, if any; else as its bounds "
-            "say with `room`, and a point with `body`]",
+            help="In a recorded scene: how wide ego is, in m, which counts with `--extent "
+            "clearance` and `body`.  [default: as wide as the vehicle that it is, if any; else as "
+            "its bounds say with `clearance`, and a point with `body`]",
         ),
         click.option(
             "--congested-below",

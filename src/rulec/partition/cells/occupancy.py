@@ -90,7 +90,7 @@ def scene(
         if (body := swept(obstacle, *interval)) is not None
     }
     half = _half_width(scenario, extent)
-    aside = half + CLEARANCE_M if extent == "room" else half
+    aside = half + CLEARANCE_M if extent == "clearance" else half
     wide = {key: _wider(body, aside) for key, body in bodies.items()}
     free = _narrower(scenario.road.outline, half, scenario.ego.d)
     s, d = _snaps(scenario, [*bodies.values(), *wide.values(), free])
@@ -137,10 +137,10 @@ def scene(
 
 
 def _half_width(scenario: Scenario, extent: ExtentName) -> float:
-    """Half of ego's width (m), so far as that counts; with ``room`` its bounds may tell it."""
+    """Half of ego's width (m), so far as that counts; with ``clearance`` its bounds may tell."""
     ego = scenario.ego
     width = ego.width
-    if extent == "room" and not width and ego.bounds is not None:
+    if extent == "clearance" and not width and ego.bounds is not None:
         width = ego.bounds.width
     return 0.0 if extent == "lane" else width / 2
 

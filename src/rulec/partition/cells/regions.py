@@ -19,9 +19,9 @@ from rulec.scenario.paper_words import LATERALS, PAPER_TABLES, STATIONS
 
 PartitionName = Literal["paper", "fine"]
 
-ExtentName = Literal["lane", "room", "body"]
+ExtentName = Literal["lane", "clearance", "body"]
 """How wide an obstacle is taken to be: as the lanes that it touches, as those without the rest of
-one in which ego has room beside it, or as what it sweeps."""
+one in which ego gets past beside it, or as what it sweeps."""
 
 OCCUPIED = ord("o")
 
@@ -64,8 +64,8 @@ def region_of(
     lanes = roadway.lanes_touched(body)
     if lanes is None:
         return None
-    if extent == "room":
-        lanes = roadway.without_room(lanes, body, wide)
+    if extent == "clearance":
+        lanes = roadway.without_clear_part(lanes, body, wide)
     taken = wide if extent == "body" else Box(body.s_min, body.s_max, *lanes)
     if partition == "fine":
         return Region(index, taken, _FINE)

@@ -69,11 +69,13 @@ class Roadway:
         ]
         return (touched[0][0], touched[-1][1]) if touched else None
 
-    def without_room(self, lanes: tuple[float, float], body: Box, wide: Box) -> tuple[float, float]:
+    def without_clear_part(
+        self, lanes: tuple[float, float], body: Box, wide: Box
+    ) -> tuple[float, float]:
         """Bounds of the lanes that a body touches, without the rest of one that it reaches into.
 
-        That is one in which its middle is not, and ego has room beside it: ``wide`` is the body and
-        half of what ego needs to either side.
+        That is one in which its middle is not, and ego gets past beside it: ``wide`` is the body
+        and what ego's centre needs to either side.
         """
         right, left = lanes
         middle = (body.d_min + body.d_max) / 2

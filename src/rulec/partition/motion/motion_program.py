@@ -142,10 +142,7 @@ class MotionProgram:
         wanted = speeds.rows.copy()
         wanted[:, -1] = 0.0
         self._absolute(program, wanted, np.arange(at[5], at[6]))
-        for sign in (1.0, -1.0):
-            last = sign * sideways.rows[-1:]
-            last[0, at[7]] = -1.0
-            program.add(last, np.array([-np.inf]), -sign * sideways.fixed[-1:])
+        self._absolute(program, sideways.rows[-1:], at[7:8], sideways.fixed[-1:])
         return program
 
     def in_cells(self, cells: Sequence[Cell]) -> Bounded:
@@ -175,19 +172,27 @@ class MotionProgram:
         return low.ravel(), high.ravel()
 
     def _at_most(
-        self, program: LinearProgram, rows: NDArray[np.float64], slacks: NDArray[np.intp]
+        self,
+        program: LinearProgram,
+        rows: NDArray[np.float64],
+        slacks: NDArray[np.intp],
+        fixed: Row | float = 0.0,
     ) -> None:
-        """Make sums of slack variables at least as great as rows are."""
+        """Make sums of slack variables at least as great as rows are, and what is added to them."""
         own = rows.copy()
         own[np.arange(len(rows))[:, None], slacks.reshape(len(rows), -1)] -= 1.0
-        program.add(own, np.full(len(rows), -np.inf), np.zeros(len(rows)))
+        program.add(own, np.full(len(rows), -np.inf), np.zeros(len(rows)) - fixed)
 
     def _absolute(
-        self, program: LinearProgram, rows: NDArray[np.float64], slacks: NDArray[np.intp]
+        self,
+        program: LinearProgram,
+        rows: NDArray[np.float64],
+        slacks: NDArray[np.intp],
+        fixed: Row | float = 0.0,
     ) -> None:
-        """Make sums of slack variables at least as great as rows are, whatever their sign."""
-        self._at_most(program, rows, slacks)
-        self._at_most(program, -rows, slacks)
+        """The same, whatever the sign of these."""
+        self._at_most(program, rows, slacks, fixed)
+        self._at_most(program, -rows, slacks, -fixed)
 
     def _middles(self, boxes: Sequence[Box]) -> Iterator[float]:
         """The middle of a lane for each layer: in the cell, nearest to the one before."""

@@ -20,7 +20,7 @@ _LANE_HEIGHT = 46.0
 
 _TAKEN = {
     "lane": "the lanes of an obstacle",
-    "room": "the lanes of an obstacle, or too close to it for ego's width",
+    "clearance": "the lanes of an obstacle, or too close to it for ego's width",
     "body": "too close to an obstacle, or to the verge, for ego's width",
 }
 

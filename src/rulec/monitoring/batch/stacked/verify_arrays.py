@@ -166,8 +166,8 @@ class _StackedRun:
     def _add(self, rule_number: int, outcomes: StackedOutcomes) -> None:
         words, findings = outcomes.words, self._findings
         rule, instances = words.rule.rule, words.instances
-        told = [at for at, answer in enumerate(outcomes.answers) if answer is not None]
-        places = [outcomes.places[at] for at in told]
+        answered = zip(outcomes.places, outcomes.answers, strict=True)
+        places = [place for place, answer in answered if answer is not None]
         chosen = np.array(places, dtype=np.intp)
         traces = instances.traces[chosen]
         findings.add(
