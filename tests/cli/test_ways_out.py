@@ -93,6 +93,7 @@ def test_in_a_rulebook(rules, way_out, tmp_path, monkeypatch, capsys):
         (["check", "--fail-on", "error", "--fail-on", "error"], "--fail-on is given twice"),
         (["show", "de", *(["--at", "2026-01-01"] * 3)], "--at is given 3 times, and takes one"),
         (["show", "de", "--at", "2026"], "error: --at: `2026` is no date: a date is written"),
+        (["maneuvers", "x.xml", "--at", "40"], "for a moment in seconds there is `--at-time 40`"),
         (["verify", "--watch"], "no option `--watch` here; `rulec check` and `rulec test` have it"),
         (["verify"], "error: `FILE...` is missing\n"),
         (["verify", "x"], "error: `-r` or `--rulebook` is missing\n"),

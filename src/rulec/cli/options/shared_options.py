@@ -115,6 +115,9 @@ def _day(context: click.Context, parameter: click.Parameter, value: str) -> str:
 
     wrong = why_not_a_day(value)
     if wrong:
+        options = [option for one in context.command.params for option in one.opts]
+        if _SECONDS.fullmatch(value) and "--at-time" in options:
+            wrong = f"for a moment in seconds there is `--at-time {value}`"
         raise click.BadParameter(f"`{value}` is no date: {wrong}")
     return value
 
