@@ -7,8 +7,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from rulec import RulecError, compile_rulebook, find_maneuvers, parse_rulebook
+from rulec.planning.ranking import proven
 from rulec.planning.ranking.cheapest import cheapest
-from rulec.planning.ranking.guided_ways import ALIKE, guided_ways
+from rulec.planning.ranking.guided_ways import ALIKE, beam_ways, guided_ways
 from rulec.planning.ranking.proven import with_trajectory
 from rulec.scenario import (
     ConstantAcceleration,
@@ -74,6 +75,37 @@ def test_the_first_one_is_the_cheapest(scene):
     first = found.cheapest(1)
     assert bool(first) == bool(costs)
     assert not first or first[0].cost <= min(costs) + ALIKE
+
+
+@given(scenes())
+@settings(max_examples=20)
+def test_a_beam_as_wide_as_the_graph_loses_nothing(scene):
+    try:
+        found = find_maneuvers(scene, PAPER)
+    except RulecError:
+        return
+    every, bounds = found.product, found._search.bounds
+    guided = {way.maneuver.nodes for way in guided_ways(every, found.graph, bounds, 10_000)}
+    beam = list(beam_ways(every, found.graph, bounds, 10_000))
+    assert {way.maneuver.nodes for way in beam} == guided
+    assert [way.promises for way in beam] == sorted(way.promises for way in beam)
+
+
+@given(scenes())
+@settings(max_examples=20)
+def test_where_beginnings_are_too_many_a_way_is_found_all_the_same(scene):
+    try:
+        found = find_maneuvers(scene, PAPER)
+    except RulecError:
+        return
+    (best,) = found.cheapest(1) or (None,)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(proven, "MOST_BOUNDS", 1)
+        patch.setattr(proven, "MORE_BOUNDS", 0)
+        patch.setattr(proven, "cheapest", lambda product: iter(()))
+        (other,) = proven.proven(found.product, 1, found.graph, found._search) or (None,)
+    assert (other is None) == (best is None)
+    assert best is None or other.cost >= best.cost - ALIKE
 
 
 def test_who_waited_goes_on():

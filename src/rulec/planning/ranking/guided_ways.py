@@ -1,14 +1,15 @@
 """Accepted paths in the order of what driving them costs at least, found from their beginnings.
 
 What the first part of a path costs at least is told by a linear program; its changes of cell cost,
-and those to come do, at least. The part that promises least is gone on with, each time.
+and those to come do, at least. The part that promises least is gone on with, each time. Where that
+takes too long a beam search gets to the end, though not always by what costs least.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from heapq import heappop, heappush
+from dataclasses import dataclass, replace
+from heapq import heapify, heappop, heappush
 from itertools import count
 from typing import TYPE_CHECKING, Generic, TypeAlias
 
@@ -50,6 +51,11 @@ class _Part(Generic[Memory]):
         driving = 0.0 if self.bound is None else self.bound.cost
         return self.changes + to_come[len(self.path) - 1][self.node] + driving
 
+    def bounded(self, bounds: WayBounds) -> _Part[Memory] | None:
+        """The part with its own bound; None if it cannot be driven."""
+        bound = bounds.of(self.path, self.bound.cuts if self.bound else frozenset())
+        return None if bound is None else replace(self, bound=bound, is_known=True)
+
 
 def guided_ways(
     product: Product[Memory],
@@ -75,7 +81,7 @@ def guided_ways(
 
     for start in product.counts[0]:
         if start in to_come[0]:
-            put(_Part((start[0],), start, 0.0, None, is_known=True))
+            put(_first(start))
     while queue:
         *_, part = heappop(queue)
         layer = len(part.path) - 1
@@ -83,19 +89,61 @@ def guided_ways(
             if not most:
                 return
             most -= 1
-            bound = bounds.of(part.path, part.bound.cuts if part.bound else frozenset())
-            if bound is not None:
-                put(_Part(part.path, part.node, part.changes, bound, is_known=True))
+            known = part.bounded(bounds)
+            if known is not None:
+                put(known)
         elif layer == len(graph.layers) - 1:
             found = maneuver(product.graph, part.path, 0)
             yield GuidedWay(found, part.promises(to_come))
         else:
-            for step, _ in product.steps[layer][part.node]:
-                if step in to_come[layer + 1]:
-                    changes = part.changes
-                    if not driving_only:
-                        changes += change_cost(graph, layer, part.node[0], step[0])
-                    put(_Part((*part.path, step[0]), step, changes, part.bound, is_known=False))
+            for longer in _onward(part, product, graph, to_come, free=driving_only):
+                put(longer)
+
+
+def beam_ways(
+    product: Product[Memory], graph: NavigationGraph, bounds: WayBounds, width: int
+) -> Iterator[GuidedWay]:
+    """Paths of which in every layer those ``width`` parts are gone on with that promise least.
+
+    Source: Lowerre, "The HARPY speech recognition system" (1976).
+    """
+    to_come = _changes_to_come(product, graph, free=False)
+    numbers = count()
+    beam = [_first(start) for start in product.counts[0] if start in to_come[0]]
+    for _ in product.steps:
+        longer = [one for part in beam for one in _onward(part, product, graph, to_come)]
+        queue = [(part.promises(to_come), next(numbers), part) for part in longer]
+        heapify(queue)
+        beam = []
+        while queue and len(beam) < width:
+            *_, part = heappop(queue)
+            if part.is_known:
+                beam.append(part)
+            elif (known := part.bounded(bounds)) is not None:
+                heappush(queue, (known.promises(to_come), next(numbers), known))
+    for part in beam:
+        yield GuidedWay(maneuver(product.graph, part.path, 0), part.promises(to_come))
+
+
+def _first(start: ProductNode[Memory]) -> _Part[Memory]:
+    return _Part((start[0],), start, 0.0, None, is_known=True)
+
+
+def _onward(
+    part: _Part[Memory],
+    product: Product[Memory],
+    graph: NavigationGraph,
+    to_come: _Costs[Memory],
+    *,
+    free: bool = False,
+) -> Iterator[_Part[Memory]]:
+    """The parts that are one cell longer; if ``free`` changes of cell cost nothing."""
+    layer = len(part.path) - 1
+    for step, _ in product.steps[layer][part.node]:
+        if step in to_come[layer + 1]:
+            cost = 0.0 if free else change_cost(graph, layer, part.node[0], step[0])
+            path = (*part.path, step[0])
+            yield _Part(path, step, part.changes + cost, part.bound, is_known=False)
 
 
 def change_cost(graph: NavigationGraph, p: int, node: int, target: int) -> float:

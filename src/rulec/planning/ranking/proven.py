@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from rulec.planning.product.graph_product import Memory, Product
 from rulec.planning.ranking.cheapest import Maneuver, cheapest
-from rulec.planning.ranking.guided_ways import ALIKE, change_cost, guided_ways
+from rulec.planning.ranking.guided_ways import ALIKE, beam_ways, change_cost, guided_ways
 
 if TYPE_CHECKING:
     from rulec.partition import NavigationGraph
@@ -23,8 +23,11 @@ if TYPE_CHECKING:
 MOST_TRIED = 40
 """So many paths are looked at for each maneuver that is wanted."""
 
-MOST_BOUNDS = 800
-"""So many beginnings of paths, too."""
+MOST_BOUNDS, MORE_BOUNDS = 1_500, 100
+"""So many beginnings of paths, too, and so many more for each that is wanted."""
+
+BEAM = 16
+"""So many beginnings of each length go on where those were not enough."""
 
 
 def proven(
@@ -32,20 +35,25 @@ def proven(
 ) -> list[Maneuver]:
     """The ``n`` cheapest accepted paths that can be driven, with their trajectories.
 
-    Where bounds do not lead to so many, those are looked at that cost least by their cells.
+    Where bounds do not lead to so many, a beam search does; where that does not either, those are
+    looked at that cost least by their cells.
     """
     found: list[Maneuver] = []
     looked_at: set[tuple[int, ...]] = set()
-    ways = guided_ways(product, graph, search.bounds, MOST_BOUNDS * n)
+    ways = guided_ways(product, graph, search.bounds, MOST_BOUNDS + MORE_BOUNDS * n)
     for way in islice(ways, MOST_TRIED * n):
         if len(found) >= n and way.promises >= found[n - 1].cost:
             break
         looked_at.add(way.maneuver.nodes)
         _add(found, way.maneuver, graph, search)
     if len(found) < n:
-        for candidate in islice(cheapest(product), MOST_TRIED * n):
-            if candidate.nodes not in looked_at:
-                _add(found, candidate, graph, search)
+        beam = beam_ways(product, graph, search.bounds, max(BEAM, n))
+        by_cells = islice(cheapest(product), MOST_TRIED * n)
+        for candidates in ((way.maneuver for way in beam), by_cells):
+            for candidate in candidates if len(found) < n else ():
+                if candidate.nodes not in looked_at:
+                    looked_at.add(candidate.nodes)
+                    _add(found, candidate, graph, search)
     return found[:n]
 
 
