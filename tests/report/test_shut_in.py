@@ -83,6 +83,22 @@ def test_it_says_that_no_trajectory_was_found(require, satisfying, tmp_path, cap
     assert "listed      none: no trajectory was found" in capsys.readouterr().out
 
 
+def test_who_is_in_the_way_is_named(tmp_path, capsys):
+    # 0.75 m before ego's front: from 5 m/s it takes 1.1 m to stop, while its middle has 3 m
+    file = tmp_path / "close.toml"
+    ego = ROAD.replace("d = 0", 'd = 0\nspeed = 5\nbounds = "car"')
+    file.write_text(ego + CAR.format(name="c", s=35, speed=0))
+    command = ["maneuvers", str(file), "-r", "esterle2019", "--step", "1", "--list", "1"]
+    assert main([*command, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["in_way"] == ["c"]
+    assert main(command) == 0
+    assert "those that cost least\nin the way  c\n" in capsys.readouterr().out
+    # 1.75 m are enough
+    file.write_text(ego + CAR.format(name="c", s=36, speed=0))
+    assert main([*command, "--json"]) == 0
+    assert "in_way" not in json.loads(capsys.readouterr().out)
+
+
 def test_the_bounds_are_named_where_they_close_the_way(tmp_path, capsys):
     # 22 m to the rear of one that stands: from 20 m/s ego has come 18 m after 1 s, and 32 after 2
     file = tmp_path / "fast.toml"

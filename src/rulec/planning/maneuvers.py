@@ -178,6 +178,15 @@ class Maneuvers(Rows):
         return proven(product, n, self.graph, self._search)
 
     @cached_property
+    def in_way(self) -> tuple[str, ...]:
+        """Who is in ego's way along the maneuver that costs least by its cells, if it is undrivable.
+
+        Nobody if ego's bounds alone do not let it through.
+        """
+        first = next(cheapest(self.possible), None)
+        return () if first is None or self._search is None else self._search.in_way(first.nodes)
+
+    @cached_property
     def _search(self) -> WitnessSearch | None:
         if self.graph.bounds is None:
             return None

@@ -79,6 +79,18 @@ class WitnessTrajectory:
     cost: DrivingCost
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Attempt:
+    """A path's trajectory if there is one; if not, the rows that were added last.
+
+    It ``was_eased`` if it had to end slower for who is ahead then.
+    """
+
+    trajectory: WitnessTrajectory | None
+    was_eased: bool
+    cuts: Sequence[Cut]
+
+
 class WitnessSearch:
     """Trajectories of ego through the cells of a graph with bounds."""
 
@@ -104,26 +116,38 @@ class WitnessSearch:
         """
         for preferred in _PREFERRED:
             for eased in (True, False):
-                found, tried = self._found(path, preferred, eased=eased)
-                if found is not None or not tried:
+                attempt = self._attempt(path, preferred, eased=eased)
+                if attempt.trajectory is not None:
+                    return attempt.trajectory
+                if not attempt.was_eased:
                     break
-            if found is not None:
-                return found
         return None
 
-    def _found(
+    def in_way(self, path: Sequence[int]) -> tuple[str, ...]:
+        """Who is in ego's way along a path of which no trajectory was found, the first one first.
+
+        Nobody if ego's bounds alone do not let it through the cells.
+        """
+        hits: list[tuple[int, str]] = []
+        for cut in self._attempt(path, (), eased=False).cuts:
+            match cut.name:
+                case (str(name), _, int(moment)):
+                    hits.append((moment, name))
+        return tuple(dict.fromkeys([name for _, name in sorted(hits)]))
+
+    def _attempt(
         self, path: Sequence[int], preferred: Collection[Side], *, eased: bool
-    ) -> tuple[WitnessTrajectory | None, bool]:
-        """A trajectory, and whether it had to be eased at the end."""
+    ) -> _Attempt:
         cells = [layer.cells[i] for layer, i in zip(self._graph.layers, path, strict=True)]
         program, own = self._motion.program(), self._motion.in_cells(cells)
         program.add(own.rows, own.low, own.high)
         known: set[tuple[object, ...]] = set()
-        tried = False
+        cuts: list[Cut] = []
+        was_eased = False
         for _ in range(MOST_ROUNDS):
             solution = program.solved()
             if solution is None:
-                return None, tried
+                break
             cuts = [
                 cut
                 for cut in self._broken(solution, cells, path, preferred)
@@ -131,16 +155,16 @@ class WitnessSearch:
             ]
             if eased and not cuts:
                 cuts = list(self._too_fast(solution, path))
-                tried |= bool(cuts)
+                was_eased |= bool(cuts)
             if not cuts:
-                return self._trajectory(solution, cells, path), tried
+                return _Attempt(self._trajectory(solution, cells, path), was_eased, ())
             known.update(cut.name for cut in cuts)
             program.add(
                 np.array([cut.row for cut in cuts]),
                 np.array([cut.low for cut in cuts]),
                 np.array([cut.high for cut in cuts]),
             )
-        return None, tried
+        return _Attempt(None, was_eased, cuts)
 
     def _too_fast(self, solution: Solution, path: Sequence[int]) -> Iterator[Cut]:
         """Rows that keep ego from ending too fast for who is ahead of it then.

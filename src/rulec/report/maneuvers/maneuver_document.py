@@ -181,7 +181,8 @@ class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     if there was too much to look at, and some may be known after all. ``judged`` are the rules that
     half of them or more keep or violate for sure, null unless cells have words. With ``bounds`` of
     ego's motion (m, s) they are paths through reachable cells, else through all. ``least_braking``
-    (m/s²) is there where one is shown that brakes hard, and none brakes less than that.
+    (m/s²) is there where one is shown that brakes hard, and none brakes less than that; ``in_way``,
+    the obstacles that are, where no trajectory was found along any of those to be listed.
     """
 
     scenario: str
@@ -215,3 +216,4 @@ class ManeuversDocument(JsonDocument, frozen=True, kw_only=True):
     rules: Sequence[PruningData] | UnsetType = UNSET
     classes: ClassesData | UnsetType = UNSET
     least_braking: float | UnsetType = UNSET
+    in_way: Sequence[str] | UnsetType = UNSET

@@ -93,6 +93,7 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
             rules=_each(answers.prunings, partial(_pruning, maneuvers)),
             classes=UNSET if answers.classes is None else _classes(maneuvers, *answers.classes),
             least_braking=UNSET if least is None else round(least, 3),
+            in_way=maneuvers.in_way if maneuver_report.lists_none(maneuvers, answers) else UNSET,
         )
     )
 

@@ -79,6 +79,12 @@ def least_braking(maneuvers: Maneuvers, answers: ManeuverAnswers) -> float | Non
     return maneuvers.least_braking
 
 
+def lists_none(maneuvers: Maneuvers, answers: ManeuverAnswers) -> bool:
+    """Tell whether a list has no maneuver only because no trajectory was found along any."""
+    is_bare = answers.listed is not None and not answers.listed
+    return is_bare and bool(maneuvers.satisfying or maneuvers.open)
+
+
 def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> str:
     """Write the counts, and a block for each maneuver asked for."""
     graph, rules = maneuvers.graph, maneuvers.rules
@@ -115,12 +121,12 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
     if least is not None:
         lines.append(f"emergency   every maneuver brakes by more than {least:.1f} m/s²")
     lines.append(f"computed in {seconds:.3f} s")
-    is_bare = answers.listed is not None and not answers.listed
-    if is_bare and (maneuvers.satisfying or maneuvers.open):
-        way_out = "; `--extent body` leaves more room" if graph.extent != "body" else ""
-        lines.append(
-            f"listed      none: no trajectory was found along those that cost least{way_out}"
-        )
+    if lists_none(maneuvers, answers):
+        lines.append("listed      none: no trajectory was found along those that cost least")
+        if maneuvers.in_way:
+            lines.append(visible(f"in the way  {first_of(maneuvers.in_way, MOST_DEFAULTS)}"))
+        if graph.extent != "body":
+            lines.append("opened by   `--extent body`, perhaps: it leaves more room")
     for number, maneuver in enumerate(answers.listed or (), 1):
         lines += maneuver_blocks.listed_block(maneuvers, number, maneuver, answers.verdicts)
         lines += _chances(answers, maneuver)
