@@ -10,7 +10,12 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.conduct.manoeuvre_signals import on_both_halves, oncoming_side
+from rulec.extraction.signals.conduct.manoeuvre_signals import (
+    on_both_halves,
+    oncoming_side,
+    sides_beyond_far_edge,
+    two_way,
+)
 from rulec.extraction.signals.ego_lanelets import (
     CYCLE_LANE,
     lanes_of_type,
@@ -33,6 +38,9 @@ _DRIFT_MPS = 0.2
 
 _RAMPS = frozenset({JOINING, "exitRamp"})
 """Types of lanes to join from or to leave by, beside those that go on."""
+
+_HALF_M = 4.0
+"""Who is farther beyond the middle of a road is on none of its lanes, or on the second one."""
 
 _SETS_OFF_MPS2 = 2.0
 """Vehicles gain speed about so hard when they set off."""
@@ -280,26 +288,29 @@ def _ride_along(context: DriveContext) -> Flags:
 def _overtaken(context: DriveContext) -> tuple[Flags, Flags]:
     """Flags of those who overtake ego, and of states after which nobody knows whether one does.
 
-    Who overtakes ego is with its middle on the next lane at the far side, clearly faster, and gets
-    past within ``catching_up_s``. Nobody knows of one that is lost from sight before, that falls
-    back first (whoever gives up and tries again overtakes but once), or that only reaches into that
-    lane.
+    Who overtakes ego is with its middle on the next lane at the far side, or on the other half of
+    the road, clearly faster, and gets past within ``catching_up_s``. Nobody knows of one that is
+    lost from sight before, that falls back first (whoever gives up and tries again overtakes but
+    once), or that only reaches into that lane.
     """
     limits, station = context.thresholds, relations.station(context)
     _, near = _sides(context)
     faster_mps = context.extents.along - context.ego_extents.along
     comes: Flags = (faster_mps * KMH >= limits.clearly_faster_kmh) & (station != relations.BEHIND)
-    comes &= (relations.lateral(context) == near) & context.going_along
+    over = _over_the_middle(context)
+    comes &= ((relations.lateral(context) == near) & context.going_along) | over
     closing = relations.gap(context) <= faster_mps * limits.passed_s
     cells = Cells.at(comes & (closing | (station == relations.BESIDE)))
     open_end = np.zeros(context.states, dtype=bool)
     if not len(cells):
         return np.zeros_like(comes), open_end
-    gets_past, unsure = map(cells.of, _gets_past(context, distinct(cells.rows), faster_mps))
+    gets_past, unsure = map(cells.of, _gets_past(context, distinct(cells.rows), faster_mps, over))
     next_lane, lanes = cells.of(_next_lane(context)), context.existing_lanes.shape[1]
     there = (next_lane >= 0) & (next_lane < lanes)
     reaches = there & is_in(cells.of(context.lanes_within[0]), np.clip(next_lane, 0, lanes - 1))
     inside = reaches & (cells.of(context.extents.lane) == next_lane)
+    beyond = cells.of(over) & ~there
+    inside, reaches = inside | beyond, reaches | beyond
     open_end[cells.columns[reaches & (unsure | (~inside & gets_past))]] = True
     return cells.laid(inside & gets_past), open_end
 
@@ -341,21 +352,36 @@ def _next_lane(context: DriveContext) -> NDArray[intp]:
     return next_lane
 
 
+def _over_the_middle(context: DriveContext) -> Flags:
+    """Flags of vehicles with their middle on the other half, which have come from ego's lanes."""
+    spans, others = context.spans, context.extents
+    both_ways, _ = two_way(context)
+    low, high = sides_beyond_far_edge(context, others)
+    over: Flags = both_ways & (low + high > 0) & (low < _HALF_M) & (abs(others.turned) < 1.0)
+    over &= context.tracks.of_type("vehicle")[:, None] & ~context.on_lanes
+    over &= spans.latest(np.isnan(others.s)) < spans.latest(context.driving_along)
+    return over & (relations.gap(context) <= context.thresholds.near_m)
+
+
 def _gets_past(
-    context: DriveContext, rows: NDArray[intp], faster_mps: Floats
+    context: DriveContext, rows: NDArray[intp], faster_mps: Floats, over: Flags
 ) -> tuple[Flags, Flags]:
     """Flags of participants that are past within ``catching_up_s``, and of those that may be.
 
     Of these rows, False in all others. They may be if they are lost before, or fall back first:
-    slower than ego by more than speeds may be wrong.
+    slower than ego by more than speeds may be wrong. Who is ``over`` the middle would get past, had
+    it not to brake harder than ``disturbing_mps2`` for ego, which comes there, too.
     """
     horizon = round(context.thresholds.catching_up_s / context.recording.step_s)
     spans, states = context.spans, context.spans.columns
-    seen = context.relevant[rows]
+    seen, limits, tracks = (context.relevant | over)[rows], context.thresholds, context.tracks
     past = seen & (relations.station(context)[rows] == relations.BEHIND)
     falls_back = seen & (faster_mps[rows] < -context.tolerances.speed_mps)
     is_past = spans.within(past, horizon)
     at_once = is_past & (spans.next_state(past) <= spans.next_state(falls_back))
+    comes_out = on_both_halves(context) | oncoming_side(context)[0]
+    brakes = (tracks.acceleration + tracks.acceleration_error)[rows] < -limits.disturbing_mps2
+    at_once |= spans.within(brakes & over[rows] & comes_out & ~past, horizon) & ~falls_back
     gets_past, unsure = np.zeros((2, *context.relevant.shape), dtype=bool)
     gets_past[rows] = at_once
     is_lost = spans.within(~seen, horizon) | (states + horizon >= spans.end)
