@@ -106,6 +106,18 @@ def test_who_brakes_out_of_the_way_had_no_room(start, mps2, clear):
     assert told(other) == clear
 
 
+@pytest.mark.parametrize(
+    ("gap_m", "mps2", "clear"),
+    # 0.5 s behind ego, and 1.5 s; it brakes from the change on, after ego has moved over for 1.6 s
+    [(10.0, 4.0, "False"), (10.0, 1.0, "True"), (30.0, 4.0, "True")],
+)
+def test_who_brakes_for_ego_that_comes_in_close_ahead_had_no_room(gap_m, mps2, clear):
+    """It is 2 m/s slower than ego, which draws away from it."""
+    speeds = braking(CHANGE + 1, mps2) - 2.0
+    other = driving(8, 96 - gap_m + 7.6, np.full(STEPS, 4.0), speeds)
+    assert told(other) == clear
+
+
 @pytest.mark.parametrize(("mps2", "clear"), [(6.0, "False"), (0.0, "False")])
 def test_who_comes_from_behind_has_to_brake_before_ego_is_in_its_lane_or_then(mps2, clear):
     """It is 8 m/s faster, and 14.5 m behind when ego has changed lanes did it not brake before.

@@ -22,6 +22,9 @@ from rulec.trace.plain_arrays import distinct, ranges
 _NO_ROOM_S, _DRAWS_AWAY_MPS = 0.3, 1.0
 """One so near behind ego has no room to react in, unless ego draws away from it."""
 
+_TOO_CLOSE_S = 1.0
+"""Who brakes for one that comes in ahead by less has to: half of what all laws ask for."""
+
 _DRIFT_MPS = 0.2
 """Who moves sideways by less keeps its lane."""
 
@@ -50,9 +53,10 @@ def squeezed(context: DriveContext, ways: Sequence[WayIn]) -> tuple[Flags, Flags
     Those so near behind it that they cannot react; those whom it would have run into, had they gone
     on as they did when it began to move over: they had to get out of its way, surely if they were
     beside it when its body came over the mark, or braked harder than ``disturbing_mps2``
-    afterwards, and perhaps if they let it in, or have one ahead of them who is slower; and those
-    who would have had to brake so hard, and did before ego was in their lane. Perhaps, too, where
-    ego's lane ends: there they let each other in.
+    afterwards, and perhaps if they let it in, or have one ahead of them who is slower; those
+    who would have had to brake so hard, and did before ego was in their lane; and those who do
+    with ego so close ahead, which is not slower itself. Perhaps, too, where ego's lane ends: there
+    they let each other in.
     """
     changes = np.array([way.state for way in ways], dtype=intp)
     begins, reaches = _moves_over(context, ways, changes)
@@ -128,11 +132,32 @@ def _gives_way(
     left = own.s_min[0, changes] - high - faster * context.thresholds.reaction_s
     too_near = faster**2 > 2 * context.thresholds.disturbing_mps2 * np.maximum(left, 0.0)
     too_near &= there & (faster > 0) & (high <= own.s_min[0, changes])
-    hard, may_be_hard = _brake(context, would | too_near, reaches, changes)
+    cut_short = there & _comes_in_close(context, reaches, changes)
+    hard, may_be_hard = _brake(context, would | too_near | cut_short, reaches, changes)
     sure = (would & beside) | hard
     for way in np.flatnonzero(sure.any(axis=0)).tolist():
         sure[:, way] &= ~_held_up(context, int(begins[way]), int(lanes[way]))
     return sure, would | may_be_hard
+
+
+def _comes_in_close(context: DriveContext, reaches: NDArray[intp], changes: NDArray[intp]) -> Flags:
+    """Flags of those close behind ego in its new lane, by way, unless ego gets slower there.
+
+    Who brakes with one ahead that does not has no other reason that ego had not as well.
+    """
+    own, behind = context.ego_extents.along[0], context.in_ego_lane[:, changes]
+    close = relations.gap(context)[:, changes] < _TOO_CLOSE_S * context.extents.along[:, changes]
+    behind &= relations.station(context)[:, changes] == relations.IN_FRONT_OF
+    keeps_on = own[_reacted(context, changes) - 1] > own[reaches] - _SLOWED_MPS
+    flags: Flags = close & behind & keeps_on
+    return flags
+
+
+def _reacted(context: DriveContext, changes: NDArray[intp]) -> NDArray[intp]:
+    """The states behind those up to which others have reacted to a change of lanes."""
+    reacts = round(context.thresholds.reaction_s / context.recording.step_s) + 1
+    ends: NDArray[intp] = np.minimum(changes + reacts, context.spans.end[changes])
+    return ends
 
 
 def _drifts(
@@ -189,9 +214,7 @@ def _any_between(
     """For each way whether flags of states are true in any until others have reacted to it."""
     if not len(changes):
         return flags_of(changes)
-    reacts = round(context.thresholds.reaction_s / context.recording.step_s) + 1
-    ends = np.minimum(changes + reacts, context.spans.end[changes])
-    states, first = ranges(begins, ends - begins)
+    states, first = ranges(begins, _reacted(context, changes) - begins)
     found: Flags = np.logical_or.reduceat(flags_of(states), first, axis=1)
     return found
 
