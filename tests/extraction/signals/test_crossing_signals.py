@@ -246,7 +246,7 @@ def test_who_is_about_to_cross_when_first_seen_may_have_come_just_then():
     assert not unknown.any()
 
 
-def side_road(walker, stops_at=None, more=()):
+def side_road(walker, stops_at=None, more=(), x=12.0):
     """T, F or ? by step of 0.5 s: ego comes from the south, turns right at (0, 0), drives off."""
     inside = {"types": frozenset({"intersection"}), "junction": "x"}
     bend = [(8 - 8 * np.cos(a), -8 + 8 * np.sin(a)) for a in np.linspace(0, np.pi / 2, 7)]
@@ -261,7 +261,7 @@ def side_road(walker, stops_at=None, more=()):
     way = 30 + 2.5 * np.arange(40)
     if stops_at is not None:
         way = np.concatenate([np.minimum(way[:20], stops_at), stops_at + 2.5 * np.arange(20)])
-    places = {k: (12.0, y) for k, y in enumerate(walker)}
+    places = {k: (x, y) for k, y in enumerate(walker)}
     body = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
     context = context_of(recording(road, [along(7, line, way), body]), ("1", "2", "3"))
     found = crossing_signals(context, frozenset({"crosses_side_road"}))
@@ -278,6 +278,14 @@ def test_one_in_the_side_road_while_ego_goes_by():
     assert side_road(CROSSES)[9] == "F"  # it is 4 m beyond ego's lane by then
     assert side_road([y - 3 for y in CROSSES])[9] == "T"
     assert side_road([2 - y for y in CROSSES])[9] == "T"
+
+
+def test_one_on_a_crossing_that_is_drawn_within_the_junction():
+    """The junction ends at x = 8, and the crossing is from 4 to 8 m."""
+    crossing = lanelet(9, [(6, -10), (6, 10)], width=4.0, types=frozenset({"crosswalk"}))
+    walker = [y - 3 for y in CROSSES]
+    assert side_road(walker, more=[crossing], x=5.5)[9] == "T"
+    assert side_road(walker, x=5.5)[9] == "F"
 
 
 def test_one_that_ego_lets_go_while_it_waits_in_the_junction():

@@ -192,14 +192,19 @@ def _used_ahead(context: DriveContext) -> NDArray[intp]:
 
 
 def _side_road(context: DriveContext) -> tuple[Floats, Floats]:
-    """Begin and end of where pedestrians cross the road into which ego turns, or infinity."""
+    """Begin and end of where pedestrians cross the road into which ego turns, or infinity.
+
+    Many maps draw the crossing of that road in the junction, at its end.
+    """
     front, rear = context.ego_extents.s_max[0], context.ego_extents.s_min[0]
     start, end = np.full((2, context.states), np.inf)
     for low, high in reversed(context.road.junctions):
         if turn_at(context, low, high) != "straight_on":
             nears = (front > low - context.thresholds.approach_m) & (rear < high)
             beyond = high + context.thresholds.side_road_m
-            start, end = np.where(nears, high, start), np.where(nears, beyond, end)
+            drawn = [a for a, b in context.road.crossings if low + high < a + b and a < high]
+            start = np.where(nears, min([high, *drawn]), start)
+            end = np.where(nears, beyond, end)
     return start, end
 
 
