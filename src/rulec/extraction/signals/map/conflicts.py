@@ -39,6 +39,12 @@ _GRAZES_M = 0.15
 _BEHIND_S = 0.3
 """Who gets to a place so short a time before another one has left it passes behind it."""
 
+_SEES_S = 2.0
+"""So long before ego drives in one may see that it does, and brake."""
+
+_STRAIGHT_RAD = 0.3
+"""Who turns by less goes straight on."""
+
 _LATE_S = 10.0
 """Who comes so long after ego has got to a place need not have been in sight as it drove in."""
 
@@ -126,6 +132,7 @@ def _runs_into(
 
     Those who join its way drive in behind it. Who brakes meanwhile may see it, and stop short of it
     on lanes that are narrower than a map has them; and who creeps on behind it does not touch it.
+    One that is slow may wait there, unless ego runs into it.
     """
     passages = context.surroundings.passages
     (own, enters), (other, passed) = ego, foe
@@ -135,11 +142,14 @@ def _runs_into(
     present = np.flatnonzero(passages.tracks.present[other.row])
     until = int(present[-1]) + 1 if passed is None else passed
     slowest = passages.tracks.speed[[own.row, other.row], enters:until].min(axis=1, initial=np.inf)
-    drive = bool((slowest > (SLOWEST_MPS, _DRIVES_MPS)).all())
+    there = slice(enters, until)
+    drive = bool((slowest > (SLOWEST_MPS, _DRIVES_MPS)).all()) or (
+        bool((slowest > SLOWEST_MPS).all()) and _collide(context, own, other, there, _GRAZES_M)
+    )
     inside = (until - enters) * context.recording.step_s > _BEHIND_S
     if not (drive and inside):
         return None
-    creeps = slowest[0] < _DRIVES_MPS and not _collide(context, own, other, slice(enters, until))
+    creeps = slowest[0] < _DRIVES_MPS and not _collide(context, own, other, there)
     sure = not creeps and not _slows_down(context, own, enters, until)
     return max(int(present[0]), first_column(context)), sure
 
@@ -177,13 +187,28 @@ def _held_up(
     soon = columns + way / speed / step_s - until < limits.yielding_s / step_s
     decides = min(max(_decides(context, own, enters) - first, 0), len(soon) - 1)
     # Who speeds up when ego is in the junction already was not held up by its driving in
-    held_up = bool(soon[decides] and soon[-1])
-    # Nor who brakes once ego is gone
-    held_up = held_up and _slows_down(context, other, first + decides, int(until))
-    if not held_up:
+    if not (soon[decides] and soon[-1]):
+        before = max(decides - round(_SEES_S / step_s), 0)
+        braked = soon[before] and _brakes_for(context, other, (first + before, int(until)), comes)
+        return (int(columns[soon.argmax()]), leaves is not None) if braked else None
+    # Nor was who brakes once ego is gone
+    if not _slows_down(context, other, first + decides, int(until)):
         return None
     for_ego = not _bends(context, other, first + decides, comes)
     return int(columns[soon.argmax()]), leaves is not None and for_ego
+
+
+def _brakes_for(
+    context: DriveContext, other: Passage, columns: tuple[int, int], comes: int
+) -> bool:
+    """True if one that goes straight on brakes harder than ``disturbing_mps2`` between columns."""
+    tracks = context.surroundings.passages.tracks
+    begin, end = columns
+    heading = tracks.heading[other.row, [begin, comes]]
+    there = other.row, slice(begin, end + 1)
+    hardest = np.nanmin(tracks.acceleration[there] + tracks.acceleration_error[there])
+    straight = np.abs(np.angle(np.exp(1j * (heading[1] - heading[0])))) < _STRAIGHT_RAD
+    return bool(straight and hardest < -context.thresholds.disturbing_mps2)
 
 
 def _stood(context: DriveContext, own: Passage, first: int, last: float) -> bool:

@@ -1,0 +1,62 @@
+"""Who had to brake for ego at a junction though it gets there long after, and whom ego hits."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rulec.extraction.signals.map.priority_signals import priority_signals
+from support.builders.drive_contexts import context_of
+from support.builders.recordings import lanelet, recording, straight, vehicle
+
+INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
+ROADS = [
+    straight(1, -60, -4, successors=(2,)),
+    straight(2, -4, 4, predecessors=(1,), successors=(3,), **INSIDE),
+    straight(3, 4, 190, predecessors=(2,)),
+    lanelet(4, [(0, -90), (0, -4)], successors=(5,)),
+    lanelet(5, [(0, -4), (0, 4)], predecessors=(4,), successors=(6,), **INSIDE),
+    lanelet(6, [(0, 4), (0, 90)], predecessors=(5,)),
+]
+STEP_S, STEPS = 0.1, 80
+
+
+def from_the_right(y):
+    """T, F or ? of whether it is in conflict with ego, which goes east at 10 m/s.
+
+    Ego drives into the junction at 1.4 s; its front is in the other's way at 1.7 s, as wide as that
+    is, and its rear past it at 2.3 s. The other one is 3 m before its middle as it gets there.
+    """
+    ego = vehicle(7, {k: (-20 + k, 0) for k in range(STEPS)}, speed=10)
+    places = {k: (0, float(y[k])) for k in range(STEPS)}
+    other = vehicle(8, places, speed=10, heading=np.pi / 2)
+    found = recording(ROADS, [ego, other], step_s=STEP_S)
+    found = replace(found, complete=frozenset({"YIELD"}))
+    told = priority_signals(context_of(found, route=("1", "2", "3")))
+    word = "conflict_from_right"
+    return "?" if told.unknown[word].any() else "FT"[int(told.world[word].any())]
+
+
+def driven(begin, times, speeds):
+    """Places at these speeds (m/s) at these times (s), in steps of 0.1 s, from ``begin`` on."""
+    mps = np.interp(np.arange(STEPS) * STEP_S, times, speeds)
+    return begin + np.concatenate(([0.0], np.cumsum(mps[:-1]) * STEP_S))
+
+
+@pytest.mark.parametrize(("mps2", "conflict"), [(4.0, "T"), (1.2, "F")])
+def test_who_brakes_hard_as_ego_comes_is_held_up_though_it_is_slow_when_ego_drives_in(
+    mps2, conflict
+):
+    """At 10 m/s it would be there at 3.0 s, 0.7 s after ego has left; it comes by 5.2 s or 3.5 s.
+
+    It brakes down to 5.5 m/s, or 8, from 0.2 s on.
+    """
+    slowest = 5.5 if conflict == "T" else 8.0
+    y = driven(-33.0, [0.2, 0.2 + (10 - slowest) / mps2], [10.0, slowest])
+    assert from_the_right(y) == conflict
+
+
+@pytest.mark.parametrize(("begin", "conflict"), [(-4.5, "T"), (-12.0, "F")])
+def test_one_that_is_slow_is_in_the_way_if_ego_runs_into_it(begin, conflict):
+    """At 1.5 m/s it has its front in ego's way, and ego drives into its side; or it is far yet."""
+    assert from_the_right(driven(begin, [0.0], [1.5])) == conflict
