@@ -358,6 +358,25 @@ def test_who_drives_on_later_has_not_broken_down(fast, expected):
     assert set(found[9:24]) == {expected}
 
 
+@pytest.mark.parametrize(
+    ("walker_y", "complete", "expected"),
+    # Somebody is about, 25 m from ego's line; nobody is, 60 m away; not all traffic is recorded
+    [(25.0, SIMULATED, "TTT"), (60.0, SIMULATED, "T?F"), (60.0, ("light", "YIELD"), "TTT")],
+)
+def test_who_stands_before_a_zebra_crossing_for_nobody_has_no_cause(walker_y, complete, expected):
+    """It stands from 4.5 to 20 s, 4 m before the crossing."""
+    speeds = [*np.linspace(20, 0, 9), *[0.0] * 32, *np.linspace(0, 20, 16), *[20.0] * 30]
+    x = 50 + np.concatenate(([0.0], np.cumsum(np.array(speeds[:-1]) / 2)))
+    ego = vehicle(7, {k: (place, 0) for k, place in enumerate(x)})
+    crossing = lanelet(9, [(x[10] + 8, -6), (x[10] + 8, 6)], types=frozenset({"crosswalk"}))
+    places = {k: (float(x[10]), walker_y) for k in range(len(x))}
+    walker = vehicle(8, places, "pedestrian", length=0.5, width=0.5)
+    road = [*LONG, crossing]
+    found = told(reason_signals, "cause_to_brake", road, ego, walker, complete=complete)
+    # After 5 s of standing, and 5 s more, in which it may be getting going
+    assert "".join(found[k] for k in (15, 25, 38)) == expected
+
+
 @pytest.mark.parametrize("hazards_told", [False, True])
 def test_who_stands_when_it_is_first_seen_may_have_waited_until_then(hazards_told):
     speeds = [*[0.0] * 30, *np.linspace(0, 20, 16), *[20.0] * 20]

@@ -16,6 +16,7 @@ from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.conduct.lamp_signals import ego_lamps
 from rulec.extraction.signals.map.map_signals import next_crossing
+from rulec.extraction.signals.map.zone_signals import crossings_lit
 from rulec.extraction.signals.measured_numbers import moves
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
@@ -160,13 +161,34 @@ def _by_map(context: DriveContext) -> Flags:
     road, front, reach = context.road, context.ego_extents.s_max[0], _reach(context)
     rear, speed = context.ego_extents.s_min[0], context.ego.speed[0]
     crossing, _ = next_crossing(context)
-    caused: Flags = crossing - front <= reach
+    caused: Flags = (crossing - front <= reach) & ~_stands_for_nobody(context, crossing)
     for start, end in road.junctions:
         caused |= (front >= start - reach) & (rear <= end)
     # Beyond its map nobody knows the road
     caused |= (front + reach > road.borders[-1]) | (rear < road.borders[0])
     caused |= speed * KMH > context.limit_mps * KMH + _SLOWER_KMH
     return caused
+
+
+def _stands_for_nobody(context: DriveContext, crossing: Floats) -> Flags:
+    """Flags of states in which ego has stood at a zebra crossing while nobody was about.
+
+    Nobody walks or rides within ``_CROSSES_M``, as for ``_MOVES_OFF_S`` before, and ego stood then.
+    Only where all traffic is recorded; where lights may direct who crosses they may be red.
+    """
+    spans, stands = context.spans, ~moves(context)
+    if "arrivals" not in context.recording.complete or not stands.any():
+        return np.zeros(context.states, dtype=bool)
+    lit = crossings_lit(context)
+    zebra = np.array([not any(lit.get(start, (True, True))) for start in crossing.tolist()])
+    tracks, own = context.surroundings.tracks, context.ego
+    on_foot = np.flatnonzero(tracks.of_type("vulnerable_user"))
+    x, y = (values[on_foot].take(context.columns, axis=1) for values in (tracks.x, tracks.y))
+    about = np.hypot(x - own.x[0], y - own.y[0]) <= _CROSSES_M
+    steps = round(_MOVES_OFF_S / context.recording.step_s)
+    has_moved = spans.within_last(~stands | about.any(axis=0), steps)
+    nobody: Flags = zebra & ~has_moved & (spans.columns - spans.first >= steps)
+    return nobody
 
 
 def _by_road(context: DriveContext, states: NDArray[intp]) -> Flags:
