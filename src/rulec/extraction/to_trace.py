@@ -63,7 +63,12 @@ from rulec.trace import Trace, Value
 from rulec.trace.cells import Cells
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.trace.trace_model import Ending
-from rulec.trace.vocabulary_projection import known_type, values_lacking, with_told_values
+from rulec.trace.vocabulary_projection import (
+    known_type,
+    told_types,
+    values_lacking,
+    with_told_values,
+)
 from rulec.value_display import short_repr
 from rulec.vocabulary import Vocabulary
 
@@ -293,8 +298,11 @@ def to_traces(
     step_s = context.recording.step_s
     ends: Ending = "complete" if writer.defaults else "cut"
     arrays = [
-        TraceArrays(name, step_s, columns.stop - columns.start, own, ends=ends, told=told, **part)
+        TraceArrays(
+            name, step_s, columns.stop - columns.start, own, ends=ends, told=names_told, **part
+        )
         for name, columns, own, part in zip(names, spans.slices, objects, parts, strict=True)
+        for names_told in (_with_types(told, own, vocabulary),)
     ]
     starts = [round(start * step_s, 9) for start in context.steps[spans.begins].tolist()]
     if writer.bare:
@@ -315,6 +323,15 @@ def to_traces(
             egos, starts, arrays, decided_by, spans.slices, strict=True
         )
     ]
+
+
+def _with_types(
+    told: frozenset[str] | None, objects: Mapping[str, str], vocabulary: Vocabulary | None
+) -> frozenset[str] | None:
+    """What is told, and of which types objects are where that is in doubt."""
+    if told is None or vocabulary is None:
+        return told
+    return told | told_types(objects.values(), vocabulary)
 
 
 def _objects(

@@ -116,10 +116,10 @@ def check_objects(
 def check_told(
     told: Iterable[str] | None, vocabulary: Vocabulary, place: SourceLocation | None = None
 ) -> None:
-    """Check that the vocabulary declares all names, or values, told. Raises RulecError R0502."""
+    """Check that the vocabulary declares all names, values or types told. Raises R0502."""
     declarations, values = vocabulary.declarations, vocabulary.enumeration_of
     for name in told or ():
-        if name not in declarations and name not in values:
+        if name not in declarations and name not in values and name not in vocabulary.types:
             raise UNDECLARED_NAME.error(
                 place,
                 f"`told` has `{name}`, which `{vocabulary.name}` does not know",

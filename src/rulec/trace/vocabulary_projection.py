@@ -44,6 +44,9 @@ UNTOLD_VALUES: Mapping[str, frozenset[str]] = {
 }
 """Enumeration -> values that no format has: where another one is told, it may be one of these."""
 
+UNTOLD_TYPES = frozenset({"school_bus", "maintenance_vehicle", "moped", "horse_rider"})
+"""Types of objects that no format has: one of a type above may be of these."""
+
 _Signal = PartialValue | Mapping[str, PartialValue]
 
 
@@ -56,6 +59,17 @@ def known_types(objects: Mapping[str, Sequence[str]], vocabulary: Vocabulary) ->
     """The type of each object of which the vocabulary declares one."""
     types = {name: known_type(own, vocabulary) for name, own in objects.items()}
     return {name: own for name, own in types.items() if own is not None}
+
+
+def told_types(types: Iterable[str], vocabulary: Vocabulary) -> frozenset[str]:
+    """The types that are told where objects of these types are; none if no object is in doubt."""
+    doubtful = {
+        name
+        for name in UNTOLD_TYPES & vocabulary.types.keys()
+        for own in {*types} - {name}
+        if vocabulary.is_subtype(name, own)
+    }
+    return frozenset(vocabulary.types.keys() - doubtful if doubtful else ())
 
 
 def is_about(declaration: Declaration, own_type: str | None, vocabulary: Vocabulary) -> bool:

@@ -9,7 +9,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.automata.outcome_machine import OutcomeMachine
 from rulec.logic.free_names import names_of
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
-from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
+from rulec.monitoring.uncertainty.untold_names import untold_names, untold_types, with_untold
 from rulec.monitoring.verdict import RuleNotJudged
 from rulec.vocabulary import Vocabulary
 
@@ -56,6 +56,7 @@ def _judged_rules(
     if cut:
         prefixes = {} if rulebook.prefixes is None else rulebook.prefixes(rulebook)
     unknown = untold_names(rulebook.vocabulary, told)
+    types = untold_types(rulebook.vocabulary, told)
     machines, not_judged = [], []
     for rule in rulebook.rules:
         outcomes = None if prefixes is None else prefixes.get(rule.name)
@@ -65,6 +66,7 @@ def _judged_rules(
             continue
         machine = uncertain_machine(rule, outcomes)
         untold = machine.untold(unknown)
+        untold += tuple([one.type for one in rule.variables if one.type in types])
         if untold:
             not_judged.append(RuleNotJudged(rule.name, rule.strength, untold))
         else:

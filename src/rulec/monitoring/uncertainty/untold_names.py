@@ -1,7 +1,7 @@
 """Names that a source of traces does not tell, and rules that cannot be judged for want of them.
 
 Values are names, too: of an enumeration some of whose values are told by name a source never says
-the others. No rule is kept because of a value that nobody could have told.
+the others. No rule is kept because of a value that nobody could have told. So are types of objects.
 """
 
 from __future__ import annotations
@@ -38,6 +38,13 @@ def untold_names(vocabulary: Vocabulary, told: frozenset[str] | None) -> frozens
         elif isinstance(item, Enumeration) and not told.isdisjoint(item.values):
             untold += [value for value in item.values if value not in told]
     return frozenset(untold)
+
+
+def untold_types(vocabulary: Vocabulary, told: frozenset[str] | None) -> frozenset[str]:
+    """The types of objects that a source which tells some others by name never tells."""
+    if told is None or told.isdisjoint(vocabulary.types):
+        return frozenset()
+    return frozenset(vocabulary.types.keys() - told)
 
 
 def with_untold(vocabulary: Vocabulary, untold: frozenset[str]) -> Vocabulary:
