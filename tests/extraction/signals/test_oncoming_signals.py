@@ -138,8 +138,8 @@ def test_ego_turns_behind_or_long_before_one(reaches_s):
     [
         # It is on ego's way from about 3.7 to 5.3 s, and ego on its way from 4.6 s on
         (3.5, 10.0, True),
-        # It is there all the time, but may be waiting
-        (2.0, 2.0, False),
+        # It is there all the time and slow, as one that may wait; but ego runs into it
+        (2.0, 2.0, True),
     ],
 )
 def test_ego_drives_into_the_side_of_one_that_was_there_first(reaches_s, mps, conflict):

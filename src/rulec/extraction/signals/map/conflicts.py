@@ -144,7 +144,8 @@ def _runs_into(
     slowest = passages.tracks.speed[[own.row, other.row], enters:until].min(axis=1, initial=np.inf)
     there = slice(enters, until)
     drive = bool((slowest > (SLOWEST_MPS, _DRIVES_MPS)).all()) or (
-        bool((slowest > SLOWEST_MPS).all()) and _collide(context, own, other, there, _GRAZES_M)
+        bool((slowest > (_DRIVES_MPS, SLOWEST_MPS)).all())
+        and _collide(context, own, other, there, _GRAZES_M)
     )
     inside = (until - enters) * context.recording.step_s > _BEHIND_S
     if not (drive and inside):
