@@ -116,6 +116,15 @@ def test_rules_of_the_other_side_are_refused():
     assert find_maneuvers(scene, compile_rulebook("de")).judges
 
 
+@pytest.mark.parametrize(("kind", "lacking"), [("bus", True), ("car", False)])
+def test_a_bus_may_be_a_school_bus_for_maneuvers_as_for_drives(kind, lacking):
+    other = vehicle(10, {k: (90.0, 4.0) for k in range(13)}, kind, speed=0.0)
+    made = replace(recording(LANES, [other], ego=(60, 0)), side="right")
+    found = find_maneuvers(seen_from_ego(made, Choice(), "f.xml"), compile_rulebook("us-ca"))
+    untold = {name for one in found.not_judged if one.rule == "school_bus" for name in one.untold}
+    assert ("school_bus" in untold) == lacking
+
+
 def test_distances_to_junctions_between_two_places():
     """Right behind a junction it is as far to the next one as it gets, place or no place."""
     far = (1.0, 0.0, 40.0, 39.0, 38.0)

@@ -297,12 +297,14 @@ def to_traces(
     parts = signal_parts(chosen, present, spans, defaults=writer.defaults)
     step_s = context.recording.step_s
     ends: Ending = "complete" if writer.defaults else "cut"
+    told_of = [told] * len(objects)
+    if told is not None and vocabulary is not None:
+        told_of = _with_types(told, objects, vocabulary)
     arrays = [
-        TraceArrays(
-            name, step_s, columns.stop - columns.start, own, ends=ends, told=names_told, **part
+        TraceArrays(name, step_s, columns.stop - columns.start, own, ends=ends, told=known, **part)
+        for name, columns, own, known, part in zip(
+            names, spans.slices, objects, told_of, parts, strict=True
         )
-        for name, columns, own, part in zip(names, spans.slices, objects, parts, strict=True)
-        for names_told in (_with_types(told, own, vocabulary),)
     ]
     starts = [round(start * step_s, 9) for start in context.steps[spans.begins].tolist()]
     if writer.bare:
@@ -326,12 +328,12 @@ def to_traces(
 
 
 def _with_types(
-    told: frozenset[str] | None, objects: Mapping[str, str], vocabulary: Vocabulary | None
-) -> frozenset[str] | None:
-    """What is told, and of which types objects are where that is in doubt."""
-    if told is None or vocabulary is None:
-        return told
-    return told | told_types(objects.values(), vocabulary)
+    told: frozenset[str], objects: Sequence[Mapping[str, str]], vocabulary: Vocabulary
+) -> list[frozenset[str] | None]:
+    """What is told of each drive, with the types that its objects may be where that is in doubt."""
+    types = [frozenset(own.values()) for own in objects]
+    known = {own: told | told_types(own, vocabulary) for own in set(types)}
+    return [known[own] for own in types]
 
 
 def _objects(

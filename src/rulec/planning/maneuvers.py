@@ -179,7 +179,7 @@ class Maneuvers(Rows):
 
     @cached_property
     def in_way(self) -> tuple[str, ...]:
-        """Who is in ego's way along the maneuver that costs least by its cells, if it is undrivable.
+        """Who is in the way of the maneuver that costs least by its cells, if it is undrivable.
 
         Nobody if ego's bounds alone do not let it through.
         """

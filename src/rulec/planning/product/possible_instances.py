@@ -22,7 +22,7 @@ from rulec.monitoring.uncertainty.suppositions import (
     spelled_out,
 )
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine, uncertain_machine
-from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
+from rulec.monitoring.uncertainty.untold_names import untold_names, untold_types, with_untold
 from rulec.monitoring.verdict import NO_PAST, CarriedState, RuleNotJudged
 from rulec.planning.product.graph_bindings import graph_bindings
 from rulec.planning.product.graph_instance import GraphInstance, Readings, SetMachine
@@ -69,6 +69,7 @@ class PossibleNodes:
         self._graph = graph
         self._rulebook = rulebook
         self._untold = untold_names(rulebook.vocabulary, graph.told)
+        self._untold_types = untold_types(rulebook.vocabulary, graph.told)
         self._vocabulary = with_untold(rulebook.vocabulary, self._untold)
         self._nodes = NodesInTurn(graph)
         nodes = spelled_out(
@@ -94,11 +95,12 @@ class PossibleNodes:
         return reads_partial or bool(self.untold(rule, NO_PAST))
 
     def untold(self, rule: CompiledRule, past: CarriedState) -> tuple[str, ...]:
-        """Untold names for want of which no path can be known to violate a rule."""
+        """Untold names and types for want of which no path can be known to violate a rule."""
         begun = [state for (name, _), state in past.states.items() if name == rule.name]
         if any(begun) or rule.name in past.doubtful_rules:
             return ()
-        return uncertain_machine(rule, None).untold(self._untold)
+        types = [one.type for one in rule.variables if one.type in self._untold_types]
+        return (*uncertain_machine(rule, None).untold(self._untold), *types)
 
     def instances(self, rule: CompiledRule, past: CarriedState) -> list[GraphInstance]:
         """Bind a rule to the graph's objects; none if it cannot be judged.
