@@ -21,7 +21,7 @@ ROADS = [
 STEP_S, STEPS = 0.1, 80
 
 
-def from_the_right(y):
+def from_the_right(y, roads=ROADS, kind="car", word="conflict_from_right"):
     """T, F or ? of whether it is in conflict with ego, which goes east at 10 m/s.
 
     Ego drives into the junction at 1.4 s; its front is in the other's way at 1.7 s, as wide as that
@@ -29,11 +29,10 @@ def from_the_right(y):
     """
     ego = vehicle(7, {k: (-20 + k, 0) for k in range(STEPS)}, speed=10)
     places = {k: (0, float(y[k])) for k in range(STEPS)}
-    other = vehicle(8, places, speed=10, heading=np.pi / 2)
-    found = recording(ROADS, [ego, other], step_s=STEP_S)
+    other = vehicle(8, places, kind, speed=10, heading=np.pi / 2)
+    found = recording(roads, [ego, other], step_s=STEP_S)
     found = replace(found, complete=frozenset({"YIELD"}))
     told = priority_signals(context_of(found, route=("1", "2", "3")))
-    word = "conflict_from_right"
     return "?" if told.unknown[word].any() else "FT"[int(told.world[word].any())]
 
 
@@ -60,3 +59,15 @@ def test_who_brakes_hard_as_ego_comes_is_held_up_though_it_is_slow_when_ego_driv
 def test_one_that_is_slow_is_in_the_way_if_ego_runs_into_it(begin, conflict):
     """At 1.5 m/s it has its front in ego's way, and ego drives into its side; or it is far yet."""
     assert from_the_right(driven(begin, [0.0], [1.5])) == conflict
+
+
+@pytest.mark.parametrize(("comes_s", "crossing", "tram"), [(4.3, "T", "F"), (6.0, "F", "F")])
+def test_a_train_is_in_conflict_with_who_drives_onto_a_level_crossing_shortly_before(
+    comes_s, crossing, tram
+):
+    """It comes at 10 m/s, 2 s or 3.7 s after ego has left; in a street that is far enough."""
+    y = driven(-3.0 - 10 * comes_s, [0.0], [10.0])
+    rails = [replace(x, types=x.types | {"rail"}) if x.id in "456" else x for x in ROADS]
+    over = [replace(x, types=x.types | {"level_crossing"}) if x.id == "2" else x for x in rails]
+    for roads, conflict in ((over, crossing), (rails, tram)):
+        assert from_the_right(y, roads, "train", "conflict_with_rail") == conflict

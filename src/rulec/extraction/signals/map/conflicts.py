@@ -175,7 +175,8 @@ def _held_up(
     columns, comes = np.arange(first, last + 1), _column(at)
     if at is None or comes is None:
         return (first, False) if int(present[-1]) < until else None
-    if (at - until) * step_s < limits.yielding_s:
+    yielding_s = limits.held_up_s if _is_train(context, own, other) else limits.yielding_s
+    if (at - until) * step_s < yielding_s:
         drove_on = leaves is not None or _drives_on(context, own, comes)
         drives_in = min(max(passages.front_enters(own), first), last)
         late = (at - enters) * step_s > _LATE_S and _stood(context, own, enters, until)
@@ -197,6 +198,13 @@ def _held_up(
         return None
     for_ego = not _bends(context, other, first + decides, comes)
     return int(columns[soon.argmax()]), leaves is not None and for_ego
+
+
+def _is_train(context: DriveContext, own: Passage, other: Passage) -> bool:
+    """True if one comes on rails to a level crossing: there ego waits as soon as it is near."""
+    passages, lanelets = context.surroundings.passages, context.recording.lanelets
+    on_crossing = any("level_crossing" in lanelets[x].types for x in passages.way(own).names)
+    return on_crossing and passages.way(other).on_rails
 
 
 def _brakes_for(
