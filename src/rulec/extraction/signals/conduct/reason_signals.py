@@ -91,7 +91,7 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
         held = spans.latest(stands & (caused | perhaps))
         since_s = (spans.columns - held) * context.recording.step_s
         perhaps |= stands & (held > spans.latest(~stands)) & (since_s <= _MOVES_OFF_S)
-    if "arrivals" not in context.recording.complete:
+    if not _all_are_recorded(context):
         farther = (others.ahead > _reach(context)[others.states]) & (others.away <= _ROAD_M)
         perhaps[others.states] |= ~farther.any(axis=0)
     return caused, perhaps & ~caused
@@ -162,8 +162,13 @@ def _by_map(context: DriveContext) -> Flags:
     rear, speed = context.ego_extents.s_min[0], context.ego.speed[0]
     crossing, _ = next_crossing(context)
     caused: Flags = (crossing - front <= reach) & ~_stands_for_nobody(context, crossing)
+    inside = np.zeros(context.states, dtype=bool)
     for start, end in road.junctions:
         caused |= (front >= start - reach) & (rear <= end)
+        inside |= (rear >= start) & (front <= end)
+    # Who is within a junction has no line to wait at, only others to wait for
+    everybody = np.ones(len(context.surroundings.tracks.x), dtype=bool)
+    caused &= ~_stands_alone(context, inside, everybody)
     # Beyond its map nobody knows the road
     caused |= (front + reach > road.borders[-1]) | (rear < road.borders[0])
     caused |= speed * KMH > context.limit_mps * KMH + _SLOWER_KMH
@@ -173,22 +178,34 @@ def _by_map(context: DriveContext) -> Flags:
 def _stands_for_nobody(context: DriveContext, crossing: Floats) -> Flags:
     """Flags of states in which ego has stood at a zebra crossing while nobody was about.
 
-    Nobody walks or rides within ``_CROSSES_M``, as for ``_MOVES_OFF_S`` before, and ego stood then.
-    Only where all traffic is recorded; where lights may direct who crosses they may be red.
+    Nobody walks or rides near it; where lights may direct who crosses they may be red.
     """
-    spans, stands = context.spans, ~moves(context)
-    if "arrivals" not in context.recording.complete or not stands.any():
-        return np.zeros(context.states, dtype=bool)
-    lit = crossings_lit(context)
-    zebra = np.array([not any(lit.get(start, (True, True))) for start in crossing.tolist()])
-    tracks, own = context.surroundings.tracks, context.ego
-    on_foot = np.flatnonzero(tracks.of_type("vulnerable_user"))
-    x, y = (values[on_foot].take(context.columns, axis=1) for values in (tracks.x, tracks.y))
-    about = np.hypot(x - own.x[0], y - own.y[0]) <= _CROSSES_M
+    if _all_are_recorded(context) and np.isfinite(crossing).any():
+        lit = crossings_lit(context)
+        zebra = np.array([not any(lit.get(start, (True, True))) for start in crossing.tolist()])
+        return _stands_alone(context, zebra, context.surroundings.tracks.of_type("vulnerable_user"))
+    return np.zeros(context.states, dtype=bool)
+
+
+def _stands_alone(context: DriveContext, where: Flags, whom: Flags) -> Flags:
+    """Flags of states in which ego has stood somewhere for ``_MOVES_OFF_S``, and been alone there.
+
+    None of those of ``whom`` was within ``_CROSSES_M``. Only where all traffic is recorded.
+    """
+    spans, alone = context.spans, np.zeros(context.states, dtype=bool)
+    states = np.flatnonzero(where & ~moves(context)) if _all_are_recorded(context) else ()
+    if not len(states):
+        return alone
+    others = _others(context, states)
+    about = np.hypot(others.ahead, others.left)[whom[others.rows]] <= _CROSSES_M
+    alone[states] = ~about.any(axis=0)
     steps = round(_MOVES_OFF_S / context.recording.step_s)
-    has_moved = spans.within_last(~stands | about.any(axis=0), steps)
-    nobody: Flags = zebra & ~has_moved & (spans.columns - spans.first >= steps)
-    return nobody
+    found: Flags = ~spans.within_last(~alone, steps) & (spans.columns - spans.first >= steps)
+    return found
+
+
+def _all_are_recorded(context: DriveContext) -> bool:
+    return "arrivals" in context.recording.complete
 
 
 def _by_road(context: DriveContext, states: NDArray[intp]) -> Flags:
