@@ -193,8 +193,8 @@ def _stands_alone(context: DriveContext, where: Flags, whom: Flags) -> Flags:
     None of those of ``whom`` was within ``_CROSSES_M``. Only where all traffic is recorded.
     """
     spans, alone = context.spans, np.zeros(context.states, dtype=bool)
-    states = np.flatnonzero(where & ~moves(context)) if _all_are_recorded(context) else ()
-    if not len(states):
+    states = np.flatnonzero(where & ~moves(context))
+    if not len(states) or not _all_are_recorded(context):
         return alone
     others = _others(context, states)
     about = np.hypot(others.ahead, others.left)[whom[others.rows]] <= _CROSSES_M
