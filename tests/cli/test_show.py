@@ -97,7 +97,12 @@ def test_nothing_can_satisfy_it(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    ("name", "hint"), [("quite", "did you mean `quiet`?"), ("zz", "it has `quiet`, `pass_by`")]
+    ("name", "hint"),
+    [
+        ("quite", "did you mean `quiet`?"),
+        ("zz", "it has `quiet`, `pass_by`"),
+        ("horn", "it is a word that rules read: docs/vocabulary.md says"),
+    ],
 )
 def test_an_unknown_rule(two, name, hint, capsys):
     assert main(["show", two, name]) == 2

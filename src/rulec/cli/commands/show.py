@@ -200,6 +200,8 @@ def _way_out(book: Rulebook, name: str) -> str:
 
     if near := nearest_name(name, {rule.name for rule in book.rules}):
         return f"did you mean `{near}`?"
+    if name in {*book.vocabulary.declarations, *book.vocabulary.enumeration_of}:
+        return "it is a word that rules read: docs/vocabulary.md says what those that ship mean"
     words = {*name.casefold().split("_")}
     if longer := [f"`{rule.name}`" for rule in book.rules if words < {*rule.name.split("_")}]:
         return f"it has {first_of(longer, _MOST_NAMED)}"

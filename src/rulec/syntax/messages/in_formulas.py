@@ -149,7 +149,10 @@ def _arguments(scene: ParseContext) -> str:
     )
     if opened and scene.accepted == {"COMMA", "RPAR"} and joins:
         named = "".join(token.text for token in scene.tokens[opened - 1 : scene.at])
-        return f"close the parenthesis behind the name: `{named})`"
+        way_out = f"close the parenthesis behind the name: `{named.replace(',', ', ')})`"
+        if "," in named:
+            return f"an argument is a name: `define` one for what is more, or {way_out}"
+        return way_out
     quantifier = _QUANTIFIERS.get(scene.text_before, "")
     if opened and scene.accepted == {"COMMA", "RPAR"} and scene.is_word() and quantifier:
         return f"write `{quantifier} x: {scene.text} ({scene.text_at(opened - 1)}(x))`"
