@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
@@ -77,7 +78,7 @@ def drives_context(
     """
     keep_freed_memory()
     lengths = [columns.stop - columns.start for columns in egos.columns]
-    spans = EndToEnd((0, *np.cumsum(lengths).tolist()))
+    spans = EndToEnd((0, *accumulate(lengths)))
     columns = columns_of(egos.columns)
     members = np.array(egos.rows, dtype=intp)
     own = spans.spread(members)[None], columns[None]

@@ -172,7 +172,7 @@ class DriveContext:
         codes = self.road.piece(middle) * width + lanes
         different = distinct(codes)
         places = tuple([divmod(code, width) for code in different.tolist()])
-        return places, np.searchsorted(different, codes)
+        return places, different.searchsorted(codes)
 
     @cached_property
     def existing_lanes(self) -> Flags:
@@ -251,7 +251,7 @@ class DriveContext:
             return by_state
         of_all: Floats | None = None
         for number in distinct(self.ego_lane).tolist():
-            inside = np.flatnonzero(lane == number)
+            inside = (lane == number).nonzero()[0]
             offset, count = self._offsets(rows[inside], drive[inside], away[inside])
             if (count < _ENOUGH_IN_LANE).any() and of_all is None:
                 offset_of_all, tracks = self._offsets(rows, drive, away)
@@ -271,7 +271,7 @@ class DriveContext:
         or in one. That is sooner counted than medians are found.
         """
         n_drives, lanes = self.spans.n_drives, self.existing_lanes.shape[1]
-        sides = [np.flatnonzero(away * way > _LEAST_OFFSET_M) for way in (-1, 1)]
+        sides = [(away * way > _LEAST_OFFSET_M).nonzero()[0] for way in (-1, 1)]
         for groups, size in (
             (rows * n_drives + drive, n_drives),
             ((rows * n_drives + drive) * lanes + lane, n_drives * lanes),

@@ -276,7 +276,7 @@ class Drives:
         """A drive's row and columns among places; None if they lack it, or it leaves the road."""
         rows, before = places.tracks.rows, places.tracks.first - self._tracks.first
         own = slice(columns.start - before, columns.stop - before)
-        at = int(np.searchsorted(rows, row))
+        at = int(rows.searchsorted(row))
         is_there = own.start >= 0 and own.stop <= places.tracks.present.shape[1]
         if not is_there or at == len(rows) or rows[at] != row:
             return None
@@ -292,7 +292,7 @@ class Drives:
 
     def _present(self, columns: slice) -> NDArray[intp]:
         """The rows of who is there in some columns."""
-        return np.flatnonzero(self._tracks.present[:, columns].any(axis=1))
+        return self._tracks.present[:, columns].any(axis=1).nonzero()[0]
 
     def _places_along(self, road: DrivenRoad, row: int, columns: slice) -> RoadPlaces:
         """The places on a road during a drive and those on it that are expected, or come soon."""
@@ -325,15 +325,15 @@ class Drives:
         columns = slice(begin, end)
         tracks, limits, step_s = self._tracks, self._thresholds, self.recording.step_s
         reached = [rows_in_reach(tracks, road, *ego, limits) for ego in egos]
-        rows = np.flatnonzero(np.logical_or.reduce(reached))
+        rows = np.logical_or.reduce(reached).nonzero()[0]
         near = near_road(tracks, road, (rows, columns), limits, step_s)
-        near[np.searchsorted(rows, [row for row, _ in egos])] = True
+        near[rows.searchsorted([row for row, _ in egos])] = True
         n_near = np.count_nonzero(near & tracks.present[rows, columns])
         if n_near >= MOST_OF_ALL * np.count_nonzero(tracks.present):
             return self.places_of(road, np.arange(len(tracks.participants)))
         is_near = near.any(axis=1)
         rows, near = rows[is_near], near[is_near]
-        own_rows = np.searchsorted(rows, [row for row, _ in egos])
+        own_rows = rows.searchsorted([row for row, _ in egos])
         extents = road_extents(tracks.part(rows, columns).where(near), road)
         if not are_on_road(extents, road, own_rows, limits):
             rows = self._present(columns)
@@ -351,12 +351,12 @@ class Drives:
         """
         columns = slice(stretch.first, stretch.last + 1)
         near = rows_in_reach(self._tracks, road, row, columns, self._thresholds)
-        for rows in (np.flatnonzero(near), self._present(columns)):
+        for rows in (near.nonzero()[0], self._present(columns)):
             tracks = self._tracks.part(rows, columns)
             lanelets = self._matching.lanelets[rows, columns]
             own = [column - stretch.first for column in stretch.columns]
             pieces = [first_piece + piece for piece in stretch.pieces]
-            own_row = np.searchsorted(rows, [row])
+            own_row = rows.searchsorted([row])
             ego = EgoPieces(int(own_row[0]), own, pieces, self._map.numbers)
             reach_m = self._thresholds.near_m + _LONGEST_M
             expected = expected_places(tracks, road, ego, lanelets, reach_m)

@@ -41,12 +41,12 @@ def presence_runs(context: DriveContext) -> PresenceRuns:
     drives, away = spans.number[columns], columns[1:] - columns[:-1]
     parted = (rows[1:] > rows[:-1]) | (away > longest + 1) | (drives[1:] > drives[:-1])
     parted |= np.isnan(counting.of(s))[1:]
-    gaps = np.flatnonzero(~parted & (away > 1))
+    gaps = (~parted & (away > 1)).nonzero()[0]
     in_gaps = distinct(rows[gaps])
-    unknown, own = np.cumsum(np.isnan(s[in_gaps]), axis=1), np.searchsorted(in_gaps, rows[gaps])
+    unknown, own = np.isnan(s[in_gaps]).cumsum(axis=1), in_gaps.searchsorted(rows[gaps])
     parted[gaps] = unknown[own, columns[gaps]] < unknown[own, columns[gaps + 1]]
     some = np.ones(min(len(rows), 1), dtype=bool)
-    begins, ends = (np.flatnonzero(np.append(*x)) for x in ((some, parted), (parted, some)))
+    begins, ends = (np.concatenate(x).nonzero()[0] for x in ((some, parted), (parted, some)))
     order = in_order(drives[begins])
     begins, ends = begins[order], ends[order]
     own = drives[begins]
@@ -88,7 +88,7 @@ def presence_names(context: DriveContext) -> list[str]:
     names = list(map(context.ids.__getitem__, runs.rows.tolist()))
     again = (runs.drives[1:] == runs.drives[:-1]) & (runs.rows[1:] == runs.rows[:-1])
     for drive in distinct(runs.drives[1:][again]).tolist():
-        begin, end = np.searchsorted(runs.drives, (drive, drive + 1)).tolist()
+        begin, end = runs.drives.searchsorted((drive, drive + 1)).tolist()
         comes_again = again[begin : end - 1].tolist()
         names[begin:end] = _renamed(names[begin:end], comes_again, _ids_in(context, drive))
     return names
@@ -110,4 +110,4 @@ def _ids_in(context: DriveContext, drive: int) -> frozenset[str]:
     columns = context.spans.slices[drive]
     rows = (context.relevant | context.in_sight)[:, columns].any(axis=1)
     bodies = context.tracks.participants
-    return frozenset(bodies[row].id for row in np.flatnonzero(rows).tolist())
+    return frozenset(bodies[row].id for row in rows.nonzero()[0].tolist())

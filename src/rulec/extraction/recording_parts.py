@@ -118,19 +118,19 @@ class _Attendance:
         self._first, self._last, self._farthest = first, last, farthest
         self._firsts, self._lasts = np.sort(first), np.sort(last)
         # Of those that last until a step or longer, when the first one begins; and the reverse
-        by_last, by_first = np.argsort(last), np.argsort(first)
+        by_last, by_first = last.argsort(), first.argsort()
         self._earliest = np.minimum.accumulate(first[by_last][::-1])[::-1]
         self._latest = np.maximum.accumulate(last[by_first])
 
     def rows_during(self, low: int, high: int) -> NDArray[intp]:
         """The rows of all who are there during some steps, or shortly before or after."""
         low, high = low - self._farthest, high + self._farthest
-        return np.flatnonzero((self._first <= high) & (self._last >= low))
+        return ((self._first <= high) & (self._last >= low)).nonzero()[0]
 
     def cells_during(self, low: int, high: int) -> int:
         """How many participants times steps their tracks take."""
         low, high = low - self._farthest, high + self._farthest
-        gone, come = np.searchsorted(self._lasts, low), np.searchsorted(self._firsts, high, "right")
+        gone, come = self._lasts.searchsorted(low), self._firsts.searchsorted(high, "right")
         steps = self._latest[come - 1] - self._earliest[gone] + 1
         return int((come - gone) * steps)
 

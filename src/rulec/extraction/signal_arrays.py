@@ -220,7 +220,7 @@ def signal_parts(
     """
     columns, ranges = signals.columns, present.ranges
     lengths = ranges[:, 1] - ranges[:, 0] + 1
-    bounds = np.append(0, np.cumsum(lengths))[np.array(present.bounds)].tolist()
+    bounds = np.append(0, lengths.cumsum())[np.array(present.bounds)].tolist()
     never = np.zeros(len(present.cells), dtype=bool)
 
     def gathered(name: str, column: SignalColumn) -> SignalColumn:

@@ -341,15 +341,15 @@ def _objects(
 ) -> tuple[WrittenPresences, list[dict[str, str]]]:
     """The presences of those that have a kind, and the objects of each drive with theirs."""
     runs, cells, kept = presence_runs(context), presence_cells(context), None
-    drives, rows, ranges = runs.drives, runs.rows, np.stack((runs.first, runs.last), axis=1)
+    drives, rows, ranges = runs.drives, runs.rows, np.array((runs.first, runs.last)).T
     names = presence_names(context)
     are_known = np.array([kind is not None for kind in kind_of], dtype=bool)
     if not are_known.all():
-        known = np.flatnonzero(are_known[rows])
+        known = are_known[rows].nonzero()[0]
         drives, rows, ranges = drives[known], rows[known], ranges[known]
         names = [names[number] for number in known.tolist()]
-        kept = np.flatnonzero(are_known[cells.rows])
-    bounds = np.searchsorted(drives, np.arange(context.spans.n_drives + 1)).tolist()
+        kept = are_known[cells.rows].nonzero()[0]
+    bounds = drives.searchsorted(np.arange(context.spans.n_drives + 1)).tolist()
     own_places = cells.places if kept is None else cells.places.take(kept)
     kinds: list[Any] = [kind_of[row] for row in rows.tolist()]
     named = list(zip(names, kinds, strict=True))

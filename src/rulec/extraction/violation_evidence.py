@@ -126,5 +126,5 @@ def _is_partial(drive: Drive, name: str) -> bool:
         return False
     if name in arrays.about and name in arrays.only:
         lengths = np.diff(arrays.starts)
-        unknown = unknown & np.repeat(arrays.only[name], lengths)
+        unknown = unknown & arrays.only[name].repeat(lengths)
     return bool(unknown.any())

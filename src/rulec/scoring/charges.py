@@ -157,7 +157,7 @@ def columns_of(candidates: Sequence[CandidateScore], rules: CompiledRulebook) ->
     charges = candidates.charges if isinstance(candidates, CandidateScores) else candidates
     places = {rule.name: place for place, rule in enumerate(rules.rules)}
     whose, which, are_violated = map(np.concatenate, zip(*_rows(charges, places), strict=True))
-    order = np.argsort(whose, kind="stable")
+    order = whose.argsort(kind="stable")
     violated, doubtful = order[are_violated[order]], order[~are_violated[order]]
     late = [one.late if isinstance(one, CandidateScore) else 0 for one in charges]
     return ScoreColumns(

@@ -104,7 +104,7 @@ class Scores(Rows):
     @property
     def best(self) -> int:
         """The number of the least violating candidate, the first of those that are alike."""
-        first = np.flatnonzero(self.places == 1)
+        first = (self.places == 1).nonzero()[0]
         return int(first[0])
 
     def reward(self, worth: float = 10.0) -> NDArray[float64]:
@@ -135,7 +135,7 @@ class Scores(Rows):
 
         By the mean distance (m) of their places.
         """
-        allowed = np.flatnonzero(self.allowed)
+        allowed = self.allowed.nonzero()[0]
         if not len(allowed):
             return None
         away = np.hypot(*np.moveaxis(self.paths[allowed, :, :2] - self.paths[number, :, :2], -1, 0))

@@ -130,10 +130,10 @@ class TrafficWorld:
         for number in self._lanes.query(shapely.box(x.min(), y.min(), x.max(), y.max())).tolist():
             area = self._lanes.geometries[number]
             left, low, right, high = area.bounds
-            own = np.flatnonzero(beside & (x >= left) & (x <= right) & (y >= low) & (y <= high))
+            own = (beside & (x >= left) & (x <= right) & (y >= low) & (y <= high)).nonzero()[0]
             beside[own] = ~shapely.intersects_xy(area, x[own], y[own])
         # Distances take ten times as long
-        off = np.flatnonzero(beside)
+        off = beside.nonzero()[0]
         if not len(off):
             return beside.reshape(paths.shape[:-1])
         points = shapely.points(x[off], y[off])
@@ -146,9 +146,10 @@ class TrafficWorld:
 
         The lanes that it is judged on lead the way that it looks, which is not the one it goes.
         """
-        before = np.empty_like(paths[:, :1])
+        before = np.empty_like(paths)
+        before[:, 1:] = paths[:, :-1]
         before[:, 0] = past[-1] if len(past) else paths[:, 0]
-        x, y = np.moveaxis(np.diff(np.concatenate((before, paths), axis=1), axis=1), 2, 0)[:2]
+        x, y = (paths - before).transpose(2, 0, 1)[:2]
         is_back = x * np.cos(paths[..., 2]) + y * np.sin(paths[..., 2]) < 0
         most_mps = self.wanted.thresholds.walking_pace_kmh * KMH
         back: NDArray[bool_] = is_back & (np.hypot(x, y) > most_mps * self.recording.step_s)
@@ -269,7 +270,7 @@ def _numbers(
         raise BAD_CANDIDATES.error(None, message, expected=f"shape {shape}: {', '.join(_COLUMNS)}")
     bad = ~(np.abs(found) < LARGEST)
     if bad.any():
-        at = tuple(int(axis[0]) for axis in np.nonzero(bad))
+        at = tuple(int(axis[0]) for axis in bad.nonzero())
         place = ", ".join(map(str, at))
         message = f"{what}: the number at [{place}] is {found[at]:g}"
         raise BAD_CANDIDATES.error(None, message, expected=f"a number below {LARGEST:.0e}")

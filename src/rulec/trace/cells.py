@@ -42,16 +42,16 @@ class Cells:
     ) -> Cells:
         """Those of runs in rows, from a first to a last column each, one run after the other."""
         lengths = last - first + 1
-        ends = np.cumsum(lengths)
-        columns = np.arange(lengths.sum()) + np.repeat(first - ends + lengths, lengths)
-        return Cells.in_shape(shape, np.repeat(rows, lengths), columns)
+        ends = lengths.cumsum()
+        columns = np.arange(lengths.sum()) + (first - ends + lengths).repeat(lengths)
+        return Cells.in_shape(shape, rows.repeat(lengths), columns)
 
     @staticmethod
     def of_drives(flags: NDArray[bool_], spans: EndToEnd) -> tuple[Cells, EndToEnd]:
         """Those of whole drives in which a row has a flag, end to end, with where each is."""
-        rows, drives = np.nonzero(np.logical_or.reduceat(flags, spans.begins, axis=1))
+        rows, drives = np.logical_or.reduceat(flags, spans.begins, axis=1).nonzero()
         first, lengths = spans.begins[drives], spans.lengths[drives]
-        own = EndToEnd(np.append(0, np.cumsum(lengths)).tolist())
+        own = EndToEnd((0, *lengths.cumsum().tolist()))
         return Cells.of_runs(flags.shape, rows, first, first + lengths - 1), own
 
     def __len__(self) -> int:

@@ -55,7 +55,7 @@ class EndToEnd:
     @cached_property
     def lengths(self) -> _Columns:
         """The number of states of each drive."""
-        return np.diff(self.bounds)
+        return np.array(self.bounds[1:], dtype=intp) - self.begins
 
     @cached_property
     def columns(self) -> _Columns:
@@ -70,17 +70,17 @@ class EndToEnd:
     @cached_property
     def number(self) -> _Columns:
         """The number of the drive, by column."""
-        return np.repeat(np.arange(self.n_drives), self.lengths)
+        return np.arange(self.n_drives).repeat(self.lengths)
 
     @cached_property
     def first(self) -> _Columns:
         """The first column of the drive, by column."""
-        return self.begins[self.number]
+        return self.spread(self.begins)
 
     @cached_property
     def end(self) -> _Columns:
         """The column behind the last one of the drive, by column."""
-        return np.array(self.bounds[1:], dtype=intp)[self.number]
+        return self.spread(self.begins + self.lengths)
 
     @cached_property
     def begins_here(self) -> _Flags:
@@ -183,22 +183,16 @@ class EndToEnd:
 
     def any(self, flags: _Flags) -> _Flags:
         """Whether a flag holds in any state of a drive, in all its columns."""
-        if self.n_drives == 1:
-            found: _Flags = np.broadcast_to(flags.any(axis=-1, keepdims=True), flags.shape)
-            return found
-        return np.logical_or.reduceat(flags, self.begins, axis=-1)[..., self.number]
+        return self.spread(np.logical_or.reduceat(flags, self.begins, axis=-1))
 
     def all(self, flags: _Flags) -> _Flags:
         """Whether a flag holds in all states of a drive, in all its columns."""
-        if self.n_drives == 1:
-            found: _Flags = np.broadcast_to(flags.all(axis=-1, keepdims=True), flags.shape)
-            return found
-        return np.logical_and.reduceat(flags, self.begins, axis=-1)[..., self.number]
+        return self.spread(np.logical_and.reduceat(flags, self.begins, axis=-1))
 
     def count_of_last(self, flags: _Flags, steps: int) -> _Columns:
         """In how many of so many states up to each, it among them, a flag holds."""
         sums = np.zeros((*flags.shape[:-1], self.n_states + 1), dtype=intp)
-        np.cumsum(flags, axis=-1, out=sums[..., 1:])
+        flags.cumsum(axis=-1, out=sums[..., 1:])
         since = np.maximum(self.columns + 1 - steps, self.first)
         found: _Columns = sums[..., 1:] - sums[..., since]
         return found
@@ -217,9 +211,9 @@ class EndToEnd:
 
     def spread(self, values: Sequence[Any] | NDArray[Any]) -> NDArray[Any]:
         """A value for each drive, in all its columns."""
-        return np.asarray(values)[..., self.number]
+        return np.asarray(values).repeat(self.lengths, axis=-1)
 
     def those(self, drives: _Flags) -> Iterator[tuple[int, slice]]:
         """The numbers and the columns of some drives, flagged by column."""
-        for number in np.flatnonzero(drives[self.begins]).tolist():
+        for number in drives[self.begins].nonzero()[0].tolist():
             yield number, self.slices[number]

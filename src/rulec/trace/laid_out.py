@@ -36,7 +36,7 @@ class LaidOut:
         Flags are false, sets empty and measures NaN for who is absent; a third axis stays the first
         in memory.
         """
-        by_lane = np.moveaxis(values, -1, 0) if values.ndim > 2 else values[None]
+        by_lane = values.transpose(2, 0, 1) if values.ndim > 2 else values[None]
         own = by_lane.take(self.rows, axis=1)
         found = one_behind_the_other(own, self.ranges, self.columns)
         none = values.dtype.type(np.nan if values.dtype.kind == "f" else 0)
@@ -45,7 +45,8 @@ class LaidOut:
                 found[:, gone, columns] = none
         elif self._are_absent:
             np.copyto(found, none, where=self.absent)
-        return np.moveaxis(found, 0, -1) if values.ndim > 2 else found[0]
+        own_part: NDArray[Any] = found.transpose(1, 2, 0) if values.ndim > 2 else found[0]
+        return own_part
 
     def of_rows(self, rows: NDArray[intp]) -> LaidOut:
         """Some of the rows."""
@@ -55,7 +56,7 @@ class LaidOut:
         """Parts of arrays with one place of the third axis, by column; NaN as above."""
         n_rows, n_columns, _ = arrays[0].shape
         at = (places * n_rows + self.rows[:, None]) * n_columns + self.columns
-        found = [np.moveaxis(values, -1, 0).ravel().take(at) for values in arrays]
+        found = [values.transpose(2, 0, 1).ravel().take(at) for values in arrays]
         for own in found if self._are_absent else ():
             np.copyto(own, np.nan, where=self.absent)
         return found

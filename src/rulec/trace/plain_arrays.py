@@ -34,10 +34,10 @@ def keep_freed_memory() -> None:
 def distinct(values: NDArray[_Number]) -> NDArray[_Number]:
     """The different numbers in an array, ascending; without NaN."""
     ascending = np.sort(values, axis=None)
-    return ascending[_are_new(ascending)]
+    return ascending[are_new(ascending)]
 
 
-def _are_new(ascending: NDArray[Any]) -> NDArray[np.bool_]:
+def are_new(ascending: NDArray[Any]) -> NDArray[np.bool_]:
     """Flags of the first ones of those that are equal."""
     are_new = np.empty(len(ascending), dtype=bool)
     are_new[:1] = True
@@ -67,8 +67,8 @@ def places_among(values: NDArray[_Number]) -> NDArray[np.intp]:
         if n_numbers <= _MOST_EMPTY * len(numbers):
             there = np.zeros(n_numbers, dtype=bool)
             there[numbers] = True
-            return (np.cumsum(there) - 1).take(numbers)
-    return np.searchsorted(distinct(values), values)
+            return (there.cumsum() - 1).take(numbers)
+    return distinct(values).searchsorted(values)
 
 
 def median(values: NDArray[Any]) -> float:
@@ -101,8 +101,8 @@ def ranges(
 
     With where each range begins among them.
     """
-    firsts = np.cumsum(lengths) - lengths
-    return np.arange(int(lengths.sum())) + np.repeat(begins - firsts, lengths), firsts
+    firsts = lengths.cumsum() - lengths
+    return np.arange(int(lengths.sum())) + (begins - firsts).repeat(lengths), firsts
 
 
 def in_order(groups: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -111,7 +111,7 @@ def in_order(groups: NDArray[np.intp]) -> NDArray[np.intp]:
     numbers = groups if groups.max(initial=0) > _INT16_MAX else groups.astype(np.int16)
     if bool((numbers[1:] >= numbers[:-1]).all()):
         return np.arange(len(groups))
-    return np.argsort(numbers, kind="stable")
+    return numbers.argsort(kind="stable")
 
 
 def medians(
@@ -123,7 +123,7 @@ def medians(
     found = np.full(count, np.nan)
     if rows is None:
         ordered = values[np.lexsort((values, groups))]
-        own = np.flatnonzero(sizes)
+        own = sizes.nonzero()[0]
         low, high = begins + (sizes[own] - 1) // 2, begins + sizes[own] // 2
         found[own] = (ordered[low] + ordered[high]) / 2
         return found, sizes
@@ -146,12 +146,12 @@ def medians_hold(
     It ``holds`` of all numbers below one, so that it is enough to count those of which it does.
     """
     sizes = np.bincount(groups, minlength=count)
-    twice = 2 * np.bincount(groups.take(np.flatnonzero(holds(values))), minlength=count)
+    twice = 2 * np.bincount(groups.take(holds(values).nonzero()[0]), minlength=count)
     found = twice > sizes
     # Where it holds of one half the median is between that and the other one
     halves = (twice == sizes) & (sizes > 0)
     if halves.any():
-        own = np.flatnonzero(halves[groups])
+        own = halves[groups].nonzero()[0]
         found[halves] = holds(medians(groups[own], values[own], count)[0][halves])
     return found
 
@@ -165,7 +165,7 @@ def _in_rows(
     size that rows would be mostly empty.
     """
     order = in_order(groups)
-    is_new = _are_new(groups[order])
+    is_new = are_new(groups[order])
     begins = is_new.nonzero()[0]
     longest = int(_sizes(begins, len(order)).max(initial=0))
     if longest * len(begins) > _MOST_EMPTY * len(order):

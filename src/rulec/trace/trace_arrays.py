@@ -70,8 +70,8 @@ class TraceArrays:
             starts = self.starts
             lengths = np.diff(starts)
             # Of each value the state that it is in, and whether its object is there later
-            numbers = np.arange(int(starts[-1])) - np.repeat(starts[:-1], lengths)
-            kept = numbers + np.repeat(self.spans[:, 0], lengths) >= state
+            numbers = np.arange(int(starts[-1])) - starts[:-1].repeat(lengths)
+            kept = numbers + self.spans[:, 0].repeat(lengths) >= state
 
         def part(name: str, values: Array) -> Array:
             return values[kept] if name in self.about else values[state:]
@@ -99,8 +99,8 @@ class TraceArrays:
     def at(self, states: Sequence[int]) -> TraceArrays:
         """The trace of some of its states, ascending, and of who is there in any."""
         chosen = np.array(states, dtype=np.intp)
-        first = np.searchsorted(chosen, self.spans[:, 0])
-        last = np.searchsorted(chosen, self.spans[:, 1], side="right") - 1
+        first = chosen.searchsorted(self.spans[:, 0])
+        last = chosen.searchsorted(self.spans[:, 1], side="right") - 1
         there = first <= last
         begins = (self.starts[:-1] - self.spans[:, 0])[there].tolist()
         own = zip(begins, first[there].tolist(), last[there].tolist(), strict=True)
@@ -150,7 +150,7 @@ class TraceArrays:
         if name in self.absent:
             said &= ~self.absent[name]
         if name in self.about and name in self.only:
-            said &= np.repeat(self.only[name], np.diff(self.starts))
+            said &= self.only[name].repeat(np.diff(self.starts))
         return said
 
     def said_by(self, names: Set[str]) -> TraceArrays:
@@ -172,7 +172,7 @@ class TraceArrays:
     def part(self, names: Set[str], items: Set[str]) -> TraceArrays:
         """What is said by these names, of the world and of these objects."""
         kept = np.array([item in items for item in self.objects], dtype=bool)
-        said = np.repeat(kept, np.diff(self.starts))
+        said = kept.repeat(np.diff(self.starts))
 
         def of(values: Mapping[str, Array]) -> dict[str, Array]:
             return {
@@ -244,7 +244,7 @@ class TraceArrays:
             values = [low if low == high else Interval(low, high) for low, high in ends]
         for flags, instead in ((self.unknown, UNKNOWN), (self.absent, _NOTHING)):
             if name in flags:
-                for place in np.flatnonzero(flags[name]).tolist():
+                for place in flags[name].nonzero()[0].tolist():
                     values[place] = instead
         return values
 
@@ -252,7 +252,7 @@ class TraceArrays:
 def starts_of(spans: NDArray[np.intp]) -> NDArray[np.intp]:
     """Where the values about each object begin, and where those about the last end."""
     lengths = spans[:, 1] - spans[:, 0] + 1
-    return np.concatenate([np.zeros(1, dtype=np.intp), np.cumsum(lengths)])
+    return np.concatenate([np.zeros(1, dtype=np.intp), lengths.cumsum()])
 
 
 _NOTHING = object()

@@ -62,7 +62,7 @@ class Layout:
 
     def traces_at(self, places: NDArray[np.int64]) -> NDArray[np.int64]:
         """The traces whose states stand at these places."""
-        steps = np.searchsorted(self.starts, places, side="right") - 1
+        steps = self.starts.searchsorted(places, side="right") - 1
         result: NDArray[np.int64] = places - self.starts[steps]
         return result
 
@@ -79,8 +79,8 @@ def layout_of(lengths: Sequence[int] | NDArray[Any]) -> Layout:
         raise ValueError("lengths of traces descend, and each is at least 1")
     longest = int(result[0]) if len(result) else 0
     # At step t those are active that are longer than t.
-    active = len(result) - np.searchsorted(result[::-1], np.arange(longest), side="right")
-    return Layout(result, np.concatenate([[0], np.cumsum(active)]).astype(np.int64))
+    active = len(result) - result[::-1].searchsorted(np.arange(longest), side="right")
+    return Layout(result, np.concatenate([[0], active.cumsum()]).astype(np.int64))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -69,11 +69,11 @@ def _oncoming_clear(context: DriveContext) -> tuple[Flags, Flags]:
     present = presence_cells(context)
     against = present.of(context.extents.along) * KMH < -limits.standing_kmh
     against &= context.tracks.of_type("vehicle")[present.rows]
-    cells = present.part(np.flatnonzero(against))
+    cells = present.part(against.nonzero()[0])
     if not len(cells):
         return np.ones(context.states, dtype=bool), ends & ~alone & ~far_enough
     comes = (np.abs(cells.of(context.extents.turned)) > np.pi / 2) & cells.of(context.relevant)
-    cells = cells.part(np.flatnonzero(comes))
+    cells = cells.part(comes.nonzero()[0])
     columns, station = cells.columns, cells.of(relations.station(context))
     closing: Floats = np.maximum(own[columns] - cells.of(context.extents.along), 0.1)
     left_s = np.where(
@@ -129,21 +129,21 @@ def _obstructed(context: DriveContext) -> Flags:
     blocked, present = np.zeros(context.states, dtype=bool), presence_cells(context)
     stands = present.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
     walking = context.tracks.of_type("pedestrian")
-    maybe = present.part(np.flatnonzero(stands | walking[present.rows]))
+    maybe = present.part((stands | walking[present.rows]).nonzero()[0])
     if not len(maybe):
         return blocked
-    maybe = maybe.part(np.flatnonzero(_near_obstacle(context, maybe)))
+    maybe = maybe.part(_near_obstacle(context, maybe).nonzero()[0])
     if not len(maybe):
         return blocked
     stands = maybe.of(context.tracks.speed) * KMH < context.thresholds.standing_kmh
     walks = walking[maybe.rows]
     walks &= np.abs(np.cos(maybe.of(context.extents.turned))) >= _ALONG
     needed = np.where(walks, _BESIDE_WALKERS_M, _BESIDE_M)
-    chosen = np.flatnonzero((stands | walks) & maybe.of(context.relevant))
+    chosen = ((stands | walks) & maybe.of(context.relevant)).nonzero()[0]
     cells, needed = maybe.part(chosen), needed[chosen]
     sets, columns = cells.of(context.lanes_within[0]), cells.columns
     for lane in range(used.shape[1]):
-        there = np.flatnonzero(is_in(sets, lane) & used[columns, lane])
+        there = (is_in(sets, lane) & used[columns, lane]).nonzero()[0]
         if not len(there):
             continue
         part, bound = cells.part(there), np.full(context.states, lane)

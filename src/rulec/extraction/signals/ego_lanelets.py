@@ -123,7 +123,7 @@ def travel_lanes_at(context: DriveContext, places: Floats) -> Flags:
         return travel
     shoulders = _lanes_of(context, SHOULDER, places)
     # How many are nearer to the kerb than each lane
-    nearer: NDArray[intp] = np.cumsum(shoulders, axis=1) - shoulders
+    nearer: NDArray[intp] = shoulders.cumsum(axis=1) - shoulders
     lanes, own = np.arange(shoulders.shape[1]), context.ego_lane[:, None]
     low, high = np.minimum(lanes, own), np.maximum(lanes, own)
     between: NDArray[intp] = (

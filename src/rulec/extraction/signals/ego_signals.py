@@ -56,7 +56,7 @@ def _ego_length(context: DriveContext) -> SignalColumns:
     length = np.array(own)
     if np.isnan(length).any():
         lengths = (context.ego_extents.s_max - context.ego_extents.s_min)[0]
-        (told,) = np.nonzero(~np.isnan(lengths))
+        (told,) = (~np.isnan(lengths)).nonzero()
         median, _ = medians(context.spans.number[told], lengths[told], context.spans.n_drives)
         length = np.where(np.isnan(length), median, length)
     return SignalColumns({"ego_length": rounded(context.spans.spread(length))})
@@ -138,7 +138,9 @@ def _lane_count(context: DriveContext) -> SignalColumns:
     places = own.s_min[0], own.s[0], own.s_max[0]
     counts = [travel_lanes_at(context, at).sum(axis=1) for at in places]
     count = np.maximum.reduce(counts)
-    return SignalColumns({"lanes": np.clip(count - 1, 0, 2)}, texts={"lanes": _COUNTS})
+    return SignalColumns(
+        {"lanes": np.minimum(np.maximum(count - 1, 0), 2)}, texts={"lanes": _COUNTS}
+    )
 
 
 def _lane_position(context: DriveContext) -> SignalColumns:
@@ -155,7 +157,7 @@ def _from_kerb(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
 def _rank(context: DriveContext, lane: NDArray[intp]) -> NDArray[intp]:
     """How many lanes lie between lanes by state and the kerb."""
     lanes, states = travel_lanes_first(context), context.spans.columns
-    right: NDArray[intp] = np.cumsum(lanes, axis=0)[lane, states] - lanes[lane, states]
+    right: NDArray[intp] = lanes.cumsum(axis=0)[lane, states] - lanes[lane, states]
     return right if context.side == "right" else lanes.sum(axis=0) - 1 - right
 
 
@@ -166,7 +168,7 @@ def _straddling(context: DriveContext) -> SignalColumns:
     middle of the road, to the lanes of the other direction or back.
     """
     straddling, unknown = np.zeros((2, context.states), dtype=bool)
-    states = np.flatnonzero(_near_a_bound(context))
+    states = _near_a_bound(context).nonzero()[0]
     if len(states):
         straddling[states], unknown[states] = _in_two_lanes(context, states)
         askew, spans = straddling & lies_askew_in_turn(context), context.spans

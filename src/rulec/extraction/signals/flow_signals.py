@@ -55,11 +55,11 @@ def _slow_traffic(context: DriveContext) -> SignalColumns:
         return used
 
     def slow(below_kmh: float) -> tuple[Flags, Flags]:
-        own = np.flatnonzero(around.speed * KMH < below_kmh)
+        own = (around.speed * KMH < below_kmh).nonzero()[0]
         called: Flags = enough & (2 * used_by(own) >= several)
         if not called.any():
             return called, called
-        called &= _is_slow(context, around, np.flatnonzero(called.take(around.state)), below_kmh)
+        called &= _is_slow(context, around, called.take(around.state).nonzero()[0], below_kmh)
         aside = own[~_in_junctions(context, around, own)]
         return called, called & (several > 1) & (2 * used_by(aside) <= several)
 
@@ -163,7 +163,9 @@ def _at_far_side(context: DriveContext, lanes: Flags) -> Flags:
 def _beside(context: DriveContext, lanes: Flags) -> Flags:
     lane = context.ego_lane + (1 if context.side == "right" else -1)
     inside = (lane >= 0) & (lane < len(lanes))
-    beside: Flags = inside & lanes[np.clip(lane, 0, len(lanes) - 1), context.spans.columns]
+    beside: Flags = (
+        inside & lanes[np.minimum(np.maximum(lane, 0), len(lanes) - 1), context.spans.columns]
+    )
     return beside
 
 

@@ -51,15 +51,15 @@ def _ahead_for(context: DriveContext) -> SignalColumns:
     cells, step_s = relations.perhaps_ahead(context), context.recording.step_s
     since, seen = _since(context, cells)
     most = np.where(seen, (cells.columns - since + 1) * step_s, LONGEST_S)
-    sure = np.flatnonzero(surely.ravel().take(cells.places))
+    sure = surely.ravel().take(cells.places).nonzero()[0]
     own, least = cells.part(sure), np.zeros(len(cells))
     since, seen = _since(context, own)
     times = (own.columns - since) * step_s
     # For all of a run it is that of its first state
-    appears = np.flatnonzero(~seen)
+    appears = (~seen).nonzero()[0]
     first = appears[since[appears] == own.columns[appears]]
     earlier = _before(context, own.part(first))
-    run = np.cumsum(since[appears] == own.columns[appears]) - 1
+    run = (since[appears] == own.columns[appears]).cumsum() - 1
     times[appears] += earlier[run]
     least[sure] = np.minimum(times, LONGEST_S)
     ends = rounded_outward(least, np.maximum(least, most))
@@ -73,7 +73,7 @@ def _since(context: DriveContext, cells: Cells) -> tuple[NDArray[intp], Flags]:
     """The states in which runs of cells began, and was one seen the state before?"""
     spans, begins = context.spans, begin_runs(cells.places)
     begins |= spans.begins_here[cells.columns]
-    since = cells.columns[begins][np.cumsum(begins) - 1]
+    since = cells.columns[begins][begins.cumsum() - 1]
     before = context.relevant.ravel().take(cells.places - (cells.columns - since) - 1, mode="clip")
     return since, (since > spans.first[since]) & before
 
@@ -124,9 +124,9 @@ def parts_soon(context: DriveContext) -> Flags:
         stopped = _would_stand(context, at, spans)
         parts |= spans.next_state(apart & inside, horizon) <= np.minimum(stopped, until)
     gone = spans.next_state(~seen)
-    last = np.clip(gone - 1, spans.first, spans.end - 1)
+    last = np.minimum(np.maximum(gone - 1, spans.first), spans.end - 1)
     lost = seen & (gone <= np.minimum(np.where(inside[last], stopped, until), until))
-    asked = np.flatnonzero(~parts & lost & at.of(follows))
+    asked = (~parts & lost & at.of(follows)).nonzero()[0]
     since = last.take(asked)
     left = until.take(asked) - since
     parts[asked] = _go_aside(context, at.part(asked), at.part(since), left)
@@ -168,9 +168,7 @@ def may_part(context: DriveContext) -> SignalColumns:
     No law says how near they may be by then.
     """
     unknown = parts_soon(context)
-    return SignalColumns(
-        about={"parts_soon": np.zeros_like(unknown)}, unknown={"parts_soon": unknown}
-    )
+    return SignalColumns(about={"parts_soon": unknown & False}, unknown={"parts_soon": unknown})
 
 
 def _in_junctions(context: DriveContext, cells: Cells) -> Flags:
@@ -196,7 +194,7 @@ def _would_stand(context: DriveContext, at: Cells, spans: EndToEnd) -> NDArray[i
     def of_pair(own: slice) -> NDArray[intp]:
         steps = np.nan_to_num(np.hypot(np.diff(x[own]), np.diff(y[own])))
         ways = np.append(0.0, steps.cumsum())
-        states: NDArray[intp] = np.searchsorted(ways, ways + braking[own]) + own.start
+        states: NDArray[intp] = ways.searchsorted(ways + braking[own]) + own.start
         return states
 
     stands: NDArray[intp] = np.maximum(spans.each(of_pair), spans.columns)
@@ -213,7 +211,7 @@ def keeps_safe_gap(context: DriveContext) -> SignalColumns:
     place, limits, followed = context.tolerances.place_m, context.thresholds, safe_gaps(context)
     short, wrong = followed.safe - followed.gap, joint_error(followed.safe_error, place)
     # Elsewhere the distance is long enough, whoever that is
-    perhaps_short = np.flatnonzero(short > -wrong)
+    perhaps_short = (short > -wrong).nonzero()[0]
     short, wrong = short.take(perhaps_short), wrong.take(perhaps_short)
     cells = followed.cells.part(perhaps_short)
     stands = cells.of(context.tracks.speed) * KMH < limits.standing_kmh
@@ -221,9 +219,9 @@ def keeps_safe_gap(context: DriveContext) -> SignalColumns:
     aside = cells.of(relations.way_across(context)) - limits.touching_m
     room = np.where(stands, aside, -np.inf)
     moot, follows = np.abs(room) < place, room <= 0
-    asked = np.flatnonzero(follows)
+    asked = follows.nonzero()[0]
     moot[asked] |= _need_not_follow(context, cells.part(asked), short.take(asked))
-    late = np.flatnonzero(follows & (short >= wrong))
+    late = (follows & (short >= wrong)).nonzero()[0]
     far_too_late = short.take(late) > _OUTLIERS * wrong.take(late)
     moot[late] |= _brief_and_slight(context, cells.part(late), far_too_late)
     safe, unknown = ~follows | (short <= 0), (follows & (np.abs(short) < wrong)) | moot
@@ -240,7 +238,7 @@ def _need_not_follow(context: DriveContext, cells: Cells, short: Floats) -> Flag
     speed = np.maximum(context.ego_extents.along[0], 0.0)
     react_m = cells.of(speed) * context.thresholds.reaction_s
     moot: Flags = cells.of(parts_soon(context))
-    asked = np.flatnonzero(~moot & (short - react_m <= 0))
+    asked = (~moot & (short - react_m <= 0)).nonzero()[0]
     moot[asked] = _stood_before(context, cells.part(asked))
     return moot
 
@@ -251,11 +249,11 @@ def _brief_and_slight(context: DriveContext, late: Cells, far_too_late: Flags) -
         return far_too_late
     is_first = begin_runs(late.places)
     is_first |= context.spans.begins_here.take(late.columns)
-    begins = np.flatnonzero(is_first)
+    begins = is_first.nonzero()[0]
     lengths = np.diff(begins, append=len(late))
     brief = lengths * context.recording.step_s < _BRIEF_S - _HAIR_S
     slight = ~np.logical_or.reduceat(far_too_late, begins)
-    return np.repeat(brief & slight, lengths)
+    return (brief & slight).repeat(lengths)
 
 
 def _stood_before(context: DriveContext, cells: Cells) -> Flags:
@@ -265,7 +263,7 @@ def _stood_before(context: DriveContext, cells: Cells) -> Flags:
     steps = round(context.thresholds.reaction_s / context.recording.step_s)
     moves_there = ~stands & ~np.isnan(context.extents.s_min[rows])
     stood = stands & ~context.spans.within_last(moves_there, steps)
-    found: Flags = stood[np.searchsorted(rows, cells.rows), cells.columns]
+    found: Flags = stood[rows.searchsorted(cells.rows), cells.columns]
     return found
 
 

@@ -108,7 +108,7 @@ def _turning_far(context: DriveContext) -> SignalColumns:
 
 def _lit_until(context: DriveContext, flags: Flags, lit: Flags) -> Flags:
     """Flags of states from which on an indicator is lit until one that is flagged."""
-    spans, rows = context.spans, np.flatnonzero(lit.any(axis=1))
+    spans, rows = context.spans, lit.any(axis=1).nonzero()[0]
     lasts, lit = np.zeros_like(lit), lit[rows]
     until = spans.next_state(flags[rows] & lit)
     lasts[rows] = lit & (until < spans.next_state(~lit))
@@ -136,7 +136,7 @@ def _turns(context: DriveContext) -> tuple[Flags, Flags]:
                 turns[row, span] = True
     for row, body in enumerate(passages.tracks.participants):
         if passages.junctions and not body.standing:
-            end = int(np.flatnonzero(passages.tracks.present[row])[-1])
+            end = int(passages.tracks.present[row].nonzero()[0][-1])
             open_end[row, max(end - ahead, 0) :] |= _may_turn(context, row)
     return turns & passages.tracks.of_type("vehicle")[:, None], open_end
 
@@ -144,7 +144,7 @@ def _turns(context: DriveContext) -> tuple[Flags, Flags]:
 def _may_turn(context: DriveContext, row: int) -> bool:
     """True if a participant's track ends near a junction that it has not come to."""
     passages = context.surroundings.passages
-    end = int(np.flatnonzero(passages.tracks.present[row])[-1])
+    end = int(passages.tracks.present[row].nonzero()[0][-1])
     x, y, heading = (
         float(values[row, end])
         for values in (passages.tracks.x, passages.tracks.y, passages.tracks.heading)
@@ -158,7 +158,7 @@ def _may_turn(context: DriveContext, row: int) -> bool:
 def _leaving_stop(context: DriveContext) -> SignalColumns:
     """The signal of buses that stand at a stop, signal to leave it, and do so soon."""
     leaves, unknown = np.zeros((2, *context.relevant.shape), dtype=bool)
-    buses = np.flatnonzero(context.tracks.of_type("bus"))
+    buses = context.tracks.of_type("bus").nonzero()[0]
     if len(buses):
         leaves[buses], unknown[buses] = _buses_leave(context, buses)
     return SignalColumns(about={"leaving_stop": leaves}, unknown={"leaving_stop": unknown})
@@ -205,7 +205,7 @@ def _about_to_overtake(context: DriveContext) -> SignalColumns:
     onward = context.extents.lane_steps
     pulls_out = onward > 0 if far > 0 else onward < 0
     pulls_out[:, context.spans.end[context.spans.begins] - 1] = False
-    rows = np.flatnonzero(pulls_out.any(axis=1))
+    rows = pulls_out.any(axis=1).nonzero()[0]
     lit, told = _far_indicator(context)
     if not len(rows) and not lit.any():
         return SignalColumns(about={"about_to_overtake": lit}, unknown={"about_to_overtake": lit})
@@ -246,7 +246,7 @@ def _came_up(context: DriveContext) -> SignalColumns:
     riders = context.tracks.of_type("light_rider")
     came, unsure = np.zeros((2, *context.relevant.shape), dtype=bool)
     if riders.any():
-        came[riders], unsure[riders] = _came_beside(context, np.flatnonzero(riders))
+        came[riders], unsure[riders] = _came_beside(context, riders.nonzero()[0])
     return SignalColumns(
         about={"came_up_beside": came},
         unknown={"came_up_beside": unsure},

@@ -65,7 +65,7 @@ def _marked_rows(context: DriveContext) -> MarkedRows:
         )
         for key in different.tolist()
     )
-    return MarkedRows(rows, np.searchsorted(different, keys))
+    return MarkedRows(rows, different.searchsorted(keys))
 
 
 def _marked_lanes(context: DriveContext) -> SignalColumns:
@@ -108,7 +108,7 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     measured = _across(context, low, high, (0.0, unmoved))
     every = slice(None)
     outer = _outer_lines(context)
-    outer &= ~_on_a_lane_beside(context, np.flatnonzero((measured & outer).any(axis=1)))[:, None]
+    outer &= ~_on_a_lane_beside(context, (measured & outer).any(axis=1).nonzero()[0])[:, None]
     found = _under(context, measured & ~outer, every)
     # Beyond the road's edge there may be premises, a place to park or a lane that nobody drew
     not_told = ~found[:, 0] & _under(context, measured, every)[:, [0, -1]].any(axis=1)
@@ -122,7 +122,7 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
         (near | found[:, 0], _across(context, middle - half, middle + half, other))
         for other in [(0.0, unmoved), *others]
     ]
-    states = np.concatenate([np.flatnonzero(where) for where, _ in tried])
+    states = np.concatenate([where.nonzero()[0] for where, _ in tried])
     lines = np.concatenate([lines[where] for where, lines in tried])
     others_found = _under(context, lines & ~outer[states], states)
     differs = (others_found[:, :-1] != found[states, :-1]).any(axis=1)

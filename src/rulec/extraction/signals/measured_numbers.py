@@ -146,7 +146,7 @@ def _ahead(context: DriveContext, cells: Cells) -> tuple[Floats, Floats]:
     others = np.maximum(cells.of(context.extents.along), 0.0)
     turned = cells.of(context.extents.turned)
     alike = np.abs(turned) < _SURELY_ALIKE_RAD
-    rest = np.flatnonzero(~alike)
+    rest = (~alike).nonzero()[0]
     alike[rest] = np.cos(turned.take(rest)) > _ALIKE
     alike &= others > 0
     others = np.where(alike, np.maximum(cells.of(context.tracks.speed), others), others)
@@ -178,7 +178,7 @@ def own_front(context: DriveContext) -> Floats:
     own = context.ego_extents
     front: Floats = np.minimum(own.s_max[0], own.s[0] + lengths / 2)
     # Where it has not begun to turn, but the road ahead has, the middle is looked for by itself
-    (far,) = np.nonzero(own.s_max[0] - own.s_min[0] > lengths + _CORNER_M)
+    (far,) = (own.s_max[0] - own.s_min[0] > lengths + _CORNER_M).nonzero()
     behind = context.road.line.headings_at(own.s_min[0, far])
     far = far[np.abs(turn(behind, context.ego.heading[0, far])) < _STRAIGHT_RAD]
     if not len(far):

@@ -87,7 +87,7 @@ def _passed_unseen(context: DriveContext) -> Flags:
     In both of these: how near it was as it was beside them lies in between.
     """
     passed, spans = np.zeros(context.relevant.shape, dtype=bool), context.spans
-    rows = np.flatnonzero(context.tracks.of_type("vulnerable_user"))
+    rows = context.tracks.of_type("vulnerable_user").nonzero()[0]
     if not len(rows):
         return passed
     station = relations.station(context)[rows]
@@ -173,7 +173,7 @@ def _precedes(context: DriveContext) -> SignalColumns:
     """Who is next ahead of ego in its lane."""
     (follows, _, _), cells = relations.ahead_in_lane(context), relations.perhaps_ahead(context)
     counts = cells.of(follows) & ~cells.of(_comes_towards(context)) & cells.of(context.relevant)
-    ahead = cells.part(np.flatnonzero(counts))
+    ahead = cells.part(counts.nonzero()[0])
     gap = ahead.of(relations.gap(context))
     return SignalColumns(about={"precedes": ahead.laid(gap == ahead.of(ahead.least(gap)))})
 
@@ -188,7 +188,7 @@ def _one_between(context: DriveContext) -> SignalColumns:
     gap, place = cells.of(relations.gap(context)), context.tolerances.place_m
     nearest, may_be = (
         cells.of(cells.part(ahead).least(gap.take(ahead)))
-        for ahead in map(np.flatnonzero, (cells.of(surely) & drives, drives))
+        for ahead in ((cells.of(surely) & drives).nonzero()[0], drives.nonzero()[0])
     )
     between = gap > nearest + place
     unknown = ~between & (gap > may_be - place) & (gap > may_be)
@@ -223,7 +223,7 @@ def _waits_elsewhere(context: DriveContext, cells: Cells) -> Flags:
     """
     rows = distinct(cells.rows)
     slow = np.abs(context.extents.along[rows]) * KMH < context.thresholds.standing_kmh
-    still = context.spans.all(slow)[np.searchsorted(rows, cells.rows), cells.columns]
+    still = context.spans.all(slow)[rows.searchsorted(cells.rows), cells.columns]
     drivers = context.tracks.of_type("vehicle") | context.tracks.of_type("light_rider")
     moves_elsewhere = cells.of(context.elsewhere) & ~still
     waits: Flags = drivers[cells.rows] & (moves_elsewhere | ~cells.of(context.on_lanes))
@@ -239,7 +239,7 @@ def _goes_across(context: DriveContext) -> SignalColumns:
     least = context.thresholds.standing_kmh / KMH
     along, across = np.abs(context.extents.along), np.abs(context.extents.across)
     goes: Flags = (across >= least) & (across > along)
-    users = np.flatnonzero(context.tracks.of_type("vulnerable_user"))
+    users = context.tracks.of_type("vulnerable_user").nonzero()[0]
     if len(users):
         off = _mostly_along(context, users) | ~context.tracks.on_lane[users]
         goes[users] |= context.spans.latest(goes[users]) > context.spans.latest(off)
@@ -279,7 +279,7 @@ def _stays_aside(context: DriveContext) -> Flags:
     Their middles are beside the lanes of ego's road, or their sides at the road's edge, and they
     leave room for all others in their lane. Those who wait in a lane do not, however long.
     """
-    lanes, vehicles = context.existing_lanes, np.flatnonzero(context.tracks.of_type("vehicle"))
+    lanes, vehicles = context.existing_lanes, context.tracks.of_type("vehicle").nonzero()[0]
     aside = np.zeros(context.relevant.shape, dtype=bool)
     first, end = lanes.argmax(axis=1), lanes.shape[1] - lanes[:, ::-1].argmax(axis=1)
     still = vehicles[relations.stays(context, vehicles)]
@@ -332,7 +332,7 @@ def _two_wheeled(context: DriveContext) -> SignalColumns:
 
 
 def _constant(context: DriveContext, flags: list[bool]) -> Flags:
-    return np.repeat(np.array(flags, dtype=bool)[:, None], context.states, axis=1)
+    return np.array(flags, dtype=bool)[:, None].repeat(context.states, axis=1)
 
 
 def _in_the_road(context: DriveContext) -> SignalColumns:
@@ -341,7 +341,7 @@ def _in_the_road(context: DriveContext) -> SignalColumns:
     Unknown, too, of those who ride on a lane for cycles alone: it may be a path beside the road.
     """
     unsure, users = np.zeros_like(context.relevant), context.tracks.of_type("vulnerable_user")
-    if len(rows := np.flatnonzero(users)):
+    if len(rows := users.nonzero()[0]):
         error = context.tolerances.place_m + np.abs(context.map_offset_m)
         least = np.maximum(context.thresholds.changed_m, error)
         lanes, others = context.existing_lanes, context.extents.part(rows, slice(None))

@@ -76,8 +76,8 @@ def _lane_lengths(context: DriveContext) -> tuple[Floats, Floats]:
     only_others = np.any(lanes.there, axis=1, keepdims=True) & ~lanes.there
     for nearer, lane in _other_roads(context.road):
         only_others[nearer, lane] = False
-    parts = np.diff(lanes.s)
-    sums = (np.cumsum(where.T * parts, axis=1) for where in (lanes.there, only_others))
+    parts = lanes.s[1:] - lanes.s[:-1]
+    sums = ((where.T * parts).cumsum(axis=1) for where in (lanes.there, only_others))
     there, without = (np.pad(rows, ((0, 0), (1, 0))) for rows in sums)
     return there, without
 
@@ -88,7 +88,7 @@ def _other_roads(road: DrivenRoad) -> Iterator[tuple[slice, list[int]]]:
     They neither begin nor end there: more of them than of ego's go on beyond, on the map.
     """
     for piece, (before, after) in enumerate(pairwise(road.rows), 1):
-        border = int(np.searchsorted(road.lanes.s, road.borders[piece]))
+        border = int(road.lanes.s.searchsorted(road.borders[piece]))
         both = [
             one is not None and other is not None for one, other in zip(before, after, strict=True)
         ]
@@ -105,7 +105,7 @@ def _length_near(context: DriveContext, lengths: Floats, reach_m: Floats) -> Flo
     s, own = context.road.lanes.s, context.ego_extents.s[0]
     places = np.concatenate((own + reach_m, own - reach_m))
     near: Floats = np.zeros((len(lengths), len(own)))
-    for lane in np.flatnonzero(lengths.any(axis=1)).tolist():
+    for lane in lengths.any(axis=1).nonzero()[0].tolist():
         up_to = np.interp(places, s, lengths[lane])
         near[lane] = up_to[: len(own)] - up_to[len(own) :]
     by_state: Floats = near.T
@@ -129,7 +129,7 @@ def longest_gaps(context: DriveContext, speed: Floats, speed_error: Floats) -> F
         np.maximum(limits.queue_gap_m, headway_s * speed)
         for headway_s in (limits.queue_headway_s, limits.loose_headway_s)
     )
-    return np.stack((longest, longest - wrong, loose + wrong))
+    return np.array((longest, longest - wrong, loose + wrong))
 
 
 def _reach(context: DriveContext) -> Floats:
@@ -208,7 +208,7 @@ def queues_by_lane(context: DriveContext) -> tuple[Flags, Flags]:
     around = vehicles_around(context)
     n_places, shape = around.counts.size, around.counts.shape
     enough = around.counts.ravel() >= context.thresholds.fewest
-    several = np.flatnonzero(enough.take(around.place))
+    several = enough.take(around.place).nonzero()[0]
     place = around.place.take(several)
     slow = medians_hold(
         place,
@@ -218,9 +218,9 @@ def queues_by_lane(context: DriveContext) -> tuple[Flags, Flags]:
     )
     queues = np.zeros((len(READINGS), n_places), dtype=bool)
     if len(several):
-        places = np.flatnonzero(enough)
+        places = enough.nonzero()[0]
         counts = around.counts.ravel().take(places)
-        n_short = _short_gaps(context, several, np.cumsum(enough).take(place) - 1, counts)
+        n_short = _short_gaps(context, several, enough.cumsum().take(place) - 1, counts)
         queues[:, places] = n_short > _MOST * np.maximum(counts - 1, 0)
     return queues.reshape(len(READINGS), *shape), slow.reshape(shape)
 
@@ -237,7 +237,7 @@ def _short_gaps(
     at = rows * longest + around.number.take(chosen)
     s_min = np.full(len(counts) * longest, np.nan)
     s_min[at] = around.s_min.take(chosen)
-    within = np.argsort(s_min.reshape(-1, longest), axis=1, kind="stable")
+    within = s_min.reshape(-1, longest).argsort(axis=1, kind="stable")
     # One behind the other in the first axis, in which they are sooner added
     order = np.ascontiguousarray(within.T)
     order += np.arange(len(counts)) * longest
@@ -248,8 +248,8 @@ def _short_gaps(
     # So near one another are vehicles of a queue whatever their speeds are
     most_wrong = np.fmax.reduce(around.speed_error, initial=0.0)
     near = longest_gaps(context, np.zeros(1), most_wrong)[STRICT]
-    short = np.repeat((gaps <= near)[None], len(READINGS), axis=0)
-    rest = np.flatnonzero(gaps > near)
+    short = (gaps <= near)[None].repeat(len(READINGS), axis=0)
+    rest = (gaps > near).ravel().nonzero()[0]
     behind, gaps = behind.ravel().take(rest), gaps.ravel().take(rest)
     longest_m = longest_gaps(context, around.speed.take(behind), around.speed_error.take(behind))
     for flags, limit in zip(short, longest_m, strict=True):
@@ -295,5 +295,5 @@ def gap_in_lane(context: DriveContext, station: int) -> Floats:
     As far as traffic reaches, infinity without any.
     """
     cells = Cells.at(close_by(context) & (relations.station(context) == station))
-    cells = cells.part(np.flatnonzero(cells.of(context.extents.lane) == cells.of(context.ego_lane)))
+    cells = cells.part((cells.of(context.extents.lane) == cells.of(context.ego_lane)).nonzero()[0])
     return cells.least(cells.of(relations.gap(context)))

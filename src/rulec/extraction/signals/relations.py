@@ -103,7 +103,7 @@ def laterals(context: DriveContext) -> Laterals:
     cells, beside = known_places(context), _beside_lane(context)
     touched, *both = [cells.of(sets) for sets in context.lanes_within]
     codes = beside.sides(touched, 0.0)
-    behind = np.flatnonzero((cells.of(station(context)) == BEHIND) & (codes != beside.ego_at))
+    behind = ((cells.of(station(context)) == BEHIND) & (codes != beside.ego_at)).nonzero()[0]
     at_side = behind[~_in_the_way(context, cells.part(behind), beside.clear.take(behind))]
     doubtful, perhaps = np.zeros(len(codes), dtype=bool), codes == SAME_LANE
     doubtful[at_side] = True
@@ -233,7 +233,7 @@ class _BesideLane:
             (self.clear, -reach),
         ):
             wavers |= np.abs(values - limit) <= place_m + _HAIR_M
-        return np.flatnonzero(wavers)
+        return wavers.nonzero()[0]
 
 
 _BY_CELL = tuple(field.name for field in fields(_BesideLane) if field.name != "reach")
@@ -298,7 +298,7 @@ def _beside_elsewhere(context: DriveContext, offset: Floats) -> NDArray[intp]:
     on_left = beside.low > np.maximum(beside.middle + _HAIR_M, 0.0)
     on_right = beside.high < np.minimum(beside.middle - _HAIR_M, 0.0)
     stays = cells.of(keeps_lane) & (beside.into < -room) & (on_left | on_right)
-    return np.flatnonzero(~stays)
+    return (~stays).nonzero()[0]
 
 
 @once
@@ -338,7 +338,7 @@ def position(context: DriveContext) -> NDArray[np.str_]:
     of the narrower one; else their middles decide.
     """
     ego, others = context.ego_extents, context.extents
-    walking = np.flatnonzero(context.tracks.of_type("pedestrian"))
+    walking = context.tracks.of_type("pedestrian").nonzero()[0]
     s_min, s_max = others.s_min, others.s_max
     facing = np.zeros(s_min.shape, dtype=intp)
     touched = context.lanes_within[0]

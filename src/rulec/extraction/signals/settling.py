@@ -103,7 +103,7 @@ def _next_to(changed: Flags, flags: Flags, spans: EndToEnd) -> Flags:
     if not changed.any():
         return changed
     if changed.ndim > 1:
-        found, rows = np.zeros_like(changed), np.flatnonzero(changed.any(axis=1))
+        found, rows = np.zeros_like(changed), changed.any(axis=1).nonzero()[0]
         found[rows] = _beside_flagged(changed[rows], flags[rows], spans)
         return found
     return _beside_flagged(changed, flags, spans)
@@ -147,7 +147,7 @@ def without_blips(column: SignalColumn, least: int, spans: EndToEnd) -> SignalCo
     starts = np.append(begins.ravel().nonzero()[0], rows.size)
     at_end = spans.begins_here[starts % states]
     between = ~(at_end[:-1] | at_end[1:])
-    brief = np.flatnonzero(between & (starts[1:] - starts[:-1] < least))
+    brief = (between & (starts[1:] - starts[:-1] < least)).nonzero()[0]
     if not len(brief):
         return column
     given, found = rows.ravel(), np.array(rows).ravel()
@@ -170,12 +170,12 @@ def only_when(
         return found
     cells, own = Cells.of_drives(doubtful, spans)
     codes, there, doubts = map(cells.of, (codes, there, doubtful))
-    sure, states = there & ~doubts, np.flatnonzero(doubts)
+    sure, states = there & ~doubts, doubts.nonzero()[0]
     before, behind = own.latest(sure).take(states), own.next_state(sure).take(states)
     between = (before >= own.first.take(states)) & (behind < own.end.take(states))
     between &= behind - before - 1 <= most
     states, before, behind = (values[between] for values in (states, before, behind))
-    away, changes = np.cumsum(~there), np.cumsum(own.changes(codes))
+    away, changes = (~there).cumsum(), own.changes(codes).cumsum()
     kept = away.take(behind) == away.take(before)
     # Codes that differ at the ends are all different, or go to and fro
     one_way = changes.take(behind) - changes.take(before) <= _MOST_CHANGES

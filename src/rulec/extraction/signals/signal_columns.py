@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.extraction.tracks.tracks import Flags
+from rulec.trace.plain_arrays import are_new
 
 SignalColumn = NDArray[Any]
 Bounds: TypeAlias = tuple[SignalColumn, SignalColumn]
@@ -105,9 +106,9 @@ def ids_by_state(flags: Flags, ids: Sequence[str]) -> SignalColumn:
     found = nobody(flags.shape[-1])
     if not flags.any():
         return found
-    columns = np.flatnonzero(flags.any(axis=0))
+    columns = flags.any(axis=0).nonzero()[0]
     places, rows = flags[:, columns].T.nonzero()
-    begins = np.flatnonzero(np.diff(places, prepend=-1)).tolist()
+    begins = are_new(places).nonzero()[0].tolist()
     names = [ids[row] for row in rows.tolist()]
     for state, begin, end in zip(columns.tolist(), begins, [*begins, len(names)][1:], strict=True):
         found[state] = tuple(names[begin:end])
@@ -123,8 +124,9 @@ def nobody(states: int) -> SignalColumn:
 
 def rounded(values: SignalColumn) -> SignalColumn:
     """Round numbers to a hundredth, no better being known, without negative zeros."""
-    found = np.round(values, 2)
-    return np.add(found, 0.0, out=found)
+    found: SignalColumn = values.round(2)
+    found += 0.0
+    return found
 
 
 def rounded_outward(low: SignalColumn, high: SignalColumn) -> Bounds:

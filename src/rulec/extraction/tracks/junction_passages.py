@@ -180,7 +180,7 @@ class JunctionPassages:
         That in which its track begins, if it was not.
         """
         row, first = passage.row, passage.first
-        absent = np.flatnonzero(~self.tracks.present[row, :first])
+        absent = (~self.tracks.present[row, :first]).nonzero()[0]
         begin = int(absent[-1]) + 1 if len(absent) else 0
         came = self.travelled[row, first] - self.travelled[row, begin:first]
         return begin + max(int((came >= self.lengths[row] / 2).sum()) - 1, 0)
@@ -254,7 +254,7 @@ def junction_passages(
         ],
         dtype=bool,
     )
-    rows, columns = np.nonzero(tracks.present & moving[:, None])
+    rows, columns = (tracks.present & moving[:, None]).nonzero()
     if junctions and len(rows):
         areas = [junction.area for junction in junctions]
         at, where = places_in(areas, tracks.x[rows, columns], tracks.y[rows, columns])
@@ -262,7 +262,7 @@ def junction_passages(
             inside = np.zeros(tracks.present.shape, dtype=bool)
             chosen = at[where == number]
             inside[rows[chosen], columns[chosen]] = True
-            for row in np.flatnonzero(inside.any(axis=1)).tolist():
+            for row in inside.any(axis=1).nonzero()[0].tolist():
                 for first, last in _stays(inside[row], tracks, row):
                     passage = _passage(junctions[number].ways, tracks, row, (first, last), number)
                     if passage is None:
@@ -292,7 +292,7 @@ def _lanelets_until(way: JunctionWay, place: shapely.Point) -> tuple[str, ...]:
 
 
 def _runs(flags: Flags) -> Iterator[tuple[int, int]]:
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(np.int8)))
+    edges = np.diff(np.concatenate(([False], flags, [False])).astype(np.int8)).nonzero()[0]
     yield from ((int(start), int(end) - 1) for start, end in edges.reshape(-1, 2))
 
 
@@ -360,7 +360,7 @@ def _passage(
     best = int(np.argmin(away)) if len(away) else 0
     if not len(away) or not away[best] <= _FARTHEST_M:
         return None
-    close: NDArray[intp] = np.flatnonzero(away < away[best] + _SURE_M)
+    close: NDArray[intp] = (away < away[best] + _SURE_M).nonzero()[0]
     sure = whole or all(_is_alike(ways[k], ways[best], points[-1]) for k in close.tolist())
     sure = sure and not (whole and _touches(tracks, row, (first - 1, last + 1)))
     return Passage(

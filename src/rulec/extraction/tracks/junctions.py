@@ -242,8 +242,8 @@ def _road_headings(recording: Recording, way: JunctionWay) -> tuple[float, float
 
 def _heading_from(line: Points, away_m: float) -> float:
     """The direction (rad) of a line so far from its beginning, or at its end."""
-    far = np.cumsum(np.hypot(*np.diff(line, axis=0).T))
-    piece = min(int(np.searchsorted(far, away_m)), len(far) - 1)
+    far = np.hypot(*np.diff(line, axis=0).T).cumsum()
+    piece = min(int(far.searchsorted(away_m)), len(far) - 1)
     return _heading(line[piece : piece + 2])
 
 

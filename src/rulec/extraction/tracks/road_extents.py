@@ -78,7 +78,7 @@ class RoadExtents:
         """The lane of the middle, the nearest one beside the road."""
         last = self.left_of_min.shape[-1] - 2
         beyond = self.left_of.transpose(2, 0, 1) >= 0
-        lane: NDArray[intp] = np.clip(beyond.sum(axis=0) - 1, 0, last)
+        lane: NDArray[intp] = np.minimum(np.maximum(beyond.sum(axis=0) - 1, 0), last)
         return lane
 
     @cached_property
@@ -331,7 +331,7 @@ def road_extents(
             left_of[:, :, standing] = left_of[:, :, standing, :1]
     s_min, s_max, d_min, d_max = bounds
     directions, cos, sin = road.line.directions_at(zero_if_nan((s_min + s_max) / 2))
-    left_of_min, left_of_max = np.moveaxis(left_of, 1, -1)
+    left_of_min, left_of_max = left_of.transpose(0, 2, 3, 1)
     return RoadExtents(
         s_min=s_min,
         s_max=s_max,
@@ -365,7 +365,7 @@ def expected_places(
     least = np.full(around.shape, np.inf)
     for piece, row in enumerate(road.rows):
         own = [ego.numbers[lanelet.id] for lanelet in row if lanelet is not None]
-        at = np.nonzero(np.isin(lanelets, own))
+        at = np.isin(lanelets, own).nonzero()
         near = np.full(len(at[0]), middles[piece]), np.full(len(at[0]), halves[piece] + _MORE_M)
         s = road.line.coordinates_near(places[at], *near)[:, 0]
         nearer = np.abs(s - ego_s[at[1]]) < least[at]

@@ -160,7 +160,7 @@ def rows_in_reach(
     flags[ego] = True
     # Most of those who are so near some time are so at one of a few times already
     for step in (_SOME_TIMES, 1):
-        rows, times = np.flatnonzero(~flags), slice(columns.start, columns.stop, step)
+        rows, times = (~flags).nonzero()[0], slice(columns.start, columns.stop, step)
         away = tracks.x[rows, times] - tracks.x[ego, times]
         aside = tracks.y[rows, times] - tracks.y[ego, times]
         away *= away
@@ -189,7 +189,7 @@ def near_road(
     if np.array_equal(near, tracks.present[at]):
         return near
     soon = int((limits.away_s + _SOON_S) / step_s) + 1
-    counts = np.cumsum(np.pad(near, ((0, 0), (soon + 1, soon))), axis=1, dtype=np.int32)
+    counts = np.pad(near, ((0, 0), (soon + 1, soon))).cumsum(axis=1, dtype=np.int32)
     flags: Flags = counts[:, 2 * soon + 1 :] > counts[:, : -2 * soon - 1]
     return flags
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
 
-from rulec.extraction.tracks.tracks import Tracks
+from rulec.extraction.tracks.tracks import Flags, Tracks
 
 _DRAWBAR_M = 1.5
 """What is towed is no farther behind who tows it."""
@@ -29,7 +29,7 @@ def towed_by(tracks: Tracks, row: int, step_s: float) -> str | None:
     All the time it is there the other one is, too, so close ahead of it as a drawbar is long, and
     always as far away, of whatever speed they are.
     """
-    columns = np.flatnonzero(tracks.present[row])
+    columns = tracks.present[row].nonzero()[0]
     if tracks.fastest[row] < _FAST_MPS or len(columns) * step_s < _LEAST_S:
         return None
     others = _near_enough(tracks, row, columns)
@@ -61,7 +61,7 @@ def _near_enough(tracks: Tracks, row: int, columns: NDArray[intp]) -> NDArray[in
     x, y = tracks.x[:, first], tracks.y[:, first]
     most = (tracks.lengths + tracks.lengths[row]) / 2 + _DRAWBAR_M
     most += _STEADY_M * np.sqrt(len(columns)) + _HAIR_M
-    near = np.hypot(x - x[row], y - y[row]) < most
+    near: Flags = np.hypot(x - x[row], y - y[row]) < most
     near &= tracks.present[:, last] & tracks.of_type("vehicle")
     near[row] = False
-    return np.flatnonzero(near)
+    return near.nonzero()[0]

@@ -153,10 +153,10 @@ def _seams(poses: Poses, step_s: float) -> NDArray[float64]:
     bends, longest = _bends(poses, steps), round(_SEAM_LASTS_S / step_s)
     least = _GAINS_MPS2 * (steps * step_s) ** 2
     found = np.zeros(bends.shape)
-    for row in np.flatnonzero((bends > least).any(axis=1) & (bends < -least).any(axis=1)).tolist():
+    for row in ((bends > least).any(axis=1) & (bends < -least).any(axis=1)).nonzero()[0].tolist():
         own = bends[row]
         for sign in (1.0, -1.0):
-            begins, ends = (np.flatnonzero(way * own > least) for way in (sign, -sign))
+            begins, ends = ((way * own > least).nonzero()[0] for way in (sign, -sign))
             while len(begins):
                 pairs = [
                     (min(abs(own[begin]), abs(own[end])), begin - end, begin, end)

@@ -108,9 +108,9 @@ class Tracks:
         """
         bodies, found = self.bodies, np.zeros(len(self.participants))
         at = bodies.rows, bodies.columns
-        centres = np.stack((self.x[at], self.y[at]), axis=-1)
+        centres = np.array((self.x[at], self.y[at])).T
         outlines = bodies.outlines
-        away = np.hypot(*(outlines.corners - np.repeat(centres, outlines.counts, axis=0)).T)
+        away = np.hypot(*(outlines.corners - centres.repeat(outlines.counts, axis=0)).T)
         most = np.maximum.reduceat(away, outlines.starts) if len(away) else away
         np.maximum.at(found, bodies.rows, 2 * most + 2 * outlines.reach)
         return found
@@ -138,7 +138,7 @@ class Tracks:
         bodies, sizes = self.bodies, np.zeros(self.present.shape)
         outlines, way = bodies.outlines, self.heading[bodies.rows, bodies.columns]
         x, y = outlines.corners.T
-        at = along(x, y, *(np.repeat(own, outlines.counts) for own in (np.cos(way), np.sin(way))))
+        at = along(x, y, *(own.repeat(outlines.counts) for own in (np.cos(way), np.sin(way))))
         most, least = (
             extreme.reduceat(at, outlines.starts) for extreme in (np.maximum, np.minimum)
         )
@@ -269,7 +269,7 @@ def _bodies(tracks: Tracks, *, repeated: bool) -> Bodies:
     if not any(counts):
         none = np.empty(0, dtype=intp)
         return Bodies(none, none, JoinedOutlines(np.empty((0, 2)), none))
-    rows = np.repeat(np.arange(len(counts)), counts)
+    rows = np.arange(len(counts)).repeat(counts)
     return Bodies(rows, np.concatenate(columns), JoinedOutlines.of_bodies(outlines))
 
 
@@ -285,9 +285,9 @@ def _outlines_of(
         steps = body.outlines.track.steps
         if len(steps) == count:
             return steps - first, body.outlines.laid_out
-        columns = np.flatnonzero(present)
-        return columns, body.outlines.laid_out[np.searchsorted(steps, columns + first)]
-    columns = np.flatnonzero(present)
+        columns = present.nonzero()[0]
+        return columns, body.outlines.laid_out[steps.searchsorted(columns + first)]
+    columns = present.nonzero()[0]
     return columns, [body.outlines[first + column] for column in columns.tolist()]
 
 
@@ -358,7 +358,7 @@ def tracks_of(
 
 def _inside(flags: Flags, x: Floats, y: Floats, lanelets: Iterable[Lanelet]) -> Flags:
     inside = np.zeros(flags.shape, dtype=bool)
-    rows, columns = np.nonzero(flags)
+    rows, columns = flags.nonzero()
     if len(rows) and (areas := [lanelet_area(lanelet) for lanelet in lanelets]):
         at, _ = places_in(areas, x[rows, columns], y[rows, columns])
         inside[rows[at], columns[at]] = True

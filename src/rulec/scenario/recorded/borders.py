@@ -43,7 +43,7 @@ class Borders:
         """
         cells = self._cells
         if cells is None:
-            found: NDArray[intp] = np.searchsorted(self.places, s, "right") - 1
+            found: NDArray[intp] = self.places.searchsorted(s, "right") - 1
             return np.maximum(found, 0)
         with np.errstate(invalid="ignore"):
             own = ((s - cells.origin) * cells.per_m).astype(intp)
@@ -70,7 +70,7 @@ class Borders:
                 break
             starts = inner[0] + length_m * np.arange(-1, count - 1)
             before, last = (
-                np.searchsorted(self.places, starts + more, "right") - 1
+                self.places.searchsorted(starts + more, "right") - 1
                 for more in (-_HAIR_M, length_m + _HAIR_M)
             )
             before[0], last[-1] = 0, len(self.places) - 1

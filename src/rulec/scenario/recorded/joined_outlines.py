@@ -55,7 +55,7 @@ class JoinedOutlines:
     @cached_property
     def starts(self) -> NDArray[intp]:
         """The number of the first corner of each."""
-        return np.append(0, np.cumsum(self.counts)[:-1])
+        return np.append(0, self.counts.cumsum()[:-1])
 
     @cached_property
     def middles(self) -> Points:
@@ -66,7 +66,7 @@ class JoinedOutlines:
     @cached_property
     def reach(self) -> NDArray[float64]:
         """How far (m) along a line the feet of corners may be from their middle's, for each."""
-        x, y = self.corners.T - np.repeat(self.middles.T, self.counts, axis=1)
+        x, y = self.corners.T - self.middles.T.repeat(self.counts, axis=1)
         farthest = np.sqrt(np.maximum.reduceat(x * x + y * y, self.starts))
         reach: NDArray[float64] = farthest * _REACH_FACTOR + _REACH_MORE_M
         return reach

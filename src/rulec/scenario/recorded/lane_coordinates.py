@@ -89,7 +89,7 @@ class Lanes:
         # NaN comes out as NaN, wherever it is put
         before = self._piece(at)
         start = self.s.take(before)
-        part = np.clip((at - start) / (self.s.take(before + 1) - start), 0.0, 1.0)
+        part = np.minimum(np.maximum((at - start) / (self.s.take(before + 1) - start), 0.0), 1.0)
         # The axis of the bounds comes first in memory
         first, second = (np.take(self.bounds.T, number, axis=1) for number in (before, before + 1))
         first *= 1 - part
@@ -162,7 +162,7 @@ def lanes_along(
         ],
         axis=1,
     )
-    existing = np.flatnonzero(there.any(axis=0))
+    existing = there.any(axis=0).nonzero()[0]
     if not len(existing):
         raise ValueError(f"no lane of the road is as wide as {NARROWEST_LANE_M:g} m")
     kept = slice(existing[0], existing[-1] + 1)
@@ -170,7 +170,7 @@ def lanes_along(
     # The columns right of the way's own lanelet, at each place
     before = own_number[pieces_at(borders, grid)] - own_number.min() + len(on_the_right)
     first = right - np.where(np.arange(len(columns)) < before[:, None], widths, 0.0).sum(axis=1)
-    bounds = np.cumsum(np.column_stack((first, widths)), axis=1)
+    bounds = np.column_stack((first, widths)).cumsum(axis=1)
     usual = _usual_widths(grid, widths, there, ego_s)
     straight = np.cumsum((0.0, *usual))
     at = pieces_at(grid, np.array(ego_s))
@@ -281,7 +281,7 @@ def _bounds(strip: _Strip, lanes: Sequence[tuple[_Beside, bool]]) -> list[_Value
         own = places[begins:stops][kept[begins:stops]]
         if not len(own):
             raise ValueError("a lane's bounds are nowhere beside its centre line")
-        own = own[np.argsort(own[:, 0], kind="stable")]
+        own = own[own[:, 0].argsort(kind="stable")]
         found.append(np.interp(strip.grid, own[:, 0], own[:, 1]))
     return found
 
@@ -306,7 +306,7 @@ def outline_bounds(
     )
     around = found[:, 0]
     if not outlines.regular:
-        around, reach = (np.repeat(x, outlines.counts) for x in (around, outlines.reach))
+        around, reach = (x.repeat(outlines.counts) for x in (around, outlines.reach))
         feet = line.coordinates_near(outlines.corners, around, reach)
         feet[np.isnan(around)] = np.nan
         return outlines.least_and_greatest(_with_across(feet, across))
@@ -362,7 +362,7 @@ def crossings_along(
         on_road = np.sort(places[(left_of[:, 0] > 0) & (left_of[:, -1] < 0), 0])
         if not across or not len(on_road):
             continue
-        again = np.flatnonzero(np.diff(on_road) > _WIDEST_M) + 1
+        again = (np.diff(on_road) > _WIDEST_M).nonzero()[0] + 1
         for met in np.split(on_road, again):
             low, high = max(float(met[0]), start), min(float(met[-1]), end)
             if high - low >= _NARROWEST_M:

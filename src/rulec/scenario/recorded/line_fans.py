@@ -59,7 +59,7 @@ class LineFans:
         margin = (self.margin * (_MARGIN_M + _MARGIN_PART * farthest)).astype(float32)
         homogeneous = np.column_stack((away, np.ones(len(away)))).astype(float32)
         # Places with the same pieces in question go together; few numbers are sorted faster
-        order = np.argsort(low.astype(np.uint16) if count < _FEW else low, kind="stable")
+        order = (low.astype(np.uint16) if count < _FEW else low).argsort(kind="stable")
         widest = int((high - low).max(initial=0)) + 1
         bounded = bool((high - low + 1 < count).any())
         size = min(max(1, _AT_ONCE // widest), _MOST_PLACES)
@@ -69,7 +69,7 @@ class LineFans:
             beyond = homogeneous[numbers] @ self.normals[:, first : end + 1]
             fits = beyond[:, :-1] >= -margin[first:end]
             fits &= beyond[:, 1:] <= margin[first:end]
-            place, piece = np.nonzero(fits)
+            place, piece = fits.nonzero()
             numbers, pieces = numbers[place], piece + first
             if bounded:
                 inside = (pieces >= low[numbers]) & (pieces <= high[numbers])

@@ -43,7 +43,7 @@ def line_surroundings(corners: Points, near_m: float) -> LineSurroundings:
     while (np.ptp(corners, axis=0) + 2 * near_m).prod() > _MOST_SQUARES * size**2:
         size *= 2
     steps = np.hypot(*np.diff(corners, axis=0).T)
-    arc = np.append(0.0, np.cumsum(steps))
+    arc = np.append(0.0, steps.cumsum())
     count = int(np.ceil(arc[-1] / (size / 2))) + 1
     at = np.linspace(0.0, arc[-1], count)
     samples = np.stack([np.interp(at, arc, column) for column in corners.T], axis=1)
@@ -54,6 +54,6 @@ def line_surroundings(corners: Points, near_m: float) -> LineSurroundings:
     flags = np.zeros(squares.max(axis=0) + more + 2, dtype=bool)
     flags[squares[:, 0], squares[:, 1]] = True
     for _ in range(2):
-        counts = np.cumsum(np.pad(flags, ((more + 1, more), (0, 0))), axis=0, dtype=np.int32)
+        counts = np.pad(flags, ((more + 1, more), (0, 0))).cumsum(axis=0, dtype=np.int32)
         flags = (counts[2 * more + 1 :] > counts[: -2 * more - 1]).T
     return LineSurroundings(corner, size, np.ascontiguousarray(flags))

@@ -90,7 +90,7 @@ class ReferenceLine:
     def coordinates(self, places: Points) -> Points:
         """Frenet coordinates ``s`` and ``d`` of places, a row each; NaN without a foot."""
         found, sure = sure_feet(self.piece_fans, places)
-        left = np.flatnonzero(~sure)
+        left = (~sure).nonzero()[0]
         low = np.zeros(len(left), dtype=intp)
         found[left] = self._nearest(places[left], low, low + len(self.arc) - 1)
         return found
@@ -102,7 +102,7 @@ class ReferenceLine:
             return self._nearest(places, low, high)
         found, sure = sure_feet(self.piece_fans, places)
         pieces = self._piece(found[:, 0])
-        left = np.flatnonzero(~sure | (pieces < low) | (pieces > high))
+        left = (~sure | (pieces < low) | (pieces > high)).nonzero()[0]
         found[left] = self._nearest(places[left], low[left], high[left])
         return found
 
@@ -112,7 +112,7 @@ class ReferenceLine:
         Axes: row, place, and x and y or ``s`` and ``d``.
         """
         found, sure = sure_feet_near(self.piece_fans, places, around, reach)
-        rows, columns = np.divmod(np.flatnonzero(~sure), places.shape[1])
+        rows, columns = np.divmod((~sure).ravel().nonzero()[0], places.shape[1])
         rows, columns = (x[~np.isnan(around[rows])] for x in (rows, columns))
         own = around[rows], reach[rows]
         found[rows, columns] = self.coordinates_near(places[rows, columns], *own)
@@ -172,8 +172,8 @@ def _least_of_each(groups: NDArray[intp], values: _Values) -> NDArray[intp]:
     begins = np.concatenate(([True], groups[1:] != groups[:-1]))
     if begins.all():
         return np.arange(len(groups))
-    least = np.minimum.reduceat(values, begins.nonzero()[0])[np.cumsum(begins) - 1]
-    at = np.flatnonzero(values == least)
+    least = np.minimum.reduceat(values, begins.nonzero()[0])[begins.cumsum() - 1]
+    at: NDArray[intp] = (values == least).nonzero()[0]
     return at[np.concatenate(([True], groups[at[1:]] != groups[at[:-1]]))]
 
 
@@ -199,7 +199,7 @@ def reference_line(corners: Points) -> ReferenceLine:
     angles = np.arctan2(steps[:, 1], steps[:, 0])
     halves = turn(angles[:-1], angles[1:]) / 2
     first, last = np.tan(np.append(0.0, -halves)), np.tan(np.append(halves, 0.0))
-    arc = np.concatenate(([0.0], np.cumsum(lengths)[:-1])) - BEYOND_M
+    arc = np.concatenate(([0.0], lengths.cumsum()[:-1])) - BEYOND_M
     return ReferenceLine(
         arc=arc,
         start=extended[:-1],
@@ -218,7 +218,7 @@ def smoothed(corners: Points) -> Points:
     added again (twicing: Tukey, "Exploratory data analysis", 1977). The ends stay.
     """
     kept = densified(without_repeats(corners, _CLOSEST_M), _STEP_M)
-    arc = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(kept, axis=0).T))))
+    arc = np.concatenate(([0.0], np.hypot(*np.diff(kept, axis=0).T).cumsum()))
     count = max(2, round(float(arc[-1]) / _STEP_M) + 1)
     at = np.linspace(0.0, arc[-1], count)
     points = np.stack([np.interp(at, arc, column) for column in kept.T], axis=1)
@@ -229,7 +229,7 @@ def smoothed(corners: Points) -> Points:
 
 def _means(points: Points) -> Points:
     """The means of the points around each, fewer at the ends."""
-    sums = np.concatenate((np.zeros((1, 2)), np.cumsum(points, axis=0)))
+    sums = np.concatenate((np.zeros((1, 2)), points.cumsum(axis=0)))
     own = np.arange(len(points))
     reach = np.minimum(np.minimum(own, own[::-1]), round(_SMOOTH_M / _STEP_M))
     means: Points = (sums[own + reach + 1] - sums[own - reach]) / (2 * reach + 1)[:, None]
@@ -242,9 +242,9 @@ def _bends(points: Points) -> NDArray[intp]:
     angles = np.arctan2(steps[:, 1], steps[:, 0])
     turned = np.concatenate(([0.0], np.abs(turn(angles[:-1], angles[1:]))))
     share = np.hypot(*steps.T) / _PIECE_M + turned / _TURN_RAD
-    reached = np.concatenate(([0.0], np.cumsum(share)))
+    reached = np.concatenate(([0.0], share.cumsum()))
     wanted = np.linspace(0.0, reached[-1], int(np.ceil(reached[-1])) + 1)
-    numbers: NDArray[intp] = distinct(np.searchsorted(reached, wanted).clip(0, len(points) - 1))
+    numbers: NDArray[intp] = distinct(reached.searchsorted(wanted).clip(0, len(points) - 1))
     return numbers
 
 
@@ -255,5 +255,5 @@ def turn(before: Angle, after: Angle) -> Angle:
 
 def pieces_at(borders: _Values, s: _Values) -> NDArray[intp]:
     """The numbers of the pieces between ascending borders at places, the nearest beyond them."""
-    pieces = np.searchsorted(borders, np.where(np.isnan(s), 0.0, s), "right") - 1
+    pieces = borders.searchsorted(np.where(np.isnan(s), 0.0, s), "right") - 1
     return np.minimum(np.maximum(pieces, 0), len(borders) - 2)

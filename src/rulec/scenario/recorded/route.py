@@ -36,8 +36,8 @@ def directions_beside(lanelet: Lanelet, points: NDArray[np.object_]) -> NDArray[
 
 def directions_at(lanelet: Lanelet, along: NDArray[np.float64]) -> NDArray[np.float64]:
     """The direction (rad) of a lanelet's centre line at places along it (m)."""
-    steps = np.diff(lanelet.centre, axis=0)
-    reached = np.concatenate(([0.0], np.cumsum(np.hypot(*steps.T))))
+    steps = lanelet.centre[1:] - lanelet.centre[:-1]
+    reached = np.concatenate(([0.0], np.hypot(*steps.T).cumsum()))
     piece = pieces_at(reached, along)
     directions: NDArray[np.float64] = np.arctan2(steps[piece, 1], steps[piece, 0])
     return directions

@@ -36,7 +36,7 @@ class SceneOrigin:
         Directions (rad) are interpolated along the line's pieces, as those of feet are.
         """
         line, along = self.line, s + self.ego_s
-        piece = np.clip(np.searchsorted(line.arc, along, "right") - 1, 0, len(line.arc) - 1)
+        piece = np.clip(line.arc.searchsorted(along, "right") - 1, 0, len(line.arc) - 1)
         ahead, part = line.ahead[piece], (along - line.arc[piece]) / line.lengths[piece]
         slope = line.first[piece] + line.change[piece] * part
         # Who is at d has its foot where the interpolated perpendicular leads through it
@@ -50,7 +50,7 @@ class SceneOrigin:
         """How far (m) left of the line straightened places are."""
         lanes, straight = self.lanes, self.lanes.straight
         bounds = -lanes.from_bounds(np.column_stack((along, np.zeros(len(along)))))
-        lane = np.clip(np.searchsorted(straight, d, "right") - 1, 0, len(straight) - 2)
+        lane = np.clip(straight.searchsorted(d, "right") - 1, 0, len(straight) - 2)
         row = np.arange(len(d))
         low, high = bounds[row, lane], bounds[row, lane + 1]
         wide = straight[lane + 1] - straight[lane]

@@ -34,7 +34,7 @@ def without_short_holes(recording: Recording, longest_s: float) -> Recording:
 def _filled(body: Participant, most: int, step_s: float) -> Participant:
     steps = _steps(body)
     apart = np.diff(steps)
-    holes = np.flatnonzero((apart > 1) & (apart <= most))
+    holes = ((apart > 1) & (apart <= most)).nonzero()[0]
     if body.standing or not len(holes) or body.states.keys() != body.outlines.keys():
         return body
     track = body.states.track if isinstance(body.states, TrackStates) else None
@@ -52,7 +52,7 @@ def _filled(body: Participant, most: int, step_s: float) -> Participant:
     new_rows = np.concatenate([own.at(some) for some in missing])
     lamps = _lamps(body, steps, holes)
     if track is not None:
-        order = np.argsort(np.concatenate((steps, new_steps)), kind="stable")
+        order = np.concatenate((steps, new_steps)).argsort(kind="stable")
         whole = Track(
             np.concatenate((steps, new_steps))[order],
             np.concatenate((rows, new_rows))[order],
@@ -61,7 +61,7 @@ def _filled(body: Participant, most: int, step_s: float) -> Participant:
         return replace(body, states=TrackStates(whole), outlines=TrackOutlines(whole), lamps=lamps)
     states, outlines = dict(body.states), dict(body.outlines)
     for step, row in zip(new_steps.tolist(), new_rows, strict=True):
-        before = int(steps[np.searchsorted(steps, step) - 1])
+        before = int(steps[steps.searchsorted(step) - 1])
         states[step] = TrackState(*row.tolist())
         outlines[step] = _moved(body.outlines[before], body.states[before], states[step])
     return replace(
@@ -96,7 +96,7 @@ class _Known:
         around = self._around(hole)
         moved = np.hypot(*np.diff(self.rows[around, :2], axis=0).T)
         speeds = moved / np.diff(self.steps[around]) / self.step_s
-        in_hole = np.searchsorted(around, hole)
+        in_hole = around.searchsorted(hole)
         told = np.abs(self.rows[hole : hole + 2, 3]).max()
         fastest = max(float(told), *np.delete(speeds, in_hole).tolist(), 0.0)
         turned = abs(_turns(np.diff(self.rows[hole : hole + 2, 2]))[0])
@@ -105,7 +105,7 @@ class _Known:
 
     def at(self, missing: NDArray[int64]) -> NDArray[float64]:
         """The rows of steps that are missing, of one hole."""
-        hole = int(np.searchsorted(self.steps, missing[0])) - 1
+        hole = int(self.steps.searchsorted(missing[0])) - 1
         before, behind = self.rows[hole], self.rows[hole + 1]
         share = (missing - self.steps[hole]) / (self.steps[hole + 1] - self.steps[hole])
         gained = behind - before

@@ -135,7 +135,7 @@ def _find(fans: PieceFans, near: _Near, found: Points, sure: NDArray[bool_]) -> 
     if width > _WIDEST:
         return
     middle = fans.at(near.around)
-    x, y = np.moveaxis(near.places, -1, 0)
+    x, y = near.places.transpose(2, 0, 1)
     ux, uy, x0, y0, _, _, _, arc = np.take(fans.columns, middle, axis=1)[..., None]
     dx, dy = x - x0, y - y0
     along = dx * ux + dy * uy

@@ -39,7 +39,7 @@ def _emergency_vehicle_near(context: DriveContext) -> SignalColumns:
     """
     on_call, not_told = _on_call(context)
     surely, perhaps = _surely_near(context), _crosses_near(context)
-    rows = np.flatnonzero((on_call | not_told).any(axis=1))
+    rows = (on_call | not_told).any(axis=1).nonzero()[0]
     if len(rows):
         near = context.relevant[rows] & _comes_near(context)[rows]
         perhaps |= np.any(near & (on_call | not_told)[rows], axis=0)
@@ -58,7 +58,7 @@ def _surely_near(context: DriveContext) -> Flags:
     """Flags of those on call that drive and come near for sure."""
     found: Flags = np.zeros_like(context.relevant)
     on_call, _ = _on_call(context)
-    rows = np.flatnonzero(on_call.any(axis=1))
+    rows = on_call.any(axis=1).nonzero()[0]
     if len(rows):
         needs_way = _drives(context, rows) & ~_is_silent(context, rows)
         near = context.relevant[rows] & on_call[rows] & needs_way
@@ -162,7 +162,7 @@ def _crosses_near(context: DriveContext) -> Flags:
     Nobody knows whether it needs ego's way then: it may be a crossing's, or another one's above it.
     """
     tracks, limits = context.surroundings.tracks, context.thresholds
-    rows = np.flatnonzero(tracks.of_type("emergency_vehicle"))
+    rows = tracks.of_type("emergency_vehicle").nonzero()[0]
     if not len(rows):
         return np.zeros(context.states, dtype=bool)
     places = np.ix_(rows, context.columns)

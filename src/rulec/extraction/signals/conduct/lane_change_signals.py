@@ -61,7 +61,7 @@ def _lane_change(context: DriveContext) -> SignalColumns:
         stands = np.abs(_speed_ahead(context)) * KMH < context.thresholds.standing_kmh
         unknown = _within_tolerance(context, changes) | _there_and_back(context, changes)
         unknown |= changes & (swings | stands)
-        states = np.flatnonzero(changes & ~unknown)
+        states = (changes & ~unknown).nonzero()[0]
         pieces = context.road.piece(context.ego_extents.s[0, states])
         for change, piece in zip(states.tolist(), pieces.tolist(), strict=True):
             unknown[change] = _at_fork(context, change, piece) or _at_merge(context, change, piece)
@@ -78,7 +78,7 @@ def _speed_ahead(context: DriveContext) -> Floats:
 def _there_and_back(context: DriveContext, changes: Flags) -> Flags:
     """Flags of changes to a lane and back within ``_JUMP_S``: nobody drives so, but places jump."""
     lane, spans = context.steady_lane, context.spans
-    back, states = np.zeros_like(changes), np.flatnonzero(changes)
+    back, states = np.zeros_like(changes), changes.nonzero()[0]
     for first, then in pairwise(states.tolist()):
         returns = spans.number[first] == spans.number[then] and lane[first - 1] == lane[then]
         if returns and (then - first) * context.recording.step_s < _JUMP_S:
@@ -124,7 +124,7 @@ def _at_merge(context: DriveContext, change: int, first: int) -> bool:
 def _has_followed(context: DriveContext, lane: int, begin_m: float, end: int) -> bool:
     """True if ego's middle was on a lane's lanelets from a place of the road up to a state."""
     road, own = context.road, slice(int(context.spans.first[end]), end)
-    states = own.start + np.flatnonzero(context.ego_extents.s[0, own] >= begin_m)
+    states = own.start + (context.ego_extents.s[0, own] >= begin_m).nonzero()[0]
     points = shapely.points(context.ego.x[0, states], context.ego.y[0, states])
     pieces = road.piece(context.ego_extents.s[0, states])
     for piece in distinct(pieces).tolist():
@@ -183,20 +183,20 @@ def _ways_into_lanes(context: DriveContext) -> tuple[NDArray[intp], list[WayIn]]
     far one, back from the other half.
     """
     lane, inside = context.steady_lane, -beyond_near_edge(context)
-    changes = np.flatnonzero(_changes(context)).tolist()
+    changes = _changes(context).nonzero()[0].tolist()
     ways = [
         WayIn(at, int(max(lane[at - 1], lane[at])), to_left=bool(lane[at] > lane[at - 1]))
         for at in changes
     ]
     there, end = inside >= context.thresholds.changed_m, context.spans.end
     settled = context.spans.next_state(there)
-    enters = np.flatnonzero(context.spans.enters(inside >= 0))
+    enters = context.spans.enters(inside >= 0).nonzero()[0]
     flagged = [at for at in enters.tolist() if settled[at] < end[at] and at not in changes]
     to_left = context.side == "right"
     for at in flagged:
         state = int(settled[at])
         ways.append(WayIn(state, int(lane[state]) + (not to_left), to_left=to_left))
-    back = np.flatnonzero(comes_back_over_middle(context)).tolist()
+    back = comes_back_over_middle(context).nonzero()[0].tolist()
     back = [at for at in back if at not in changes and at not in flagged]
     lanes = context.existing_lanes
     first, last = lanes.argmax(axis=1), lanes.shape[1] - lanes[:, ::-1].argmax(axis=1)
@@ -220,7 +220,7 @@ def _within_tolerance(context: DriveContext, changes: Flags) -> Flags:
     least = np.maximum(context.thresholds.changed_m, error)
     unsure, spans = np.zeros_like(changes), context.spans
     for _, columns in spans.those(spans.any(changes)):
-        own = (np.flatnonzero(changes[columns]) + columns.start).tolist()
+        own = (changes[columns].nonzero()[0] + columns.start).tolist()
         borders = [columns.start, *own, columns.stop]
         for begin, at, end in zip(borders[:-2], borders[1:-1], borders[2:], strict=True):
             mark = left_of[begin:end, max(lane[at - 1], lane[at])]
@@ -254,7 +254,7 @@ def _indicator(context: DriveContext) -> SignalColumns:
     unknown = both & context.spans.any(both & np.array(no_hazards))
     unknown |= np.array([lamps is None for lamps in steps])
     is_dark = np.array([lamps is not None and not lamps & _INDICATORS for lamps in steps])
-    changes = np.flatnonzero(_changes(context) & is_dark)
+    changes = (_changes(context) & is_dark).nonzero()[0]
     codes[changes] = [_shown_across(context, codes, change) for change in changes.tolist()]
     spans, jumps = context.spans, _jumps_across(context)
     # A jump may end short of the mark, or begin just behind it
@@ -278,9 +278,9 @@ def _shown_across(context: DriveContext, codes: NDArray[intp], change: int) -> i
     low, high = (
         left_of[first:change, mark] for left_of in (own.left_of_min[0], own.left_of_max[0])
     )
-    clear = np.flatnonzero((low > 0.0) | (high < 0.0))
+    clear = ((low > 0.0) | (high < 0.0)).nonzero()[0]
     since = min(first + int(clear[-1]) + 1 if len(clear) else first, change - 1)
-    lit = np.flatnonzero(codes[since:change])
+    lit = codes[since:change].nonzero()[0]
     return int(codes[since + lit[-1]]) if len(lit) else 0
 
 

@@ -45,7 +45,7 @@ def come_into_lane(
         return comes, perhaps
     s, own = context.extents.s[rows, states], context.ego_extents.s[0, states]
     theirs, egos = (context.road.piece(zero_if_nan(places)) for places in (s, own))
-    for number in np.flatnonzero(theirs < egos).tolist():
+    for number in (theirs < egos).nonzero()[0].tolist():
         pieces = int(theirs[number]), int(egos[number])
         found = _comes_by_its_way(context, int(rows[number]), int(states[number]), pieces)
         comes[number], perhaps[number] = found is True, found is None
@@ -67,7 +67,7 @@ def _comes_by_its_way(
     past = extents.s[row, later] >= float(context.road.borders[fork]) + _BEYOND_M
     on_road = context.relevant[row, later] & context.on_lanes[row, later]
     has_left = context.tracks.present[row, later] & context.elsewhere[row, later]
-    decided = np.flatnonzero(past | has_left | ~on_road)
+    decided = (past | has_left | ~on_road).nonzero()[0]
     if not len(decided):
         return None
     first = int(decided[0])

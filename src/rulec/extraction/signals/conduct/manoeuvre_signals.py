@@ -72,8 +72,8 @@ def _comes_back_nowhere(context: DriveContext, perhaps: Flags, backs: Flags) -> 
     spans, heading = context.spans, own.heading[0]
     x, y = (own.x[0], own.y[0])
     moved = [np.where(spans.begins_here, 0.0, at - spans.before(at)) for at in (x, y)]
-    ahead = np.cumsum(moved[0] * np.cos(heading) + moved[1] * np.sin(heading))
-    firsts = np.flatnonzero(perhaps & (spans.begins_here | ~spans.before(perhaps)))
+    ahead = (moved[0] * np.cos(heading) + moved[1] * np.sin(heading)).cumsum()
+    firsts = (perhaps & (spans.begins_here | ~spans.before(perhaps))).nonzero()[0]
     behind = np.minimum(spans.next_state(~perhaps), spans.end)
     for first, end in zip(firsts.tolist(), behind[firsts].tolist(), strict=True):
         way = ahead[max(first - 1, int(spans.first[first])) : end]
@@ -91,7 +91,7 @@ def _for_long(context: DriveContext, flags: Flags) -> Flags:
     spans, found, x, y = context.spans, np.zeros_like(flags), context.ego.x[0], context.ego.y[0]
     if not flags.any():
         return found
-    firsts = np.flatnonzero(flags & (spans.begins_here | ~spans.before(flags)))
+    firsts = (flags & (spans.begins_here | ~spans.before(flags))).nonzero()[0]
     behind = np.minimum(spans.next_state(~flags), spans.end)
     for first, end in zip(firsts.tolist(), behind[firsts].tolist(), strict=True):
         states = context.ego.participants[int(spans.number[first])].states
@@ -108,7 +108,7 @@ def _jumps(context: DriveContext) -> Flags:
     spans, heading = context.spans, context.ego.heading[0]
     turned, jumps = heading - spans.before(heading), np.zeros(context.states, dtype=bool)
     # Hardly any turn as much
-    much = np.flatnonzero(np.abs(turned) > _MUCH_RAD)
+    much = (np.abs(turned) > _MUCH_RAD).nonzero()[0]
     jumps[much] = np.abs(np.angle(np.exp(1j * turned[much]))) > np.pi / 2
     return spans.any(jumps)
 
@@ -322,22 +322,22 @@ def _may_go_round(context: DriveContext) -> Flags:
     """Flags of those whose headings change by enough in all, or who are away for a while."""
     known = context.own.computed
     if _may_go_round not in known:
-        tracks = context.own.tracks
+        tracks, present = context.own.tracks, context.own.tracks.present
         steps = np.abs(turn(tracks.heading[:, :-1], tracks.heading[:, 1:]))
         turned = np.nansum(steps, axis=1) > _ROUND_RAD - _HAIR_RAD
-        known[_may_go_round] = turned | (np.diff(tracks.present, axis=1).sum(axis=1) > 2)
+        known[_may_go_round] = turned | ((present[:, 1:] != present[:, :-1]).sum(axis=1) > 2)
     return cast("Flags", known[_may_go_round])
 
 
 def _goes_round(tracks: Tracks, row: int) -> Flags:
     """Flags of the columns in which a participant's heading is on its way round."""
-    columns = np.flatnonzero(tracks.present[row])
+    columns = tracks.present[row].nonzero()[0]
     heading = np.unwrap(tracks.heading[row, columns])
     flags = np.zeros(tracks.present.shape[1], dtype=bool)
     if np.ptp(heading) >= _ROUND_RAD and np.abs(np.diff(heading)).max() < _JUMP_RAD:
         x, y = tracks.x[row, columns], tracks.y[row, columns]
-        way = np.append(0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y))))
-        last = np.searchsorted(way, way + _ROUND_M, side="right")
+        way = np.append(0.0, np.hypot(np.diff(x), np.diff(y)).cumsum())
+        last = way.searchsorted(way + _ROUND_M, side="right")
         for first, end in enumerate(last.tolist()):
             turned = np.abs(heading[first:end] - heading[first])
             if turned.max() >= _ROUND_RAD and way[end - 1] - way[first] >= _LEAST_M:
@@ -367,7 +367,7 @@ def _joins_road(context: DriveContext) -> SignalColumns:
     perhaps = np.zeros(context.states, dtype=bool)
     stands = outside & (context.ego.speed[0] * KMH < context.thresholds.standing_kmh)
     reach, spans = round(context.thresholds.setting_off_s / context.recording.step_s), context.spans
-    comes = (np.flatnonzero(spans.enters(inside)) - 1).tolist()
+    comes = (spans.enters(inside).nonzero()[0] - 1).tolist()
     if not comes:
         return SignalColumns({"joins_road": joins}, unknown={"joins_road": perhaps})
     last_inside, last_stood = spans.latest(inside), spans.latest(stands)

@@ -84,14 +84,14 @@ def _next_lane(context: DriveContext, side: Side) -> tuple[NDArray[intp], Flags]
     lane = context.ego_lane + (1 if side == "left" else -1)
     count = travel_lanes(context).shape[1]
     inside = (lane >= 0) & (lane < count)
-    lane = np.clip(lane, 0, count - 1)
+    lane = np.minimum(np.maximum(lane, 0), count - 1)
     return lane, inside & travel_lanes(context)[np.arange(context.states), lane]
 
 
 def _far_lane_is_free(context: DriveContext) -> Flags:
     """Flags of states in which nobody is in, or soon in, the place beside ego on the next lane."""
     lane, there = _next_lane(context, "left" if context.side == "right" else "right")
-    cells = _on_lane(context, lane, np.flatnonzero(there))
+    cells = _on_lane(context, lane, there.nonzero()[0])
     gap, station = relations.gap(context)[cells], relations.station(context)[cells]
     along, own = context.extents.along[cells], context.ego_extents.along[0, cells[1]]
     near = gap <= np.maximum(along - own, 0.0) * context.thresholds.passed_s + _SOON_M
@@ -126,7 +126,7 @@ def _near_lane_is_free(context: DriveContext) -> Flags:
     bus_lane_beside = _is_beside(context, _BUS_LANE) & ~buses
     for_buses = own_lanelets(context).flags(lambda lanelet: not _BUS_LANE.isdisjoint(lanelet.types))
     kept = parted | ramp_beside | bus_lane_beside | (for_buses & buses) | turned
-    cells = _on_lane(context, lane, np.flatnonzero(there & ~kept))
+    cells = _on_lane(context, lane, (there & ~kept).nonzero()[0])
     station, gap = relations.station(context)[cells], relations.gap(context)[cells]
     own = np.maximum(context.ego_extents.along[0, cells[1]], 0.0)
     other = np.maximum(others.along[cells], 0.0)
@@ -170,8 +170,8 @@ def _of_no_use(context: DriveContext) -> Flags:
         context.road.borders[-1] - context.ego_extents.s_max[0] < context.thresholds.approach_m
     )
     no_use: Flags = there & (side_lane | full | sorting | map_ends | _reserved_ahead(context, lane))
-    no_use |= _slower_ahead(context, lane, np.flatnonzero(there & ~no_use))
-    queues_beside = np.flatnonzero(there & ~no_use & own & slow)
+    no_use |= _slower_ahead(context, lane, (there & ~no_use).nonzero()[0])
+    queues_beside = (there & ~no_use & own & slow).nonzero()[0]
     used = close_by(context)[:, queues_beside]
     used &= context.extents.lane[:, queues_beside] == lane[queues_beside]
     no_use[queues_beside] = used.any(axis=0)
@@ -298,7 +298,7 @@ def _around(
     first, end = bounds
     lengths = end - first
     states, _ = ranges(first, lengths)
-    return np.repeat(rows, lengths), np.repeat(edge, lengths), states
+    return rows.repeat(lengths), edge.repeat(lengths), states
 
 
 def _known_behind(context: DriveContext) -> Flags:

@@ -51,7 +51,7 @@ def _holds_up_oncoming(context: DriveContext) -> SignalColumns:
     near = sides_beyond_far_edge(context, context.extents)[0] if stays else far
     for stay in stays:
         there = context.relevant[:, stay.first : stay.end] & moves[:, None]
-        for row in np.flatnonzero(there.any(axis=1)).tolist():
+        for row in there.any(axis=1).nonzero()[0].tolist():
             seen = stay.first + int(there[row].argmax())
             if not _comes_on_its_half(context, row, seen, near):
                 continue
@@ -77,7 +77,7 @@ def _stays_over_the_middle(context: DriveContext, far: Floats) -> list[_Stay]:
         return []
     signs = own_lanelets(context).flags(lambda lanelet: _GOES_FIRST in lanelet.signs)
     spans, unsure = context.spans, not_told | at_junctions(context)
-    begins = np.flatnonzero(over & (spans.begins_here | ~spans.before(over)))
+    begins = (over & (spans.begins_here | ~spans.before(over))).nonzero()[0]
     ends = np.minimum(spans.next_state(~over), spans.end)[begins]
     return [
         _Stay(first, end, int(spans.end[first]), sure)
@@ -155,7 +155,7 @@ def _brakes(context: DriveContext, row: int, states: slice, speed: float) -> tup
 def _touch(context: DriveContext, row: int, states: slice) -> bool:
     """Do the fronts of ego and another one meet, one in the other's way?"""
     others, own = context.extents, context.ego_extents
-    met = np.flatnonzero(others.s_min[row, states] <= own.s_max[0, states])
+    met = (others.s_min[row, states] <= own.s_max[0, states]).nonzero()[0]
     across = relations.way_across(context)[row, states]
     return bool(len(met)) and bool(across[met[0]] < -context.tolerances.place_m)
 

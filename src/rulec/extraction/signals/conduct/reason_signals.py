@@ -65,13 +65,13 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     Where not all traffic is recorded it is as far as somebody is recorded ahead.
     """
     caused = _by_map(context)
-    others = _others(context, np.flatnonzero(~caused))
+    others = _others(context, (~caused).nonzero()[0])
     caused[others.states] = _by_others(context, others)
     if caused.all():
         return caused, ~caused
-    others = others.part(np.flatnonzero(~caused[others.states]))
+    others = others.part((~caused[others.states]).nonzero()[0])
     caused[others.states] = _by_road(context, others.states)
-    others = others.part(np.flatnonzero(~caused[others.states]))
+    others = others.part((~caused[others.states]).nonzero()[0])
     soon = round(context.thresholds.preparing_s / context.recording.step_s)
     spans, stands = context.spans, ~moves(context)
     perhaps = np.zeros(context.states, dtype=bool)
@@ -223,7 +223,7 @@ def _by_road(context: DriveContext, states: NDArray[intp]) -> Flags:
     different = distinct(codes)
     told = [road.limit_mps(code // width, code % width, turned) for code in different.tolist()]
     known = np.array([np.inf if limit is None else limit for limit in told])
-    limits = known[np.searchsorted(different, codes)]
+    limits = known[different.searchsorted(codes)]
     lower = (limits < speed) | (limits < context.limit_mps[states])
     found: Flags = ((ahead <= reach) & (bends | ~there | lower)).any(axis=0)
     return found
@@ -247,7 +247,7 @@ def _by_others(context: DriveContext, others: _Others) -> Flags:
     slower = (angle < _ACROSS_RAD) & (motion.along < speed + _ALIKE_MPS)
     not_to_pass = slower & (to_far > 0) & (away <= _COMES_M)
     found[columns[comes | (across & motion.moves) | not_to_pass]] = True
-    rest = np.flatnonzero(~found)
+    rest = (~found).nonzero()[0]
     at = states[rest]
     in_lane = relations.station(context)[:, at] == relations.BEHIND
     in_lane &= context.relevant[:, at] & context.in_ego_lane[:, at]
@@ -293,12 +293,12 @@ def _others(context: DriveContext, states: NDArray[intp]) -> _Others:
     """All others of the recording in some states, also those that are not on ego's road."""
     tracks, own, spans = context.surroundings.tracks, context.ego, context.spans
     columns = context.columns[states]
-    rows = np.flatnonzero(tracks.present.take(columns, axis=1).any(axis=1))
+    rows = tracks.present.take(columns, axis=1).any(axis=1).nonzero()[0]
     x, y = (values[rows].take(columns, axis=1) for values in (tracks.x, tracks.y))
     if context.own is context.surroundings:
         drives = spans.number[states]
-        places = np.searchsorted(rows, own.rows)[drives]
-        there = np.flatnonzero(places < len(rows))
+        places = rows.searchsorted(own.rows)[drives]
+        there = (places < len(rows)).nonzero()[0]
         there = there[rows[places[there]] == own.rows[drives[there]]]
         x[places[there], there] = np.nan
     heading = own.heading[0, states]

@@ -107,7 +107,7 @@ def _gives_way(
     if not there.any():
         return there, there
     # Who takes another way where the lane forks brakes for that
-    rows = np.flatnonzero(there.any(axis=1))
+    rows = there.any(axis=1).nonzero()[0]
     there[rows] &= ~_any_between(
         context, begins, changes, lambda states: context.elsewhere[rows[:, None], states]
     )
@@ -135,7 +135,7 @@ def _gives_way(
     cut_short = there & _comes_in_close(context, reaches, changes)
     hard, may_be_hard = _brake(context, would | too_near | cut_short, reaches, changes)
     sure = (would & beside) | hard
-    for way in np.flatnonzero(sure.any(axis=0)).tolist():
+    for way in sure.any(axis=0).nonzero()[0].tolist():
         sure[:, way] &= ~_held_up(context, int(begins[way]), int(lanes[way]))
     return sure, would | may_be_hard
 
@@ -191,7 +191,7 @@ def _brake(
     Or up to ``reaction_s`` later.
     """
     limit, tracks = -context.thresholds.disturbing_mps2, context.tracks
-    rows = np.flatnonzero(whom.any(axis=1))
+    rows = whom.any(axis=1).nonzero()[0]
 
     def brake(states: NDArray[intp], sign: int) -> Flags:
         at = rows[:, None], states
@@ -222,7 +222,7 @@ def _any_between(
 def _held_up(context: DriveContext, state: int, lane: int) -> Flags:
     """Flags of those behind a slower one in a lane whom they get to within ``catching_up_s``."""
     others = context.extents
-    rows = np.flatnonzero(context.going_along[:, state] & (others.lane[:, state] == lane))
+    rows = (context.going_along[:, state] & (others.lane[:, state] == lane)).nonzero()[0]
     low, high = others.s_min[rows, state], others.s_max[rows, state]
     along = others.along[rows, state]
     gap, faster = low[None, :] - high[:, None], along[:, None] - along[None, :]

@@ -73,7 +73,7 @@ def _conflict(
     if crosses is None:
         return None
     enters, leaves, low, high = crosses
-    there = np.flatnonzero(tracks.present[row, begin:]) + begin
+    there = tracks.present[row, begin:].nonzero()[0] + begin
     front = along + float(passages.lengths[row]) / 2
     straight = np.abs(angle[there]) <= _STRAIGHT_RAD
     if not straight.all() and not (along[there[~straight][0]] > high):
@@ -98,7 +98,7 @@ def _came(context: DriveContext, own: Passage, begin: int) -> int:
     """The column in which ego was so far before the junction that it did not turn yet."""
     passages = context.surroundings.passages
     way = passages.travelled[own.row]
-    there = np.flatnonzero(passages.tracks.present[own.row, : begin + 1])
+    there = passages.tracks.present[own.row, : begin + 1].nonzero()[0]
     before = there[way[begin] - way[there] >= _BEFORE_M]
     return int(before[-1] if len(before) else there[0])
 
@@ -133,7 +133,7 @@ def _crossed(
     cos, sin = np.cos(heading), np.sin(heading)
     columns, lows, highs = [], [], []
     outlines = tracks.participants[own.row].outlines
-    for column in np.flatnonzero(tracks.present[own.row, begin:]) + begin:
+    for column in tracks.present[own.row, begin:].nonzero()[0] + begin:
         corners = outlines.get(int(column) + tracks.first)
         if corners is None:
             continue

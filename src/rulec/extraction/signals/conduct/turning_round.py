@@ -23,7 +23,7 @@ def has_to_brake_for_turn(context: DriveContext, turns: Flags) -> tuple[Flags, F
     """
     shape = context.relevant.shape
     sure, perhaps = np.zeros((2, *shape), dtype=bool)
-    states = np.flatnonzero(turns)
+    states = turns.nonzero()[0]
     if not len(states):
         return sure, perhaps
     near = _too_near(context, states)

@@ -95,7 +95,7 @@ def _let_pass(
     own, there = ego
     if _collide(context, own, other, there):
         return (held_up[0], _collide(context, own, other, there, _GRAZES_M)) if waits else held_up
-    present = np.flatnonzero(context.surroundings.passages.tracks.present[other.row])
+    present = context.surroundings.passages.tracks.present[other.row].nonzero()[0]
     first = max(int(present[0]), own.first)
     brakes = not waits and _slows_down(context, other, first, there.stop)
     return (held_up[0], False) if brakes else None
@@ -139,7 +139,7 @@ def _runs_into(
     ways = passages.way(own), passages.way(other)
     if ways[0].names & ways[1].names or ways[0].exits & ways[1].exits:
         return None
-    present = np.flatnonzero(passages.tracks.present[other.row])
+    present = passages.tracks.present[other.row].nonzero()[0]
     until = int(present[-1]) + 1 if passed is None else passed
     slowest = passages.tracks.speed[[own.row, other.row], enters:until].min(axis=1, initial=np.inf)
     there = slice(enters, until)
@@ -168,7 +168,7 @@ def _held_up(
     passages = context.surroundings.passages
     own, enters, leaves = ego
     until = passages.tracks.x.shape[1] - 1 if leaves is None else leaves
-    present = np.flatnonzero(passages.tracks.present[other.row])
+    present = passages.tracks.present[other.row].nonzero()[0]
     first, last = max(int(present[0]), first_column(context)), min(enters, int(present[-1]))
     if last < first:
         return None
@@ -255,13 +255,13 @@ def _bends(context: DriveContext, other: Passage, first: int, last: int) -> bool
 def _decides(context: DriveContext, own: Passage, enters: int) -> int:
     """The last column in which ego could wait: it drives into the junction, or on within it."""
     speed = context.surroundings.passages.tracks.speed[own.row, own.first : enters + 1]
-    waits = np.flatnonzero(speed < _DRIVES_MPS)
+    waits = (speed < _DRIVES_MPS).nonzero()[0]
     return min(own.first, enters) + (int(waits[-1]) if len(waits) else 0)
 
 
 def _drives_on(context: DriveContext, own: Passage, comes: int) -> bool:
     """True if ego, whose track ends there, drove on when another one had come; it did not wait."""
     tracks = context.surroundings.passages.tracks
-    there = np.flatnonzero(tracks.present[own.row, comes:]) + comes
+    there = tracks.present[own.row, comes:].nonzero()[0] + comes
     longer = len(there) * context.recording.step_s > _BEHIND_S
     return longer and bool((tracks.speed[own.row, there] > _DRIVES_MPS).all())

@@ -62,7 +62,7 @@ def _stopped_for_pedestrian(context: DriveContext) -> SignalColumns:
         # Who waits or comes at a crossing with lights waits for these
         least = np.where(_is_lit(context), _USES.index("entering_crossing"), 1)
         waited_for = ((_used_ahead(context) >= least) & context.relevant[rows]).any(axis=0)
-        states = np.flatnonzero(waited_for)
+        states = waited_for.nonzero()[0]
         stopped[:, states] = _stopped(context, states)
     return SignalColumns(
         about={"stopped_for_pedestrian": stopped},
@@ -182,7 +182,7 @@ def _waited_for(
 @once
 def _pedestrians(context: DriveContext) -> NDArray[intp]:
     """The rows of pedestrians."""
-    return np.flatnonzero(context.tracks.of_type("pedestrian"))
+    return context.tracks.of_type("pedestrian").nonzero()[0]
 
 
 @once
@@ -351,10 +351,10 @@ def _behind_another(context: DriveContext, stopped: Flags) -> Flags:
     between &= others.s_min < start
     before = Cells.at(between)
     # Those in each column one behind the other, and for each who stopped those in its column
-    before = before.part(np.argsort(before.columns, kind="stable"))
-    begins, ends = np.searchsorted(before.columns, (cells.columns, cells.columns + 1))
+    before = before.part(before.columns.argsort(kind="stable"))
+    begins, ends = before.columns.searchsorted((cells.columns, cells.columns + 1))
     pairs, _ = ranges(begins, ends - begins)
-    number = np.repeat(np.arange(len(cells)), ends - begins)
+    number = np.arange(len(cells)).repeat(ends - begins)
     ahead = before.of(others.s_min).take(pairs) >= cells.of(others.s_max).take(number)
     ahead &= (before.of(lanes).take(pairs) & cells.of(lanes).take(number)) != 0
     waits = np.zeros(len(cells), dtype=bool)

@@ -130,7 +130,7 @@ def _traffic_lights(context: DriveContext) -> SignalColumns:
 def _bends_straight_on(context: DriveContext, start: float, end: float) -> bool:
     """True if a way that the map calls straight on turns ego's road at a junction: it may bend."""
     road, least = context.road, np.radians(context.thresholds.turned_deg)
-    pieces = np.flatnonzero((road.borders[:-1] >= start - 0.1) & (road.borders[:-1] < end))
+    pieces = ((road.borders[:-1] >= start - 0.1) & (road.borders[:-1] < end)).nonzero()[0]
     for piece in pieces.tolist():
         way = road.rows[piece][road.own_lanes[piece]]
         if way is not None and STRAIGHT_ON in way.types:
@@ -230,7 +230,7 @@ def _within_preparation(context: DriveContext, flags: Flags, pace_kmh: float) ->
 def _time_driven(context: DriveContext, pace_kmh: float) -> Floats:
     """How long (s) ego has been at least so fast up to each state."""
     drives = context.ego.speed[0] * KMH >= pace_kmh
-    driven: Floats = (np.cumsum(drives) - drives) * context.recording.step_s
+    driven: Floats = (drives.cumsum() - drives) * context.recording.step_s
     return driven
 
 
@@ -322,7 +322,7 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
             while_crossing = around_crossing(context, front, (first, last))
             every = context.road.lanelet(piece, lane).lights
             several = _way_not_known(context) if len(every) > len(lights) else crosses & False
-            for state in np.flatnonzero((ahead | crossed) & (context.ego_lane == lane)).tolist():
+            for state in ((ahead | crossed) & (context.ego_lane == lane)).nonzero()[0].tolist():
                 own = every if several[state] else lights
                 moments = while_crossing(state) if crossed[state] else (state,)
                 shown = {_colour(context, own, moment) for moment in moments}

@@ -142,7 +142,7 @@ def leads_elsewhere(context: DriveContext) -> SignalColumns:
     for junction in junctions_ahead(context):
         there = context.relevant & (others.s <= junction.high)
         there &= junction.low - others.s_max <= reach
-        for row in np.flatnonzero(there.any(axis=1)).tolist():
+        for row in there.any(axis=1).nonzero()[0].tolist():
             surely, perhaps = _on_another_way(context, row, junction)
             elsewhere[row] |= there[row] & surely
             unknown[row] |= there[row] & perhaps
@@ -158,7 +158,7 @@ def leads_elsewhere(context: DriveContext) -> SignalColumns:
             for kind in (Leads.ELSEWHERE, Leads.BOTH)
         )
         elsewhere |= near & away
-        for row in np.flatnonzero((near & both).any(axis=1)).tolist():
+        for row in (near & both).any(axis=1).nonzero()[0].tolist():
             turns_off = _turns_off(context, row, junction)
             elsewhere[row] |= near[row] & both[row] & bool(turns_off)
             unknown[row] |= near[row] & both[row] & (turns_off is None)

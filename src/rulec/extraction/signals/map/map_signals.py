@@ -177,8 +177,9 @@ def distance_to_crossing(context: DriveContext) -> Floats:
 
 def _to_crossing(context: DriveContext, more_m: float) -> Floats:
     start, _ = next_crossing(context)
-    distance: Floats = np.clip(start - context.ego_extents.s_max[0] + more_m, 0.0, NO_CROSSING_M)
-    return distance
+    distance = start - context.ego_extents.s_max[0] + more_m
+    within: Floats = np.minimum(np.maximum(distance, 0.0), NO_CROSSING_M)
+    return within
 
 
 @once
@@ -270,7 +271,7 @@ def _on_crossing(context: DriveContext) -> tuple[Flags, Flags, Flags]:
 def _meets_crossing(context: DriveContext, states: Flags) -> Flags:
     """Flags of those of some states in which ego's body is on the area of a crossing, or may be."""
     found = np.zeros(context.states, dtype=bool)
-    (there,) = np.nonzero(states)
+    (there,) = states.nonzero()
     if not len(there):
         return found
     ego, widths = context.ego, own_widths(context)[there] / 2

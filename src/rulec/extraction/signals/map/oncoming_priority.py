@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import cos, radians, sin
 
-import numpy as np
-
 from rulec.extraction.drive_context import DriveContext
 from rulec.extraction.tracks.junction_passages import Passage
 from rulec.extraction.tracks.junctions import JunctionWay, all_have_to_stop, approaches
@@ -111,5 +109,5 @@ def _crossed(context: DriveContext, other: Passage, line: Points | None) -> int 
     (x, y), ahead = line.mean(axis=0), (cos(other.heading), sin(other.heading))
     tracks, half = passages.tracks, float(passages.lengths[other.row]) / 2
     way = (tracks.x[other.row, until] - x) * ahead[0] + (tracks.y[other.row, until] - y) * ahead[1]
-    before = np.flatnonzero(way + half < 0)
+    before = (way + half < 0).nonzero()[0]
     return int(before[-1]) + 1 if len(before) else None

@@ -157,7 +157,7 @@ def _next(context: DriveContext, passage: Passage) -> int:
     )
     beyond = context.ego_extents.s[0, last]
     starts = [start for start, _ in context.road.junctions if start > beyond]
-    there = np.flatnonzero(context.ego_extents.s_max[0, first:] >= min(starts, default=np.inf))
+    there = (context.ego_extents.s_max[0, first:] >= min(starts, default=np.inf)).nonzero()[0]
     enters += [first + int(state) - 1 for state in there[:1]]
     return min(enters, default=context.states)
 
@@ -273,7 +273,7 @@ def _turned_in_later(context: DriveContext, own: Passage, other: Passage) -> boo
     """
     passages = context.surroundings.passages
     speed = passages.tracks.speed[own.row, own.first : own.last + 1]
-    waits = np.flatnonzero(speed < SLOWEST_MPS)
+    waits = (speed < SLOWEST_MPS).nonzero()[0]
     drives_in = own.first + int(waits[-1]) if len(waits) else passages.front_enters(own)
     least = np.radians(context.thresholds.turned_deg)
     return any(
@@ -286,7 +286,7 @@ def _turned_in_later(context: DriveContext, own: Passage, other: Passage) -> boo
 
 def _is_seen(present: Flags, first: int, last: int) -> bool:
     """True if somebody's track has no hole between two columns, as far as it reaches."""
-    there = np.flatnonzero(present[first : last + 1])
+    there = present[first : last + 1].nonzero()[0]
     return len(there) == 0 or len(there) == there[-1] - there[0] + 1
 
 

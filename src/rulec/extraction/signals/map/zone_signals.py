@@ -224,7 +224,7 @@ def _until(context: DriveContext, flags: Flags) -> Flags:
 
 def _standing_rows(context: DriveContext, ahead: Flags) -> Flags:
     """Flags, one a row, of those ever ahead who stand all the time that they are recorded."""
-    still, rows = np.zeros((len(ahead), 1), dtype=bool), np.flatnonzero(ahead.any(axis=1))
+    still, rows = np.zeros((len(ahead), 1), dtype=bool), ahead.any(axis=1).nonzero()[0]
     still[rows, 0] = relations.stays(context, rows)
     return still
 
@@ -250,7 +250,7 @@ def _ahead_on_lane(context: DriveContext) -> Flags:
 
 def _left_aside(context: DriveContext, ahead: Flags) -> Flags:
     """Flags of those ahead who stand all the time and leave ego room to pass them in its lane."""
-    aside, still = np.zeros(ahead.shape, dtype=bool), np.flatnonzero(_standing_rows(context, ahead))
+    aside, still = np.zeros(ahead.shape, dtype=bool), _standing_rows(context, ahead).nonzero()[0]
     if len(still):
         others, own = context.extents.part(still, slice(None)), context.ego_extents
         left, _ = others.from_bound(context.ego_lane)
@@ -268,7 +268,7 @@ def _shared(context: DriveContext, start: float, end: float) -> float:
     road, passages = context.road, context.surroundings.passages
     if (start, end) not in road.junctions:
         return start
-    for piece in np.flatnonzero((road.borders[:-1] >= start) & (road.borders[:-1] < end)).tolist():
+    for piece in ((road.borders[:-1] >= start) & (road.borders[:-1] < end)).nonzero()[0].tolist():
         edge = passages.first_meeting(road.lanelet(piece, road.own_lanes[piece]).id)
         if edge is not None:
             return float(road.borders[piece]) + edge

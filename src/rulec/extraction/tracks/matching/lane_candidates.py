@@ -18,6 +18,7 @@ from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.recording import Lanelet, Points
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import directions_at
+from rulec.trace.plain_arrays import are_new
 
 NEAR_M = 3.0
 """The farthest that a vehicle may be beside a lanelet that it is matched to."""
@@ -56,7 +57,7 @@ class LaneCandidates:
     @cached_property
     def counts(self) -> NDArray[intp]:
         """How many each state has, at least one."""
-        return np.diff(self.first)
+        return self.first[1:] - self.first[:-1]
 
 
 _NO_NUMBERS, _NO_VALUES = np.empty(0, dtype=intp), np.empty(0)
@@ -75,7 +76,7 @@ def candidates(graph: LaneletGraph, tracks: Tracks) -> LaneCandidates:
     """The lanelets near each moving participant that lead its way."""
     lanes, areas = graph.lanes, graph.areas
     moving = np.array([not body.standing for body in tracks.participants], dtype=bool)
-    rows, columns = np.nonzero(tracks.present & moving[:, None])
+    rows, columns = (tracks.present & moving[:, None]).nonzero()
     if not lanes or not len(rows):
         return _NONE
     x, y, headings = (values[rows, columns] for values in (tracks.x, tracks.y, tracks.heading))
@@ -83,7 +84,7 @@ def candidates(graph: LaneletGraph, tracks: Tracks) -> LaneCandidates:
     near: dict[int, NDArray[intp]] = {}
     for number in _around(bounds, x, y).tolist():
         left, low, right, high = bounds[number].tolist()
-        own = np.flatnonzero((x >= left) & (x <= right) & (y >= low) & (y <= high))
+        own = ((x >= left) & (x <= right) & (y >= low) & (y <= high)).nonzero()[0]
         if len(own):
             own = own[leading_on(lanes[number].centre, headings[own])]
             own = own[_beside(lanes[number], areas[number], x[own], y[own])]
@@ -93,7 +94,7 @@ def candidates(graph: LaneletGraph, tracks: Tracks) -> LaneCandidates:
     if not near:
         return _NONE
     at, numbers = np.concatenate(list(near.values())), _numbers(near.items())
-    feet = [(lanes[k].centre, np.stack((x[own], y[own]), axis=-1)) for k, own in near.items()]
+    feet = [(lanes[k].centre, np.array((x[own], y[own])).T) for k, own in near.items()]
     along, away = feet_on(feet)
     bounds_of = np.cumsum([0, *map(len, near.values())]).tolist()
     directions = [
@@ -105,9 +106,9 @@ def candidates(graph: LaneletGraph, tracks: Tracks) -> LaneCandidates:
     at, numbers, along = at[fits], numbers[fits], along[fits]
     costs = ((away[fits] / SIGMA_M) ** 2 + (angle[fits] / SIGMA_RAD) ** 2) / 2
     # By place, lanelets in the order of the file
-    order = np.argsort(at, kind="stable")
+    order = at.argsort(kind="stable")
     at = at[order]
-    first = np.append(np.flatnonzero(np.diff(at, prepend=-1)), len(at))
+    first = np.concatenate((are_new(at).nonzero()[0], (len(at),)))
     states = at[first[:-1]]
     names = tuple(lanelet.id for lanelet in lanes)
     return LaneCandidates(
@@ -124,14 +125,13 @@ def candidates(graph: LaneletGraph, tracks: Tracks) -> LaneCandidates:
 def _around(bounds: Floats, x: Floats, y: Floats) -> NDArray[intp]:
     """The rectangles that the one around some places meets; there is a place at least."""
     left, low, right, high = bounds.T
-    return np.flatnonzero(
-        (left <= x.max()) & (right >= x.min()) & (low <= y.max()) & (high >= y.min())
-    )
+    meets: Flags = (left <= x.max()) & (right >= x.min()) & (low <= y.max()) & (high >= y.min())
+    return meets.nonzero()[0]
 
 
 def leading_on(line: Points, headings: Floats) -> Flags:
     """Flags of headings (rad), of all that are less than a right angle off a line somewhere."""
-    steps = np.diff(line, axis=0)
+    steps = line[1:] - line[:-1]
     directions = np.arctan2(steps[:, 1], steps[:, 0])
     turned = turn(directions[0], directions)
     least, most = turned.min(), turned.max()
@@ -179,7 +179,7 @@ def are_near(lanelet: Lanelet, area: shapely.Polygon, x: Floats, y: Floats) -> F
 def _numbers(groups: Iterable[tuple[int, NDArray[intp]]]) -> NDArray[intp]:
     """The number of each group, as often as it has members."""
     numbers, members = zip(*groups, strict=True)
-    return np.repeat(np.array(numbers, dtype=intp), [len(own) for own in members])
+    return np.array(numbers, dtype=intp).repeat([len(own) for own in members])
 
 
 def feet_on(lines: Sequence[tuple[Points, Points]]) -> tuple[Floats, Floats]:
@@ -201,13 +201,13 @@ def feet_on(lines: Sequence[tuple[Points, Points]]) -> tuple[Floats, Floats]:
         low, count = _pieces_near(line, own)
         first.append(low + begin)
         counts.append(count)
-        before.append(np.concatenate(([0.0], np.cumsum(lengths[begin:end])[:-1])))
+        before.append(np.concatenate(([0.0], lengths[begin:end].cumsum()[:-1])))
         begin = end
     n_pieces = np.concatenate(counts)
-    bounds = np.cumsum(n_pieces) - n_pieces
-    number = np.repeat(np.arange(len(places)), n_pieces)
-    piece = np.arange(len(number)) + np.repeat(np.concatenate(first) - bounds, n_pieces)
-    x0, y0, ux, uy, square = np.stack((*starts.T, ux, uy, squares))[:, piece]
+    bounds = n_pieces.cumsum() - n_pieces
+    number = np.arange(len(places)).repeat(n_pieces)
+    piece = np.arange(len(number)) + (np.concatenate(first) - bounds).repeat(n_pieces)
+    x0, y0, ux, uy, square = np.array((*starts.T, ux, uy, squares))[:, piece]
     x, y = places.T[:, number]
     dx, dy = x - x0, y - y0
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -219,8 +219,8 @@ def feet_on(lines: Sequence[tuple[Points, Points]]) -> tuple[Floats, Floats]:
     dx, dy = places.T[:, number[is_beyond]] - ends.T[:, piece[is_beyond]]
     off[is_beyond] = np.sqrt(dx**2 + dy**2)
     least = np.minimum.reduceat(off, bounds)
-    best = np.flatnonzero(off == np.repeat(least, n_pieces))
-    best = best[np.diff(number[best], prepend=-1) > 0]
+    best = (off == least.repeat(n_pieces)).nonzero()[0]
+    best = best[are_new(number[best])]
     part, length = part[best], lengths[piece[best]]
     on = np.where(part > 0, np.where(part > 1, length, part * length), 0.0)
     return np.concatenate(before)[piece[best]] + on, least
@@ -238,7 +238,7 @@ def _pieces_near(line: Points, places: Points) -> tuple[NDArray[intp], NDArray[i
     corners, own = line @ chord, places @ chord
     ends = np.maximum.accumulate(np.maximum(corners[:-1], corners[1:]))
     begins = np.minimum.accumulate(np.minimum(corners[:-1], corners[1:])[::-1])[::-1]
-    corner = line[np.searchsorted(ends, own, "left")]
+    corner = line[ends.searchsorted(own, "left")]
     reach = np.hypot(*(places - corner).T) + _HAIR_M
-    first = np.searchsorted(ends, own - reach, "left")
-    return first, np.searchsorted(begins, own + reach, "right") - first
+    first = ends.searchsorted(own - reach, "left")
+    return first, begins.searchsorted(own + reach, "right") - first

@@ -29,6 +29,7 @@ from rulec.extraction.tracks.matching.lane_candidates import SIGMA_M, LaneCandid
 from rulec.extraction.tracks.matching.lanelet_graph import LaneletGraph
 from rulec.extraction.tracks.tracks import Floats, Tracks
 from rulec.recordings.recording import Recording
+from rulec.trace.plain_arrays import distinct
 
 BETA_M = 2.0
 """The mean difference of the way along lanelets and the way moved."""
@@ -73,10 +74,11 @@ class MapMatching:
     def _paths(self) -> tuple[NDArray[intp], NDArray[bool_]]:
         """The lane of each state, and where a stretch begins."""
         found = self._candidates
-        places = np.stack((self._tracks.x, self._tracks.y), axis=-1)[found.rows, found.columns]
-        absent = np.cumsum(~self._tracks.present, axis=1)[found.rows, found.columns]
+        at = found.rows, found.columns
+        places = np.array((self._tracks.x[at], self._tracks.y[at])).T
+        absent = (~self._tracks.present).cumsum(axis=1)[at]
         begins = np.ones(len(found.rows), dtype=bool)
-        begins[1:] = (np.diff(found.rows) != 0) | (np.diff(absent) != 0)
+        begins[1:] = (found.rows[1:] != found.rows[:-1]) | (absent[1:] != absent[:-1])
         return likeliest_paths(found, places, begins, self._graph)
 
     def of(self, row: int) -> tuple[MatchedStretch, ...]:
@@ -92,7 +94,7 @@ class MapMatching:
         """Where stretches begin, and the last one ends; and the numbers of each row's first one."""
         rows, (_, begins) = self._candidates.rows, self._paths
         starts = begins.nonzero()[0]
-        of_row = np.searchsorted(rows[starts], np.arange(len(self._tracks.present) + 1))
+        of_row = rows[starts].searchsorted(np.arange(len(self._tracks.present) + 1))
         return [*starts.tolist(), len(rows)], of_row.tolist()
 
     def _stretch(self, start: int, end: int, lanes: NDArray[intp]) -> MatchedStretch:
@@ -112,7 +114,9 @@ class MapMatching:
     def _columns_and_changes(self) -> tuple[list[int], list[int]]:
         """The column of each state, and the states whose lane is not that of the one before."""
         lanes, _ = self._paths
-        return self._candidates.columns.tolist(), (np.flatnonzero(np.diff(lanes)) + 1).tolist()
+        return self._candidates.columns.tolist(), (
+            (lanes[1:] != lanes[:-1]).nonzero()[0] + 1
+        ).tolist()
 
     @cached_property
     def lanelets(self) -> NDArray[intp]:
@@ -148,15 +152,14 @@ def likeliest_paths(
     """
     if not len(begins):
         return np.empty(0, dtype=intp), begins
-    starts = begins.nonzero()[0]
-    lengths = np.diff(starts, append=len(begins))
-    # All runs go step by step together, the longest first: those that go on are the first ones
-    longest = np.argsort(-lengths, kind="stable")
-    starts, lengths = starts[longest], lengths[longest]
-    going = np.searchsorted(-lengths, -np.arange(int(lengths[0])), "left").tolist()
-    width = int(found.counts.max())
+    starts, width = begins.nonzero()[0], int(found.counts.max())
     if len(starts) * width**2 <= FEW_TRANSITIONS:
         return _paths_one_by_one(found, places, begins, graph)
+    lengths = np.diff(starts, append=len(begins))
+    # All runs go step by step together, the longest first: those that go on are the first ones
+    longest = (-lengths).argsort(kind="stable")
+    starts, lengths = starts[longest], lengths[longest]
+    going = (-lengths).searchsorted(-np.arange(int(lengths[0])), "left").tolist()
     # States and what is known of them stand in the order of steps, those of one together
     bounds = np.cumsum([0, *going]).tolist()
     parts = list(map(slice, bounds[:-1], bounds[1:]))
@@ -291,22 +294,21 @@ def _transitions(
     moved = np.array(list(map(hypot, *steps)))
     weight = np.zeros(len(found.rows))
     weight[states] = np.minimum(1.0, moved / (2 * SIGMA_M))
-    own = _padded(found, states, np.repeat(weight, found.counts) * found.costs)
+    own = _padded(found, states, weight.repeat(found.counts) * found.costs)
     # All pairs of a candidate and one before, end to end
     earlier = found.counts[states - 1]
     pairs = found.counts[states] * earlier
-    row = np.repeat(np.arange(len(states)), pairs)
-    number = np.arange(len(row)) - np.repeat(np.cumsum(pairs) - pairs, pairs)
+    row = np.arange(len(states)).repeat(pairs)
+    number = np.arange(len(row)) - (pairs.cumsum() - pairs).repeat(pairs)
     end, start = np.divmod(number, earlier[row])
     to, since = found.first[states][row] + end, found.first[states - 1][row] + start
     count = len(found.names)
     codes = found.lanes[since] * count + found.lanes[to]
-    ordered = np.sort(codes)
-    different = ordered[np.diff(ordered, prepend=-1) > 0]
+    different = distinct(codes)
     ways = [
         graph.way(*(found.names[k] for k in divmod(code, count))) for code in different.tolist()
     ]
-    which = np.searchsorted(different, codes)
+    which = different.searchsorted(codes)
     length = np.array([np.inf if way is None else way.length for way in ways])[which]
     changed = np.array([0.0 if way is None else way.changes for way in ways])
     sideways = np.array([0.0 if way is None else way.sideways for way in ways])[which]

@@ -21,6 +21,7 @@ from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.recording import Lanelet, Recording, is_lane
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import directions_beside, lanelet_area
+from rulec.trace.plain_arrays import are_new
 
 LEAST_S, LEAST_M = 1.0, 10.0
 """Who drives against the traffic does so for as long and as far."""
@@ -82,8 +83,8 @@ def _states_against(
         headings = tracks.heading[rows, columns]
         motions = np.arctan2(tracks.vy[rows, columns], tracks.vx[rows, columns])
         against = np.zeros(len(states), dtype=bool)
-        order = np.argsort(numbers, kind="stable")
-        begins = np.flatnonzero(np.diff(numbers[order], prepend=-1))
+        order = numbers.argsort(kind="stable")
+        begins = are_new(numbers[order]).nonzero()[0]
         for own in np.split(order, begins[1:]) if len(order) else ():
             at = states[own]
             lanelet = lanes[int(numbers[own[0]])]
@@ -109,7 +110,7 @@ def _unmatched(tracks: Tracks, matched: NDArray[intp]) -> tuple[NDArray[intp], N
     speed = np.hypot(tracks.vx, tracks.vy)
     with np.errstate(invalid="ignore"):
         flags = tracks.present & (matched < 0) & drives[:, None] & (speed >= _SLOWEST_MPS)
-    rows, columns = np.nonzero(flags)
+    rows, columns = flags.nonzero()
     return rows, columns
 
 

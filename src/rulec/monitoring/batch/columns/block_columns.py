@@ -46,11 +46,11 @@ def groups_of(block: Block, presence: BlockPresence) -> list[BlockGroup]:
 
 
 def _group(block: Block, presence: BlockPresence, traces: NDArray[np.int64]) -> BlockGroup:
-    traces = traces[np.argsort(-presence.length[traces], kind="stable")]
+    traces = traces[(-presence.length[traces]).argsort(kind="stable")]
     layout = layout_of(presence.length[traces])
     rank = np.full(len(block), -1)
     rank[traces] = np.arange(len(traces))
-    rows = np.flatnonzero(rank[presence.trace] >= 0)
+    rows = (rank[presence.trace] >= 0).nonzero()[0]
     objects = slice(presence.starts[traces[0]], presence.starts[traces[0] + 1])
     return BlockGroup(
         block=block,
@@ -123,7 +123,7 @@ def _placement(given: NDArray[np.bool_], n_parameters: int, group: BlockGroup) -
             raise UnencodableError
         if parameter < n_parameters:
             chosen = chosen * n_objects + items
-    choices = np.flatnonzero(np.bincount(chosen))
+    choices = np.bincount(chosen).nonzero()[0]
     if len(choices) * n_states > len(group.rows) * _MOST_EMPTY:
         raise UnencodableError
     line_of = np.zeros(int(choices[-1]) + 1, dtype=np.int64)

@@ -19,16 +19,16 @@ def columnize_lines(
 
     Raises UnencodableError.
     """
-    order = np.argsort(-lines.lengths, kind="stable")
+    order = (-lines.lengths).argsort(kind="stable")
     layout = layout_of(lines.lengths[order])
     rank = np.empty(len(order), dtype=np.int64)
     rank[order] = np.arange(len(order))
     # From one trace after the other to one step after the other.
-    step = np.arange(layout.n_states) - np.repeat(
-        np.cumsum(lines.lengths) - lines.lengths, lines.lengths
+    step = np.arange(layout.n_states) - (lines.lengths.cumsum() - lines.lengths).repeat(
+        lines.lengths
     )
     rows = np.empty(layout.n_states, dtype=np.int64)
-    rows[layout.starts[step] + np.repeat(rank, lines.lengths)] = np.arange(layout.n_states)
+    rows[layout.starts[step] + rank.repeat(lines.lengths)] = np.arange(layout.n_states)
     example = lines.headings[order[0]]
     objects = tuple(example.objects.items())
     columns: dict[Key, Array] = {}

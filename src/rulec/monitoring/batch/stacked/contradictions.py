@@ -72,9 +72,7 @@ def contradicted(linked_facts: Sequence[LinkedFacts], reader: StackReader) -> se
     if not places:
         return set()
     states = distinct(np.concatenate(places))
-    found: list[int] = distinct(
-        np.searchsorted(reader.stack.begins, states, side="right") - 1
-    ).tolist()
+    found: list[int] = distinct(reader.stack.begins.searchsorted(states, side="right") - 1).tolist()
     return set(found)
 
 
@@ -104,7 +102,7 @@ def _asked(together: Sequence[CompiledAxiom], stack: Stack) -> Iterator[_Asked]:
     for group, kinds in by_facts.items():
         if group:
             suits = np.array([kind in kinds for kind in stack.kinds])[stack.kind_of]
-            cells = np.flatnonzero(suits[stack.object_of])
+            cells = suits[stack.object_of].nonzero()[0]
             spots = Spots(stack.state_of[cells], {_OBJECT: cells})
             yield group, spots, {_OBJECT: kinds[0]}
 
@@ -116,7 +114,7 @@ def _contradicted_states(
     holds: Mask = np.True_
     for fact in facts:
         holds = holds & reader.truth(fact.formula, spots, _OBJECT).true
-    doubtful = np.flatnonzero(~np.broadcast_to(holds, len(spots.states)))
+    doubtful = (~np.broadcast_to(holds, len(spots.states))).nonzero()[0]
     if not len(doubtful):
         return doubtful
     spots = spots.part(doubtful)
@@ -146,6 +144,6 @@ def _alike(names: Sequence[str], stack: Stack, spots: Spots) -> Places:
             if part is not None:
                 own = part[where]
                 values = distinct(own)
-                kinds = kinds * len(values) + np.searchsorted(values, own)
-                kinds = np.searchsorted(distinct(kinds), kinds)
+                kinds = kinds * len(values) + values.searchsorted(own)
+                kinds = distinct(kinds).searchsorted(kinds)
     return kinds

@@ -118,7 +118,7 @@ class CrowdedStates:
         n_kinds = int(kinds.max(initial=-1)) + 1
         if n_kinds > MOST_KINDS:
             return None
-        owners = np.searchsorted(states, stack.state_of[cells])
+        owners = states.searchsorted(stack.state_of[cells])
         often = np.bincount(owners * n_kinds + kinds, minlength=len(states) * n_kinds)
         often = np.minimum(often, self._enough).reshape(len(states), n_kinds)
         said = [codes for name in self._world for codes in _codes(stack.column(name), states)]
@@ -137,7 +137,7 @@ class CrowdedStates:
         suits = np.zeros(len(stack.types), dtype=bool)
         for kind in self._counted:
             suits |= stack.of_type(kind)
-        return np.flatnonzero(suits[stack.object_of] & states[stack.state_of])
+        return (suits[stack.object_of] & states[stack.state_of]).nonzero()[0]
 
     def _kinds(self, cells: Places) -> Places:
         """A number for each cell, the same where the same is said of objects of one type."""

@@ -41,7 +41,7 @@ class EntangledLetters:
         """The number of the letters at each of some places, -1 where they are not entangled."""
         if not len(self.places):
             return [-1] * len(places)
-        near = np.minimum(np.searchsorted(self.places, places), len(self.places) - 1)
+        near = np.minimum(self.places.searchsorted(places), len(self.places) - 1)
         found: list[int] = np.where(self.places[near] == places, self.numbers[near], -1).tolist()
         return found
 
@@ -64,12 +64,12 @@ def entangled_letters(
     found: Sequence[int]
     if rule.entangled is not None:
         reads = rule.entangled
-        places = np.flatnonzero(partial & _are_entangled(reads, reader, spots))
+        places = (partial & _are_entangled(reads, reader, spots)).nonzero()[0]
         found = list(map(reads.number, _rows(reads, reader, spots.part(places), supposed)))
     else:
         if not crowd.is_known:
             return None
-        places = np.flatnonzero(partial & crowd.are_entangled[spots.states])
+        places = (partial & crowd.are_entangled[spots.states]).nonzero()[0]
         told = crowd.numbers(spots.states[places], supposed)
         if told is None:
             return None
@@ -99,7 +99,7 @@ def _different(
     for own in digits:
         codes = which * (int(own.max(initial=0)) + 1) + own.astype(np.intp)
         _, firsts, which = np.unique(codes, return_index=True, return_inverse=True)
-    order = np.argsort(firsts)
+    order = firsts.argsort()
     rank = np.empty(len(order), dtype=np.intp)
     rank[order] = np.arange(len(order))
     return firsts[order], rank[which]

@@ -149,7 +149,7 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
     if not busy.any():
         return _NO_INSTANCES
     if not rule.variables:
-        traces = np.flatnonzero(~rule.are_surely_kept(every, stack.begins[:-1]))
+        traces = (~rule.are_surely_kept(every, stack.begins[:-1])).nonzero()[0]
         firsts, lasts = stack.begins[traces], stack.begins[traces + 1] - 1
         return Instances(traces, (), firsts, lasts, every)
     objects: tuple[Places, ...]
@@ -270,13 +270,13 @@ def _pairs(
 
 def _joined(first: Places, second: Places, stack: Stack) -> Iterator[tuple[Places, Places]]:
     """The pairs of cells of one state, some at a time."""
-    second = second[np.argsort(stack.state_of[second], kind="stable")]
+    second = second[stack.state_of[second].argsort(kind="stable")]
     states, theirs = stack.state_of[first], stack.state_of[second]
-    begins = np.searchsorted(theirs, states, side="left")
-    counts = np.searchsorted(theirs, states, side="right") - begins
-    parts = np.cumsum(counts) // _MOST_TOGETHER
+    begins = theirs.searchsorted(states, side="left")
+    counts = theirs.searchsorted(states, side="right") - begins
+    parts = counts.cumsum() // _MOST_TOGETHER
     for part in distinct(parts):
-        own = np.flatnonzero(parts == part)
+        own = (parts == part).nonzero()[0]
         repeats = counts[own]
         places, _ = ranges(begins[own], repeats)
-        yield np.repeat(first[own], repeats), second[places]
+        yield first[own].repeat(repeats), second[places]

@@ -217,7 +217,7 @@ def _runs(columns: Sequence[NDArray[np.intp]], length: int) -> tuple[NDArray[np.
     changes[0] = True
     for column in columns:
         changes[1:] |= column[1:] != column[:-1]
-    starts = np.flatnonzero(changes)
+    starts = changes.nonzero()[0]
     return starts, np.diff(starts, append=length).tolist()
 
 

@@ -73,10 +73,10 @@ class Stack:
         self._pieces = tuple(joined_traces(traces))
         self.vocabulary = vocabulary
         lengths = np.array([trace.n_states for trace in traces], dtype=np.intp)
-        self.begins = np.concatenate([np.zeros(1, dtype=np.intp), np.cumsum(lengths)])
+        self.begins = np.concatenate([np.zeros(1, dtype=np.intp), lengths.cumsum()])
         self.n_states = int(self.begins[-1])
         n_objects = [len(trace.objects) for trace in traces]
-        self.trace_of = np.repeat(np.arange(len(traces)), n_objects)
+        self.trace_of = np.arange(len(traces)).repeat(n_objects)
         spans = np.concatenate([trace.spans for trace in traces])
         self.firsts = spans[:, 0] + self.begins[self.trace_of]
         self.lasts = spans[:, 1] + self.begins[self.trace_of]
@@ -96,18 +96,18 @@ class Stack:
 
     @cached_property
     def _n_cells(self) -> Places:
-        return np.diff(self.starts)
+        return self.starts[1:] - self.starts[:-1]
 
     @cached_property
     def object_of(self) -> Places:
         """The object of each cell."""
-        return np.repeat(np.arange(len(self.types)), self._n_cells)
+        return np.arange(len(self.types)).repeat(self._n_cells)
 
     @cached_property
     def state_of(self) -> Places:
         """The state of each cell."""
         shift: Places = self.firsts - self.starts[:-1]
-        return np.arange(self.starts[-1]) + np.repeat(shift, self._n_cells)
+        return np.arange(self.starts[-1]) + shift.repeat(self._n_cells)
 
     @cached_property
     def are_first(self) -> Flags:
@@ -159,22 +159,22 @@ class Stack:
         constants = self.vocabulary.constants
         for name, column in self.columns.items():
             if column.missing is not None:
-                odd.update(self.traces_at(name, np.flatnonzero(column.missing)))
+                odd.update(self.traces_at(name, column.missing.nonzero()[0]))
             if name in constants:
                 starts = self.starts if self.said[name] else self.begins
-                lengths = self._n_cells if self.said[name] else np.diff(starts)
+                lengths = self._n_cells if self.said[name] else starts[1:] - starts[:-1]
                 for values in (column.values, column.unknown):
                     if values is not None:
-                        changed = values != np.repeat(values[starts[:-1]], lengths)
+                        changed = values != values[starts[:-1]].repeat(lengths)
                         if changed.any():
-                            odd.update(self.traces_at(name, np.flatnonzero(changed)))
+                            odd.update(self.traces_at(name, changed.nonzero()[0]))
         return odd
 
     def traces_at(self, name: str, places: Places) -> list[int]:
         """The traces of a name's values at some places."""
         if self.said[name]:
             places = self.state_of[places]
-        found: list[int] = distinct(np.searchsorted(self.begins, places, side="right") - 1).tolist()
+        found: list[int] = distinct(self.begins.searchsorted(places, side="right") - 1).tolist()
         return found
 
     def column(self, name: str) -> StackColumn | None:
@@ -345,7 +345,7 @@ class Stack:
         said = _end_to_end(every)
         if not self._all_are(kind) and (said & ~self.of_type(kind)).any():
             raise UnencodableError
-        return None if said.all() else np.repeat(~said, self._n_cells)
+        return None if said.all() else (~said).repeat(self._n_cells)
 
     def _all_are(self, kind: str) -> bool:
         """Whether all objects are of a type."""

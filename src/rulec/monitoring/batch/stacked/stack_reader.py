@@ -351,7 +351,7 @@ class StackReader:
             ends = zip(values, column.upper[where].tolist(), strict=True)
             values = [low if low == high else Interval(low, high) for low, high in ends]
         if column.unknown is not None:
-            for place in np.flatnonzero(column.unknown[where]).tolist():
+            for place in column.unknown[where].nonzero()[0].tolist():
                 values[place] = UNKNOWN_VALUE
         return values
 

@@ -81,7 +81,7 @@ def outcomes(
         # What is odd has a word of its own
         by_itself = is_odd | is_odd[first_alike]
         first_alike = np.where(by_itself, np.arange(len(is_odd)), first_alike)
-        answers: dict[int, Answer | None] = dict.fromkeys(np.flatnonzero(is_odd).tolist())
+        answers: dict[int, Answer | None] = dict.fromkeys(is_odd.nonzero()[0].tolist())
         is_told = is_odd.copy()
         for place in distinct(first_alike[~is_odd]).tolist():
             answer = _joined(
@@ -89,7 +89,7 @@ def outcomes(
             )
             answers[place] = answer
             is_told[place] = answer.worst != KEPT
-        places = np.flatnonzero(is_told[first_alike])
+        places = is_told[first_alike].nonzero()[0]
         found = [answers[first] for first in first_alike[places].tolist()]
         yield StackedOutcomes(words, places.tolist(), found)
 
@@ -121,8 +121,8 @@ def _first_alike(
     Words of the letters of all alternatives, which begin and end at ``bounds``. They are told apart
     by sums of letters with weights, and compared then.
     """
-    begins, lengths = bounds[:-1], np.diff(bounds)
-    states = np.arange(bounds[-1]) - np.repeat(begins, lengths)
+    begins, lengths = bounds[:-1], bounds[1:] - bounds[:-1]
+    states = np.arange(bounds[-1]) - begins.repeat(lengths)
     weights = _weights(int(lengths.max(initial=0)) + 1)
     sums = weights[lengths]
     for letters in alternatives:
@@ -131,7 +131,7 @@ def _first_alike(
     _, firsts, groups = np.unique(sums, return_index=True, return_inverse=True)
     like: NDArray[np.intp] = firsts[groups]
     if (lengths == lengths[like]).all():
-        at = np.repeat(begins[like], lengths) + states
+        at = begins[like].repeat(lengths) + states
         if all((letters == letters[at]).all() for letters in alternatives):
             return like
     return np.arange(len(begins))
@@ -162,7 +162,7 @@ def _alike(flags: NDArray[np.bool_]) -> Iterator[tuple[NDArray[np.intp], list[in
         return
     rows, kinds = np.unique(flags.T, axis=0, return_inverse=True)
     for kind, row in enumerate(rows):
-        yield np.flatnonzero(kinds.ravel() == kind), np.flatnonzero(row).tolist()
+        yield (kinds.ravel() == kind).nonzero()[0], row.nonzero()[0].tolist()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -347,7 +347,7 @@ def _hides_constants(rule: StackedRule, reader: StackReader, spots: Spots) -> ND
         if column is None:
             found |= stack.default(name) is UNKNOWN
         elif column.unknown is not None:
-            traces = stack.traces_at(name, np.flatnonzero(column.unknown))
+            traces = stack.traces_at(name, column.unknown.nonzero()[0])
             first, end = stack.begins[traces], stack.begins[np.array(traces, dtype=np.intp) + 1]
             for begin, last in zip(first.tolist(), end.tolist(), strict=True):
                 found |= (begin <= spots.states) & (spots.states < last)

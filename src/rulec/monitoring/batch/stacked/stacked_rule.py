@@ -296,7 +296,7 @@ def different_pairs(
     """
     codes = one * ODD + other
     different = distinct(codes)
-    which: NDArray[np.intp] = np.searchsorted(different, codes)
+    which: NDArray[np.intp] = different.searchsorted(codes)
     every = np.arange(len(codes))
     examples = np.empty(len(different), dtype=np.intp)
     examples[which] = every
@@ -321,7 +321,7 @@ def stretches(
     rows[:, 0] = letters[starts]
     rows[:-1, 1] = starts[1:] - starts[:-1]
     rows[-1:, 1] = len(letters) - starts[-1:]
-    return rows, np.searchsorted(starts, bounds).tolist()
+    return rows, starts.searchsorted(bounds).tolist()
 
 
 def _stacked(read: Read | NumberRead, vocabulary: Vocabulary, keys: ReadKeys) -> StackedRead:

@@ -44,9 +44,9 @@ class WordsTogether:
         """
         lengths, n_sets = np.diff(bounds), len(self._letters.sets)
         # The longest first, so that those that go on come before all others
-        order = np.argsort(-lengths, kind="stable")
+        order = (-lengths).argsort(kind="stable")
         at, lengths = bounds[:-1][order], lengths[order]
-        going_on = np.searchsorted(-lengths, -np.arange(int(lengths[0])), side="left").tolist()
+        going_on = (-lengths).searchsorted(-np.arange(int(lengths[0])), side="left").tolist()
         found = np.full(len(order), 2 * (self._monitor.start + 1))
         for count in going_on:
             rows = found[:count] >> 1

@@ -162,7 +162,7 @@ class LetterSets:
         # The entries may be very many, and the table is small.
         is_missing = np.zeros(table.size, dtype=bool)
         is_missing[np.asarray(entry)[unmet]] = True
-        missing = np.flatnonzero(is_missing)
+        missing = is_missing.nonzero()[0]
         before, places = list(self._places[read + 1]), self._places[read]
         for number in missing.tolist():
             nodes = self._diagram.step(
