@@ -176,8 +176,8 @@ def _charges(
             if isinstance(one, JudgedDrive) and not isinstance(one.judged, NotJudged):
                 row[max(start, 0) : max(start + one.drive.arrays.n_states, 0)] = True
     off_road = beside | ~on_road
-    leave, go_back = (np.any(flags, axis=1).tolist() for flags in (off_road, back))
-    counts = np.sum(off_road | back, axis=1).tolist()
+    leave, go_back = (np.logical_or.reduce(flags, axis=1).tolist() for flags in (off_road, back))
+    counts = (off_road | back).sum(axis=1).tolist()
     return [
         CandidateCharges(
             number,

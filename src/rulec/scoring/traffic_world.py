@@ -255,7 +255,8 @@ def _numbers(
     try:
         given = np.array(values, subok=True)
         # NumPy makes numbers of texts and days, and of what a mask says is none
-        is_odd = given.dtype.kind not in _NUMBERS or np.ma.is_masked(given)
+        is_masked = type(given) is not np.ndarray and np.ma.is_masked(given)
+        is_odd = is_masked or given.dtype.kind not in _NUMBERS
         found = np.array([] if is_odd else given, dtype=float)
     except (TypeError, ValueError, OverflowError):
         is_odd = True

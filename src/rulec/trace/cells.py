@@ -59,8 +59,8 @@ class Cells:
 
     def part(self, chosen: NDArray[intp]) -> Cells:
         """Some of them."""
-        own = (values.take(chosen) for values in (self.rows, self.columns, self.places))
-        return Cells(self.shape, *own)
+        rows, columns = self.rows.take(chosen), self.columns.take(chosen)
+        return Cells(self.shape, rows, columns, self.places.take(chosen))
 
     def in_rows(self, rows: NDArray[intp], n_rows: int) -> Cells:
         """The same cells in arrays of more rows, of which these have only some."""
@@ -84,8 +84,10 @@ class Cells:
         np.minimum.at(found, self.columns, values)
         return found
 
-    def laid(self, values: NDArray[Any], elsewhere: object = 0) -> NDArray[Any]:
+    def laid(self, values: NDArray[Any], elsewhere: float = 0) -> NDArray[Any]:
         """The array with these values in the cells, and something else in all others."""
-        found = np.full(self.shape, elsewhere, dtype=values.dtype)
+        found = np.zeros(self.shape, dtype=values.dtype)
+        if elsewhere:
+            found.fill(elsewhere)
         found.ravel()[self.places] = values
         return found

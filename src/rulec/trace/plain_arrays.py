@@ -33,7 +33,8 @@ def keep_freed_memory() -> None:
 
 def distinct(values: NDArray[_Number]) -> NDArray[_Number]:
     """The different numbers in an array, ascending; without NaN."""
-    ascending = np.sort(values, axis=None)
+    ascending = values.flatten()
+    ascending.sort()
     return ascending[are_new(ascending)]
 
 

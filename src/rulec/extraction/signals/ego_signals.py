@@ -112,7 +112,7 @@ def _nearer_goes_on(context: DriveContext) -> Flags:
     lanes = travel_lanes_first(context)
     number, own = np.arange(len(lanes))[:, None], context.steady_lane
     nearer = number < own if context.side == "right" else number > own
-    found: Flags = np.any(lanes & lanes_that_go_on(context).T & nearer, axis=0)
+    found: Flags = np.logical_or.reduce(lanes & lanes_that_go_on(context).T & nearer)
     return found
 
 

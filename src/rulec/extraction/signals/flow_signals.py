@@ -156,7 +156,7 @@ def _at_far_side(context: DriveContext, lanes: Flags) -> Flags:
     """Whether a lane (first axis) of those flagged lies at ego's far side, by state."""
     number, own = np.arange(len(lanes))[:, None], context.ego_lane
     far = number > own if context.side == "right" else number < own
-    there: Flags = np.any(lanes & far, axis=0)
+    there: Flags = np.logical_or.reduce(lanes & far)
     return there
 
 

@@ -73,7 +73,7 @@ def _lane_lengths(context: DriveContext) -> tuple[Floats, Floats]:
     A row for each lane.
     """
     lanes = context.road.lanes
-    only_others = np.any(lanes.there, axis=1, keepdims=True) & ~lanes.there
+    only_others = lanes.there.any(axis=1, keepdims=True) & ~lanes.there
     for nearer, lane in _other_roads(context.road):
         only_others[nearer, lane] = False
     parts = lanes.s[1:] - lanes.s[:-1]

@@ -103,7 +103,7 @@ def _next_to(changed: Flags, flags: Flags, spans: EndToEnd) -> Flags:
     if not changed.any():
         return changed
     if changed.ndim > 1:
-        found, rows = np.zeros_like(changed), changed.any(axis=1).nonzero()[0]
+        found, rows = np.zeros(changed.shape, dtype=bool), changed.any(axis=1).nonzero()[0]
         found[rows] = _beside_flagged(changed[rows], flags[rows], spans)
         return found
     return _beside_flagged(changed, flags, spans)
@@ -165,7 +165,7 @@ def only_when(
     Rows with a column per state. That is so of ``most`` states at a time, in all of which one is
     ``there``, and whose codes do not go to and fro.
     """
-    found = np.zeros_like(doubtful)
+    found = np.zeros(doubtful.shape, dtype=bool)
     if not doubtful.any():
         return found
     cells, own = Cells.of_drives(doubtful, spans)

@@ -52,16 +52,15 @@ class SignalColumns(NamedTuple):
 
 def together(parts: Sequence[SignalColumns], names: SignalNames = None) -> SignalColumns:
     """The signals of all these, optionally only those of some names."""
-    kinds: tuple[dict[str, Any], ...] = ({}, {}, {}, {}, {}, {}, {})
-    for part in parts:
-        for found, columns in zip(kinds, part, strict=True):
-            if columns:
-                found.update(columns)
-    if names is not None:
-        for found in kinds:
-            if found and not names.issuperset(found):
-                for name in found.keys() - names:
-                    del found[name]
+    kinds: list[dict[str, Any]] = []
+    for of_kind in zip(*parts, strict=True):
+        found: dict[str, Any] = {}
+        for columns in filter(None, of_kind):
+            found.update(columns)
+        if names is not None and not names.issuperset(found):
+            for name in found.keys() - names:
+                del found[name]
+        kinds.append(found)
     return SignalColumns(*kinds)
 
 

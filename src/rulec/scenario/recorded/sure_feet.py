@@ -135,20 +135,21 @@ def _find(fans: PieceFans, near: _Near, found: Points, sure: NDArray[bool_]) -> 
     if width > _WIDEST:
         return
     middle = fans.at(near.around)
-    x, y = near.places.transpose(2, 0, 1)
-    ux, uy, x0, y0, _, _, _, arc = np.take(fans.columns, middle, axis=1)[..., None]
+    # By place and row: a row has few places, but there are many rows
+    x, y = np.ascontiguousarray(near.places.T)
+    ux, uy, x0, y0, _, _, _, arc = fans.columns.take(middle, axis=1)
     dx, dy = x - x0, y - y0
     along = dx * ux + dy * uy
     # No piece in question begins farther away than that, but for its length
-    off = np.abs(ux * dy - uy * dx) + np.abs(along - (near.around[:, None] - arc))
-    safe = off < (fans.room_around(width)[middle] - near.reach)[:, None]
+    off = np.abs(ux * dy - uy * dx) + np.abs(along - (near.around - arc))
+    safe = off < fans.room_around(width)[middle] - near.reach
     pieces = fans.at(arc + along)
-    safe &= (pieces >= least[:, None]) & (pieces <= most[:, None])
+    safe &= (pieces >= least) & (pieces <= most)
     s, d, inside = _on(fans, x, y, pieces)
     safe &= inside
-    np.copyto(found[..., 0], s, where=safe)
-    np.copyto(found[..., 1], d, where=safe)
-    sure[:] = safe
+    np.copyto(found[..., 0].T, s, where=safe)
+    np.copyto(found[..., 1].T, d, where=safe)
+    sure[:] = safe.T
 
 
 def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[bool_]]:

@@ -42,8 +42,8 @@ def _emergency_vehicle_near(context: DriveContext) -> SignalColumns:
     rows = (on_call | not_told).any(axis=1).nonzero()[0]
     if len(rows):
         near = context.relevant[rows] & _comes_near(context)[rows]
-        perhaps |= np.any(near & (on_call | not_told)[rows], axis=0)
-    comes: Flags = np.any(surely, axis=0)
+        perhaps |= np.logical_or.reduce(near & (on_call | not_told)[rows])
+    comes: Flags = np.logical_or.reduce(surely)
     if comes.any():
         comes &= ~_may_be_on_call(context)
     return SignalColumns(
@@ -174,7 +174,7 @@ def _crosses_near(context: DriveContext) -> Flags:
     across = np.abs(np.cos(tracks.heading[places] - context.ego.heading[0]))
     across_way = across < np.cos(np.radians(limits.turned_deg))
     near = np.hypot(*aside) < limits.approach_m
-    found: Flags = np.any(called & closer & across_way & near, axis=0)
+    found: Flags = np.logical_or.reduce(called & closer & across_way & near)
     return found
 
 

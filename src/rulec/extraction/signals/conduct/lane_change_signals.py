@@ -157,12 +157,12 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
         has_to_brake = found & in_lane & ~_pulls_away(context, states)
         disturbed[:, flagged] = found | no_room
         unsure[flagged] = perhaps.any(axis=0) | maybe_none.any(axis=0)
-        moot[flagged] = ~np.any(has_to_brake | no_room, axis=0)
+        moot[flagged] = ~np.logical_or.reduce(has_to_brake | no_room)
     turns = u_turns(context)
     brakes, may_brake = has_to_brake_for_turn(context, turns)
     disturbed |= brakes
     unsure |= may_brake.any(axis=0)
-    clear: Flags = ~np.any(disturbed, axis=0)
+    clear: Flags = ~np.logical_or.reduce(disturbed)
     unknown = unsure
     if not clear.all():
         stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh

@@ -39,7 +39,8 @@ def own_part(context: DriveContext, flags: Flags) -> Flags:
 def lit_lamps(context: DriveContext, lamp: Lamp) -> tuple[Flags, Flags]:
     """Flags of participants whose lamp is lit, and of those of which the recording tells."""
     if lamp not in lamps_of_all(context):
-        return np.zeros_like(context.relevant), np.zeros_like(context.relevant)
+        shape = context.relevant.shape
+        return np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
     lit, told = lamps_of_all(context)[lamp]
     return own_part(context, lit), own_part(context, told)
 

@@ -233,7 +233,7 @@ def _by_others(context: DriveContext, others: _Others) -> Flags:
     """Flags of the others' states with one ahead in ego's way, coming into it, or across it."""
     states, reach = others.states, _reach(context)[others.states]
     near = (others.ahead > -_REACH_M / 4) & (others.ahead <= reach + _REACH_M)
-    found: Flags = np.any(near & (others.away <= _IN_WAY_M), axis=0)
+    found: Flags = np.logical_or.reduce(near & (others.away <= _IN_WAY_M))
     cells = Cells.at(near & (others.away <= _CROSSES_M) & ~found)
     rows, columns = cells.rows, cells.columns
     left, away = cells.of(others.left), cells.of(others.away)

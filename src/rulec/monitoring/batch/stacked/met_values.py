@@ -95,11 +95,11 @@ class MetValues:
         """The values of each signal, as bits, of which all are known and not too many."""
         found: dict[str, int] = {}
         for names, columns in self._known_signals():
-            only = columns[0].values
-            if len(columns) == 1 and only.dtype == bool:
-                found[names[0]] = 2 * int(only.any()) + int(not only.all())
+            rows = _laid_out([column.values for column in columns])
+            if rows.dtype == bool:
+                met = 2 * rows.any(axis=1) + ~rows.all(axis=1)
+                found.update(zip(names, met.tolist(), strict=True))
                 continue
-            rows = _laid_out([_as_numbers(column.values) for column in columns])
             most = int(rows.max())
             if most < max(_BITS):
                 bits = _BITS[8 if most < 8 else 64].take(rows)
@@ -110,21 +110,17 @@ class MetValues:
         """The names and columns of signals of which all is known, as many together as may be."""
         columns = self._stack.columns
         # Only quantities are numbers that are no whole ones
-        sizes = {
-            name: len(column.values)
+        kinds = {
+            name: (len(column.values), column.values.dtype.kind)
             for name, column in columns.items()
             if column.unknown is None and column.values.dtype.kind != "f"
         }
-        for size in dict.fromkeys(sizes.values()):
-            names = [name for name, own in sizes.items() if own == size]
+        for kind in dict.fromkeys(kinds.values()):
+            names, (size, _) = [name for name, own in kinds.items() if own == kind], kind
             if size > FEW:
                 yield from (([name], [columns[name]]) for name in names)
             elif size:
                 yield names, [columns[name] for name in names]
-
-
-def _as_numbers(values: Array) -> Array:
-    return values.view(np.uint8) if values.dtype == bool else values
 
 
 def _laid_out(columns: Sequence[Array]) -> Array:

@@ -390,5 +390,5 @@ def _digits(
         return np.full(n_spots, ready.digit(numbers), dtype=np.uint8)
     digits = np.zeros(n_spots, dtype=smallest_unsigned(ready.read.size))
     for floor in ready.floors:
-        digits += numbers >= floor
+        digits += (numbers >= floor).view(np.uint8)
     return digits

@@ -102,7 +102,7 @@ class LetterSets:
             if isinstance(codes, int):
                 codes = column.astype(np.uint16)
             else:
-                codes *= np.uint16(self._widths[read])
+                codes *= self._widths[read]
                 np.add(codes, column, out=codes, casting="unsafe")
         key: tuple[int | None, ...] = tuple(given)
         table = self._together.get(key)
