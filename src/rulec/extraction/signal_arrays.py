@@ -231,7 +231,7 @@ def signal_parts(
             return column if present.kept is None else column.take(present.kept)
         # Much is true of nobody, which is seen sooner than it is gathered
         is_never = column.dtype == bool and not np.count_nonzero(column)
-        return never if is_never else column.ravel().take(present.cells)
+        return never if is_never else column.take(present.cells)
 
     world = {name: gathered(name, own) for name, own in columns.world.items()}
     about = {name: gathered(name, own) for name, own in columns.about.items()}

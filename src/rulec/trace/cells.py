@@ -74,9 +74,8 @@ class Cells:
 
     def of(self, values: NDArray[Any]) -> NDArray[Any]:
         """The cells of an array, or of one with a value for each column only."""
-        if values.ndim > 1 and len(values) == self.shape[0]:
-            return values.ravel().take(self.places)
-        return values.ravel().take(self.columns)
+        by_row = values.ndim > 1 and len(values) == self.shape[0]
+        return values.take(self.places if by_row else self.columns)
 
     def least(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """The least of the cells' values in each column, infinity where there is none."""

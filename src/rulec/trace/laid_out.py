@@ -56,7 +56,7 @@ class LaidOut:
         """Parts of arrays with one place of the third axis, by column; NaN as above."""
         n_rows, n_columns, _ = arrays[0].shape
         at = (places * n_rows + self.rows[:, None]) * n_columns + self.columns
-        found = [values.transpose(2, 0, 1).ravel().take(at) for values in arrays]
+        found = [values.transpose(2, 0, 1).take(at) for values in arrays]
         for own in found if self._are_absent else ():
             np.copyto(own, np.nan, where=self.absent)
         return found
@@ -93,6 +93,9 @@ def one_behind_the_other(
     values: NDArray[Any], ranges: Sequence[slice], columns: NDArray[intp]
 ) -> NDArray[Any]:
     """An array's part in ranges of its last axis, whose ``columns`` are these."""
+    if len(ranges) == 1:
+        part: NDArray[Any] = values[..., ranges[0]].copy()
+        return part
     if len(columns) < _SHORT * len(ranges):
         return values.take(columns, axis=-1)
     return np.concatenate([values[..., own] for own in ranges], axis=-1)

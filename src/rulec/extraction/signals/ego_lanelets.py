@@ -15,6 +15,7 @@ from rulec.extraction.signals.signal_passes import once_a_map
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import Lanelet
+from rulec.trace.cells import Cells
 
 _Value = TypeVar("_Value")
 
@@ -143,6 +144,12 @@ def _lanes_of(context: DriveContext, kind: str, places: Floats) -> Flags:
 def lanes_of_type(road: DrivenRoad, kind: str) -> Flags:
     """Flags of the lanes (second axis) of a type, by the road's pieces."""
     return np.array([[x is not None and kind in x.types for x in row] for row in road.rows])
+
+
+def those_on_lanes(context: DriveContext, kind: str, others: Flags) -> Flags:
+    """Flags of those of some others whose lane is of a type."""
+    flags, cells, extents = lanes_of_type(context.road, kind), Cells.at(others), context.extents
+    return cells.laid(flags[context.road.piece(cells.of(extents.s)), cells.of(extents.lane)])
 
 
 def room_beside(context: DriveContext) -> tuple[Floats, Floats]:

@@ -51,7 +51,7 @@ def _ahead_for(context: DriveContext) -> SignalColumns:
     cells, step_s = relations.perhaps_ahead(context), context.recording.step_s
     since, seen = _since(context, cells)
     most = np.where(seen, (cells.columns - since + 1) * step_s, LONGEST_S)
-    sure = surely.ravel().take(cells.places).nonzero()[0]
+    sure = surely.take(cells.places).nonzero()[0]
     own, least = cells.part(sure), np.zeros(len(cells))
     since, seen = _since(context, own)
     times = (own.columns - since) * step_s
@@ -74,7 +74,7 @@ def _since(context: DriveContext, cells: Cells) -> tuple[NDArray[intp], Flags]:
     spans, begins = context.spans, begin_runs(cells.places)
     begins |= spans.begins_here[cells.columns]
     since = cells.columns[begins][begins.cumsum() - 1]
-    before = context.relevant.ravel().take(cells.places - (cells.columns - since) - 1, mode="clip")
+    before = context.relevant.take(cells.places - (cells.columns - since) - 1, mode="clip")
     return since, (since > spans.first[since]) & before
 
 

@@ -19,6 +19,7 @@ from rulec.extraction.signals.conduct.others_lamps import (
     own_part,
     stands,
 )
+from rulec.extraction.signals.ego_lanelets import those_on_lanes
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import (
     SignalPasses,
@@ -200,7 +201,7 @@ def _about_to_overtake(context: DriveContext) -> SignalColumns:
     Who is on a lane that joins others has to leave it, and overtakes nobody by that. Unknown of one
     that ego does not catch up with: they change lanes one after the other, and do not overtake.
     """
-    far, lane = (1 if context.side == "right" else -1), context.extents.lane
+    far = 1 if context.side == "right" else -1
     steps = round(context.thresholds.signalling_s / context.recording.step_s)
     onward = context.extents.lane_steps
     pulls_out = onward > 0 if far > 0 else onward < 0
@@ -213,17 +214,12 @@ def _about_to_overtake(context: DriveContext) -> SignalColumns:
     pulls_out[rows] &= inside & context.spans.after(inside)
     soon = np.zeros_like(pulls_out)
     soon[rows] = context.going_along[rows] & context.spans.within(pulls_out[rows], steps)
-    joining = np.array(
-        [[x is not None and JOINING in x.types for x in row] for row in context.road.rows]
-    )
-    joins: Flags | np.bool_ = np.False_
-    if joining.any():
-        joins = joining[context.road.piece(np.nan_to_num(context.extents.s)), lane]
-        soon &= ~joins
+    soon &= ~those_on_lanes(context, JOINING, soon)
     unknown, asked = soon.copy(), Cells.at(soon & told)
     unknown.ravel()[asked.places] = ~_caught_up(context, asked)
     if lit.any():
-        unknown |= told & lit & _ends_within(context, steps) & ~soon & ~joins
+        perhaps = told & lit & _ends_within(context, steps) & ~soon
+        unknown |= perhaps & ~those_on_lanes(context, JOINING, perhaps)
     return SignalColumns(
         about={"about_to_overtake": soon & lit}, unknown={"about_to_overtake": unknown}
     )

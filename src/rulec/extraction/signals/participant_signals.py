@@ -12,8 +12,8 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import (
     CYCLE_LANE,
     SHOULDER,
-    lanes_of_type,
     map_contents,
+    those_on_lanes,
 )
 from rulec.extraction.signals.following_signals import keeps_safe_gap, may_part
 from rulec.extraction.signals.intention_signals import may_have_broken_down
@@ -315,10 +315,9 @@ def _on_shoulder(context: DriveContext) -> SignalColumns:
         beyond = -others.middle_from(there.argmax(axis=2))
     else:
         beyond = others.middle_from(there.shape[2] - there[..., ::-1].argmax(axis=2))
-    shoulders = lanes_of_type(context.road, SHOULDER)
-    inside = shoulders[context.road.piece(np.nan_to_num(others.s)), others.lane]
     vehicles = context.tracks.of_type("vehicle")[:, None] & there.any(axis=2)
     along = vehicles & ~context.elsewhere & (np.abs(np.sin(others.turned)) < _ALONG)
+    inside = those_on_lanes(context, SHOULDER, along)
     stands = context.tracks.speed * KMH < context.thresholds.standing_kmh
     loose = context.tolerances.place_m + np.abs(context.map_offset_m)
     beside = along & (inside | (stands & (beyond > 0)))
@@ -349,9 +348,8 @@ def _in_the_road(context: DriveContext) -> SignalColumns:
             low, high = others.from_bound(edge)
             unsure[rows] |= np.abs(low + high) / 2 <= least
     if CYCLE_LANE in map_contents(context).types:
-        rides, others = context.tracks.of_type("light_rider")[:, None], context.extents
-        lanes = lanes_of_type(context.road, CYCLE_LANE)
-        unsure |= rides & lanes[context.road.piece(np.nan_to_num(others.s)), others.lane]
+        rides = context.tracks.of_type("light_rider")[:, None] & context.tracks.on_lane
+        unsure |= those_on_lanes(context, CYCLE_LANE, rides)
     return SignalColumns(
         about={"in_the_road": context.tracks.on_lane},
         only={"in_the_road": users},

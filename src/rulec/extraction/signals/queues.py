@@ -219,7 +219,7 @@ def queues_by_lane(context: DriveContext) -> tuple[Flags, Flags]:
     queues = np.zeros((len(READINGS), n_places), dtype=bool)
     if len(several):
         places = enough.nonzero()[0]
-        counts = around.counts.ravel().take(places)
+        counts = around.counts.take(places)
         n_short = _short_gaps(context, several, enough.cumsum().take(place) - 1, counts)
         queues[:, places] = n_short > _MOST * np.maximum(counts - 1, 0)
     return queues.reshape(len(READINGS), *shape), slow.reshape(shape)
@@ -250,7 +250,7 @@ def _short_gaps(
     near = longest_gaps(context, np.zeros(1), most_wrong)[STRICT]
     short = (gaps <= near)[None].repeat(len(READINGS), axis=0)
     rest = (gaps > near).ravel().nonzero()[0]
-    behind, gaps = behind.ravel().take(rest), gaps.ravel().take(rest)
+    behind, gaps = behind.take(rest), gaps.take(rest)
     longest_m = longest_gaps(context, around.speed.take(behind), around.speed_error.take(behind))
     for flags, limit in zip(short, longest_m, strict=True):
         flags.ravel()[rest] = gaps <= limit

@@ -126,8 +126,7 @@ class RoadExtents:
         steps = bound * len(self.left_of_min)
         places = (steps[cells.columns] + cells.rows) * len(bound) + cells.columns
         low, high = (
-            own.transpose(2, 0, 1).ravel().take(places)
-            for own in (self.left_of_min, self.left_of_max)
+            own.transpose(2, 0, 1).take(places) for own in (self.left_of_min, self.left_of_max)
         )
         return low, high
 
@@ -224,8 +223,7 @@ class _LaidExtents(RoadExtents):
         places *= own.left_of_min.shape[1]
         places += columns
         low, high = (
-            own.transpose(2, 0, 1).ravel().take(places)
-            for own in (own.left_of_min, own.left_of_max)
+            own.transpose(2, 0, 1).take(places) for own in (own.left_of_min, own.left_of_max)
         )
         return low, high
 
@@ -296,7 +294,7 @@ def _at_bound(left_of: Floats, bound: NDArray[intp]) -> Floats:
         return left_of[:, :, int(of_column[0])]
     if rows == 1:
         places = of_column * columns + np.arange(columns)
-        of_bound: Floats = left_of.transpose(2, 0, 1).ravel().take(places)[None]
+        of_bound: Floats = left_of.transpose(2, 0, 1).take(places)[None]
         return of_bound
     changes = (is_new.nonzero()[0] + 1).tolist()
     starts, ends = [0, *changes], [*changes, columns]

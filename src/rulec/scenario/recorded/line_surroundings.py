@@ -33,7 +33,7 @@ class LineSurroundings:
             np.fmin(np.fmax((values - low) * (1 / self.size), 0.0), count - 1).astype(np.int32)
             for values, low, count in zip((x, y), self.corner, self.flags.shape, strict=True)
         )
-        flags: NDArray[bool_] = self.flags.ravel().take(i * self.flags.shape[1] + j)
+        flags: NDArray[bool_] = self.flags.take(i * self.flags.shape[1] + j)
         return flags
 
 

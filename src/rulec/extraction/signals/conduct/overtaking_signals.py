@@ -18,9 +18,9 @@ from rulec.extraction.signals.conduct.manoeuvre_signals import (
 )
 from rulec.extraction.signals.ego_lanelets import (
     CYCLE_LANE,
-    lanes_of_type,
     map_contents,
     own_lanelets,
+    those_on_lanes,
 )
 from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
@@ -280,8 +280,7 @@ def _ride_along(context: DriveContext) -> Flags:
     others, rides = context.extents, context.tracks.of_type("light_rider")
     along = context.in_sight & rides[:, None] & (abs(others.turned) < 1.0) & context.on_lanes
     if CYCLE_LANE in map_contents(context).types:
-        lanes = lanes_of_type(context.road, CYCLE_LANE)
-        along = along & ~lanes[context.road.piece(np.nan_to_num(others.s)), others.lane]
+        along &= ~those_on_lanes(context, CYCLE_LANE, along)
     return along
 
 

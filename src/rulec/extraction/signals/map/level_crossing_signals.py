@@ -91,9 +91,10 @@ def _tracks_at_kerb(context: DriveContext) -> SignalColumns:
     kerb = there.argmax(axis=1)
     if context.side == "left":
         kerb = there.shape[1] - 1 - there[:, ::-1].argmax(axis=1)
-    runs = context.relevant & context.on_lanes & (abs(context.extents.turned) < 1.0)
-    runs &= context.tracks.of_type("rail_vehicle")[:, None]
-    in_it = (runs & (context.extents.lane == kerb)).any(axis=0)
+    rails = context.tracks.of_type("rail_vehicle")
+    runs = context.relevant[rails] & context.on_lanes[rails]
+    runs &= abs(context.extents.turned[rails]) < 1.0
+    in_it = (runs & (context.extents.lane[rails] == kerb)).any(axis=0)
     return SignalColumns({"tracks_at_kerb": _pieces_by_rails(context)[pieces] | in_it})
 
 

@@ -53,10 +53,10 @@ class WordsTogether:
             if not self._has_room(int(rows.max()), n_sets):
                 return None
             cells = rows * self._table.shape[1] + letters.take(at[:count])
-            next_ones = self._table.ravel().take(cells)
+            next_ones = self._table.take(cells)
             if next_ones.min() < 0:
                 self._fill(distinct(cells[next_ones < 0]))
-                next_ones = self._table.ravel().take(cells)
+                next_ones = self._table.take(cells)
             found[:count] = next_ones
             at += 1
         kept = np.empty(len(order), dtype=bool)
