@@ -161,7 +161,7 @@ class TrafficWorld:
 
     def bodies_along(self, futures: NDArray[float64], past: NDArray[float64]) -> list[Participant]:
         """Ego along each candidate after what was before."""
-        before = np.broadcast_to(past, (len(futures), *past.shape))
+        before = past[None].repeat(len(futures), axis=0)
         return self._bodies(np.concatenate((before, futures), axis=1), self.now + 1 - len(past))
 
     def body_at(self, rows: NDArray[float64], first: int) -> Participant:

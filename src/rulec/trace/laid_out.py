@@ -13,7 +13,7 @@ from numpy import bool_, float64, intp
 from numpy.typing import NDArray
 
 _SHORT = 48
-"""Columns of ranges that are shorter are picked one by one, others are copied range by range."""
+"""Columns of ranges that are shorter are picked one by one, others, and one, range by range."""
 
 _LONG = 200
 """Of ranges that are longer those who are absent are found for each by itself."""
@@ -93,9 +93,6 @@ def one_behind_the_other(
     values: NDArray[Any], ranges: Sequence[slice], columns: NDArray[intp]
 ) -> NDArray[Any]:
     """An array's part in ranges of its last axis, whose ``columns`` are these."""
-    if len(ranges) == 1:
-        part: NDArray[Any] = values[..., ranges[0]].copy()
-        return part
-    if len(columns) < _SHORT * len(ranges):
+    if len(ranges) > 1 and len(columns) < _SHORT * len(ranges):
         return values.take(columns, axis=-1)
     return np.concatenate([values[..., own] for own in ranges], axis=-1)

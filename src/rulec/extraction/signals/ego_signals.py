@@ -138,9 +138,8 @@ def _lane_count(context: DriveContext) -> SignalColumns:
     places = own.s_min[0], own.s[0], own.s_max[0]
     counts = [travel_lanes_at(context, at).sum(axis=1) for at in places]
     count = np.maximum.reduce(counts)
-    return SignalColumns(
-        {"lanes": np.minimum(np.maximum(count - 1, 0), 2)}, texts={"lanes": _COUNTS}
-    )
+    numbers = np.minimum(np.maximum(count - 1, 0), 2)
+    return SignalColumns({"lanes": numbers}, texts={"lanes": _COUNTS})
 
 
 def _lane_position(context: DriveContext) -> SignalColumns:

@@ -163,9 +163,8 @@ def _at_far_side(context: DriveContext, lanes: Flags) -> Flags:
 def _beside(context: DriveContext, lanes: Flags) -> Flags:
     lane = context.ego_lane + (1 if context.side == "right" else -1)
     inside = (lane >= 0) & (lane < len(lanes))
-    beside: Flags = (
-        inside & lanes[np.minimum(np.maximum(lane, 0), len(lanes) - 1), context.spans.columns]
-    )
+    lane = np.minimum(np.maximum(lane, 0), len(lanes) - 1)
+    beside: Flags = inside & lanes[lane, context.spans.columns]
     return beside
 
 

@@ -35,7 +35,7 @@ _PUBLIC = ("bus", "rail_vehicle")
 def _boarding(context: DriveContext) -> SignalColumns:
     public = np.any([context.tracks.of_type(kind) for kind in _PUBLIC], axis=0)[:, None]
     if not public.any():
-        nobody = np.zeros_like(context.relevant)
+        nobody = np.zeros(context.relevant.shape, dtype=bool)
         return SignalColumns(about={"boarding": nobody}, unknown={"boarding": nobody})
     stops = public & stands(context)
     doors, told = lit_lamps(context, "doors")

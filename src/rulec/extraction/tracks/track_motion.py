@@ -75,7 +75,7 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     """
     present = ~np.isnan(poses.x)
     window = _Window.around(present, max(1.0, smoothing_s / 2 / step_s))
-    columns = np.broadcast_to(np.arange(present.shape[1], dtype=float), present.shape)
+    columns = np.arange(present.shape[1], dtype=float)[None].repeat(len(present), axis=0)
     duration = window.gained(columns)
     seconds = np.where(duration > 0, duration, np.nan) * step_s
     vx, vy = window.gained(poses.x) / seconds, window.gained(poses.y) / seconds
@@ -88,7 +88,7 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     forward = vx * cos + vy * sin
     along = np.abs(forward)
     steers = poses.steers & (
-        np.nansum(along * speed, axis=1) >= _LEAST_PART * np.nansum(speed**2, axis=1)
+        zero_if_nan(along * speed).sum(axis=1) >= _LEAST_PART * zero_if_nan(speed**2).sum(axis=1)
     )
     speed = np.where(steers[:, None], along, speed)
     own = np.zeros(len(present), dtype=bool)
@@ -200,9 +200,9 @@ def _differ(
     speed: NDArray[float64], stated: NDArray[float64]
 ) -> tuple[NDArray[float64], NDArray[float64]]:
     """By how much participants' mean speeds from places and stated ones differ; the latter."""
-    count = np.maximum(np.sum(~np.isnan(stated), axis=1), 1)
-    told = np.nansum(stated, axis=1) / count
-    return np.abs(np.nansum(speed, axis=1) / count - told), told
+    count = np.maximum((~np.isnan(stated)).sum(axis=1), 1)
+    told = zero_if_nan(stated).sum(axis=1) / count
+    return np.abs(zero_if_nan(speed).sum(axis=1) / count - told), told
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -91,7 +91,7 @@ class Lanes:
         start = self.s.take(before)
         part = np.minimum(np.maximum((at - start) / (self.s.take(before + 1) - start), 0.0), 1.0)
         # The axis of the bounds comes first in memory
-        first, second = (np.take(self.bounds.T, number, axis=1) for number in (before, before + 1))
+        first, second = (self.bounds.T.take(number, axis=1) for number in (before, before + 1))
         first *= 1 - part
         second *= part
         first += second

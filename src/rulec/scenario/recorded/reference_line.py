@@ -145,7 +145,7 @@ class ReferenceLine:
         if not len(places):
             return np.empty((0, 2))
         numbers, pieces = self._fans.candidates(places, low, high)
-        ux, uy, x, y, lengths, first, change, arc = np.take(self.piece_fans.columns, pieces, axis=1)
+        ux, uy, x, y, lengths, first, change, arc = self.piece_fans.columns.take(pieces, axis=1)
         dx, dy = places[numbers, 0] - x, places[numbers, 1] - y
         along = dx * ux + dy * uy
         across = ux * dy - uy * dx

@@ -56,7 +56,7 @@ def _emergency_vehicle_near(context: DriveContext) -> SignalColumns:
 @once
 def _surely_near(context: DriveContext) -> Flags:
     """Flags of those on call that drive and come near for sure."""
-    found: Flags = np.zeros_like(context.relevant)
+    found: Flags = np.zeros(context.relevant.shape, dtype=bool)
     on_call, _ = _on_call(context)
     rows = on_call.any(axis=1).nonzero()[0]
     if len(rows):
@@ -100,7 +100,7 @@ def _on_call(context: DriveContext) -> tuple[Flags, Flags]:
     called = context.tracks.of_type("emergency_vehicle")[:, None]
     kinds = np.array([body.type == "unknown" for body in context.tracks.participants], dtype=bool)
     if not called.any():
-        nobody = np.zeros_like(context.relevant)
+        nobody = np.zeros(context.relevant.shape, dtype=bool)
         return nobody, nobody | kinds[:, None]
     blue, told = lit_lamps(context, "blue_light")
     blue = flashing(blue, context)

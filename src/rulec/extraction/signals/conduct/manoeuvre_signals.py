@@ -15,6 +15,7 @@ from rulec.extraction.tracks.road_extents import RoadExtents
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
 from rulec.recordings.recording import HEADINGS
 from rulec.scenario.recorded.reference_line import turn
+from rulec.trace.plain_arrays import zero_if_nan
 
 _SIDES = ("own_side", "oncoming_side", "wrong_way")
 
@@ -324,7 +325,7 @@ def _may_go_round(context: DriveContext) -> Flags:
     if _may_go_round not in known:
         tracks, present = context.own.tracks, context.own.tracks.present
         steps = np.abs(turn(tracks.heading[:, :-1], tracks.heading[:, 1:]))
-        turned = np.nansum(steps, axis=1) > _ROUND_RAD - _HAIR_RAD
+        turned = zero_if_nan(steps).sum(axis=1) > _ROUND_RAD - _HAIR_RAD
         known[_may_go_round] = turned | ((present[:, 1:] != present[:, :-1]).sum(axis=1) > 2)
     return cast("Flags", known[_may_go_round])
 

@@ -56,7 +56,7 @@ def _crossing_use(context: DriveContext) -> SignalColumns:
 def _stopped_for_pedestrian(context: DriveContext) -> SignalColumns:
     if not crossings_told(context):
         return SignalColumns()
-    stopped = np.zeros_like(context.relevant)
+    stopped = np.zeros(context.relevant.shape, dtype=bool)
     if len(_pedestrians(context)):
         rows = _pedestrians(context)
         # Who waits or comes at a crossing with lights waits for these

@@ -114,9 +114,8 @@ class MapMatching:
     def _columns_and_changes(self) -> tuple[list[int], list[int]]:
         """The column of each state, and the states whose lane is not that of the one before."""
         lanes, _ = self._paths
-        return self._candidates.columns.tolist(), (
-            (lanes[1:] != lanes[:-1]).nonzero()[0] + 1
-        ).tolist()
+        changes = (lanes[1:] != lanes[:-1]).nonzero()[0] + 1
+        return self._candidates.columns.tolist(), changes.tolist()
 
     @cached_property
     def lanelets(self) -> NDArray[intp]:
@@ -234,10 +233,11 @@ def _cheapest(
 ) -> tuple[list[tuple[int, bool]], list[float]]:
     """For each candidate the one before and whether its stretch breaks there; and the costs."""
     ways, costs = [], []
-    for off_own, changed, more in zip(off, changes, own, strict=True):
+    for place, more in enumerate(own):
+        away, change = off[place], changes[place]
         least, way = inf, (0, False)
-        for number, (cost, away, change) in enumerate(zip(before, off_own, changed, strict=True)):
-            through, broken = cost + away + change, cost + BREAK_COST
+        for number, cost in enumerate(before):
+            through, broken = cost + away[number] + change[number], cost + BREAK_COST
             cheaper = broken if broken < through else through
             if cheaper < least or not number:
                 least, way = cheaper, (number, through > broken)

@@ -307,8 +307,8 @@ def _entangled_words(
     for values, numbers, letters in alternatives:
         entangled = None
         if rule.related and not odd.all():
-            partial = rule.letters.are_partial(numbers, rule.related)
-            partial = np.broadcast_to(partial, (len(spots.states),))
+            partial = np.zeros(len(spots.states), dtype=bool)
+            partial |= rule.letters.are_partial(numbers, rule.related)
             if partial.any():
                 about = spots, partial
                 crowd = crowd or CrowdedStates(rule, reader)
