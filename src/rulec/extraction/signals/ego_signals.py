@@ -185,7 +185,7 @@ def _in_two_lanes(context: DriveContext, states: NDArray[intp]) -> tuple[Flags, 
     shifts = [np.zeros(len(states)), *([offset[states]] if offset.any() else [])]
     tried = [(0.0, shifts[0]), *product((place, -place), shifts)]
     # Numbers of tries are the first axis
-    by = -np.stack([shift for _, shift in tried])[..., None]
+    by = -np.array([shift for _, shift in tried])[..., None]
     own = context.ego_extents
     bounds = {
         "left_of_min": own.left_of_min[0, states] + by,

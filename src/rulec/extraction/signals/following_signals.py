@@ -250,7 +250,7 @@ def _brief_and_slight(context: DriveContext, late: Cells, far_too_late: Flags) -
     is_first = begin_runs(late.places)
     is_first |= context.spans.begins_here.take(late.columns)
     begins = is_first.nonzero()[0]
-    lengths = np.diff(begins, append=len(late))
+    lengths = np.concatenate((begins[1:], (len(late),))) - begins
     brief = lengths * context.recording.step_s < _BRIEF_S - _HAIR_S
     slight = ~np.logical_or.reduceat(far_too_late, begins)
     return (brief & slight).repeat(lengths)

@@ -71,7 +71,7 @@ def _changed(
     """
     changed: dict[str, SignalColumn] = {}
     for names in _alike(columns, least):
-        before = np.stack([columns[name] for name in names])
+        before = np.array([columns[name] for name in names])
         after = without_blips(before, least[names[0]], spans)
         brief = _brief_at_ends(after, least[names[0]], spans)
         for number, name in enumerate(names):

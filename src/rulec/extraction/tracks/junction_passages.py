@@ -87,7 +87,7 @@ class JunctionPassages:
         if rigid:
             # One by one they take ten times as long
             way = np.array([own.track.rows[0, 2] for own in rigid.values()])
-            corners = np.stack([own.laid_out[0] for own in rigid.values()])
+            corners = np.array([own.laid_out[0] for own in rigid.values()])
             ahead = corners @ np.stack((np.cos(way), np.sin(way)), axis=-1)[:, :, None]
             found[list(rigid)] = np.ptp(ahead[:, :, 0], axis=1)
         return found

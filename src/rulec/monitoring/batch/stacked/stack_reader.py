@@ -181,8 +181,8 @@ class StackReader:
             met = self.met_values.values(read.names[0])
             if met & (met - 1):
                 return found
-        if isinstance(found, np.ndarray) and len(found) and (found == found[0]).all():
-            return int(found[0])
+        if isinstance(found, np.ndarray) and len(found) and found[0] == found[-1]:
+            return int(found[0]) if (found == found[0]).all() else found
         return found
 
     def _of(self, read: StackedRead, spots: Spots) -> Numbers:

@@ -192,7 +192,7 @@ class _Chosen:
             return self
         instances = self.instances.part(members)
         bounds, spots = instances.spots(rule, reader.stack)
-        at, _ = ranges(self.bounds[members], np.diff(bounds))
+        at, _ = ranges(self.bounds[members], bounds[1:] - bounds[:-1])
         numbers = self.numbers.part(spots, at)
         return replace(self, instances=instances, bounds=bounds, spots=spots, numbers=numbers)
 
