@@ -118,7 +118,7 @@ def test_rules_of_the_other_side_are_refused():
 
 @pytest.mark.parametrize(("kind", "lacking"), [("bus", True), ("car", False)])
 def test_a_bus_may_be_a_school_bus_for_maneuvers_as_for_drives(kind, lacking):
-    other = vehicle(10, {k: (90.0, 4.0) for k in range(13)}, kind, speed=0.0)
+    other = vehicle(10, dict.fromkeys(range(13), (90.0, 4.0)), kind, speed=0.0)
     made = replace(recording(LANES, [other], ego=(60, 0)), side="right")
     found = find_maneuvers(seen_from_ego(made, Choice(), "f.xml"), compile_rulebook("us-ca"))
     untold = {name for one in found.not_judged if one.rule == "school_bus" for name in one.untold}
