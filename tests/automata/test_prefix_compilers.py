@@ -70,6 +70,15 @@ def test_who_asks_for_a_compiler_gets_it(asked, monkeypatch):
     assert asked == [(None, FIRST)]
 
 
+@pytest.mark.parametrize("name", available_rulebooks(()))
+def test_cut_words_of_what_ships_need_no_spot(name):
+    book = StepCompiler(load_rulebook(name)).at_own_steps()
+    jobs = [job for rule in book.rules for job in prefix_machines._jobs(rule, book)]
+    answers, _ = ASKED(jobs, choice=compiler_choice.DIAGRAMS)
+    found = zip(jobs, answers, strict=True)
+    assert [job.name for job, answer in found if not isinstance(answer, Done)] == []
+
+
 @pytest.mark.long
 @pytest.mark.spot
 @pytest.mark.parametrize("name", available_rulebooks(()))
