@@ -42,9 +42,8 @@ def untold_names(vocabulary: Vocabulary, told: frozenset[str] | None) -> frozens
 
 def untold_types(vocabulary: Vocabulary, told: frozenset[str] | None) -> frozenset[str]:
     """The types of objects that a source which tells some others by name never tells."""
-    if told is None or told.isdisjoint(vocabulary.types):
-        return frozenset()
-    return frozenset(vocabulary.types.keys() - told)
+    types = vocabulary.types.keys()
+    return frozenset() if told is None or types.isdisjoint(told) else frozenset(types - {*told})
 
 
 def with_untold(vocabulary: Vocabulary, untold: frozenset[str]) -> Vocabulary:
