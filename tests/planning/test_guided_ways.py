@@ -46,13 +46,20 @@ def scene(*others):
     return Scenario("h", road, ego, others, step_s=1.0, horizon_s=3.0)
 
 
+def found_in(scene):
+    """The maneuvers of a scene; None where ego has no place to start from."""
+    try:
+        return find_maneuvers(scene, PAPER)
+    except RulecError:
+        return None
+
+
 @given(scenes())
 @example(scene(car("c0", 0.0, 7.0, d=4)))  # ego's middle is behind it, at the mark between lanes
 @settings(max_examples=20)
 def test_no_path_is_cheaper_than_it_promises(scene):
-    try:
-        found = find_maneuvers(scene, PAPER)
-    except RulecError:
+    found = found_in(scene)
+    if found is None:
         return
     search, graph = found._search, found.graph
     ways = islice(guided_ways(found.product, graph, search.bounds, 10_000), 400)
@@ -66,9 +73,8 @@ def test_no_path_is_cheaper_than_it_promises(scene):
 @given(scenes())
 @settings(max_examples=20)
 def test_the_first_one_is_the_cheapest(scene):
-    try:
-        found = find_maneuvers(scene, PAPER)
-    except RulecError:
+    found = found_in(scene)
+    if found is None:
         return
     every = [with_trajectory(one, found.graph, found._search) for one in cheapest(found.product)]
     costs = [one.cost for one in every if one is not None]
@@ -80,9 +86,8 @@ def test_the_first_one_is_the_cheapest(scene):
 @given(scenes())
 @settings(max_examples=20)
 def test_a_beam_as_wide_as_the_graph_loses_nothing(scene):
-    try:
-        found = find_maneuvers(scene, PAPER)
-    except RulecError:
+    found = found_in(scene)
+    if found is None:
         return
     every, bounds = found.product, found._search.bounds
     guided = {way.maneuver.nodes for way in guided_ways(every, found.graph, bounds, 10_000)}
@@ -94,9 +99,8 @@ def test_a_beam_as_wide_as_the_graph_loses_nothing(scene):
 @given(scenes())
 @settings(max_examples=20)
 def test_where_beginnings_are_too_many_a_way_is_found_all_the_same(scene):
-    try:
-        found = find_maneuvers(scene, PAPER)
-    except RulecError:
+    found = found_in(scene)
+    if found is None:
         return
     (best,) = found.cheapest(1) or (None,)
     with pytest.MonkeyPatch.context() as patch:

@@ -145,8 +145,7 @@ cell_options = combined(
             type=click.Choice(["lane", "clearance", "body"]),
             help="How wide obstacles are: all of the lanes that they touch; those, but for where "
             "ego has room beside them in a lane; or what they sweep, and half of ego's width to "
-            "either side.  [default: clearance in a recorded scene with "
-            "bounds, else lane]",
+            "either side.  [default: clearance in a recorded scene with bounds, else lane]",
         ),
         choice_option(
             "--adjacency",
