@@ -1,12 +1,11 @@
 """How long it takes to score sampled futures of a vehicle among twenty others, by ``de``.
 
-``RULEC_OLDER`` may name checkouts of older commits, separated by colons, which are measured in
-processes of their own, each in its turn.
+``RULEC_OLDER`` may name checkouts of older commits, separated by colons, by whose rules, and by
+whose code if it can score, the same is measured, each in its turn.
 """
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 import time
@@ -16,6 +15,7 @@ from statistics import median
 from typing import NamedTuple
 
 import numpy as np
+from checkouts import commit, environment, german_rules, older_checkouts, python
 from figure import Figure, Result
 from program import run
 
@@ -24,34 +24,52 @@ import rulec
 STEP_S = 0.5
 N_STATES, N_OTHERS, N_CANDIDATES = 40, 20, 1_000
 WANTED_MS, WANTED_ONE_MS = 500.0, 5.0
-FEW = 50
-"""So many are scored by an older commit, and for each by itself."""
+TOGETHER = "1,000 candidates together"
+ALONE = "one after a past"
+SECOND = (
+    "One after a past is meant from the second call in a world on: the first one prepares the map "
+    "and the others, and the first of a process loads what it needs and makes rules ready."
+)
+BY_VERIFY, ONE_BY_ONE = "a candidate by `verify`", "`verify`, one by one"
 
 
-def measure(_rounds: int) -> Iterator[Result]:
-    """Once each: it takes so long that a busy moment does not matter."""
-    older = [Path(one) for one in os.environ.get("RULEC_OLDER", "").split(":") if one]
-    own = in_process(Path.cwd(), N_CANDIDATES)
-    together = own.together
-    whole = "1,000 candidates together"
-    figures = [Figure(whole, "ms", together, together, WANTED_MS)]
-    one = "one after a past"
-    figures.append(Figure(one, "ms", median(own.alone), min(own.alone), WANTED_ONE_MS))
-    figures.append(Figure(f"{one}, first in a world", "ms", *[own.in_new_world] * 2))
-    figures.append(Figure(f"{one}, first in a process", "ms", *[own.first] * 2))
-    each = Figure("a candidate, of 1,000 together", "ms", *[together / N_CANDIDATES] * 2)
-    figures.append(each)
-    for checkout in older:
-        then = in_process(checkout, FEW)
-        name = f"commit {checkout.name}"
-        figures.append(Figure(f"a candidate, {name}", "ms", *[then.together / FEW] * 2))
-        figures.append(Figure(f"a candidate by verify, {name}", "ms", *[then.verified] * 2))
-        figures.append(Figure(f"{one}, {name}", "ms", median(then.alone), min(then.alone)))
+def measure(rounds: int) -> Iterator[Result]:
+    """In processes of their own, in turns."""
+    here = Path.cwd()
+    tasks: dict[str, tuple[Path, str]] = {"": (here, "de")}
+    for checkout in older_checkouts():
+        then = commit(checkout)
+        tasks[f", by the rules of {then}"] = (here, str(german_rules(checkout)))
+        if (checkout / "src/rulec/scoring").is_dir():
+            tasks[f", {then}"] = (checkout, "de")
+    taken: dict[str, list[Taken]] = {name: [] for name in tasks}
+    for _ in range(rounds):
+        for name, task in tasks.items():
+            taken[name].append(in_process(*task))
+    own = taken[""]
+    whole, each = [one.together for one in own], [one.verified for one in own]
+    ratio = N_CANDIDATES * median(each) / median(whole)
+    figures = [
+        Figure(TOGETHER, "ms", median(whole), min(whole), WANTED_MS, ONE_BY_ONE, ratio),
+        Figure(BY_VERIFY, "ms", median(each), min(each)),
+    ]
+    for name, found in taken.items():
+        if name:
+            whole = [one.together for one in found]
+            figures.append(Figure(TOGETHER + name, "ms", median(whole), min(whole)))
+        alone = [one_ms for one in found for one_ms in one.alone]
+        figures.append(Figure(ALONE + name, "ms", median(alone), min(alone), WANTED_ONE_MS))
+    for what, times in (
+        ("first in a world", [one.in_new_world for one in own]),
+        ("first in a process", [one.first for one in own]),
+    ):
+        figures.append(Figure(f"{ALONE}, {what}", "ms", median(times), min(times)))
     yield Result(
         "Scores of futures: de",
         f"candidates of {N_STATES} states among {N_OTHERS} others on two lanes, in a world that is "
-        "prepared; older commits score 50",
+        "prepared",
         figures,
+        [SECOND],
     )
 
 
@@ -68,16 +86,13 @@ class Taken(NamedTuple):
     alone: list[float]
 
 
-def in_process(checkout: Path, count: int) -> Taken:
-    """What a checkout takes for so many candidates."""
-    own = checkout / ".venv" / "bin" / "python"
-    python = str(own) if own.exists() else sys.executable
-    environment = {**os.environ, "PYTHONPATH": str(checkout / "src")}
+def in_process(checkout: Path, rules: str) -> Taken:
+    """What a checkout takes by its rules, or other ones."""
     done = subprocess.run(
-        [python, __file__, str(count)],
+        [python(checkout), __file__, "--of", rules],
         capture_output=True,
         text=True,
-        env=environment,
+        env=environment(checkout),
         check=True,
     )
     together, verified, first, in_new_world, *alone = map(float, done.stdout.split())
@@ -129,10 +144,10 @@ def sampled(count: int, start: np.ndarray) -> np.ndarray:
     return np.array(found)
 
 
-def main(count: int) -> None:
-    """Print how long a checkout takes."""
-    book, here = rulec.compile("de"), world()
-    candidates = sampled(count, here.past[-1])
+def main(rules: str) -> None:
+    """Print how long it takes here."""
+    book, here = rulec.compile(rules), world()
+    candidates = sampled(N_CANDIDATES, here.past[-1])
 
     def taken(run_it) -> float:  # type: ignore[no-untyped-def]
         start = time.process_time()
@@ -144,7 +159,7 @@ def main(count: int) -> None:
         for own in (world(), here)
     )
     rulec.score(candidates[:2], here, book, here.past)
-    print(taken(lambda: rulec.score(candidates, here, book)))
+    print(min(taken(lambda: rulec.score(candidates, here, book)) for _ in range(3)))
     recordings = [here.recording_of(one) for one in candidates[:10]]
     wanted = rulec.RequestedDrives((here.ego,))
     each = [
@@ -158,7 +173,7 @@ def main(count: int) -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 1 and sys.argv[1].isdigit():
-        main(int(sys.argv[1]))
+    if sys.argv[1:2] == ["--of"]:
+        main(sys.argv[2])
     else:
-        run(measure, rounds=1)
+        run(measure, rounds=3)
