@@ -25,7 +25,8 @@ from rulec.automata.thresholds import scale
 from rulec.logic.free_names import names_in
 from rulec.monitoring.batch.batch_verify import verify_many
 from rulec.monitoring.online.running_monitor import Monitor
-from rulec.monitoring.verify import verify
+from rulec.monitoring.verdict import Verdict
+from rulec.monitoring.verify import verify, verify_or_reason
 from rulec.trace import Trace
 from rulec.vocabulary import Enumeration, Quantity
 from rulec.vocabulary.partial_values import UNKNOWN
@@ -155,7 +156,7 @@ def drawn(rules: CompiledRulebook, seed: int, n_vehicles: int, n_states: int = N
     vocabulary = rules.vocabulary
     names = [name for name in vocabulary.declarations if name in telling]
     states: list[dict[str, Any]] = []
-    for _ in range(n_states):
+    while len(states) < n_states:
         state: dict[str, Any] = {}
         for name in names:
             declaration = vocabulary.declarations[name]
@@ -164,7 +165,9 @@ def drawn(rules: CompiledRulebook, seed: int, n_vehicles: int, n_states: int = N
                 if before is None or (not declaration.constant and chance.random() < CHANGE):
                     before = chance.choice(telling[name])
                 put(state, name, items, before)
-        states.append(state)
+        # What the book's facts exclude is drawn anew.
+        if isinstance(verify_or_reason(Trace("one", STEP_S, objects, (state,)), rules), Verdict):
+            states.append(state)
     return Trace(f"t{seed}", STEP_S, objects, tuple(states))
 
 
