@@ -95,7 +95,11 @@ def beside_older(folder: Path) -> Iterator[Result]:
                 else taken[what].against(peer, names[0], what, "s", least_ratio=LEAST_RATIO)
                 for what in tasks
             ],
-            [f"`{what}`: {said_of_rules(file, *task)}." for what, task in tasks.items()],
+            [
+                f"`{what}`: {said_of_rules(file, rules)}."
+                for what, (_, rules) in tasks.items()
+                if what not in names
+            ],
         )
 
 
@@ -153,10 +157,12 @@ def judging(file: Path, checkout: Path, rules: str | Path) -> Timed:
     return lambda: timed(command, environment, (0, 1))
 
 
-def said_of_rules(file: Path, checkout: Path, rules: str | Path) -> str:
-    """How many of a checkout's rules could be judged, in its words."""
-    command, environment = verify(file, checkout, rules)
-    said = subprocess.run(command, capture_output=True, text=True, env=environment).stdout
+def said_of_rules(file: Path, rules: str | Path) -> str:
+    """How many rules could be judged, as this commit says it."""
+    command, environment = verify(file, ROOT, rules)
+    said = subprocess.run(
+        command, capture_output=True, text=True, env=environment, check=False
+    ).stdout
     line = next(one for one in said.splitlines() if one.startswith("rules "))
     return line.removeprefix("rules ").strip()
 
