@@ -20,7 +20,7 @@ from rulec.vocabulary import Vocabulary
 from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, canonical_term, counts_in
 from rulec.witnesses.undecided import UndecidedError
 
-MOST_LETTERS = 1 << 14
+MOST_LETTERS = 1 << 15
 """An axiom or a count that reads more than these is left undecided."""
 
 Reads = tuple[Read | NumberRead, ...]
