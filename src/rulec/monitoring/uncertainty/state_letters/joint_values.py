@@ -8,19 +8,19 @@ found by a few conjunctions, even where it has not been seen before.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import reduce
 from itertools import product
 from math import prod
-from operator import itemgetter
+from operator import itemgetter, or_
+from types import MappingProxyType
 from typing import Any, NamedTuple, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
+from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic import formula as ltl
 from rulec.logic.kleene import holds
 from rulec.monitoring.state_view import StateView, with_values
-from rulec.monitoring.uncertainty.state_letters.completions.completions import (
-    MOST_COMPLETIONS,
-    Digits,
-)
+from rulec.monitoring.uncertainty.state_letters.completions.completions import Digits
 from rulec.monitoring.uncertainty.state_letters.read_digits import ReadDigits
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     MissingValueError,
@@ -37,8 +37,14 @@ from rulec.vocabulary.vocabulary_model import choices
 MOST_KNOWN = 1 << 14
 """Values of which it is kept what they come to before all are forgotten."""
 
+MOST_WAYS = 1 << 15
+"""Ways to give subjects values of which a set of bits is made: of 4 kB."""
+
 Bits: TypeAlias = int
 """A set of ways to give all subjects values."""
+
+Alike: TypeAlias = tuple[tuple[Value, ...], ...]
+"""The values of a word or a truth, in groups of those that are not told apart."""
 
 
 class FactInstance(NamedTuple):
@@ -52,8 +58,8 @@ class FactInstance(NamedTuple):
 class JointValues:
     """All ways to give ``subjects`` values, and which of them ``facts`` about them allow.
 
-    Raises LookupError if there are too many, if some subject is a number, or if a fact is about
-    more than these.
+    Values that are ``alike`` are one, by name; of other names no two are. Raises LookupError if
+    there are too many ways, if some subject is a number, or if a fact is about more than these.
     """
 
     def __init__(
@@ -62,28 +68,34 @@ class JointValues:
         facts: Iterable[FactInstance],
         objects: Mapping[str, str],
         vocabulary: Vocabulary,
+        alike: Mapping[str, Alike] = MappingProxyType({}),
     ) -> None:
         self._objects, self._vocabulary = objects, vocabulary
         self._nobody = StateView({}, objects, vocabulary)
         declared = [vocabulary.declarations[name] for name, _ in subjects]
         if any(isinstance(declaration, Quantity) for declaration in declared):
             raise LookupError
-        values = [values_of(declaration) for declaration in declared]
-        self._n_ways = prod(map(len, values))
-        if self._n_ways > MOST_COMPLETIONS:
+        values = [
+            alike.get(name) or tuple([(value,) for value in values_of(declaration)])
+            for (name, _), declaration in zip(subjects, declared, strict=True)
+        ]
+        n_ways = prod(map(len, values))
+        if n_ways > MOST_WAYS:
             raise LookupError
-        self._all = (1 << self._n_ways) - 1
+        self._all = (1 << n_ways) - 1
         self._ways: dict[Subject, dict[Value, Bits]] = {}
-        stride = 1
-        for subject, own in zip(subjects, values, strict=True):
-            period = stride * len(own)
-            first = ((1 << stride) - 1) * (self._all // ((1 << period) - 1))
-            self._ways[subject] = {value: first << n * stride for n, value in enumerate(own)}
-            stride = period
+        """By each subject the ways that have a value, which stands for those like it."""
         self._of_places: list[dict[Any, Bits]] = []
-        for subject in subjects:
+        stride = 1
+        for subject, groups in zip(subjects, values, strict=True):
+            period = stride * len(groups)
+            first = ((1 << stride) - 1) * (self._all // ((1 << period) - 1))
+            ways = [first << n * stride for n in range(len(groups))]
+            self._ways[subject] = {own[0]: bits for own, bits in zip(groups, ways, strict=True)}
             self._of_places.append({UNKNOWN: self._all})
-            self._of_places[-1].update(self._ways[subject])
+            for own, bits in zip(groups, ways, strict=True):
+                self._of_places[-1].update(dict.fromkeys(own, bits))
+            stride = period
         self._allowed = self._all
         places = {subject: place for place, subject in enumerate(subjects)}
         self._facts: list[tuple[Sequence[int], Bits]] = []
@@ -105,7 +117,7 @@ class JointValues:
             if known is None:
                 if not isinstance(value, OneOf):
                     raise LookupError
-                known = own[value] = sum([own[one] for one in value.values])
+                known = own[value] = reduce(or_, [own[one] for one in value.values])
             found &= known
         allowed = found & self._allowed
         if allowed or strict:
@@ -206,6 +218,45 @@ def instances_of(axiom: CompiledAxiom, everybody: PartialView) -> Iterator[FactI
 def values_of(declaration: Declaration) -> Sequence[Value]:
     """The values of a word or a truth."""
     return declaration.values if isinstance(declaration, Enumeration) else (False, True)
+
+
+def alike_values(
+    names: Iterable[str],
+    reads: Sequence[Read | NumberRead],
+    facts: Sequence[ltl.Formula],
+    vocabulary: Vocabulary,
+) -> dict[str, Alike]:
+    """The values of words in groups that neither reads nor facts tell apart."""
+    bodies = [
+        term.body
+        for read in reads
+        if isinstance(read, NumberRead)
+        for _, term in read.terms
+        if isinstance(term, ltl.Count)
+    ]
+    asked = {(one.name, one.value) for part in (*facts, *bodies) for one in _atoms_in(part)}
+    found: dict[str, Alike] = {}
+    for name in names:
+        declaration = vocabulary.declarations[name]
+        if isinstance(declaration, Enumeration):
+            own = [read for read in reads if isinstance(read, Read) and read.name == name]
+            groups: dict[object, list[Value]] = {}
+            for value in declaration.values:
+                apart = (name, value) in asked and value
+                groups.setdefault((apart, *[read.digit(value) for read in own]), []).append(value)
+            found[name] = tuple(map(tuple, groups.values()))
+    return found
+
+
+def _atoms_in(formula: ltl.Formula) -> Iterator[ltl.Atom]:
+    """The atoms of a formula, those of what is counted in it, too."""
+    for part in ltl.atoms_of(formula):
+        if isinstance(part, ltl.Atom):
+            yield part
+            continue
+        for _, term in part.terms:
+            if isinstance(term, ltl.Count):
+                yield from _atoms_in(term.body)
 
 
 def joined_sets(sets: Sequence[frozenset[Subject]]) -> list[frozenset[Subject]]:

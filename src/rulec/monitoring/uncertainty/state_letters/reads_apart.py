@@ -26,6 +26,7 @@ from rulec.monitoring.uncertainty.state_letters.joint_values import (
     MOST_KNOWN,
     JointValues,
     ReadWays,
+    alike_values,
     instances_of,
     joined_sets,
     read_ways,
@@ -152,40 +153,66 @@ class _PartTable:
     @cached_property
     def _read_ways(self) -> ReadWays | None:
         """The reads by all that their subjects may be together, if these are few words."""
-        key = self._subjects, self._axioms, (*self._objects.items(),)
+        vocabulary = self._vocabulary
+        alike = alike_values(
+            dict.fromkeys(name for name, _ in self._subjects),
+            *(self._reads, [axiom.formula for axiom in self._axioms], vocabulary),
+        )
+        key = self._subjects, self._axioms, (*self._objects.items(),), (*alike.items(),)
         with suppress(LookupError):
             if key not in self._together:
                 self._together[key] = None
-                everybody = StateView({}, self._objects, self._vocabulary)
+                everybody = StateView({}, self._objects, vocabulary)
                 of_all = [fact for axiom in self._axioms for fact in instances_of(axiom, everybody)]
                 facts = [fact for fact in of_all if not fact.about.isdisjoint(self._subjects)]
                 self._together[key] = JointValues(
-                    self._subjects, facts, self._objects, self._vocabulary
+                    *(self._subjects, facts, self._objects, vocabulary, alike)
                 )
             values = self._together[key]
             return None if values is None else read_ways(self._ready, self._binding, values)
         return None
 
     def _found(self, values: Sequence[PartialValue | None]) -> _PartFound:
-        joint: frozenset[Digits] | None = None
         if self._read_ways is not None:
             # What is missing, and what contradicts facts, is found below.
             with suppress(LookupError):
                 joint = self._read_ways.found(values)
-        if joint is not None and len(joint) > 1:
-            return _PartFound(None, joint, True)
-        given = with_values({}, dict(zip(self._subjects, values, strict=True)))
-        state = StateView(given, self._objects, self._vocabulary)
+                known = next(iter(joint)) if len(joint) == 1 and self._are_known(values) else None
+                return _PartFound(known, joint, True)
+        state = self._state(values)
         digits = [read.in_state(self._binding, state) for read in self._ready]
         known = None
         if all(own & (own - 1) == 0 for own in digits):
             known = tuple([own.bit_length() - 1 for own in digits])
             if UNKNOWN_TYPES.isdisjoint(map(type, values)):
                 return _PartFound(known, frozenset({known}), True)
-        if joint is not None:
-            return _PartFound(known, joint, True)
         found = joint_digits(self._reads, self._binding, state, self._axioms)
         return _PartFound(known, found.digits, found.exact)
+
+    def _are_known(self, values: Sequence[PartialValue | None]) -> bool:
+        """Whether each read has but one digit by itself, whatever facts say."""
+        unknown = [
+            read
+            for read, places in zip(self._ready, self._places, strict=True)
+            if any(type(values[place]) in UNKNOWN_TYPES for place in places)
+        ]
+        if not unknown:
+            return True
+        state = self._state(values)
+        digits = (read.in_state(self._binding, state) for read in unknown)
+        return all(own & (own - 1) == 0 for own in digits)
+
+    @cached_property
+    def _places(self) -> Sequence[Sequence[int]]:
+        """For each read the places of its subjects."""
+        places = {subject: place for place, subject in enumerate(self._subjects)}
+        everybody = StateView({}, self._objects, self._vocabulary)
+        of_reads = [subjects_of_read(read, self._binding, everybody) for read in self._reads]
+        return [[places[subject] for subject in set(own)] for own in of_reads]
+
+    def _state(self, values: Sequence[PartialValue | None]) -> StateView:
+        given = with_values({}, dict(zip(self._subjects, values, strict=True)))
+        return StateView(given, self._objects, self._vocabulary)
 
 
 class _Part(NamedTuple):
