@@ -19,6 +19,7 @@ from rulec.recordings.recording import Recording, Side
 from rulec.recordings.recording_messages import NOT_IN_RECORDING
 from rulec.rulebook.rulebook_model import Traffic
 from rulec.scenario.recorded.short_holes import without_short_holes
+from rulec.scenario.recorded.steady_headings import with_steady_headings
 from rulec.trace import Value
 from rulec.value_display import short_repr
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
@@ -120,6 +121,7 @@ def selected_drives(
     """
     side, mirrored = chosen_side(recording, request, traffic)
     writer = TraceWriter(vocabulary, names, request.assumed, request.defaults)
+    recording = with_steady_headings(recording)
     recording = without_short_holes(recording, request.thresholds.away_s)
     known = egos_of(recording)
     if not known and not request.egos:

@@ -32,14 +32,14 @@ def without_short_holes(recording: Recording, longest_s: float) -> Recording:
 
 
 def _filled(body: Participant, most: int, step_s: float) -> Participant:
-    steps = _steps(body)
+    steps = steps_of(body)
     apart = np.diff(steps)
     holes = ((apart > 1) & (apart <= most)).nonzero()[0]
     if body.standing or not len(holes) or body.states.keys() != body.outlines.keys():
         return body
     track = body.states.track if isinstance(body.states, TrackStates) else None
     if track is None:
-        rows = np.array([_row(body.states[step]) for step in steps.tolist()])
+        rows = np.array([row_of(body.states[step]) for step in steps.tolist()])
     else:
         rows = track.rows
     own = _Known(steps, rows, 2 * most, step_s)
@@ -63,7 +63,7 @@ def _filled(body: Participant, most: int, step_s: float) -> Participant:
     for step, row in zip(new_steps.tolist(), new_rows, strict=True):
         before = int(steps[steps.searchsorted(step) - 1])
         states[step] = TrackState(*row.tolist())
-        outlines[step] = _moved(body.outlines[before], body.states[before], states[step])
+        outlines[step] = moved_outline(body.outlines[before], body.states[before], states[step])
     return replace(
         body,
         states={step: states[step] for step in sorted(states)},
@@ -72,13 +72,15 @@ def _filled(body: Participant, most: int, step_s: float) -> Participant:
     )
 
 
-def _steps(body: Participant) -> NDArray[int64]:
+def steps_of(body: Participant) -> NDArray[int64]:
+    """The steps of a participant's states, ascending."""
     if isinstance(body.states, TrackStates):
         return body.states.track.steps
     return np.sort(np.fromiter(body.states, dtype=int64, count=len(body.states)))
 
 
-def _row(state: TrackState) -> tuple[float, ...]:
+def row_of(state: TrackState) -> tuple[float, ...]:
+    """A state as a row of a track."""
     return state.x, state.y, state.heading, state.speed, state.acceleration
 
 
@@ -99,7 +101,7 @@ class _Known:
         in_hole = around.searchsorted(hole)
         told = np.abs(self.rows[hole : hole + 2, 3]).max()
         fastest = max(float(told), *np.delete(speeds, in_hole).tolist(), 0.0)
-        turned = abs(_turns(np.diff(self.rows[hole : hole + 2, 2]))[0])
+        turned = abs(turns(np.diff(self.rows[hole : hole + 2, 2]))[0])
         too_fast = speeds[in_hole] > fastest * _FASTER + _FASTER_MPS
         return bool(too_fast or turned > _LARGEST_TURN)
 
@@ -109,7 +111,7 @@ class _Known:
         before, behind = self.rows[hole], self.rows[hole + 1]
         share = (missing - self.steps[hole]) / (self.steps[hole + 1] - self.steps[hole])
         gained = behind - before
-        gained[2] = _turns(gained[2:3])[0]
+        gained[2] = turns(gained[2:3])[0]
         values: NDArray[float64] = before + share[:, None] * gained
         around = self._around(hole)
         values[:, :2] = _cubic(self.steps[around], self.rows[around, :2], missing)
@@ -121,7 +123,8 @@ class _Known:
         return near
 
 
-def _turns(angles: NDArray[float64]) -> NDArray[float64]:
+def turns(angles: NDArray[float64]) -> NDArray[float64]:
+    """Angles from -π to π."""
     turned: NDArray[float64] = (angles + np.pi) % (2 * np.pi) - np.pi
     return turned
 
@@ -138,7 +141,7 @@ def _cubic(
     return found
 
 
-def _moved(outline: Points, before: TrackState, now: TrackState) -> Points:
+def moved_outline(outline: Points, before: TrackState, now: TrackState) -> Points:
     """An outline as it is when its body has moved on."""
     turned = now.heading - before.heading
     cos, sin = np.cos(turned), np.sin(turned)

@@ -1,0 +1,174 @@
+"""Headings that a detector turned round, or made of the flicker of one that stands, put right.
+
+Who steers turns with its way: its middle drives on no circle that is smaller than
+``_LEAST_RADIUS_M``. A heading that turns by more than that between two states is the box's, not the
+vehicle's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+from numpy import bool_, float64, int64, intp
+from numpy.typing import NDArray
+
+from rulec.recordings.recording import Participant, Recording, TrackState
+from rulec.recordings.track import TrackOutlines, TrackStates, outlines_on_track
+from rulec.scenario.recorded.short_holes import moved_outline, row_of, steps_of, turns
+
+_LEAST_RADIUS_M = 2.0
+_LEAST_TURN = np.radians(30.0)
+"""What is less may be noise of a box that is well seen otherwise."""
+
+_ROUND = np.radians(135.0)
+_SOON_S = 0.5
+"""Between states farther apart one may turn unseen."""
+
+_BRIEF_S = 1.0
+"""A box that is turned round for longer may be right, and the others wrong."""
+
+_STANDS_M = 0.25
+"""Who is no farther away than that after ``_SOON_S`` stands, or creeps."""
+
+_HAIR = 1e-6
+
+_DRIVERS = frozenset({"vehicle", "light_rider"})
+
+Floats = NDArray[float64]
+
+
+def with_steady_headings(recording: Recording) -> Recording:
+    """A recording whose vehicles and cycles turn no faster than they can.
+
+    A heading that is turned round for less than ``_BRIEF_S`` is turned back. Headings of one that
+    stands, and that spin, are those of before and after.
+    """
+    bodies = tuple([_steadied(body, recording.step_s) for body in recording.participants])
+    if all(one is other for one, other in zip(bodies, recording.participants, strict=True)):
+        return recording
+    return replace(recording, participants=bodies)
+
+
+def _steadied(body: Participant, step_s: float) -> Participant:
+    if body.standing or len(body.states) < 3 or not _DRIVERS.intersection(body.object_types):
+        return body
+    on_track = outlines_on_track(body)
+    if on_track is None and body.states.keys() != body.outlines.keys():
+        return body
+    steps = steps_of(body)
+    if on_track is None:
+        rows = np.array([row_of(body.states[step]) for step in steps.tolist()])
+    else:
+        rows = on_track.track.rows
+    heading = _steady(steps * step_s, rows[:, :2], rows[:, 2])
+    if heading is None:
+        return body
+    steady = rows.copy()
+    steady[:, 2] = heading
+    if on_track is not None:
+        track = replace(on_track.track, rows=steady)
+        return replace(body, states=TrackStates(track), outlines=TrackOutlines(track))
+    states = {
+        step: TrackState(*row) for step, row in zip(steps.tolist(), steady.tolist(), strict=True)
+    }
+    outlines = {
+        step: moved_outline(body.outlines[step], body.states[step], states[step]) for step in states
+    }
+    return replace(body, states=states, outlines=outlines)
+
+
+def _steady(times: Floats, places: Floats, heading: Floats) -> Floats | None:
+    """The headings that are right; None if all of them are."""
+    apart = np.diff(times)
+    ways = np.hypot(*np.diff(places, axis=0).T)
+    if not _spins(apart, ways, heading).any():
+        return None
+    found = _turned_back(times, places, heading, apart)
+    spins = _spins(apart, ways, found)
+    if spins.any():
+        found = _of_before_and_after(times, places, found, spins)
+    return None if np.array_equal(found, heading) else found
+
+
+def _spins(apart: Floats, ways: Floats, heading: Floats) -> NDArray[bool_]:
+    """Flags of states, but for the last, up to whose next the heading turns as nobody can."""
+    turned = np.abs(turns(np.diff(heading)))
+    spins: NDArray[bool_] = turned > np.maximum(_LEAST_TURN, ways / _LEAST_RADIUS_M)
+    return spins & (apart <= _SOON_S)
+
+
+def _turned_back(times: Floats, places: Floats, heading: Floats, apart: Floats) -> Floats:
+    """The headings with those turned back that are turned round for less than ``_BRIEF_S``.
+
+    At a track's ends only those beside others that last longer and lead forwards as much or more.
+    """
+    found, whole = heading.copy(), len(heading)
+    flips = (np.abs(turns(np.diff(heading))) > _ROUND) & (apart <= _SOON_S)
+    parts = list(pairwise([0, *(flips.nonzero()[0] + 1).tolist(), whole]))
+    for number, (begin, end) in enumerate(parts):
+        if times[min(end, whole - 1)] - times[begin] >= _BRIEF_S or len(parts) == 1:
+            continue
+        if begin > 0 and end < whole:
+            wrong = abs(turns(found[begin : begin + 1] - found[begin - 1])[0]) > _ROUND
+        else:
+            beside = parts[1] if begin == 0 else parts[number - 1]
+            wrong = end - begin < beside[1] - beside[0] and (
+                _forwards(places, heading, (begin, end)) <= _forwards(places, heading, beside)
+            )
+        if wrong:
+            found[begin:end] = turns(found[begin:end] + np.pi)
+    return found
+
+
+def _forwards(places: Floats, heading: Floats, part: tuple[int, int]) -> float:
+    """How far (m) one drives forwards by its headings, less than 0 if backwards."""
+    begin, end = part
+    x, y = np.diff(places[begin:end], axis=0).T
+    own = heading[begin : end - 1]
+    return float((x * np.cos(own) + y * np.sin(own)).sum())
+
+
+def _of_before_and_after(
+    times: Floats, places: Floats, heading: Floats, spins: NDArray[bool_]
+) -> Floats:
+    """The headings with those of whom spins while it stands as they are before and after."""
+    stands = _stand(times, places)
+    edges = np.diff(stands.astype(int64), prepend=0, append=0)
+    found = heading.copy()
+    for begin, end in zip((edges > 0).nonzero()[0], (edges < 0).nonzero()[0], strict=True):
+        # One that turns once, and stays so, may have been put right there
+        if spins[begin : end - 1].sum() < 2:
+            continue
+        before = _mean(heading, times, slice(0, begin), float(times[begin]))
+        after = _mean(heading, times, slice(end, None), float(times[end - 1]))
+        one = after if before is None else before
+        other = before if after is None else after
+        if one is None or other is None:
+            continue
+        share = np.linspace(0.0, 1.0, end - begin)
+        found[begin:end] = turns(one + share * turns(np.array([other - one])))
+    return found
+
+
+def _stand(times: Floats, places: Floats) -> NDArray[bool_]:
+    """Flags of states up to, or from, which one is hardly farther away half a second apart."""
+    first, last = (times.searchsorted(times + way) for way in (-_SOON_S - _HAIR, _SOON_S - _HAIR))
+    stands = np.zeros(len(times), dtype=bool)
+    for other, known in (
+        (first, times - times[0]),
+        (np.minimum(last, len(times) - 1), times[-1] - times),
+    ):
+        away = np.hypot(*(places[other] - places).T)
+        stands |= (away <= _STANDS_M) & (known >= _SOON_S - _HAIR)
+    return stands
+
+
+def _mean(heading: Floats, times: Floats, part: slice, at: float) -> float | None:
+    """The mean heading of the states of a part that are within ``_BRIEF_S`` of a time."""
+    near: NDArray[intp] = (np.abs(times[part] - at) <= _BRIEF_S + _HAIR).nonzero()[0]
+    if not len(near):
+        return None
+    own = heading[part][near]
+    return float(np.arctan2(np.sin(own).sum(), np.cos(own).sum()))
