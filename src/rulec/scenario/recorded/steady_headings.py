@@ -62,7 +62,7 @@ def _steadied(body: Participant, step_s: float) -> Participant:
         rows = np.array([row_of(body.states[step]) for step in steps.tolist()])
     else:
         rows = on_track.track.rows
-    heading = _steady(steps * step_s, rows[:, :2], rows[:, 2])
+    heading = _steady((steps * step_s).astype(float64), rows[:, :2], rows[:, 2])
     if heading is None:
         return body
     steady = rows.copy()
@@ -104,7 +104,8 @@ def _turned_back(times: Floats, places: Floats, heading: Floats, apart: Floats) 
 
     At a track's ends only those beside others that last longer and lead forwards as much or more.
     """
-    found, whole = heading.copy(), len(heading)
+    found: Floats = heading.copy()
+    whole = len(heading)
     flips = (np.abs(turns(np.diff(heading))) > _ROUND) & (apart <= _SOON_S)
     parts = list(pairwise([0, *(flips.nonzero()[0] + 1).tolist(), whole]))
     for number, (begin, end) in enumerate(parts):
@@ -136,7 +137,7 @@ def _of_before_and_after(
     """The headings with those of whom spins while it stands as they are before and after."""
     stands = _stand(times, places)
     edges = np.diff(stands.astype(int64), prepend=0, append=0)
-    found = heading.copy()
+    found: Floats = heading.copy()
     for begin, end in zip((edges > 0).nonzero()[0], (edges < 0).nonzero()[0], strict=True):
         # One that turns once, and stays so, may have been put right there
         if spins[begin : end - 1].sum() < 2:
