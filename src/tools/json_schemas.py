@@ -24,6 +24,7 @@ from rulec.report.rulebooks.lineage_tree import ForestDocument, LineageDocument
 from rulec.report.rulebooks.matrix_report import MatrixDocument
 from rulec.report.rulebooks.proof_report import ProofsDocument
 from rulec.report.rulebooks.rule_json import RulesDocument
+from rulec.report.rulebooks.word_texts import WordData
 from rulec.report.tests.example_json import ExamplesRun
 from rulec.report.text.listing import ListingDocument
 from rulec.report.verdict_findings.verdict_finding import FindingLine
@@ -60,6 +61,7 @@ SCHEMAS: Mapping[str, tuple[Any, ...]] = {
         RecordedNotJudged,
         NotDriven,
     ),
+    "words": (list[WordData],),
 }
 """Name -> the types of an output, or of a line of one; which of several, its fields tell."""
 

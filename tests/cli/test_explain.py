@@ -110,8 +110,8 @@ def test_the_page_is_up_to_date(capsys):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["R0602x"], "there is no code `R0602x`; did you mean `R0602`?"),
-        (["verify"], "`rulec list codes` shows them all; `rulec show RULEBOOK RULE` explains"),
+        (["R0602x"], "there is no code and no word `R0602x`; did you mean `R0602`?"),
+        (["verify"], "`rulec list codes` shows the codes, `rulec list vocabularies` where"),
         ([], "give a code, or --all"),
         (["R0101", "--all"], "give a code, or --all"),
     ],
@@ -120,3 +120,71 @@ def test_what_cannot_be_answered(arguments, words, capsys):
     status, out, err = explain(capsys, *arguments)
     assert (status, out) == (2, "")
     assert words in err
+
+
+def test_a_word_of_a_vocabulary(capsys):
+    status, out, err = explain(capsys, "gap")
+    assert (status, err) == (0, "")
+    assert out == (
+        "gap: a word of the vocabulary `road`\n"
+        "\n"
+        "    quantity gap(road_user) in m default 1000\n"
+        "\n"
+        "The distance along the road between ego and o.\n"
+        "\n"
+        "Supplied by the scene: ego's own motion, and what is measured of others.\n"
+        "\n"
+        "Recordings of every format can tell it.\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("word", "says"),
+    [
+        (
+            "beside",
+            ["    station(road_user) is one of behind, beside, in_front_of\n", "is one of its"],
+        ),
+        ("enters_box", ["vocabulary `road`", "No format of recordings tells it."]),
+        ("tunnel", ["Recordings that can tell it: ", "sumo"]),
+        ("told_to_go", ["Where no source tells it, its default holds."]),
+        ("ego_mass", ["It stays the same as long as a trace goes on."]),
+        (
+            "tram",
+            ["    type tram is rail_vehicle\n", "Every tram is also: rail_vehicle, road_user."],
+        ),
+        ("vehicle", ["of the vocabulary `paper`", "of the vocabulary `road`"]),
+        ("near_lane_is_free", ["a word of the rulebook `schemas`", "    signal near_lane_is_free"]),
+    ],
+)
+def test_words_are_explained(word, says, capsys):
+    status, out, err = explain(capsys, word)
+    assert (status, err) == (0, "")
+    flat = " ".join(out.split())
+    assert [part for part in says if part not in out and part not in flat] == []
+
+
+def test_a_word_of_ones_own(tmp_path, monkeypatch, capsys):
+    (tmp_path / "rulec.toml").write_text('search_path = ["."]\n')
+    (tmp_path / "yard.rules").write_text("vocabulary yard {\n  signal horn  # It sounds.\n}\n")
+    monkeypatch.chdir(tmp_path)
+    status, out, _ = explain(capsys, "horn")
+    assert status == 0
+    assert "vocabulary `yard`\n\n    signal horn\n\nIt sounds.\n" in out
+    assert "ecordings" not in out
+
+
+def test_a_word_in_other_forms(capsys):
+    _, out, _ = explain(capsys, "gap", "R0504", "--output-format", "markdown")
+    assert out.startswith("# R0504: ")
+    assert "# gap: a word of the vocabulary `road`\n\n```rulec\nquantity gap(" in out
+    _, out, _ = explain(capsys, "gap", "--json")
+    (word,) = json.loads(out)
+    assert (word["word"], word["declared_in"]) == ("gap", "vocabulary road")
+    assert explain(capsys, "gap", "R0504", "--json")[:2] == (2, "")
+
+
+def test_a_word_that_is_misspelt(capsys):
+    status, out, err = explain(capsys, "besides")
+    assert (status, out) == (2, "")
+    assert "did you mean the word `beside`?" in err

@@ -72,6 +72,7 @@ DOCUMENTS = [
     ("test", ["test", "FAILING", "--coverage", "--output-format", "json"]),
     ("tree", ["tree", "de", "--json"]),
     ("tree", ["tree", "--json"]),
+    ("words", ["explain", "beside", "vehicle", "near_lane_is_free", "--json"]),
 ]
 LINES = [
     ("verdict", ["verify", TRACES, "-r", "esterle2019", "--json", "--explain", "1"]),

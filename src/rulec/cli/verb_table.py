@@ -9,7 +9,7 @@ VERB_GROUPS = {
         "fmt": "Format rulebooks and vocabularies.",
         "test": "Run the examples of rulebooks.",
         "show": "Show a rule in English, as a formula, as an automaton, by examples.",
-        "explain": "Explain a code of a message.",
+        "explain": "Explain a code of a message, or a word.",
         "lsp": "Answer an editor: diagnostics, completion, renaming and the like.",
         "list": "List the rulebooks, vocabularies, scenarios or codes that there are.",
     },

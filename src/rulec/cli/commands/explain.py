@@ -1,6 +1,9 @@
-"""``rulec explain``: what the code of a message means."""
+"""``rulec explain``: what the code of a message, or a word of a vocabulary, means."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import click
 
@@ -14,49 +17,84 @@ from rulec.report.findings import code_registry
 from rulec.report.text.terminal_text import first_of
 from rulec.settings import search_path
 
+if TYPE_CHECKING:
+    from rulec.rulebook.word_search import FoundWord
+
 
 @click.command(cls=Verb)
-@click.argument("names", nargs=-1, metavar="[CODE]...", shell_complete=complete_codes)
+@click.argument("names", nargs=-1, metavar="[CODE|WORD]...", shell_complete=complete_codes)
 @click.option("--all", "every", is_flag=True, help="Explain every code.")
 @output_options(
     endings_of("full", "json", "markdown"),
     "the explanation: text, JSON, or Markdown (with --all the page docs/codes.md)",
 )
 def command(names: tuple[str, ...], every: bool, to: Output) -> None:
-    """Explain each CODE, such as R0104: what it means, a bad example, and the mended one."""
+    """Explain each CODE, such as R0104: what it means, a bad example, and the mended one.
+
+    Of a WORD of a vocabulary, such as `gap`, say how it is declared, what it stands for, and which
+    recordings can tell it.
+    """
     if every == bool(names):
         raise click.UsageError("give a code, or --all")
-    codes = [*dict.fromkeys(map(_named, names))] or [*code_registry.all_codes().values()]
+    codes = {name: code_registry.code_named(name.upper()) for name in names}
+    words = {name: _words(name) for name, code in codes.items() if code is None}
+    asked = [one for one in codes.values() if one is not None]
+    asked = list(dict.fromkeys(asked)) if names else [*code_registry.all_codes().values()]
+    found = [one for words_of_name in words.values() for one in words_of_name]
     match to.form:
         case "json":
-            # Only this format needs msgspec, 8 of the 54 ms that the command takes.
-            from rulec.report.findings.diagnostics_json import codes_as_json
-
-            text = codes_as_json(codes)
-        case "markdown" if names:
-            text = "\n\n".join(
-                f"# {one.code}: {one.title}\n\n{code_registry.as_markdown(one)}" for one in codes
-            )
-        case "markdown":
+            text = _as_json(asked, found)
+        case "markdown" if every:
             text = code_registry.as_page()
+        case "markdown":
+            pages = [
+                f"# {one.code}: {one.title}\n\n{code_registry.as_markdown(one)}" for one in asked
+            ]
+            text = "\n\n".join([*pages, *_texts(found, "markdown")])
         case _:
-            text = "\n\n\n".join(map(code_registry.as_text, codes))
+            text = "\n\n\n".join([*map(code_registry.as_text, asked), *_texts(found, "text")])
     put_answer(text, to)
 
 
-def _named(name: str) -> Code:
-    code = code_registry.code_named(name.upper())
-    if code is None:
-        raise click.UsageError(f"there is no code `{name}`; {_way_out(name)}")
-    return code
+def _words(name: str) -> Sequence[FoundWord]:
+    # Parsing vocabularies, 60 ms: only for what is no code.
+    from rulec.rulebook.word_search import find_word
+
+    found = find_word(name, search_path())
+    if not found:
+        raise click.UsageError(f"there is no code and no word `{name}`; {_way_out(name)}")
+    return found
+
+
+def _texts(words: Sequence[FoundWord], form: str) -> list[str]:
+    if not words:
+        return []
+    # The same: codes alone need none of it.
+    from rulec.report.rulebooks import word_texts
+
+    return [*map(word_texts.as_text if form == "text" else word_texts.as_markdown, words)]
+
+
+def _as_json(codes: Sequence[Code], words: Sequence[FoundWord]) -> str:
+    if words:
+        if codes:
+            raise click.UsageError("as JSON codes and words are two lists; ask for either")
+        # As above.
+        from rulec.report.rulebooks.word_texts import words_as_json
+
+        return words_as_json(words)
+    # Only this format needs msgspec, 8 of the 54 ms that the command takes.
+    from rulec.report.findings.diagnostics_json import codes_as_json
+
+    return codes_as_json(codes)
 
 
 def _way_out(name: str) -> str:
-    """Where something else of this name is explained, or a code that may be meant."""
-    # Looking for files and their rules, 60 ms: only for what is no code.
+    """Where something else of this name is explained, or a code or a word that may be meant."""
+    # Looking for files and their rules, 60 ms: only for what is neither a code nor a word.
     from rulec.rulebook.files.catalogue import rulebooks_with_rule
     from rulec.rulebook.files.search_path import available_rulebooks
-    from rulec.rulebook.files.words_in_files import vocabularies_with
+    from rulec.rulebook.files.words_in_files import words_of_vocabularies
 
     if near := nearest_name(name.upper(), code_registry.all_codes()):
         return f"did you mean `{near}`?"
@@ -65,9 +103,10 @@ def _way_out(name: str) -> str:
     if books := rulebooks_with_rule(name, search_path()):
         more = f" (also of {first_of(books[1:], 3)})" if books[1:] else ""
         return f"it is a rule, which `rulec show {books[0]} {name}` explains{more}"
-    if vocabularies := vocabularies_with(name):
-        return f"it is a word of the vocabulary `{vocabularies[0]}`, whose file says what it means"
+    known = frozenset[str]().union(*words_of_vocabularies(search_path()).values())
+    if near := nearest_name(name, sorted(known)):
+        return f"did you mean the word `{near}`?"
     return (
-        "`rulec list codes` shows them all; `rulec show RULEBOOK RULE` explains a rule, `rulec "
-        "verify` a violation"
+        "`rulec list codes` shows the codes, `rulec list vocabularies` where words are; `rulec "
+        "show RULEBOOK RULE` explains a rule, `rulec verify` a violation"
     )

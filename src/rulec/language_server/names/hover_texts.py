@@ -8,21 +8,18 @@ from rulec.diagnostics import Span
 from rulec.language_server.names.document_names import DocumentNames
 from rulec.language_server.names.name_occurrences import NamedThing, Occurrence
 from rulec.logic.printing import formula_text
+from rulec.report.rulebooks.word_texts import (
+    as_paragraphs,
+    described,
+    tells_words,
+    type_text,
+    word_text,
+)
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
-from rulec.rulebook.names.doc_comments import description
 from rulec.rulebook.names.referenced_names import parts_of
 from rulec.rulebook.overlay.rulebook_overlay import Value, in_force
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_formula
-from rulec.vocabulary import Enumeration, Quantity, Signal
-
-SUPPLIERS = {
-    "Scene": "the scene: ego's own motion, and what is measured of others",
-    "Map": "the map: the road, its marks and signs",
-    "Interpretation": "whoever interprets the scene: what others are about to do, what traffic is "
-    "like",
-}
-"""Who supplies a word of the shared vocabulary, by the first word of its comment."""
 
 
 def hover_text(names: DocumentNames, one: Occurrence) -> str:
@@ -36,16 +33,13 @@ def _parts(names: DocumentNames, thing: NamedThing) -> Iterator[str]:
         case "rule":
             yield from _rule(names, thing.name)
         case "signal" | "quantity" | "enumeration" | "value":
-            yield from _word(names, thing)
+            recorded = tells_words(names.chain.vocabularies)
+            yield from as_paragraphs(word_text(thing.name, symbols, recorded=recorded))
         case "type":
-            above = symbols.ancestors(thing.name)[1:]
-            yield _code(f"type {thing.name}" + (f" is {above[0]}" if above else ""))
-            yield from _described(thing.span)
-            if above:
-                yield f"Every {thing.name} is also: {', '.join(above)}."
+            yield from as_paragraphs(type_text(thing.name, symbols))
         case "option":
             yield _code(f"option {thing.name} = {'on' if laid.options[thing.name] else 'off'}")
-            yield from _described(thing.span)
+            yield from described(thing.span)
             changed = laid.changed_at.get(thing.name)
             if changed is not None:
                 yield f"Set in {_file(names, changed.span)}."
@@ -54,13 +48,13 @@ def _parts(names: DocumentNames, thing: NamedThing) -> Iterator[str]:
         case "definition":
             item = laid.definitions[thing.name]
             yield _code(f"{_head(item)} =\n  {print_formula(item.body, 'written')}")
-            yield from _described(item.span)
+            yield from described(item.span)
         case "variable":
             kind = _type_of(names, thing)
             yield _code(f"{thing.name}: {kind}" if kind else thing.name)
             known = names.chain.type(kind) if kind else None
             if known is not None:
-                yield from _described(known.span)
+                yield from described(known.span)
         case "level":
             yield f"Priority level `{thing.name}`"
             higher, lower = _around(names, thing.name)
@@ -89,66 +83,6 @@ def _file(names: DocumentNames, span: Span) -> str:
         if file.span.source is span.source and file.name is not None:
             return f"{file.kind} `{file.name.text}`"
     return span.source.name
-
-
-def _described(span: Span) -> Iterator[str]:
-    """The comment on a declaration, and who supplies what it declares."""
-    said = description(span)
-    first, colon, rest = said.partition(": ")
-    if colon and first in SUPPLIERS:
-        yield rest[:1].upper() + rest[1:]
-        yield f"Supplied by {SUPPLIERS[first]}."
-    elif said:
-        yield said
-
-
-def _word(names: DocumentNames, thing: NamedThing) -> Iterator[str]:
-    symbols = names.chain.names.symbols
-    item = symbols.items.get(thing.name) or symbols.value_of[thing.name]
-    about = f"({', '.join(item.parameters)})" if item.parameters else ""
-    match item:
-        case Signal():
-            yield _code(f"signal {item.name}{about}{_default(item.default)}")
-        case Quantity():
-            yield _code(f"quantity {item.name}{about} in {item.unit}{_default(item.default)}")
-        case Enumeration():
-            values = ", ".join(item.values)
-            yield _code(f"{item.name}{about} is one of {values}{_default(item.default)}")
-            if thing.name != item.name:
-                yield f"`{thing.name}` is one of its values."
-    yield from _described(symbols.spans[item.name])
-    remarks = [
-        "it stays the same as long as a trace goes on" if item.constant else "",
-        "where no source tells it, its default holds" if item.presumed else "",
-    ]
-    if any(remarks):
-        said = "; ".join(filter(None, remarks))
-        yield f"{said[0].upper()}{said[1:]}."
-    yield _tellers(item.name, names)
-
-
-def _default(value: float | str | bool | None) -> str:
-    if value is None:
-        return ""
-    if isinstance(value, bool):
-        return f" default {'true' if value else 'false'}"
-    return f" default {value:g}" if isinstance(value, float) else f" default {value}"
-
-
-def _tellers(name: str, names: DocumentNames) -> str:
-    if not any(
-        file.name is not None and file.name.text == "road" for file in names.chain.vocabularies
-    ):
-        return ""
-    # What recordings tell, 100 ms: for who points at a word.
-    from rulec.extraction.tellable_words import TELLABLE_WORDS
-
-    formats = sorted(form for form, words in TELLABLE_WORDS.items() if name in words)
-    if not formats:
-        return "No format of recordings tells it."
-    if len(formats) == len(TELLABLE_WORDS):
-        return "Recordings of every format can tell it."
-    return f"Recordings that can tell it: {', '.join(formats)}."
 
 
 def _rule(names: DocumentNames, name: str) -> Iterator[str]:
@@ -212,7 +146,7 @@ def _parameter(names: DocumentNames, thing: NamedThing) -> Iterator[str]:
             kind = f" : {item.dimension.text}" if item.dimension else ""
             yield _code(f"param {thing.name}{kind} = {print_formula(item.value, 'written')}")
             break
-    yield from _described(values[0].item.span)
+    yield from described(values[0].item.span)
     on_day = constants.numbers.get(thing.name)
     if on_day is not None:
         yield f"On {constants.at}: **{value_text(on_day)}**"

@@ -1,0 +1,173 @@
+"""What is known of a word: its declaration, what it stands for, and who can tell it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from textwrap import fill, indent
+
+from rulec.diagnostics import Span
+from rulec.report.json_document import JsonDocument, as_indented
+from rulec.report.text import markdown
+from rulec.report.text.terminal_text import visible
+from rulec.rulebook.names.doc_comments import description
+from rulec.rulebook.names.symbol_table import SymbolTable
+from rulec.rulebook.word_search import FoundWord
+from rulec.syntax import tree
+from rulec.vocabulary import Declaration, Enumeration, Quantity
+
+SUPPLIERS = {
+    "Scene": "the scene: ego's own motion, and what is measured of others",
+    "Map": "the map: the road, its marks and signs",
+    "Interpretation": "whoever interprets the scene: what others are about to do, what traffic is "
+    "like",
+}
+"""Who supplies a word of the shared vocabulary, by the first word of its comment."""
+
+RECORDED_VOCABULARIES = frozenset(("road", "paper"))
+"""The vocabularies whose words are found in recordings."""
+
+
+@dataclass(frozen=True, slots=True)
+class WordText:
+    """A word's declaration as in a rulebook, and sentences about it."""
+
+    declaration: str
+    sentences: tuple[str, ...]
+
+
+class WordData(JsonDocument, frozen=True, kw_only=True):
+    """A word: the file that declares it, how, and what is known of it, a paragraph each."""
+
+    word: str
+    declared_in: str
+    declaration: str
+    says: tuple[str, ...]
+
+
+def word_text(name: str, symbols: SymbolTable, *, recorded: bool) -> WordText:
+    """What is known of a signal, a quantity, an enumeration, or one of its values.
+
+    ``recorded``: say as well which recordings can tell it.
+    """
+    item = symbols.items.get(name) or symbols.value_of[name]
+    sentences = [f"`{name}` is one of its values."] if name != item.name else []
+    sentences += described(symbols.spans[item.name])
+    remarks = [
+        "it stays the same as long as a trace goes on" if item.constant else "",
+        "where no source tells it, its default holds" if item.presumed else "",
+    ]
+    if any(remarks):
+        said = "; ".join(filter(None, remarks))
+        sentences.append(f"{said[0].upper()}{said[1:]}.")
+    if recorded:
+        sentences.append(_tellers(item.name))
+    return WordText(declared(item), tuple(sentences))
+
+
+def type_text(name: str, symbols: SymbolTable) -> WordText:
+    """What is known of a type of objects."""
+    above = symbols.ancestors(name)[1:]
+    sentences = [*described(symbols.type_spans[name])]
+    if above:
+        sentences.append(f"Every {name} is also: {', '.join(above)}.")
+    return WordText(f"type {name}" + (f" is {above[0]}" if above else ""), tuple(sentences))
+
+
+def tells_words(vocabularies: Iterable[tree.File]) -> bool:
+    """Whether words of these vocabularies, and of who uses them, are looked for in recordings."""
+    named = {file.name.text for file in vocabularies if file.name is not None}
+    return not named.isdisjoint(RECORDED_VOCABULARIES)
+
+
+def described(span: Span) -> Iterator[str]:
+    """The comment on a declaration, and who supplies what it declares."""
+    said = description(span)
+    first, colon, rest = said.partition(": ")
+    if colon and first in SUPPLIERS:
+        yield rest[:1].upper() + rest[1:]
+        yield f"Supplied by {SUPPLIERS[first]}."
+    elif said:
+        yield said
+
+
+def declared(item: Declaration) -> str:
+    """A declaration as in a rulebook, on one line."""
+    about = f"({', '.join(item.parameters)})" if item.parameters else ""
+    match item:
+        case Quantity():
+            return f"quantity {item.name}{about} in {item.unit}{_default(item.default)}"
+        case Enumeration():
+            values = ", ".join(item.values)
+            return f"{item.name}{about} is one of {values}{_default(item.default)}"
+        case _:
+            return f"signal {item.name}{about}{_default(item.default)}"
+
+
+def as_text(word: FoundWord) -> str:
+    """What is known of a word, for a terminal."""
+    text = _known(word)
+    paragraphs = [
+        f"{word.name}: a word of {_where(word)}",
+        *(visible(sentence) for sentence in text.sentences),
+    ]
+    head, *rest = (fill(paragraph, 80, break_on_hyphens=False) for paragraph in paragraphs)
+    return "\n\n".join([head, indent(fill(text.declaration, 90), "    "), *rest])
+
+
+def as_markdown(word: FoundWord) -> str:
+    """What is known of a word, as Markdown."""
+    text = _known(word)
+    head = f"# {markdown.escaped(word.name)}: a word of {_where(word)}"
+    return "\n\n".join([head, *as_paragraphs(text)])
+
+
+def as_paragraphs(text: WordText) -> Iterator[str]:
+    """A word's declaration as code, and what is said of it, in Markdown."""
+    yield markdown.fenced(text.declaration, "rulec")
+    yield from text.sentences
+
+
+def words_as_json(words: Iterable[FoundWord]) -> str:
+    """Write a list with an object for each word."""
+    return as_indented([_data(word) for word in words])
+
+
+def _data(word: FoundWord) -> WordData:
+    text = _known(word)
+    return WordData(
+        word=word.name,
+        declared_in=_where(word).replace("`", "").removeprefix("the "),
+        declaration=text.declaration,
+        says=text.sentences,
+    )
+
+
+def _known(word: FoundWord) -> WordText:
+    if word.name in word.symbols.types:
+        return type_text(word.name, word.symbols)
+    return word_text(word.name, word.symbols, recorded=tells_words(word.vocabularies))
+
+
+def _where(word: FoundWord) -> str:
+    return f"the {word.file.kind} `{word.file.name.text if word.file.name else ''}`"
+
+
+def _default(value: float | str | bool | None) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return f" default {'true' if value else 'false'}"
+    return f" default {value:g}" if isinstance(value, float) else f" default {value}"
+
+
+def _tellers(name: str) -> str:
+    # What recordings tell, 100 ms: for who asks about a word.
+    from rulec.extraction.tellable_words import TELLABLE_WORDS
+
+    formats = sorted(form for form, words in TELLABLE_WORDS.items() if name in words)
+    if not formats:
+        return "No format of recordings tells it."
+    if len(formats) == len(TELLABLE_WORDS):
+        return "Recordings of every format can tell it."
+    return f"Recordings that can tell it: {', '.join(formats)}."

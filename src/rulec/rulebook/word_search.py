@@ -1,0 +1,77 @@
+"""Words by their names alone, in whichever vocabulary or rulebook declares them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from rulec.diagnostics import RulecError
+from rulec.rulebook.files import search_path as search
+from rulec.rulebook.files.words_in_files import vocabularies_with
+from rulec.rulebook.loader import Trees, find, parse_all
+from rulec.rulebook.names.constant_and_presumed import mark_constant_and_presumed
+from rulec.rulebook.names.symbol_table import SymbolTable, symbol_table
+from rulec.syntax import decode, tree
+from rulec.syntax.caching.tree_cache import parsed
+
+
+@dataclass(frozen=True, slots=True)
+class FoundWord:
+    """A word, the file that declares it, and all that is declared there and in what it uses."""
+
+    name: str
+    file: tree.File
+    vocabularies: tuple[tree.File, ...]
+    symbols: SymbolTable
+
+
+def find_word(name: str, search_path: Sequence[Path] = ()) -> list[FoundWord]:
+    """The vocabularies that declare a word; if there are none, the rulebooks that do."""
+    return [*_in_vocabularies(name, search_path)] or [*_in_rulebooks(name, search_path)]
+
+
+def _in_vocabularies(name: str, search_path: Sequence[Path]) -> Iterator[FoundWord]:
+    named = vocabularies_with(name, search_path)
+    for path in search.available_vocabularies(search_path):
+        if path.stem in named:
+            file = parsed(decode(str(path), search.read_bytes(path)))[0]
+            if _declares(file, name):
+                yield FoundWord(name, file, (file,), _symbols((file,)))
+
+
+def _in_rulebooks(name: str, search_path: Sequence[Path]) -> Iterator[FoundWord]:
+    for book in search.available_rulebooks(search_path):
+        trees = _trees_with(name, book, search_path)
+        if trees is not None and _declares(trees.books[-1], name):
+            symbols = _symbols((*trees.vocabularies, *trees.books))
+            yield FoundWord(name, trees.books[-1], trees.vocabularies, symbols)
+
+
+def _trees_with(name: str, book: str, search_path: Sequence[Path]) -> Trees | None:
+    """The trees of a rulebook in whose text a word stands."""
+    with suppress(RulecError):
+        file = find(book, search_path)
+        return parse_all(file) if name in file.source.text else None
+    return None
+
+
+def _symbols(files: Sequence[tree.File]) -> SymbolTable:
+    symbols = symbol_table(files)
+    mark_constant_and_presumed(symbols, files)
+    return symbols
+
+
+def _declares(file: tree.File, name: str) -> bool:
+    return any(name == one.text for item in file.items for one in _declared(item))
+
+
+def _declared(item: tree.Item) -> Iterator[tree.Name]:
+    match item:
+        case tree.TypeItem(name) | tree.QuantityItem(name):
+            yield name
+        case tree.SignalItem(signals):
+            yield from (head.name for head in signals)
+        case tree.EnumerationItem():
+            yield from (item.name, *item.values)
