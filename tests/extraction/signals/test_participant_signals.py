@@ -326,6 +326,30 @@ def test_who_crosses_goes_on_crossing(ways, goes):
     assert not participant_signals(context).about["goes_across"][0, -1]
 
 
+@pytest.mark.parametrize(
+    ("way", "begins", "told"),
+    [
+        # Each tenth of a second, with speeds good to 0.1 m/s: a difference of them to 0.14 m/s
+        ((0.1, 0.11), 0, "?"),
+        ((0.1, 0.12), 0, "T"),
+        ((0.12, 0.1), 0, "F"),
+        # Who stands in the road may have gone across under another name, but not from the start
+        ((0, 0), 0, "F"),
+        ((0, 0), 3, "?"),
+        ((0.12, 0), 3, "F"),
+        ((0, 0.1), 3, "T"),
+    ],
+)
+def test_when_it_is_not_told_whether_one_goes_across(way, begins, told):
+    x, y = np.cumsum([(30.0, -1.5), *[way] * 20], axis=0).T
+    places = dict(enumerate(zip(x, y, strict=True), begins))
+    walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
+    ego = steady(7, 0, 0, steps=begins + len(x), step_s=0.1)
+    found = participant_signals(context_of(recording(lanes(1), [ego, walker], step_s=0.1)))
+    unknown = found.unknown["goes_across"][0, -6]
+    assert told == ("?" if unknown else "FT"[int(found.about["goes_across"][0, -6])])
+
+
 def test_who_is_behind_another_one_is_not_followed():
     signals = participant_signals(context(steady(8, 30, 0), steady(9, 15, 0), steady(6, 20, 4)))
     assert signals.about["one_between"][:, 0].tolist() == [True, False, False]

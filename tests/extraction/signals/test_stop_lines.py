@@ -258,3 +258,24 @@ def test_where_all_have_to_stop(own, other, comes_from, all_stop, unknown):
     assert found.world["all_way_stop"].tolist() == [all_stop] * 3
     assert found.unknown["all_way_stop"].tolist() == [unknown] * 3
     assert map_signals(context(lanes, 80, 90, 99)).world["stop_sign"].all()
+
+
+@pytest.mark.parametrize(
+    ("fronts", "may"),
+    [
+        # Lines are at 95.3 for who stands; places are good to 0.5 m here, states a second apart
+        ([90, 94, 97, 99], "...."),
+        ([90, 95, 95.7, 97], "...."),
+        ([90, 95, 95.5, 95.2, 95.6, 95.4, 97], ".?????."),
+        ([90, 95.1, 94], ".?."),
+        ([90, 94, 95.5], "..?"),
+        ([95.5, 97, 99], "?.."),
+    ],
+    ids=["drives over it", "over it in a moment", "stands on it", "rolls back", "ends", "begins"],
+)
+def test_places_do_not_tell_whether_one_that_stands_at_a_line_has_crossed_it(fronts, may):
+    told = context(road(95.0, ["STOP"]), *[front - 2 for front in fronts])
+    told.__dict__["tolerances"] = replace(told.tolerances, place_m=0.5)
+    found = junction_signals(told)
+    assert "".join(".?"[x] for x in found.unknown["crosses_stop_line"].tolist()) == may
+    assert not (found.world["crosses_stop_line"] & found.unknown["crosses_stop_line"]).any()

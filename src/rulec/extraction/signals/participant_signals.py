@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.presences import in_presences, presence_cells
+from rulec.extraction.recording_parts import span_of
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import (
     CYCLE_LANE,
@@ -234,16 +235,35 @@ def _goes_across(context: DriveContext) -> SignalColumns:
     """Whether participants move across the road, more than along it.
 
     Who walks or rides across goes on doing so, though it stops or somebody runs into it, until it
-    leaves the road or moves along it.
+    leaves the road or moves along it. Unknown where the tolerance of speeds decides.
     """
     least = context.thresholds.standing_kmh / KMH
     along, across = np.abs(context.extents.along), np.abs(context.extents.across)
     goes: Flags = (across >= least) & (across > along)
+    # Of a difference of speeds, which each may be wrong
+    wrong = np.sqrt(2.0) * context.tracks.speed_error
+    unsure = (np.maximum(along, across) >= least) & (np.abs(across - along) <= wrong)
     users = context.tracks.of_type("vulnerable_user").nonzero()[0]
     if len(users):
         off = _mostly_along(context, users) | ~context.tracks.on_lane[users]
+        went = goes[users] & ~unsure[users]
         goes[users] |= context.spans.latest(goes[users]) > context.spans.latest(off)
-    return SignalColumns(about={"goes_across": goes})
+        unsure[users] &= context.spans.latest(went) <= context.spans.latest(off)
+        known = (goes[users] | off) & context.tracks.present[users]
+        known = context.spans.latest(known) >= context.spans.first
+        unsure[users] |= _appears_there(context, users) & ~known
+    return SignalColumns(about={"goes_across": goes}, unknown={"goes_across": unsure})
+
+
+def _appears_there(context: DriveContext, rows: NDArray[intp]) -> Flags:
+    """Flags of participants of these rows that the recording, once it runs, has first in the road.
+
+    Such a track may go on with that of one who went across.
+    """
+    first, bodies = context.surroundings.whole.first, context.tracks.participants
+    later = [span_of(bodies[row])[0] > first for row in rows.tolist()]
+    found: Flags = np.array(later)[:, None] & context.tracks.on_lane[rows]
+    return found
 
 
 def _mostly_along(context: DriveContext, rows: NDArray[intp]) -> Flags:

@@ -62,7 +62,8 @@ def _steadied(body: Participant, step_s: float) -> Participant:
         rows = np.array([row_of(body.states[step]) for step in steps.tolist()])
     else:
         rows = on_track.track.rows
-    heading = _steady((steps * step_s).astype(float64), rows[:, :2], rows[:, 2])
+    times: Floats = (steps * step_s).astype(float64)
+    heading = _steady(times, rows[:, :2], rows[:, 2])
     if heading is None:
         return body
     steady = rows.copy()

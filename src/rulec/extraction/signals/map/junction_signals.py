@@ -13,7 +13,12 @@ from rulec.extraction.signals.map.priority_signals import (
     passages_of,
 )
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
-from rulec.extraction.signals.map.stop_lines import around_crossing, passes, stop_line
+from rulec.extraction.signals.map.stop_lines import (
+    around_crossing,
+    may_pass,
+    passes,
+    stop_line,
+)
 from rulec.extraction.signals.measured_numbers import own_front
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
@@ -237,7 +242,8 @@ def _time_driven(context: DriveContext, pace_kmh: float) -> Floats:
 def _crosses_stop_line(context: DriveContext) -> tuple[Flags, Flags]:
     """Flags of ego crossing the line of a lanelet with a stop sign, and of where it may have.
 
-    It may if its drive ends while it moves between the places where the line may be.
+    It may if its drive ends while it moves between the places where the line may be, or where
+    places do not tell, as of who stands at the line.
     """
     crosses, may_cross = np.zeros((2, context.states), dtype=bool)
     front, moves = own_front(context), context.ego.speed[0] * KMH
@@ -247,7 +253,9 @@ def _crosses_stop_line(context: DriveContext) -> tuple[Flags, Flags]:
             for lane in distinct(context.ego_lane).tolist():
                 if STOP_SIGNS & context.road.lanelet(piece, lane).signs:
                     first, last = stop_line(context, piece, lane)
-                    crosses |= passes(context, last) & (context.ego_lane == lane)
+                    unsure = may_pass(context, last) & (context.ego_lane == lane)
+                    crosses |= passes(context, last) & (context.ego_lane == lane) & ~unsure
+                    may_cross |= unsure
                     on_it = (first < front) & (front <= last) & (context.ego_lane == lane)
                     may_cross |= ends & on_it & (moves >= least)
     return crosses, (may_cross | _may_have_sign(context)) & ~crosses
@@ -301,8 +309,8 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
     """The light for ego, empty where it is not known which, and flags of ego crossing its line.
 
     In the state in which ego crosses the line the light is still the one that it crosses. The last
-    flags are of amber ones crossed at a place of which nobody knows whether ego came to it slowly
-    enough to stop at once.
+    flags are of who may have crossed it (``may_pass``), and of amber ones crossed at a place of
+    which nobody knows whether ego came to it slowly enough to stop at once.
     """
     front = own_front(context)
     colours = np.full(context.states, "no_light", dtype="<U11")
@@ -317,8 +325,10 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
             if not lights:
                 continue
             first, last = stop_line(context, piece, lane)
-            crossed = passes(context, last)
-            ahead = (front <= last) & (front > first - context.thresholds.light_reach_m)
+            unsure = may_pass(context, last) & (context.ego_lane == lane)
+            crossed = passes(context, last) & ~unsure
+            may_cross |= unsure
+            ahead = ((front <= last) | unsure) & (front > first - context.thresholds.light_reach_m)
             while_crossing = around_crossing(context, front, (first, last))
             every = context.road.lanelet(piece, lane).lights
             several = _way_not_known(context) if len(every) > len(lights) else crosses & False

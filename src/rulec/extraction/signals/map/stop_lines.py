@@ -14,6 +14,7 @@ from rulec.extraction.tracks.tracks import Flags, Floats
 
 _LINE_REACH_M = 40.0
 
+_HAIR = 1e-6
 _AT_ONCE_S = 0.05
 """Within so short a time of a state ego crosses a line in that state: lights change less often."""
 
@@ -26,6 +27,25 @@ def passes(context: DriveContext, line: float) -> Flags:
     back = spans.latest(front <= line - context.tolerances.place_m)
     again = spans.before(spans.latest(enters)) > np.maximum(back, spans.first - 1)
     return enters & ~again
+
+
+def may_pass(context: DriveContext, line: float) -> Flags:
+    """Flags of states in which nobody can tell whether ego has crossed a line.
+
+    Places do not tell it there, and not for a moment only: ego is on the line for more than
+    ``passed_s``, as who stands at it, or is not surely before it before, or beyond it after.
+    """
+    front, spans, place = own_front(context), context.spans, context.tolerances.place_m
+    before, beyond = front <= line - place, front > line + place
+    at_line = ~(before | beyond)
+    if not at_line.any():
+        return at_line
+    since, until = spans.latest(~at_line), spans.next_state(~at_line)
+    comes, goes = since >= spans.first, until < spans.end
+    comes &= before.take(since, mode="clip")
+    goes &= beyond.take(until, mode="clip")
+    brief = until - since - 1 <= context.thresholds.passed_s / context.recording.step_s + _HAIR
+    return at_line & ~(comes & goes & brief)
 
 
 def around_crossing(
