@@ -59,8 +59,8 @@ def test_misuse_looks_like_other_mistakes(capsys):
     status, out, err = run(capsys, "explain", "R9999x")
     assert (status, out) == (2, "")
     first, usage, way_out = err.splitlines()
-    assert first.startswith("error: there is no code `R9999x`")
-    assert usage == "  = usage: rulec explain [OPTIONS] [CODE]..."
+    assert first.startswith("error: there is no code and no word `R9999x`")
+    assert usage == "  = usage: rulec explain [OPTIONS] [CODE|WORD]..."
     assert way_out == "  = help: `rulec help explain` says more"
 
 
