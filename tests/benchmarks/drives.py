@@ -153,16 +153,14 @@ def state(file: Path, book: CompiledRulebook) -> Timed:
 
 def judging(file: Path, checkout: Path, rules: str | Path) -> Timed:
     """Processor time (s) of judging a recording on one core by a checkout."""
-    command, environment = verify(file, checkout, rules)
-    return lambda: timed(command, environment, (0, 1))
+    command, around = verify(file, checkout, rules)
+    return lambda: timed(command, around, (0, 1))
 
 
 def said_of_rules(file: Path, rules: str | Path) -> str:
     """How many rules could be judged, as this commit says it."""
-    command, environment = verify(file, ROOT, rules)
-    said = subprocess.run(
-        command, capture_output=True, text=True, env=environment, check=False
-    ).stdout
+    command, around = verify(file, ROOT, rules)
+    said = subprocess.run(command, capture_output=True, text=True, env=around, check=False).stdout
     line = next(one for one in said.splitlines() if one.startswith("rules "))
     return line.removeprefix("rules ").strip()
 
