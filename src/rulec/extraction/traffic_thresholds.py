@@ -45,7 +45,9 @@ class Thresholds:
     """Who is away for no longer was there all the time."""
     reaction_s: float = 1.0
     braking_mps2: float = 8.0
-    """As hard as a vehicle brakes that has to; everybody does alike, but for what runs on rails."""
+    """As hard as a vehicle brakes that has to; but for cycles and rails everybody does alike."""
+    cycle_braking_mps2: float = 6.0
+    """Who brakes harder on a cycle goes over its front wheel."""
     rail_braking_mps2: float = 3.0
     disturbing_mps2: float = 2.0
     """Who has to brake harder for one who changes lanes is in its way."""

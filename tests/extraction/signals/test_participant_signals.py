@@ -80,6 +80,14 @@ def test_a_tram_ahead_brakes_less_hard():
     assert safe_distance(context(car, **soft))[0] == pytest.approx(14.6875)
 
 
+def test_a_cycle_ahead_brakes_less_hard():
+    # 10 m in the second of reaction, and 100 / 16 - 25 / 12 m
+    cycle = steady(8, 30, 0, speed=5, kind="bicycle")
+    assert safe_distance(context(cycle))[0] == pytest.approx(14.166667)
+    soft = {"cycle_braking_mps2": 4.0}
+    assert safe_distance(context(cycle, **soft))[0] == pytest.approx(13.125)
+
+
 @pytest.mark.parametrize(("degrees", "needed"), [(0, 10.0), (45, 10.0), (70, 10.0), (90, 16.25)])
 def test_who_turns_off_is_as_fast_as_it_is(degrees, needed):
     """Both drive at 10 m/s; who drives across ego's way does not take itself out of it."""
