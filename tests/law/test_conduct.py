@@ -184,11 +184,23 @@ def test_who_cuts_in_gives_three_seconds(step, ends):
 def test_a_moment_away_from_the_kerb_is_no_straying(step, ends):
     judge = book_on("vienna", "keep_near_side", ends, step)
     near, far = ({"lanes": "two_lanes", "lane": one} for one in ("kerb_lane", "far_lane"))
-    two = int(2 / step)
+    five = int(5 / step)
     assert not violations(judge, [far, near])
-    assert not violations(judge, [near, *[far] * (two - 1), {**far, "overtaking": True}])
+    assert not violations(judge, [near, *[far] * (five - 1), {**far, "overtaking": True}])
     assert not violations(judge, [near, *[far, {**far, "dense_all_lanes": True}] * 3, near])
-    assert violations(judge, [near, *[far] * two, near])
+    assert violations(judge, [near, *[far] * five, near])
+
+
+@pytest.mark.parametrize("name", ["vienna", "de", "se", "fr", "gb"])
+def test_who_comes_in_over_the_middle_has_time_for_each_lane(name):
+    judge = book_on(name, "keep_near_side", "stutter", Fraction(1))
+    near, middle, far = (
+        {"lanes": "three_or_more_lanes", "lane": one, "limit": 100}
+        for one in ("kerb_lane", "middle_lane", "far_lane")
+    )
+    assert not violations(judge, [near, *[far] * 4, *[middle] * 5, near])
+    assert violations(judge, [near, *[far] * 5, *[middle] * 3, near])
+    assert violations(judge, [near, *[far] * 4, *[middle] * 6, near])
 
 
 EMERGENCY = sorted({*NATIONAL} - {"un-r79", "un-r157"})  # those are about one system of a car
