@@ -46,8 +46,8 @@ class Thresholds:
     reaction_s: float = 1.0
     braking_mps2: float = 8.0
     """As hard as a vehicle brakes that has to; but for cycles and rails everybody does alike."""
+    # Who brakes harder on a cycle goes over its front wheel.
     cycle_braking_mps2: float = 6.0
-    """Who brakes harder on a cycle goes over its front wheel."""
     rail_braking_mps2: float = 3.0
     disturbing_mps2: float = 2.0
     """Who has to brake harder for one who changes lanes is in its way."""

@@ -123,15 +123,13 @@ def safe_distances(context: DriveContext, cells: Cells) -> tuple[Floats, Floats]
     """The distances (m) for ego to stop behind others braking fully, and how far they may be wrong.
 
     At some cells. Ego brakes as hard after its reaction time: v t + (v² - u²) / 2a, as in RSS
-    (Shalev-Shwartz, Shammah, Shashua 2017). An oncoming participant counts as standing, and cycles
-    and what runs on rails do not brake as hard.
+    (Shalev-Shwartz, Shammah, Shashua 2017). Who is oncoming stands; cycles and trams brake less.
     """
     limits = context.thresholds
     own, other = _ahead(context, cells)
-    braking = np.full(len(context.tracks.rows), limits.braking_mps2)
-    braking[context.tracks.of_type("light_rider")] = limits.cycle_braking_mps2
-    braking[context.tracks.of_type("rail_vehicle")] = limits.rail_braking_mps2
-    braking = braking[cells.rows]
+    rides, on_rails = map(context.tracks.of_type, ("light_rider", "rail_vehicle"))
+    braking = np.where(rides, limits.cycle_braking_mps2, limits.braking_mps2)
+    braking = np.where(on_rails, limits.rail_braking_mps2, braking)[cells.rows]
     stops = own**2 / (2 * limits.braking_mps2) - other**2 / (2 * braking)
     distance: Floats = limits.reaction_s * own + stops
     error = cells.of(context.ego.speed_error[0])
