@@ -228,9 +228,9 @@ def test_a_narrow_page():
     assert all(len(line) <= 80 for line in text.splitlines())
     assert (
         """
-  overtaking_against_a_sign  copy of the consolidated text, which has the
-                             amendments up to BGBl. I 52/2024; the sign from
-                             memory, to be checked
+  overtaking_against_a_sign         copy of the consolidated text, which has the
+                                    amendments up to BGBl. I 52/2024; the sign
+                                    from memory, to be checked
 """
         in text
     )

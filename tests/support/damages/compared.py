@@ -9,6 +9,10 @@ from rulec import DriveVerdict, RequestedDrives, Verdict
 SAME_S = 2.0
 """A violation is the same one as another that is decided at most so long before or after it."""
 
+TAKES_S = 5.0
+"""So long before it is decided a violation may begin: who has come into a window's sight since then
+keeps the rule there. The books' longest time is that to go back to the kerb, ``time_to_keep_in``."""
+
 
 @dataclass
 class Said:
@@ -89,7 +93,7 @@ class Comparison:
             there = [
                 one
                 for one in times
-                if any(a + SAME_S <= one[0] <= b - SAME_S for a, b in now.spans)
+                if any(a + TAKES_S <= one[0] <= b - SAME_S for a, b in now.spans)
             ]
             if there:
                 home = {"violated": self.found, "open": self.open, "kept": self.acquitted}
