@@ -10,8 +10,10 @@ SAME_S = 2.0
 """A violation is the same one as another that is decided at most so long before or after it."""
 
 TAKES_S = 5.0
-"""So long before it is decided a violation may begin: who has come into a window's sight since then
-keeps the rule there. The books' longest time is that to go back to the kerb, ``time_to_keep_in``."""
+"""So long before it is decided a violation may begin: who came in sight since then keeps the rule.
+
+The books' longest time is that to go back to the kerb, ``time_to_keep_in``.
+"""
 
 
 @dataclass
