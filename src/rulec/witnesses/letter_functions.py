@@ -14,7 +14,7 @@ from rulec.automata.alphabet import count_letters, joined, letters_with, proposi
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read
 from rulec.automata.thresholds import scale
 from rulec.logic import formula as ltl
-from rulec.logic.fold import bit_sets, fold
+from rulec.logic.fold import bit_sets, fold, fold_constants
 from rulec.logic.free_names import rename_variables, variables_of
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, canonical_term, counts_in
@@ -149,8 +149,11 @@ def counts_read(reads: Iterable[Read | NumberRead]) -> list[ltl.Count]:
 
 @lru_cache(maxsize=1024)
 def body_of(count: ltl.Count, name: str) -> ltl.Formula:
-    """Condition that an object must satisfy to be counted."""
-    return _settled(rename_variables(count.body, {count.variable: name}))
+    """Condition that an object must satisfy to be counted.
+
+    What cannot hold of it is left out, with all that it reads: ``other = v and ...`` of who is not v.
+    """
+    return fold_constants(_settled(rename_variables(count.body, {count.variable: name})))
 
 
 def _settled(formula: ltl.Formula) -> ltl.Formula:
