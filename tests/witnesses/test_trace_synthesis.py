@@ -170,6 +170,16 @@ def test_what_cannot_change_has_one_value_in_all_states():
     assert trace.states == ({}, {"fog": True})
 
 
+def test_what_cannot_change_is_said_in_all_states_if_it_is_no_default():
+    """What one state says holds in all: tables that show states must not show a default there."""
+    alone = ObjectUniverse({}, HEAVY)
+    states = [JointState({("fog", ()): True}), JointState({("heavy", ()): True})]
+    trace = synthesize_trace(
+        states, alone, Fraction(1), lambda one: any("heavy" in said for said in one.states)
+    )
+    assert trace.states == ({"fog": True, "heavy": True}, {"heavy": True})
+
+
 def test_a_trace_that_needs_what_cannot_change_to_change_is_left_open():
     states = [JointState({("heavy", ()): True}), JointState({("heavy", ()): False})]
     with pytest.raises(UndecidedError, match="`heavy`, which cannot change, would have to"):

@@ -113,9 +113,11 @@ def _changing_constants(
 def _settled(
     placed: list[dict[Subject, Value]], changing: Mapping[Subject, Sequence[Value]]
 ) -> Iterator[list[dict[Subject, Value]]]:
-    """The states as they are, then with one value throughout for what cannot change."""
-    yield placed
-    for chosen in product(*changing.values()) if changing else ():
+    """The states with one value throughout for what cannot change.
+
+    A value that one state says holds in all of them, so that what the others say is no default.
+    """
+    for chosen in product(*changing.values()):
         settled = dict(zip(changing, chosen, strict=True))
         yield [{**values, **settled} for values in placed]
 
