@@ -18,6 +18,9 @@ signal p, q default false
 signal near(v: t)
 light(v: t) is one of red, amber, green, off
 only is one of lone
+signal heavy, wide(v: t) default false
+quantity mass in t default 1.5
+constant heavy, wide, mass
 """
 
 
@@ -87,7 +90,38 @@ def test_a_value_that_the_rule_does_not_name_stands_for_the_others():
     ]
 
 
-ATOMS = ["p", "q", "near(v)", "red(v)", "green(v)"]
+def test_a_trace_is_proposed_in_which_nothing_changes_that_cannot():
+    (one,) = covered("hard rule A { require always (previously p and heavy implies q) }")
+    assert {missing_example(edge, WORDS) for edge in one.missing_edges} == {
+        "accept { true }",
+        "accept { p }",
+        "accept { heavy }",
+        "reject { p and heavy }",  # as the state stays, p was before
+        "accept { p; true }",
+        "accept { p; p }",
+        "reject { p and heavy and q; heavy }",
+        "reject { p and heavy and q; p and heavy }",
+    }
+
+
+def test_edges_that_only_a_change_of_what_cannot_change_would_take_do_not_count():
+    (one,) = covered("hard rule A { require always (previously heavy implies heavy) }")
+    assert {missing_example(edge, WORDS) for edge in one.missing_edges} == {
+        "accept { true }",
+        "accept { heavy }",
+        "accept { heavy; heavy }",
+    }
+
+
+def test_a_number_that_cannot_change_is_close_to_its_limit_in_all_states():
+    (one,) = covered("hard rule A { require always (previously p implies mass <= 3.5 t) }")
+    assert {missing_example(limit.example, WORDS) for limit in one.missing_limits} == {
+        "accept { p and mass = 3.5 t; mass = 3.5 t }",
+        "reject { p and mass = 3.6 t; mass = 3.6 t }",
+    }
+
+
+ATOMS = ["p", "q", "near(v)", "red(v)", "green(v)", "heavy", "wide(v)", "mass > 2 t"]
 
 
 @composite

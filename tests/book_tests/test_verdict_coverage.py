@@ -59,12 +59,12 @@ def test_both_verdicts_have_to_be_shown(examples, expected):
 )
 def test_the_verdicts_that_a_rule_has(formula, expected):
     run = run_of(f"hard rule A {{ require {formula} }}")
-    assert verdicts(run.compiled.rules[0].machine) == expected
+    assert verdicts(run.compiled.rules[0].machine, run.compiled.vocabulary) == expected
 
 
 def test_states_that_a_fact_rules_out_show_nothing():
     run = run_of("fact not (p and q)", "hard rule A { require never (p and q) accept { p } }")
-    assert verdicts(run.compiled.rules[0].machine) == {True}
+    assert verdicts(run.compiled.rules[0].machine, run.compiled.vocabulary) == {True}
     assert list(uncovered_verdicts(run)) == []
 
 

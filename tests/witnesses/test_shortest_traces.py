@@ -12,6 +12,7 @@ from rulec.book_tests.example_runs import run_rulebook_examples
 from rulec.logic.formula import Atom, Count, QuantityTerm
 from rulec.logic.semantics import holds
 from rulec.monitoring.verify import run
+from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rulebook_model import Example, Rulebook, Variable
 from rulec.vocabulary import Enumeration, ObjectType, Vocabulary
 from rulec.vocabulary import Quantity as DeclaredQuantity
@@ -97,6 +98,24 @@ def test_the_nearest_miss_is_shown():
     traces = shortest_traces(compiled, VOCABULARY)
     assert letters(traces.rejected) == [{P}]
     assert letters(traces.accepted) == [set()]
+
+
+TRAM = parse_rulebook("""rulebook sample
+signal tram, moves, stands default false
+constant tram
+hard rule turned { require never (moves and not tram and previously (stands and tram)) }
+hard rule moved { require never (tram and not stands and previously stands) }
+""")
+
+
+def test_what_cannot_change_does_not_change():
+    """The plainest state that is forbidden would do, after one that its class is plainest for."""
+    turned, moved = compile_here(TRAM).rules
+    # Nothing but a tram that becomes none would be forbidden: there is no such drive.
+    assert shortest_traces(turned, TRAM.vocabulary).rejected is None
+    traces = shortest_traces(moved, TRAM.vocabulary)
+    for trace in (traces.rejected, traces.accepted):
+        assert [state["tram", ()] for state in trace.states] == [True, True]
 
 
 def test_no_trace_is_rejected_or_accepted():

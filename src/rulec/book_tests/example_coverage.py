@@ -6,6 +6,7 @@ import itertools
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import MealyMonitor
@@ -32,6 +33,7 @@ from rulec.witnesses.coverage_witness import (
     possible_letters,
     truth_values,
 )
+from rulec.witnesses.letter_functions import Digits, constant_reads, digits_of
 
 _MOST_TRIED = 16
 """Letters that are tried for a state close to a limit."""
@@ -136,59 +138,105 @@ def _by_rule(run: ExampleRun) -> Iterator[tuple[Rule, CompiledRule, list[Example
         yield rule, compiled, outcomes[id(rule)]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _RuleExamples:
-    """A rule's monitor, a shortest word to each reachable state, a witness of each letter class."""
+@dataclass(frozen=True, slots=True)
+class _Ways:
+    """What a trace can do whose states agree on what cannot change.
 
-    rule: Rule
-    machine: MealyMonitor
-    vocabulary: Vocabulary
-    axioms: Sequence[Formula]
+    The first letter of each class, and a shortest word of classes to each state that is reached.
+    """
+
+    letters: Mapping[int, int]
     paths: Mapping[int, tuple[int, ...]]
-    witnesses: Mapping[int, CoverageWitness]
 
-    @property
-    def unsettled(self) -> list[int]:
-        """The reachable states in which the verdict is not settled for good."""
-        sinks = (self.machine.rejecting_sink, self.machine.accepting_sink)
-        return [state for state in sorted(self.paths) if state not in sinks]
 
-    def uncovered(
-        self, source: int, symbol: int, last: CoverageWitness | None = None
-    ) -> UncoveredEdge:
-        """The edge with its shortest example, whose ``last`` state may be given."""
-        before = [self.witnesses[letter_class] for letter_class in self.paths[source]]
-        return UncoveredEdge(
-            source,
-            self.machine.successors[source][symbol],
-            (*before, self.witnesses[symbol] if last is None else last),
-            self.machine.outputs[source][symbol],
-        )
+def _ways(machine: MealyMonitor, vocabulary: Vocabulary) -> Mapping[Digits, _Ways]:
+    """What traces can do, by what cannot change in them; defaults first."""
+    return {
+        constants: _Ways(letters, _shortest_paths(machine, letters))
+        for constants, letters in possible_letters(machine, vocabulary).items()
+    }
+
+
+class _RuleExamples:
+    """A rule's monitor, what traces can do, and a witness of each letter that is asked about."""
+
+    def __init__(
+        self,
+        rule: Rule,
+        machine: MealyMonitor,
+        vocabulary: Vocabulary,
+        axioms: Sequence[Formula],
+    ) -> None:
+        self._rule, self._machine, self._vocabulary = rule, machine, vocabulary
+        self._axioms = axioms
+        self._ways = _ways(machine, vocabulary)
+        self._constant = constant_reads(machine.reads, vocabulary)
+        self._witnesses: dict[int, CoverageWitness] = {}
+        sinks = (machine.rejecting_sink, machine.accepting_sink)
+        # The states in which the verdict is not settled for good.
+        self._unsettled = {
+            constants: tuple(state for state in sorted(ways.paths) if state not in sinks)
+            for constants, ways in self._ways.items()
+        }
+
+    @cached_property
+    def edges(self) -> Mapping[tuple[int, int], Digits]:
+        """What is the same in all states of a shortest trace that ends with each edge."""
+        shortest: dict[tuple[int, int], Digits] = {}
+        for constants, ways in self._ways.items():
+            for edge in itertools.product(self._unsettled[constants], ways.letters):
+                known = shortest.get(edge)
+                length = len(ways.paths[edge[0]])
+                if known is None or length < len(self._ways[known].paths[edge[0]]):
+                    shortest[edge] = constants
+        return dict(sorted(shortest.items()))
+
+    def uncovered(self, source: int, symbol: int) -> UncoveredEdge:
+        """The edge with its shortest example."""
+        constants = self.edges[source, symbol]
+        last = self._witness(self._ways[constants].letters[symbol])
+        return self._edge(constants, source, symbol, last)
 
     def untouched(self, side: LimitSide) -> UntouchedLimit | None:
         """The limit with an example that is close to it on a side, if that makes a difference."""
-        found = deciding_edges(side, self.machine, self.unsettled)
+        machine = self._machine
+        found = deciding_edges(side, machine, lambda letter: self._unsettled[self._fixed(letter)])
         for source, letter in itertools.islice(found, _MOST_TRIED):
-            formula = self.rule.formula
-            last = coverage_witness(letter, self.machine, formula, self.vocabulary, self.axioms)
-            says = close_state(last.says, side, self.machine, self.vocabulary)
+            last = self._witness(letter)
+            says = close_state(last.says, side, machine, self._vocabulary)
             if says is not None:
-                symbol = self.machine.letters[letter]
-                edge = self.uncovered(source, symbol, replace(last, says=says))
+                symbol, constants = machine.letters[letter], self._fixed(letter)
+                edge = self._edge(constants, source, symbol, replace(last, says=says))
                 return UntouchedLimit(side.comparison, side.holds, edge)
         return None
 
+    def _edge(
+        self, constants: Digits, source: int, symbol: int, last: CoverageWitness
+    ) -> UncoveredEdge:
+        ways = self._ways[constants]
+        path = [self._witness(ways.letters[letter_class]) for letter_class in ways.paths[source]]
+        # A number that cannot change may have been moved to a limit: the same on the way there.
+        names = self._vocabulary.constants
+        same = {subject: value for subject, value in last.says.items() if subject[0] in names}
+        before = tuple(replace(state, says={**state.says, **same}) for state in path)
+        return UncoveredEdge(
+            source,
+            self._machine.successors[source][symbol],
+            (*before, last),
+            self._machine.outputs[source][symbol],
+        )
 
-def _rule_examples(
-    rule: Rule, machine: MealyMonitor, vocabulary: Vocabulary, axioms: Sequence[Formula]
-) -> _RuleExamples:
-    letters = possible_letters(machine)
-    witnesses = {
-        symbol: coverage_witness(letter, machine, rule.formula, vocabulary, axioms)
-        for symbol, letter in letters.items()
-    }
-    paths = _shortest_paths(machine, letters)
-    return _RuleExamples(rule, machine, vocabulary, axioms, paths=paths, witnesses=witnesses)
+    def _fixed(self, letter: int) -> Digits:
+        if not any(self._constant):
+            return ()
+        return tuple(itertools.compress(digits_of(letter, self._machine.reads), self._constant))
+
+    def _witness(self, letter: int) -> CoverageWitness:
+        if letter not in self._witnesses:
+            self._witnesses[letter] = coverage_witness(
+                letter, self._machine, self._rule.formula, self._vocabulary, self._axioms
+            )
+        return self._witnesses[letter]
 
 
 def _coverage(
@@ -199,8 +247,7 @@ def _coverage(
     axioms: Sequence[Formula],
 ) -> RuleCoverage:
     machine = compiled.machine
-    known = _rule_examples(rule, machine, rulebook.vocabulary, axioms)
-    edges = list(itertools.product(known.unsettled, sorted(known.witnesses)))
+    known = _RuleExamples(rule, machine, rulebook.vocabulary, axioms)
     taken = {edge for outcome in outcomes for edge in _taken(machine, outcome.word)}
     values = [
         (proposition, value)
@@ -223,8 +270,8 @@ def _coverage(
     missing_limits = tuple(limit for limit in limits if limit is not None)
     return RuleCoverage(
         rule=rule.name,
-        n_edges=len(edges),
-        missing_edges=tuple(known.uncovered(*edge) for edge in edges if edge not in taken),
+        n_edges=len(known.edges),
+        missing_edges=tuple(known.uncovered(*edge) for edge in known.edges if edge not in taken),
         n_values=len(values),
         missing_values=tuple(value for value in values if value not in seen),
         n_limits=len(near) + len(missing_limits),
@@ -263,13 +310,16 @@ def uncovered_verdicts(run: ExampleRun) -> Iterator[Diagnostic]:
             continue
         shown = {outcome.accepted for outcome in outcomes}
         if len(shown) < 2 and all(outcome.passed for outcome in outcomes):
-            missing = verdicts(compiled.machine) - shown
+            missing = verdicts(compiled.machine, run.compiled.vocabulary) - shown
             if missing:
                 yield unexercised(rule, missing, any_examples=bool(outcomes))
 
 
-def verdicts(machine: MealyMonitor) -> set[bool]:
+def verdicts(machine: MealyMonitor, vocabulary: Vocabulary) -> set[bool]:
     """Verdicts that a rule can have: accepted (True), rejected (False), or both."""
-    symbols = possible_letters(machine)
-    reachable = _shortest_paths(machine, symbols)
-    return {machine.outputs[state][symbol] for state in reachable for symbol in symbols}
+    return {
+        machine.outputs[state][symbol]
+        for ways in _ways(machine, vocabulary).values()
+        for state in ways.paths
+        for symbol in ways.letters
+    }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
@@ -107,11 +107,11 @@ def _reads(read: Read | NumberRead, side: LimitSide) -> TypeGuard[NumberRead]:
 
 
 def deciding_edges(
-    side: LimitSide, machine: MealyMonitor, sources: Sequence[int]
+    side: LimitSide, machine: MealyMonitor, sources: Callable[[int], tuple[int, ...]]
 ) -> Iterator[tuple[int, int]]:
     """States of a machine, and letters on a side of a limit whose other side leads elsewhere.
 
-    ``sources`` are the states in which nothing is settled.
+    ``sources`` are the states in which a letter can be read and nothing is settled.
     """
     (true,) = letters_with(machine.reads, [side.comparison]).values()
     reads = machine.reads
@@ -120,8 +120,8 @@ def deciding_edges(
     stride, size = prod(read.size for read in reads[:place]), reads[place].size
 
     @cache
-    def told_apart(here: int, beyond: int) -> int | None:
-        for state in sources:
+    def told_apart(here: int, beyond: int, states: tuple[int, ...]) -> int | None:
+        for state in states:
             ways = (machine.successors[state], machine.outputs[state])
             if any(way[here] != way[beyond] for way in ways):
                 return state
@@ -134,7 +134,7 @@ def deciding_edges(
         for beyond in (letter - stride,) * (digit > 0) + (letter + stride,) * (digit + 1 < size):
             if bool(true >> beyond & 1) is side.holds or machine.letters[beyond] == IMPOSSIBLE:
                 continue
-            state = told_apart(here, machine.letters[beyond])
+            state = told_apart(here, machine.letters[beyond], sources(letter))
             wanted = (can_be(machine, one, below_zero=negative) for one in (letter, beyond))
             if state is not None and all(wanted):
                 yield state, letter

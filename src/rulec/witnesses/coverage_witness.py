@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import compress
 from math import inf
+from typing import TypeAlias
 
 from rulec.automata.alphabet import letters_with, propositions_of
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, Read
@@ -16,8 +19,20 @@ from rulec.logic.printing import formula_text
 from rulec.rulebook.rulebook_model import ExampleState
 from rulec.rulebook.rules.axioms import ExampleValues
 from rulec.vocabulary import Vocabulary
-from rulec.witnesses.letter_functions import all_digits, counts_read, digits_of, is_natural
-from rulec.witnesses.state_synthesis import NumberDigits, numbers_near_thresholds, values_of
+from rulec.witnesses.letter_functions import (
+    Digits,
+    all_digits,
+    constant_reads,
+    counts_read,
+    digits_of,
+    is_natural,
+)
+from rulec.witnesses.state_synthesis import (
+    NumberDigits,
+    default_digit,
+    numbers_near_thresholds,
+    values_of,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,19 +61,37 @@ def can_be(monitor: MealyMonitor, letter: int, *, below_zero: bool = False) -> b
     )
 
 
-def possible_letters(monitor: MealyMonitor) -> Mapping[int, int]:
-    """First letter of every letter class that some state has, without numbers below zero if any."""
-    first: dict[int, int] = {}
-    natural: dict[int, int] = {}
-    for letter, letter_class in enumerate(monitor.letters):
-        if letter_class == IMPOSSIBLE or letter_class in natural:
+LettersByConstants: TypeAlias = Mapping[Digits, Mapping[int, int]]
+"""First letter of each letter class, by the digits of what cannot change in a trace."""
+
+
+def possible_letters(monitor: MealyMonitor, vocabulary: Vocabulary) -> LettersByConstants:
+    """First letter of every letter class that some state has, without numbers below zero if any.
+
+    A trace has letters with the same constants alone; those come first that have defaults.
+    """
+    constant = constant_reads(monitor.reads, vocabulary)
+    first: dict[Digits, dict[int, int]] = {}
+    natural: dict[Digits, dict[int, int]] = {}
+    for letter, (letter_class, digits) in enumerate(
+        zip(monitor.letters, all_digits(monitor.reads), strict=True)
+    ):
+        constants = tuple(compress(digits, constant))
+        if letter_class == IMPOSSIBLE or letter_class in natural.get(constants, ()):
             continue
-        digits = digits_of(letter, monitor.reads)
         if all(map(is_possible, monitor.reads, digits)):
-            first.setdefault(letter_class, letter)
+            first.setdefault(constants, {}).setdefault(letter_class, letter)
             if all(map(is_natural, monitor.reads, digits)):
-                natural[letter_class] = letter
-    return first | natural
+                natural.setdefault(constants, {})[letter_class] = letter
+    plain = [default_digit(read, vocabulary) for read in compress(monitor.reads, constant)]
+
+    def off_default(digits: Digits) -> tuple[int, Digits]:
+        return sum(map(operator.ne, digits, plain)), digits
+
+    return {
+        constants: first[constants] | natural.get(constants, {})
+        for constants in sorted(first, key=off_default)
+    }
 
 
 def truth_values(

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import product
+from typing import TypeAlias
 
 from rulec.automata.alphabet import count_letters, joined, letters_with, propositions_of, reads_of
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read
@@ -24,15 +25,16 @@ MOST_LETTERS = 1 << 15
 """An axiom or a count that reads more than these is left undecided."""
 
 Reads = tuple[Read | NumberRead, ...]
+Digits: TypeAlias = tuple[int, ...]
 
 
-def all_digits(reads: Sequence[Read | NumberRead]) -> Iterator[tuple[int, ...]]:
+def all_digits(reads: Sequence[Read | NumberRead]) -> Iterator[Digits]:
     """The digits of each letter, in the order of letters."""
     for digits in product(*(range(read.size) for read in reversed(reads))):
         yield digits[::-1]
 
 
-def digits_of(letter: int, reads: Sequence[Read | NumberRead]) -> tuple[int, ...]:
+def digits_of(letter: int, reads: Sequence[Read | NumberRead]) -> Digits:
     """The digits of a letter."""
     digits = []
     for read in reads:
@@ -54,6 +56,19 @@ def letter_of(digits: Sequence[int], reads: Sequence[Read | NumberRead]) -> int:
     for read, digit in zip(reversed(reads), reversed(digits), strict=True):
         letter = letter * read.size + digit
     return letter
+
+
+def constant_reads(reads: Sequence[Read | NumberRead], vocabulary: Vocabulary) -> tuple[bool, ...]:
+    """Tell of each read whether it cannot change in a trace: it has one digit in all states."""
+    constants = frozenset(vocabulary.constants)
+    return tuple(
+        read.name in constants
+        if isinstance(read, Read)
+        else all(
+            isinstance(term, ltl.QuantityTerm) and term.name in constants for _, term in read.terms
+        )
+        for read in reads
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
+from itertools import compress, product
 from math import prod
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
@@ -20,6 +20,7 @@ from rulec.vocabulary import Vocabulary
 from rulec.witnesses import letter_functions, state_synthesis
 from rulec.witnesses.counted_objects import CountedObjectKinds, fewest_counted_objects
 from rulec.witnesses.joint_reads import JointReads, joint_reads
+from rulec.witnesses.letter_functions import Digits
 from rulec.witnesses.object_universe import ObjectUniverse
 from rulec.witnesses.trace_synthesis import place_objects
 from rulec.witnesses.undecided import UndecidedError
@@ -57,6 +58,7 @@ class LetterWitnesses:
             [letter_functions.is_natural(read, digit) for digit in range(read.size)]
             for read in rule.machine.reads
         ]
+        self._constant = letter_functions.constant_reads(rule.machine.reads, vocabulary)
         self._below_zero = [
             not all(known[digit] for known, digit in zip(natural, digits, strict=True))
             for digits in self._digits
@@ -72,15 +74,30 @@ class LetterWitnesses:
             for read, known in zip(rule.machine.reads, natural, strict=True)
         ]
 
-    def plainest(self, letter_class: int) -> int | None:
-        """Possible letter of a class with most defaults, or None."""
-        return self._nearest_of(letter_class, self._plain)
+    def constants(self, letter: int) -> Digits:
+        """The digits of what cannot change: letters of one trace have the same."""
+        return tuple(compress(self._digits[letter], self._constant))
 
-    def nearest(self, letter: int) -> list[tuple[int, int]]:
-        """Nearest possible letter in every other class, after its Hamming distance."""
+    def all_constants(self) -> list[Digits]:
+        """All that letters of a trace can have for what cannot change, with most defaults first."""
+        letters = (letter for members in self._members for letter in members)
+        plain = tuple(compress(self._plain, self._constant))
+        return sorted(
+            set(map(self.constants, letters)), key=lambda digits: (_distance(digits, plain), digits)
+        )
+
+    def plainest(self, letter_class: int, constants: Digits | None = None) -> int | None:
+        """Possible letter of a class with most defaults, of those with ``constants``, or None."""
+        return self._nearest_of(letter_class, self._plain, constants)
+
+    def nearest(self, letter: int, constants: Digits | None = None) -> list[tuple[int, int]]:
+        """Nearest possible letter in every other class, after its Hamming distance.
+
+        With ``constants`` only of letters that have them.
+        """
         own, digits = self._monitor.letters[letter], self._digits[letter]
         nearest = [
-            self._nearest_of(letter_class, digits)
+            self._nearest_of(letter_class, digits, constants)
             for letter_class in range(len(self._members))
             if letter_class != own
         ]
@@ -169,9 +186,15 @@ class LetterWitnesses:
         is_subtype = self._universe.vocabulary.is_subtype
         return next(count.variable for count in self._counts if is_subtype(kind, count.type))
 
-    def _nearest_of(self, letter_class: int, digits: Sequence[int]) -> int | None:
+    def _nearest_of(
+        self, letter_class: int, digits: Sequence[int], constants: Digits | None
+    ) -> int | None:
         letters = sorted(
-            self._members[letter_class],
+            [
+                letter
+                for letter in self._members[letter_class]
+                if constants is None or self.constants(letter) == constants
+            ],
             key=lambda letter: (
                 _distance(self._digits[letter], digits),
                 self._below_zero[letter],

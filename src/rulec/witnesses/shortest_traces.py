@@ -12,6 +12,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.joint_alphabet import JointLetter
+from rulec.witnesses.letter_functions import Digits
 from rulec.witnesses.letter_witness import LetterWitnesses, WitnessTrace
 from rulec.witnesses.undecided import UndecidedError
 
@@ -73,7 +74,7 @@ class ShortestTraces:
 
     No shorter trace is rejected. The accepted one differs from it in one state where that is
     possible, and else shows more of the rule than a trace that never leaves the first state of its
-    automaton, if any does.
+    automaton, if any does. What cannot change is the same in all states.
     """
 
     accepted: WitnessTrace | None
@@ -87,26 +88,45 @@ def shortest_traces(rule: CompiledRule, vocabulary: Vocabulary) -> ShortestTrace
     """
     monitor = rule.machine
     witnesses = LetterWitnesses(rule, vocabulary)
-    plainest: dict[JointLetter, int] = {
-        (letter_class,): letter
-        for letter_class in range(len(monitor.successors[0]))
-        if (letter := witnesses.plainest(letter_class)) is not None
-    }
-
-    def shortest(searched: MealyMonitor, *, accepted: bool) -> list[int] | None:
-        word = shortest_word([searched], [accepted], list(plainest))
-        return None if word is None else [plainest[symbol] for symbol in word]
-
-    rejected = shortest(monitor, accepted=False)
+    rejected = _shortest(monitor, witnesses, accepted=False)
     accepted = (
         (rejected and _near_miss(monitor, rejected, witnesses))
-        or shortest(_after_first_state(monitor), accepted=True)
-        or shortest(monitor, accepted=True)
+        or _shortest(_after_first_state(monitor), witnesses, accepted=True)
+        or _shortest(monitor, witnesses, accepted=True)
     )
     return ShortestTraces(
         witnesses.trace(accepted) if accepted else None,
         witnesses.trace(rejected) if rejected else None,
     )
+
+
+def _shortest(
+    monitor: MealyMonitor, witnesses: LetterWitnesses, *, accepted: bool
+) -> list[int] | None:
+    """A shortest word of letters that one trace can have, with most defaults of what is constant.
+
+    Mostly the plainest letters of all agree on that; only else it is searched for each value.
+    """
+    found = _shortest_with(None, monitor, witnesses, accepted=accepted)
+    if found is None or len(set(map(witnesses.constants, found))) == 1:
+        return found
+    words = [
+        _shortest_with(constants, monitor, witnesses, accepted=accepted)
+        for constants in witnesses.all_constants()
+    ]
+    return min((word for word in words if word is not None), key=len, default=None)
+
+
+def _shortest_with(
+    constants: Digits | None, monitor: MealyMonitor, witnesses: LetterWitnesses, *, accepted: bool
+) -> list[int] | None:
+    plainest: dict[JointLetter, int] = {
+        (letter_class,): letter
+        for letter_class in range(len(monitor.successors[0]))
+        if (letter := witnesses.plainest(letter_class, constants)) is not None
+    }
+    word = shortest_word([monitor], [accepted], list(plainest))
+    return None if word is None else [plainest[symbol] for symbol in word]
 
 
 def _after_first_state(monitor: MealyMonitor) -> MealyMonitor:
@@ -139,7 +159,9 @@ def _near_miss(
     """
     for place in reversed(range(len(rejected))):
         candidates = []
-        for distance, letter in witnesses.nearest(rejected[place]):
+        # A single state may differ in what cannot change; in a longer word it is as it was.
+        constants = witnesses.constants(rejected[place]) if len(rejected) > 1 else None
+        for distance, letter in witnesses.nearest(rejected[place], constants):
             word = [*rejected[:place], letter, *rejected[place + 1 :]]
             accepted, n_states = _run(monitor, word)
             if accepted:
