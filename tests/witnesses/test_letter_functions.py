@@ -1,5 +1,6 @@
 """Axioms, counts and monitors as functions of letters, against all states; universes."""
 
+from dataclasses import replace
 from fractions import Fraction
 from itertools import permutations, product
 
@@ -26,11 +27,13 @@ from rulec.witnesses.letter_functions import (
     count_function,
     counts_read,
     monitor_function,
+    plain_body_of,
     speaks_of_extra,
     truths_of,
 )
 from rulec.witnesses.object_universe import (
     EXTRA,
+    Itself,
     ObjectUniverse,
     canonical_term,
     counts_in,
@@ -136,10 +139,22 @@ def test_too_many_letters_are_left_undecided():
         axiom_function(Binary(BinaryOperator.AND, whole, Atom("q", ("one_more",))), VOCABULARY)
 
 
+def test_what_decides_nothing_is_left_out_of_a_body_where_all_has_defaults():
+    near = Atom("place", ("o",), "near")
+    count = Count("o", "thing", Binary(BinaryOperator.AND, Same("o", "x"), near))
+    assert plain_body_of(count, EXTRA, Itself(VOCABULARY)) == Constant(False)
+    assert plain_body_of(count, "x", Itself(VOCABULARY)) == replace(near, arguments=("x",))
+    # Of what has no default a state has to say something for everybody
+    declarations = VOCABULARY.declarations
+    told = declarations | {"place": replace(declarations["place"], default=None)}
+    untold = replace(VOCABULARY, declarations=told)
+    assert plain_body_of(count, EXTRA, Itself(untold)) == body_of(count, EXTRA)
+
+
 def test_bodies_speak_of_the_object_that_is_counted():
     count = Count("o", "thing", Binary(BinaryOperator.OR, Same("o", "x"), Atom("q", ("o",))))
-    assert body_of(count, "x") == Constant(True)
-    assert body_of(count, EXTRA) == Atom("q", (EXTRA,))
+    assert body_of(count, "x") == Binary(BinaryOperator.OR, Constant(True), Atom("q", ("x",)))
+    assert body_of(count, EXTRA) == Binary(BinaryOperator.OR, Constant(False), Atom("q", (EXTRA,)))
     assert speaks_of_extra(Read("q", (EXTRA,)))
     assert not speaks_of_extra(Read("q", ("x",)))
 

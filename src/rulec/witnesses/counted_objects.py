@@ -167,7 +167,7 @@ class CountedObjectKinds:
         ]
         for kind in sorted(fitting, key=lambda fit: len(list(vocabulary.ancestors(fit)))):
             bodies = {
-                place: letter_functions.body_of(count, EXTRA)
+                place: letter_functions.plain_body_of(count, EXTRA, Itself(vocabulary))
                 for place, count in enumerate(counts)
                 if vocabulary.is_subtype(kind, count.type)
             }

@@ -16,9 +16,15 @@ from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read
 from rulec.automata.thresholds import scale
 from rulec.logic import formula as ltl
 from rulec.logic.fold import bit_sets, fold, fold_constants
-from rulec.logic.free_names import rename_variables, variables_of
+from rulec.logic.free_names import names_of, rename_variables, variables_of
 from rulec.vocabulary import Vocabulary
-from rulec.witnesses.object_universe import EXTRA, ObjectUniverse, canonical_term, counts_in
+from rulec.witnesses.object_universe import (
+    EXTRA,
+    Itself,
+    ObjectUniverse,
+    canonical_term,
+    counts_in,
+)
 from rulec.witnesses.undecided import UndecidedError
 
 MOST_LETTERS = 1 << 15
@@ -131,14 +137,14 @@ def count_function(count: ltl.Count, universe: ObjectUniverse) -> CountFunction:
         raise UndecidedError("a count stands inside another one")
     vocabulary = universe.vocabulary
     bodies = [
-        body_of(count, name)
+        plain_body_of(count, name, Itself(vocabulary))
         for name, kind in universe.objects.items()
         if vocabulary.is_subtype(kind, count.type)
     ]
     own = {_key(read): read for read in reads_of(_all_of(bodies), vocabulary)}
     around = {
         _key(read): read
-        for read in reads_of(body_of(count, EXTRA), vocabulary)
+        for read in reads_of(plain_body_of(count, EXTRA, Itself(vocabulary)), vocabulary)
         if not speaks_of_extra(read)
     }
     # In the order of the first mention; where both read a number, its thresholds are the own ones.
@@ -164,11 +170,19 @@ def counts_read(reads: Iterable[Read | NumberRead]) -> list[ltl.Count]:
 
 @lru_cache(maxsize=1024)
 def body_of(count: ltl.Count, name: str) -> ltl.Formula:
-    """Condition that an object must satisfy to be counted.
+    """Condition that an object must satisfy to be counted."""
+    return _settled(rename_variables(count.body, {count.variable: name}))
 
-    What cannot hold of it is left out, with all that it reads: ``other = v and ...`` of who is not v.
+
+@lru_cache(maxsize=1024)
+def plain_body_of(count: ltl.Count, name: str, vocabulary: Itself[Vocabulary]) -> ltl.Formula:
+    """The same without what decides nothing, as in ``other = v and ...`` of who is not v.
+
+    Where a name has no default a state has to tell it all the same, and nothing is left out.
     """
-    return fold_constants(_settled(rename_variables(count.body, {count.variable: name})))
+    whole = body_of(count, name)
+    defaults = [vocabulary.item.declarations[each].default for each in names_of(whole)]
+    return whole if None in defaults else fold_constants(whole)
 
 
 def _settled(formula: ltl.Formula) -> ltl.Formula:
