@@ -11,10 +11,12 @@ from rulec.analysis.diff.rule_comparison import compare, non_default_names
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.trace import Trace
+from rulec.vocabulary import Enumeration, Signal
 from support.generators.random_rule_pairs import (
     ALONE,
     COUNTED,
     PAIRED,
+    VOCABULARY,
     X,
     Y,
     allows,
@@ -146,6 +148,41 @@ def test_facts_rule_out_states(pair, semantics):
     for trace in (*found.first_forbids, *found.second_forbids):
         states = tuple({"p": False, **state} for state in trace.states)
         assert is_possible(replace(trace, states=states))
+
+
+ROAD = Enumeration("road", (), ("lane", "track", "way"), "way", constant=True)
+WITH_CONSTANTS = replace(
+    VOCABULARY,
+    declarations=VOCABULARY.declarations
+    | {"road": ROAD, "tows": Signal("tows", (), False, constant=True)},
+)
+CONSTANTS = [Atom("road", (), "lane"), Atom("road", (), "track"), Atom("tows")]
+SETTLED = [
+    Trace("t", 1.0, {}, [{"p": p, "road": road, "tows": tows} for p in word])
+    for length in (1, 2, 3)
+    for word in product([False, True], repeat=length)
+    for road in ROAD.values
+    for tows in (False, True)
+]
+
+
+@settings(max_examples=settings().max_examples // 2)
+@given(st.tuples(*[formulas([Atom("p"), *CONSTANTS])] * 2), SEMANTICS)
+def test_what_cannot_change_is_the_same_in_all_states(pair, semantics):
+    """Rules that differ only where it changes are equal."""
+    check(*sides(pair, (), semantics, vocabulary=WITH_CONSTANTS), SETTLED)
+
+
+def test_who_starts_as_one_thing_ends_as_it():
+    lane, track, p = *CONSTANTS[:2], Atom("p")
+    changes = Binary(BinaryOperator.AND, lane, Unary(UnaryOperator.EVENTUALLY, track))
+    long = Binary(BinaryOperator.AND, lane, Unary(UnaryOperator.EVENTUALLY, p))
+    never = [Unary(UnaryOperator.NOT, one) for one in (changes, long)]
+    one, other = sides(never, vocabulary=WITH_CONSTANTS)
+    found = compare(one, other)
+    assert (found.relation, found.first_forbids) == ("laxer", ())
+    (witness, *_) = found.second_forbids
+    assert {state["road"] for state in witness.states} == {"lane"}
 
 
 CARS = [trace for kind in ("thing", "car") for trace in words({"x": kind}, ["p", "place"], 2)]

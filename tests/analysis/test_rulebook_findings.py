@@ -265,7 +265,7 @@ def test_rules_contradict_each_other_only_where_all_of_it_is_decided(tmp_path, m
     assert {len(names) for names in asked} == {2, 3}
 
 
-def test_no_trace_shows_what_only_a_change_of_what_cannot_change_would(tmp_path):
+def test_no_trace_violates_what_only_a_change_of_what_cannot_change_would(tmp_path):
     """Who tows in the first state tows in the second one, too."""
     path = tmp_path / "example.rules"
     path.write_text(
@@ -273,8 +273,18 @@ def test_no_trace_shows_what_only_a_change_of_what_cannot_change_would(tmp_path)
         "hard rule r { require never (wet and towed then fog and not towed) }"
     )
     (found,) = analyze(path)
+    assert found.code == "R0801"
+
+
+def test_a_number_that_cannot_change_is_not_looked_for(tmp_path):
+    path = tmp_path / "example.rules"
+    path.write_text(
+        f"{HEAD}quantity load in t default 0 constant load "
+        "hard rule r { require never (wet and load > 1 t then fog and load < 1 t) }"
+    )
+    (found,) = analyze(path)
     assert found.code == "R0807"
-    assert "`towed`, which cannot change, would have to" in found.message
+    assert "`load`, which cannot change, would have to" in found.message
 
 
 def test_weaker_than_what_is_extended(tmp_path):

@@ -13,10 +13,12 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
+from itertools import product
 
 from rulec.analysis.shared_compilation import AnalyzedRule
+from rulec.automata.alphabet import joined
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
-from rulec.automata.mealy_monitor import NumberRead
+from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
@@ -35,7 +37,7 @@ from rulec.witnesses.letter_functions import monitor_function
 from rulec.witnesses.object_universe import Itself, ObjectUniverse
 from rulec.witnesses.shortest_traces import shortest_word
 from rulec.witnesses.trace_synthesis import synthesize_trace
-from rulec.witnesses.undecided import UndecidedError
+from rulec.witnesses.undecided import ChangingConstantsError, UndecidedError
 
 
 def counterexample(
@@ -75,7 +77,7 @@ class Contest:
 
     def trace(self) -> Trace | None:
         """A shortest trace that only the first rule forbids, or None. Raises UndecidedError."""
-        return self._trace(self._alphabet, self._universe)
+        return self._trace(self._alphabet, self._universe, self._given)
 
     def trace_as_usual(self, names: Set[str]) -> Trace | None:
         """One in which these declarations have their defaults. Raises UndecidedError."""
@@ -85,9 +87,10 @@ class Contest:
         alphabet = self._alphabet.as_usual(axioms)
         if self._word(alphabet) is None:
             return None
+        given = (*self._given, *axioms)
         if not alphabet.is_exact:
-            return counterexample(self.forbidding, self._allowing, (*self._given, *axioms))
-        return self._trace(alphabet, universe)
+            return counterexample(self.forbidding, self._allowing, given)
+        return self._trace(alphabet, universe, given)
 
     def not_below_zero(self) -> Contest:
         """The same, in states without numbers below zero that nothing asks for.
@@ -105,7 +108,9 @@ class Contest:
         axioms = [said_not_below_zero(name, Itself(item)) for name, item in quantities.items()]
         return Contest(self.forbidding, self._allowing, (*self._given, *axioms))
 
-    def _trace(self, alphabet: JointAlphabet, universe: ObjectUniverse) -> Trace | None:
+    def _trace(
+        self, alphabet: JointAlphabet, universe: ObjectUniverse, given: tuple[Axiom, ...]
+    ) -> Trace | None:
         word = self._word(alphabet)
         if word is None:
             return None
@@ -116,7 +121,17 @@ class Contest:
             )
 
         step = common_step((self.forbidding, *self._allowing))
-        return synthesize_trace(alphabet.states_of(word), universe, step, shows)
+        try:
+            return synthesize_trace(alphabet.states_of(word), universe, step, shows)
+        except ChangingConstantsError as changing:
+            reads = [alphabet.read_of(name) for name in changing.names]
+            if None in reads:
+                raise
+        # A trace has one value of each: the shortest one with any.
+        values = product(*(_said_of_constant(read, universe.vocabulary) for read in reads if read))
+        traces = (counterexample(self.forbidding, self._allowing, (*given, *x)) for x in values)
+        found = [trace for trace in traces if trace is not None]
+        return min(found, key=lambda trace: len(trace.states), default=None)
 
     def _word(self, alphabet: JointAlphabet) -> tuple[JointLetter, ...] | None:
         letters = alphabet.candidates
@@ -126,6 +141,20 @@ class Contest:
                 if shortest_word(self._monitors, self._verdicts, letters) is None:
                     return None
         return shortest_word(self._monitors, self._verdicts, letters, alphabet.can_be_read)
+
+
+def _said_of_constant(read: Read, vocabulary: Vocabulary) -> list[Axiom]:
+    """That it has one of the values that are told apart, for each of these; the default first."""
+    each: list[ltl.Formula] = [ltl.Atom(read.name, (), value) for value in read.values]
+    if not read.values:
+        own = ltl.Atom(read.name)
+        each = [ltl.Unary(ltl.UnaryOperator.NOT, own), own]
+    elif read.others:
+        each.append(ltl.Unary(ltl.UnaryOperator.NOT, joined(ltl.BinaryOperator.OR, each)))
+    default = vocabulary.declarations[read.name].default
+    usual = None if default is None else read.digit(default)
+    order = sorted(range(read.size), key=lambda digit: (digit != usual, digit))
+    return [Axiom((), each[digit]) for digit in order]
 
 
 # What is known of an axiom is kept beside it, and many rules are asked about the same words.

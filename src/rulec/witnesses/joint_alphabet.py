@@ -12,7 +12,7 @@ from dataclasses import replace
 from heapq import heappop, heappush
 from itertools import count
 
-from rulec.automata.mealy_monitor import NumberRead
+from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.resource_limits import SEARCH
 from rulec.rulebook.rulebook_model import Axiom
 from rulec.witnesses import letter_functions, state_synthesis
@@ -148,6 +148,11 @@ class JointAlphabet:
             if len(ways_to) > MOST_LETTERS:
                 raise UndecidedError("too many different states of the world have to be told apart")
         self.candidates: Sequence[JointLetter] = tuple(ways_to)
+
+    def read_of(self, name: str) -> Read | None:
+        """The joint read of an enumeration or signal about nobody, None if there is none."""
+        reads = (read for read in self._joint.reads if isinstance(read, Read))
+        return next((read for read in reads if (read.name, read.variables) == (name, ())), None)
 
     @property
     def is_counting(self) -> bool:

@@ -17,7 +17,7 @@ from rulec.witnesses.counted_objects import (
 )
 from rulec.witnesses.object_universe import EXTRA, ObjectUniverse
 from rulec.witnesses.state_synthesis import JointState, Subject, Value, default_value, subjects_of
-from rulec.witnesses.undecided import UndecidedError
+from rulec.witnesses.undecided import ChangingConstantsError, UndecidedError
 
 
 def place_objects(
@@ -82,8 +82,7 @@ def synthesize_trace(
             if not types and not changing:
                 raise
     if changing:
-        names = ", ".join(sorted({f"`{name}`" for name, _ in changing}))
-        raise UndecidedError(f"{names}, which cannot change, would have to")
+        raise ChangingConstantsError(tuple(sorted({name for name, _ in changing})))
     if types:
         raise UndecidedError("further objects, there to be counted, are subject to the rule, too")
     raise AssertionError(f"a trace does not do what it is to show: {trace.states}")

@@ -5,3 +5,15 @@ from __future__ import annotations
 
 class UndecidedError(Exception):
     """The question is left open; the text says why, as a clause."""
+
+
+class ChangingConstantsError(UndecidedError):
+    """The shortest words change what cannot change in a trace; others may not.
+
+    ``names`` are the declarations whose values would have to change.
+    """
+
+    def __init__(self, names: tuple[str, ...]) -> None:
+        quoted = ", ".join(f"`{name}`" for name in names)
+        super().__init__(f"{quoted}, which cannot change, would have to")
+        self.names = names

@@ -93,12 +93,18 @@ def formulas(atoms):
     )
 
 
-def sides(formulas, variables=(), semantics=("stutter", "stutter"), axioms=()):
+def sides(
+    formulas,
+    variables=(),
+    semantics=("stutter", "stutter"),
+    axioms=(),
+    vocabulary=VOCABULARY,
+):
     """Both rules compiled, each in a rulebook of its own."""
     found = []
     for number, (formula, how) in enumerate(zip(formulas, semantics, strict=True)):
         rule = Rule("r", "hard", tuple(variables), formula)
-        book = Rulebook(f"book{number}", VOCABULARY, (rule,), semantics=how, axioms=axioms)
+        book = Rulebook(f"book{number}", vocabulary, (rule,), semantics=how, axioms=axioms)
         compiled = compile_here(book)
         header = replace(compiled, rules=())
         found.append(AnalyzedRule(header, axioms, compiled.rules[0], number))
