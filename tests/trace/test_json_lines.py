@@ -117,6 +117,8 @@ def test_what_is_refused(data, code, words):
         (gzip.compress(line(), mtime=0), "data compressed with gzip"),
         (b"PK\x03\x04" + line(), "a ZIP archive"),
         (b"PAR1" + line(), "Parquet"),
+        (b"ARROW1" + line(), "Arrow (Feather)"),
+        (b"\xd0\xcf\x11\xe0" + line(), "a file of Excel's or Word's"),
         (line().decode().encode("utf-16"), "text in UTF-16"),
         (line().decode().encode("utf-16-le"), "text in UTF-16"),
         (line().decode().encode("utf-16-be"), "text in UTF-16"),
@@ -138,6 +140,15 @@ def test_csv_and_a_list_are_one_mistake():
     in_lines = b"[\n" + line().rstrip() + b",\n" + line() + b"]\n"
     for data in (pretty, in_lines):
         assert problem(data).message == "these are no traces, a line each, but a list in JSON"
+
+
+@pytest.mark.parametrize(("separator", "way_out"), [("\n", ", lines=True"), (",", "")])
+def test_rows_of_tracks_are_one_mistake(separator, way_out):
+    row = '{"track": 1, "t": 0, "x": 1, "y": 0}'
+    rows = separator.join([row, row])
+    found = problem((rows if way_out else f"[{rows}]").encode())
+    assert "rows of where somebody was" in found.message
+    assert f"{way_out}).to_csv('tracks.csv', index=False)" in found.help
 
 
 @pytest.mark.parametrize(

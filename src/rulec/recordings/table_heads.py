@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rulec.diagnostics import RulecError
-from rulec.recordings.encodings.csv_head import PARQUET, is_number, names_in
+from rulec.recordings.encodings.csv_head import PARQUET, is_number, is_parquet, names_in
 from rulec.recordings.recording_format import RECORDING, Glance
 
 _TABLES = (".csv", ".tsv", ".txt", *PARQUET)
@@ -23,7 +23,7 @@ def head_of(glance: Glance) -> tuple[str, ...]:
     """The names of a table's columns in small letters; none if it seems to be no table."""
     if not glance.name.endswith(_TABLES):
         return ()
-    if not glance.name.endswith(PARQUET):
+    if not is_parquet(glance.name, glance.head):
         return names_in(glance.head)
     # As above: NumPy, and Arrow
     from rulec.trace.formats.arrow.parquet_columns import parquet_names

@@ -318,6 +318,39 @@ def test_a_file_that_is_not_what_it_is_called(tmp_path):
     assert refused.value.diagnostics[0].code == "R0701"
 
 
+def test_a_table_that_is_not_called_what_it_is(tmp_path):
+    """Parquet is read whatever its name; of other containers the way out is said."""
+    as_csv = written(tmp_path, table(HEAD, *driving()))
+    columns = {name: [float(k) for k in range(3)] for name in ("t", "x", "y")}
+    parquet.write_table(pa.table({"track": ["a"] * 3, **columns}), as_csv)
+    assert is_recording(str(as_csv))
+    assert list(only(read_recording(as_csv)).states) == [0, 1, 2]
+    as_csv.write_bytes(b"PK\x03\x04\xff" + as_csv.read_bytes())
+    with pytest.raises(RulecError, match="it is a ZIP archive") as refused:
+        read_recording(as_csv, form="tracks")
+    assert "save its sheet as CSV" in refused.value.diagnostics[0].help
+
+
+def test_truths_as_pandas_writes_them(tmp_path):
+    rows = [*driving(steps=3, more=",True"), "a,0.3,23,0,False", "a,0.4,24,0,"]
+    car = only(read(tmp_path, f"{HEAD},horn", *rows))
+    assert {step: set(lit) for step, lit in car.lamps.items()} == {
+        0: {"horn"},
+        1: {"horn"},
+        2: {"horn"},
+        3: set(),
+    }
+    mixed = message(tmp_path, f"{HEAD},horn", *driving(steps=3, more=",True"), "a,0.3,23,0,1")
+    assert mixed.help.endswith("or `true` and `false` in all of the column")
+
+
+def test_ids_that_a_gap_made_decimals(tmp_path):
+    recording = read(tmp_path, HEAD, *driving("7.0"), *driving("8.0", y=3.5))
+    assert [one.id for one in recording.participants] == ["7", "8"]
+    recording = read(tmp_path, HEAD, *driving("7.0"), *driving("7", y=3.5))
+    assert [one.id for one in recording.participants] == ["7", "7.0"]
+
+
 def test_tracks_are_no_map(tmp_path):
     cars = written(tmp_path, table(HEAD, *driving()))
     with pytest.raises(RulecError, match="it has tracks, and no lanes") as refused:
@@ -342,7 +375,8 @@ def test_headings_of_a_compass(tmp_path):
 @pytest.mark.parametrize(
     ("row", "way_out"),
     [
-        ("a,0,1,0,true", "write 1 for true, 0 for false"),
+        ("a,0,1,0,yes", "write 1 for true, 0 for false"),
+        ("a,0 days 00:00:00.100000,1,0,1", "write seconds, such as 0.1, as pandas' `t.dt."),
         ("a,2024-01-01T00:00:00,1,0,1", "write seconds, such as 0.1, from any moment on"),
         ("a,12:30:01.5,1,0,1", "write seconds, such as 0.1, from any moment on"),
         ("a,0,1e400,0,1", "leave the row out, or write the number that is meant"),

@@ -7,6 +7,7 @@ import zlib
 PARQUET = (".parquet", ".pq")
 """How names of tables that are no CSV end."""
 
+PARQUET_MARK = b"PAR1"
 PACKED = b"\x1f\x8b"
 LONGEST_LINE = 1 << 16
 _SEPARATORS = ",;\t"
@@ -26,6 +27,11 @@ def names_in(head: bytes) -> tuple[str, ...]:
     mark = separator_of(text)
     cells = text.split() if mark == " " else text.split(mark)
     return tuple(cell.strip().strip('"').casefold() for cell in cells)
+
+
+def is_parquet(name: str, beginning: bytes) -> bool:
+    """True for a table that begins or is called like Parquet."""
+    return beginning.startswith(PARQUET_MARK) or name.lower().endswith(PARQUET)
 
 
 def separator_of(head: str) -> str:

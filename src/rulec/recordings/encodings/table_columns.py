@@ -212,11 +212,17 @@ def _check_full(columns: Columns, name: str, kind: ColumnKind) -> None:
 
 
 def checked_numbers(values: Sequence[str], largest: float = LARGEST) -> tuple[Floats, int | None]:
-    """The numbers that texts spell, NaN for empty ones; the place of the first that is none."""
+    """The numbers that texts spell, NaN for empty ones; the place of the first that is none.
+
+    Truths are 1 and 0 where there is nothing else.
+    """
     try:
         found = np.fromiter(map(float, values), float, len(values))
     except ValueError:
-        found = np.fromiter(map(_number, values), float, len(values))
+        spelt = {value: _number(value) for value in set(values)}
+        if {value.strip().casefold() for value in spelt} <= _FLAGS:
+            spelt = {value: _flag(value) for value in spelt}
+        found = np.fromiter(map(spelt.__getitem__, values), float, len(values))
     bad = ~(np.abs(found) < largest) & ~np.isnan(found)
     return found, int(np.argmax(bad)) if bad.any() else None
 
@@ -229,4 +235,10 @@ def _number(text: str) -> float:
         return np.nan if text.strip().casefold() in _EMPTY else np.inf
 
 
+def _flag(text: str) -> float:
+    return {"true": 1.0, "false": 0.0}.get(text.strip().casefold(), np.nan)
+
+
 _EMPTY = ("", "na", "<na>", "n/a", "null", "none", "-")
+_FLAGS = {"true", "false", "nan", *_EMPTY}
+"""What a column of truths holds, as pandas writes it."""

@@ -22,8 +22,8 @@ from rulec.files import opened
 from rulec.recordings.encodings.csv_head import (
     LONGEST_LINE,
     PACKED,
-    PARQUET,
     is_number,
+    is_parquet,
     separator_of,
 )
 from rulec.recordings.encodings.file_format import FileFormat
@@ -38,10 +38,12 @@ from rulec.recordings.encodings.table_columns import (
 from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.recording_messages import NOT_A_RECORDING
 from rulec.trace.formats.arrow.parquet_columns import parquet_columns, parquet_names
+from rulec.trace.formats.stream_lines import foreign
 
 LARGEST_NUMBER = 1e19
 """Nanoseconds since 1970 have nineteen digits."""
 
+_BEGINNING = 1000
 _ROWS_AT_ONCE = 1 << 16
 
 
@@ -57,7 +59,9 @@ def open_table(path: Path, form: FileFormat, names: Sequence[str] = ()) -> Colum
     ) -> RulecError:
         return form.refused(path, why, place, expected=expected, help_text=help_text)
 
-    if path.suffix.lower() in PARQUET:
+    with opened(path) as file:
+        beginning = file.read(_BEGINNING)
+    if is_parquet(path.name, beginning):
         found = parquet_names(path, refused)
 
         def read_parquet(numbers: Sequence[str], texts: Sequence[str]) -> Columns:
@@ -122,6 +126,10 @@ def _lines(path: Path, form: FileFormat, refused: Any) -> Iterator[io.TextIOWrap
         try:
             yield io.TextIOWrapper(bounded, encoding="utf-8-sig", newline="")
         except UnicodeDecodeError:
+            stream.seek(0)
+            kind = foreign(stream.read(_BEGINNING))
+            if kind is not None and not packed:
+                raise refused(f"it is {kind.noun}", help_text=kind.help) from None
             raise refused("it is no text in UTF-8", help_text="save it in UTF-8") from None
         except (OSError, EOFError, zlib.error) as reason:
             raise refused(f"it cannot be unpacked ({reason})") from None
@@ -229,19 +237,33 @@ def _no_number(name: str, cell: str, line: int, refused: Any) -> RulecError:
 
 _WAYS_OUT = (
     (re.compile(r"[0-9,]+"), "write decimal points, not commas"),
-    (re.compile(r"(?i)true|false|yes|no"), "write 1 for true, 0 for false"),
+    (
+        re.compile(r"(?i)true|false|yes|no"),
+        "write 1 for true, 0 for false; or `true` and `false` in all of the column",
+    ),
     (
         re.compile(r"\d{4}-\d\d-\d\d.*|\d+:\d\d.*"),
-        "write seconds, such as 0.1, from any moment on",
+        "write seconds, such as 0.1, from any moment on: `(t - t.min()).dt.total_seconds()`",
+    ),
+    (
+        re.compile(r"-?\d+ days.*"),
+        "write seconds, such as 0.1, as pandas' `t.dt.total_seconds()` gives them",
     ),
 )
 """What stands in the place of a number, and what to write."""
 
 
 def _stripped(codes: NDArray[int64], known: Mapping[str, int]) -> Texts:
-    """The texts without blanks around them; those that are one then have one code."""
+    """The texts without blanks around them; those that are one then have one code.
+
+    Of whole numbers that are all written with a decimal, as pandas does where ids have a gap, the
+    decimal is left out.
+    """
     names: dict[str, int] = {}
-    again = [names.setdefault(name.strip(), len(names)) for name in known]
+    stripped = [name.strip() for name in known]
+    if all(name.endswith(".0") and name[:-2].isdecimal() for name in stripped if name):
+        stripped = [name[:-2] for name in stripped]
+    again = [names.setdefault(name, len(names)) for name in stripped]
     return Texts(np.array(again, dtype=int64)[codes], tuple(names))
 
 

@@ -100,6 +100,26 @@ class Kind(Generic[Record]):
         return self.bad(f"{what}: {words}", place, help_text)
 
 
+def rows_of_tracks(line: bytes, place: SourceLocation) -> RulecError | None:
+    """The error (R0501) that a line is a row of tracks, or a list of such; None if it is not."""
+    if b'"states"' in line or len(line) > LONGEST_LINE_BYTES:
+        return None
+    try:
+        given = msgspec.json.decode(line)
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
+        return None
+    is_list = isinstance(given, list)
+    row = given[0] if is_list and given else given
+    if not isinstance(row, dict) or not {"x", "y"} <= row.keys():
+        return None
+    reads = f"read_json('{place.file}'{'' if is_list else ', lines=True'})"
+    return NOT_A_TRACE.error(
+        SourceLocation(place.file, place.line),
+        "these are no traces, but rows of where somebody was, which are read as CSV and Parquet",
+        help=f"`pandas.{reads}.to_csv('tracks.csv', index=False)` writes them so",
+    )
+
+
 def _answer_of_rulec(line: bytes) -> str:
     """What a line is that `rulec verify` has written, and what reads it; empty if it is none."""
     if b'"outcome":' in line:

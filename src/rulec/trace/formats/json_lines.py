@@ -208,7 +208,7 @@ def _no_traces(first: bytes, place: SourceLocation) -> RulecError | None:
     if first.startswith(b"[") and json_line_problems.is_beginning(first):
         message = "these are no traces, a line each, but a list in JSON"
         return _TRACE.bad(message, place, _TRACE.no_list)
-    return None
+    return json_line_problems.rows_of_tracks(first, place)
 
 
 def _trace(line: bytes, place: SourceLocation, read_state: _StateReader) -> Trace | RulecError:

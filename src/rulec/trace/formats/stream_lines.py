@@ -84,7 +84,11 @@ _UTF16 = Foreign("text in UTF-16", "save it in UTF-8")
 _BEGINNINGS = {
     b"\x1f\x8b": Foreign("data compressed with gzip", "unpack it with `gunzip`"),
     b"\x28\xb5\x2f\xfd": Foreign("data compressed with Zstandard", "unpack it with `unzstd`"),
-    b"PK\x03\x04": Foreign("a ZIP archive", "unpack it with `unzip`"),
+    b"PK\x03\x04": Foreign(
+        "a ZIP archive", "unpack it with `unzip`; or, if it is Excel's, save its sheet as CSV"
+    ),
+    b"\xd0\xcf\x11\xe0": Foreign("a file of Excel's or Word's", "save its sheet as CSV"),
+    b"ARROW1": Foreign("Arrow (Feather)", "write it as Parquet, as `to_parquet` of pandas does"),
     b"PAR1": Foreign("Parquet", "add `--input-format parquet`"),
     b"\xff\xfe": _UTF16,
     b"\xfe\xff": _UTF16,

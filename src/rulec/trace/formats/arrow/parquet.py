@@ -172,7 +172,7 @@ def _no_parquet(stream: IO[bytes], file: str) -> RulecError | None:
             return problem(
                 f"this is no Parquet, but {result.noun}", SourceLocation(file), result.help
             )
-        way_out = "if it is in another format, name that with `--input-format`"
+        way_out = "if it is CSV, call it `.csv`; else name its format with `--input-format`"
         return problem(f"{what}: it does not begin with `PAR1`", SourceLocation(file), way_out)
     if end != _MARK or size == len(_MARK):
         why = "its table of contents, which comes last, is missing; it has been cut short"
