@@ -1,5 +1,6 @@
 """What newcomers get wrong, and the way out that they are shown."""
 
+import gzip
 import json
 import sys
 from importlib import metadata
@@ -277,6 +278,15 @@ def test_a_file_of_another_kind(tmp_path, monkeypatch, capsys):
     assert (status, "save it as plain text, in UTF-8, with a name" in text) == (2, True)
     status, text = said(capsys, "check", "law.rules")
     assert (status, "the file is a PDF, no plain text" in text) == (1, True)
+    said(capsys, "compile", "esterle2019", "-o", "out")
+    compiled = (tmp_path / "out" / "esterle2019.json").read_bytes()
+    (tmp_path / "law.json.gz").write_bytes(gzip.compress(compiled))
+    status, text = said(capsys, "show", "law.json.gz")
+    assert (status, "ends in `.json`, packed or not: call it `law.json`" in text) == (2, True)
+    status, text = said(capsys, "show", "./law.json.gz")
+    assert (status, "the ending `.json`; packed with gzip it may stay" in text) == (2, True)
+    (tmp_path / "law.json.gz").rename("law.json")
+    assert said(capsys, "show", "law.json")[0] == 0
     status, text = said(capsys, "verify", "README.md", "-r", "esterle2019")
     assert (status, text.count("error["), "these are no traces, but text" in text) == (2, 1, True)
     status, text = said(capsys, "maneuvers", "states.jsonl", "-r", "esterle2019")

@@ -284,4 +284,12 @@ def test_who_mixes_kinds_is_shown_how_it_is_written(formula, mended):
 def test_without_a_word_for_a_speed_none_is_proposed():
     with pytest.raises(RulecError) as problem:
         parse_rulebook(TRAFFIC.replace("pace in km/h", "pace in m") % "gap(c) >= headway")
+    way_out = "`gap(c)` is in m: check the unit of `headway` where it is declared"
+    assert problem.value.diagnostics[0].help == way_out
+    with pytest.raises(RulecError) as problem:
+        # A time would make them alike, too, but who compares them so has slipped in the unit.
+        parse_rulebook(TRAFFIC.replace("headway = 2 s", "headway = 50 km") % "headway >= pace")
+    assert problem.value.diagnostics[0].help.startswith("`pace` is in km/h: check the unit of")
+    with pytest.raises(RulecError) as problem:
+        parse_rulebook(TRAFFIC.replace("pace in km/h", "pace in t") % "pace >= gap(c)")
     assert problem.value.diagnostics[0].help == "check the names and the units"

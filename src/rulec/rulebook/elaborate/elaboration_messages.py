@@ -191,8 +191,9 @@ def two_dimensions(
         or _speed_help((first, left), (second, right), scope)
         or _other_unit(second, first, scope)
         or _other_unit(first, second, scope)
-        or _kind_help(first, left, second, right)
         or _parameter_help(second, second_kind, first, scope)
+        or _parameter_help(first, first_kind, second, scope)
+        or _kind_help(first, left, second, right)
         or "check the names and the units",
         labels=(Label(first.span.place, f"this is {first_kind}"), *origins(scope, first, second)),
     )
@@ -205,10 +206,14 @@ def _unit_help(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:
 
 
 def _parameter_help(node: tree.Formula, kind: str, beside: tree.Formula, scope: Scope) -> str:
+    """The way out for a parameter without a unit, or in one of another kind than it is beside."""
     unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
     is_param = isinstance(node, tree.AtomUse) and scope.constants.overlay.kind_of(node.name.text)
-    said = f"write its unit where it is declared, such as `param {short(node)} = 3 {unit}`"
-    return said if is_param == "parameter" and kind == "a number" and unit else ""
+    if is_param != "parameter" or not unit:
+        return ""
+    if kind == "a number":
+        return f"write its unit where it is declared, such as `param {short(node)} = 3 {unit}`"
+    return f"`{short(beside)}` is in {unit}: check the unit of `{short(node)}` where it is declared"
 
 
 def _other_unit(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:

@@ -19,6 +19,7 @@ from rulec.rulebook.files.source_walk import SUFFIX, rules_files
 from rulec.source_detection import LEAD_BYTES, beginning_of, first_word_at
 from rulec.work_trees import refuse_no_source
 
+_PACKED = ".json.gz"
 _DOCUMENTS = (".doc", ".docx", ".odt", ".pdf", ".rtf")
 
 BY_PATH = "a file is given by its path, such as `./mine.rules`"
@@ -67,6 +68,9 @@ def meant_by(name: str, known: Sequence[str], search_path: Sequence[Path]) -> st
     if "." in name and _is_file(Path(name)):
         if Path(name).suffix.lower() in _DOCUMENTS:
             return f"save it as plain text, in UTF-8, with a name that ends in `{SUFFIX}`"
+        if name.lower().endswith(_PACKED):
+            shorter = name[: -len(".gz")]
+            return f"a compiled rulebook's name ends in `.json`, packed or not: call it `{shorter}`"
         if _lead(Path(name)) not in ("rulebook", "vocabulary"):
             return f"this file is no rulebook; `rulec verify {name} -r de` judges traffic by one"
         renamed = Path(name).with_suffix(SUFFIX).name

@@ -118,7 +118,14 @@ def no_beginning(source: Source) -> Diagnostic:
         code, message = MISSING_PART, "the file does not say what it is"
     else:
         code, message = NOT_A_RULEBOOK, "the file is no rulebook"
+    if _COMPILED in source.text[:_HEAD]:
+        way_out = "give its name the ending `.json`; packed with gzip it may stay"
+        return code.at(place, "the file is a compiled rulebook, and no source", help=way_out)
     return code.at(place, message, help=HOW_TO_BEGIN)
+
+
+_COMPILED, _HEAD = '"rulec compiled rulebook"', 1000
+"""What a compiled rulebook says at its beginning."""
 
 
 UNBALANCED_BRACE = Code(
