@@ -416,6 +416,10 @@ def test_which_rule_prunes_what(hurry, capsys):
 
     _, out, _ = answer(capsys, "s2", "-r", "esterle2019", "--why")
     assert "violated by none: R1, R3" in out
+    _, german, _ = answer(capsys, "s2", "-r", "de", "--why")
+    idle = german.partition("violated by none: ")[2]
+    assert idle.count(",") > 50
+    assert max(map(len, idle.splitlines())) <= 100
     (line,) = [line for line in out.splitlines() if line.startswith("R2")]
     assert line.split()[1:3] == ["56", "56"]  # 139 - 83
 

@@ -127,6 +127,32 @@ def test_arrays_that_make_no_sense(candidates):
     assert [found.code for found in caught.value.diagnostics] == ["R0780"]
 
 
+@pytest.mark.parametrize(
+    ("candidates", "way_out"),
+    [
+        ([[0, 0, 0, 1]], "put a single candidate into a list: `[candidate]`"),
+        (np.zeros((2, 3, 5)), "give x, y, heading, speed of each state, and at least one state"),
+        ([[[0, 0, 0, np.nan]]], "leave out candidates that have no place in some state"),
+        ("none", "give lists of numbers, or `numpy.array("),
+    ],
+)
+def test_the_way_out_of_arrays_that_make_no_sense(candidates, way_out):
+    with pytest.raises(RulecError) as caught:
+        score(candidates, street(), GERMAN)
+    assert caught.value.diagnostics[0].help.startswith(way_out)
+
+
+@pytest.mark.parametrize("number", [-1, 2])
+def test_a_candidate_that_there_is_not(number):
+    world = street()
+    scores = score(np.array([steady(5.0, world.past[-1])] * 2), world, GERMAN)
+    for ask in (scores.nearest_allowed, scores.margins):
+        with pytest.raises(IndexError, match=f"numbered from 0 to 1, not {number}"):
+            ask(number)
+        with pytest.raises(TypeError, match="`number` is a whole number"):
+            ask(1.0)
+
+
 def test_a_past_that_makes_no_sense():
     world = street()
     with pytest.raises(RulecError, match="R0780"):

@@ -133,8 +133,9 @@ class Scores(Rows):
     def nearest_allowed(self, number: int) -> int | None:
         """The allowed candidate nearest to one: itself if it is, None if there is none.
 
-        By the mean distance (m) of their places.
+        By the mean distance (m) of their places. Raises IndexError for a number that there is not.
         """
+        number = self._known(number)
         allowed = self.allowed.nonzero()[0]
         if not len(allowed):
             return None
@@ -142,10 +143,19 @@ class Scores(Rows):
         return int(allowed[away.mean(axis=1).argmin()])
 
     def margins(self, number: int) -> tuple[RuleMargin, ...]:
-        """By how much a candidate violates or keeps rules, in their units, where numbers decide."""
-        found = self.candidates[number]
+        """By how much a candidate violates or keeps rules, in their units, where numbers decide.
+
+        Raises IndexError for a number that there is not.
+        """
+        found = self.candidates[self._known(number)]
         drives = [one for one in found.drives if isinstance(one, DriveVerdict)]
         return tuple(margins_of(drives, found.violations, self.rules, self._first))
+
+    def _known(self, number: int) -> int:
+        """The number of a candidate; one from the end would be a slip in a planner's loop."""
+        if not 0 <= expected("number", "int", number) < len(self):
+            raise IndexError(f"candidates are numbered from 0 to {len(self) - 1}, not {number}")
+        return int(number)
 
     def rows(self) -> list[dict[str, Any]]:
         """One row a candidate."""

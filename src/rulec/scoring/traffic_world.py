@@ -261,18 +261,28 @@ def _numbers(
     except (TypeError, ValueError, OverflowError):
         is_odd = True
     if is_odd:
-        raise BAD_CANDIDATES.error(None, f"{what}: that is no array of numbers")
+        way_out = (
+            "give lists of numbers, or `numpy.array(…, dtype=float)`, in which all are alike long"
+        )
+        raise BAD_CANDIDATES.error(None, f"{what}: that is no array of numbers", help=way_out)
     # So is a past that is cut before its first state, also as a list
     if or_none and found.shape in {(0,), _NO_STATES}:
         return np.empty(_NO_STATES)
     shape = "(candidates, states, 4)" if n_axes == 3 else "(states, 4)"
     if found.ndim != n_axes or found.shape[-1] != len(_COLUMNS) or not found.size:
         message = f"{what}: an array of shape {found.shape}"
-        raise BAD_CANDIDATES.error(None, message, expected=f"shape {shape}: {', '.join(_COLUMNS)}")
+        way_out = f"give {', '.join(_COLUMNS)} of each state, and at least one state"
+        if n_axes == 3 and found.ndim == 2 and found.shape[-1] == len(_COLUMNS):
+            way_out = "put a single candidate into a list: `[candidate]`"
+        if n_axes == 2 and found.ndim == 3:
+            way_out = "give one of them, such as `paths[0]`"
+        raise BAD_CANDIDATES.error(None, message, expected=f"expected shape {shape}", help=way_out)
     bad = ~(np.abs(found) < LARGEST)
     if bad.any():
         at = tuple(int(axis[0]) for axis in bad.nonzero())
         place = ", ".join(map(str, at))
         message = f"{what}: the number at [{place}] is {found[at]:g}"
-        raise BAD_CANDIDATES.error(None, message, expected=f"a number below {LARGEST:.0e}")
+        expected = f"expected a number below {LARGEST:.0e}"
+        way_out = "leave out candidates that have no place in some state"
+        raise BAD_CANDIDATES.error(None, message, expected=expected, help=way_out)
     return found

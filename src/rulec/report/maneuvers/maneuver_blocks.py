@@ -15,7 +15,7 @@ from rulec.partition import Cell, NavigationGraph, envelope
 from rulec.planning import Maneuvers, RankedManeuver, RulePruning
 from rulec.planning.ranking.cheapest import Maneuver
 from rulec.planning.ranking.penalties import PenaltyRank
-from rulec.report.text.terminal_text import shown_count, table_lines, visible
+from rulec.report.text.terminal_text import broken, shown_count, table_lines, visible
 from rulec.report.verdicts.verdict_report import open_in_words
 from rulec.rulebook.rulebook_model import cited_law
 
@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 MOST_BINDINGS = 3
 MOST_NAMED = 6
 MOST_VIOLATIONS = 20
+
+_LINE = 100
+"""Characters of a line that lists rules."""
 
 _LEAST_SHOWN = 0.005
 """Parts of a cost that are less are not shown."""
@@ -211,7 +214,8 @@ def pruning_lines(maneuvers: Maneuvers, prunings: Sequence[RulePruning]) -> list
         for pruning in prunings
         if not (pruning.violating or pruning.open or pruning.rule.name in not_judged)
     ]
-    return [*lines, f"violated by none: {', '.join(idle)}"] if idle else lines
+    text = f"violated by none: {', '.join(idle)}"
+    return [*lines, *broken(text, _LINE, later="  ")] if idle else lines
 
 
 def _example(maneuvers: Maneuvers, pruning: RulePruning) -> str:
