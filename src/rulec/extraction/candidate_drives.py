@@ -94,7 +94,9 @@ class _Batch:
         self._among = among
         self.writer = writer
         self.matching = MapMatching(recording, tracks, among.map.graph)
-        self.surroundings = Surroundings(recording, tracks, of_map=surroundings.of_map)
+        self.surroundings = Surroundings(
+            recording, tracks, among.thresholds, of_map=surroundings.of_map
+        )
         self.surroundings.__dict__["passages"] = junction_passages(
             recording, tracks, surroundings.passages.junctions
         )
@@ -241,7 +243,7 @@ class CandidateDrives:
         tracks = tracks_of(recording, thresholds, others, span)
         self.map = LaidOutMap(recording)
         self.matching = MapMatching(recording, tracks, self.map.graph)
-        self.surroundings = Surroundings(recording, tracks)
+        self.surroundings = Surroundings(recording, tracks, thresholds)
         self.types = ObjectTypes((*tracks.participants, recording.participants[-1]))
         prepared = self.map, self.matching, self.surroundings
         self._drives = Drives(recording, side, thresholds, prepared=prepared)

@@ -132,7 +132,7 @@ class Drives:
         if prepared is None:
             tracks, map_ = tracks_of(recording, thresholds), LaidOutMap(recording)
             matching = MapMatching(recording, tracks, map_.graph)
-            prepared = map_, matching, Surroundings(recording, tracks)
+            prepared = map_, matching, Surroundings(recording, tracks, thresholds)
         self._map, self._matching, self._surroundings = prepared
         self._tracks = self._surroundings.tracks
         self._first = self._tracks.present.argmax(axis=1)

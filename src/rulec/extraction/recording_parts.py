@@ -31,7 +31,7 @@ there for each other's drives, and parts for few egos would look at the same one
 _SMOOTH_S = 0.2
 """Between states no farther apart vehicles hardly change their acceleration."""
 
-_TRACKS, _STATES, _ENOUGH = 32, 128, 40
+_TRACKS, _STATES, _ENOUGH = 32, 128, 20
 """So much is looked at of a recording's noise, and so many differences are needed for it."""
 
 _MOVES_M = 0.3
@@ -157,25 +157,29 @@ def whole_recording(recording: Recording) -> WholeRecording:
 
 
 def _noise_m(recording: Recording) -> float:
-    """The standard deviation (m) of places along each axis, as the third differences tell it.
+    """The standard deviation (m) of places along or across ways, as the third differences tell it.
 
     Of some vehicles while they move, by the median: what a few do in a hurry does not count. None
-    where states are so far apart that these tell of motion.
+    where states are so far apart that these tell of motion. The axes of a file do not matter.
     """
     if recording.step_s > _SMOOTH_S + 1e-9:
         return 0.0
     bodies = [body for body in _moving(recording) if "vehicle" in body.object_types]
     sizes = [_third_differences(body) for body in bodies[:: len(bodies) // _TRACKS + 1]]
-    every = np.concatenate([np.empty(0), *sizes])
-    return median(every) * _OF_MEDIAN / _THIRD if len(every) >= _ENOUGH else 0.0
+    every = np.concatenate([np.empty((0, 2)), *sizes])
+    if len(every) < _ENOUGH:
+        return 0.0
+    return max(median(own) for own in every.T) * _OF_MEDIAN / _THIRD
 
 
 def _third_differences(body: Participant) -> NDArray[np.float64]:
-    """The sizes of the third differences of a participant's first places, along both axes."""
+    """The sizes of the third differences of a participant's first places, along and across."""
     steps, places = _first_places(body)
-    in_turn = steps[3:] - steps[:-3] == 3
-    moves = np.hypot(*(places[3:] - places[:-3]).T) > _MOVES_M
-    sizes: NDArray[np.float64] = np.abs(np.diff(places, 3, axis=0)[in_turn & moves]).ravel()
+    way = places[3:] - places[:-3]
+    length = np.hypot(*way.T)
+    counts = (steps[3:] - steps[:-3] == 3) & (length > _MOVES_M)
+    (x, y), (dx, dy) = np.diff(places, 3, axis=0)[counts].T, way[counts].T / length[counts]
+    sizes: NDArray[np.float64] = np.abs(np.stack((x * dx + y * dy, y * dx - x * dy), axis=-1))
     return sizes
 
 

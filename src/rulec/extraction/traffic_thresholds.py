@@ -25,6 +25,10 @@ class Thresholds:
 
     __repr__ = short_repr
 
+    place_error_m: float = 0.0
+    """So far each place may be wrong, if that is more than its source is known to be."""
+    speed_error_mps: float = 0.0
+    """And so far speeds, be they stated or from places."""
     smoothing_s: float = 1.0
     standing_kmh: float = 1.0
     accelerating_mps2: float = 0.5
@@ -197,6 +201,6 @@ def hinted(message: str, name: str, known: Iterable[str], otherwise: str = "") -
 
 _UNITS = {
     f"_{end}": f" without a unit, in {unit}"
-    for end, unit in (("m", "m"), ("s", "s"), ("kmh", "km/h"), ("mps2", "m/s²"))
+    for end, unit in (("m", "m"), ("s", "s"), ("kmh", "km/h"), ("mps", "m/s"), ("mps2", "m/s²"))
 }
 """How names of thresholds end -> what is said of their unit."""

@@ -10,6 +10,7 @@ import pytest
 from rulec import recordings
 from rulec.extraction.signals.conduct.overtaking_signals import overtaking_signals
 from rulec.extraction.signals.ego_signals import ego_signals
+from rulec.extraction.signals.measured_numbers import speed_bounds
 from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.tracks.source_tolerances import (
     BY_FORM,
@@ -20,6 +21,7 @@ from rulec.extraction.tracks.source_tolerances import (
     rounded_to,
     tolerances_of,
 )
+from rulec.extraction.traffic_thresholds import USUAL
 from rulec.recordings.recording import StatedError
 from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording, vehicle
@@ -65,13 +67,41 @@ def test_what_a_file_says_of_its_errors_counts_if_it_is_more():
     assert tolerances_of(of_source("DEU_Test", good)) == OTHERS
 
 
-def noisy(sigma_m, form="SUMO data", step_s=0.1):
-    """The tolerances of a file with three cars, places of which have so much noise."""
-    pick = np.random.default_rng(5).normal
-    bodies = [
-        vehicle(8 + y, {k: (k + pick(scale=sigma_m), y + pick(scale=sigma_m)) for k in range(120)})
-        for y in range(3)
-    ]
+def test_what_a_user_says_counts_if_it_is_more():
+    # Each of two places may be wrong by 0.4 m; OTHERS know speeds to 0.1 m/s
+    said = replace(USUAL, place_error_m=0.4, speed_error_mps=0.05)
+    assert tolerances_of(of_source("DEU_Test"), said) == replace(OTHERS, place_m=0.8)
+    better = replace(USUAL, place_error_m=0.01)
+    assert tolerances_of(of_source("USA_US101"), better) == NGSIM
+    said = replace(USUAL, speed_error_mps=0.3)
+    found = tolerances_of(of_source("fcd", form="SUMO data"), said)
+    assert (found.stated_mps, found.speed_mps) == (0.3, 0.3)
+
+
+@pytest.mark.parametrize(("said", "bounds"), [(0.0, (50.0, 50.0)), (0.3, (48.92, 51.08))])
+def test_a_speed_at_the_limit_is_exact_only_where_speeds_are(said, bounds):
+    """A simulated driver keeps to a limit exactly; one whose speed may be 0.3 m/s off need not."""
+    speed = 50 / 3.6
+    road = [replace(lanelet, limit_mps=speed) for lanelet in lanes(1)]
+    drives = steady(7, 0, 0, speed=speed, steps=60, step_s=0.1)
+    found = replace(recording(road, [drives], step_s=0.1), form="SUMO data")
+    low, high = speed_bounds(context_of(found, (road[0].id,), speed_error_mps=said))
+    # 0.3 m/s are 1.08 km/h
+    assert (low[30], high[30]) == pytest.approx(bounds, abs=0.011)
+
+
+def noisy(sigma_m, form="SUMO data", step_s=0.1, across_m=None, turned=0.0):
+    """The tolerances of a file with three cars, places of which have so much noise.
+
+    Across their way ``across_m`` of it; all is ``turned`` (rad).
+    """
+    pick, across_m = np.random.default_rng(10).normal, sigma_m if across_m is None else across_m
+    cos, sin = np.cos(turned), np.sin(turned)
+    bodies = []
+    for y in range(3):
+        at = [(k + pick(scale=sigma_m), y + pick(scale=across_m)) for k in range(120)]
+        places = {k: (a * cos - b * sin, a * sin + b * cos) for k, (a, b) in enumerate(at)}
+        bodies.append(vehicle(8 + y, places))
     return tolerances_of(replace(recording(lanes(2), bodies, step_s=step_s), form=form))
 
 
@@ -87,6 +117,13 @@ def test_noise_that_tracks_show_counts_if_it_is_more():
     assert noisy(0.001) == rounded_to(USUAL_ROUNDING)
     # Half a second apart they may differ as the cars speed up
     assert noisy(0.05, step_s=0.5) == rounded_to(USUAL_ROUNDING)
+
+
+@pytest.mark.parametrize("turned", [0.0, 0.6, np.pi / 2])
+@pytest.mark.parametrize(("along_m", "across_m"), [(0.05, 0.05), (0.05, 0.0), (0.0, 0.05)])
+def test_which_way_a_road_leads_says_nothing_of_noise(along_m, across_m, turned):
+    found = noisy(along_m, across_m=across_m, turned=turned)
+    assert found.place_m == pytest.approx(0.14, rel=0.15)
 
 
 def test_standing_cars_have_their_places_held_and_tell_no_noise():

@@ -42,7 +42,7 @@ def context_of(
     fastest = tracks.fastest
     places = RoadPlaces(road, tracks, extents, limits, elsewhere=elsewhere, fastest=fastest)
     driven = slice(int(columns[0]), int(columns[-1]) + 1 if until is None else until)
-    return drive_context(Surroundings(found, tracks), places, side, row, driven)
+    return drive_context(Surroundings(found, tracks, limits), places, side, row, driven)
 
 
 def told_on_both_sides(signals, found, route, **thresholds):

@@ -49,7 +49,7 @@ def own_speed(context: DriveContext) -> tuple[Floats, Floats]:
     A simulated driver keeps to a limit exactly, but for what is rounded away of both.
     """
     speed, error = context.ego.speed[0], context.ego.speed_error[0]
-    if context.tolerances.stated_mps is not None:
+    if (context.tolerances.stated_mps or np.inf) <= _AT_LIMIT_MPS:
         at_limit = np.abs(speed - context.limit_mps) <= _AT_LIMIT_MPS
         speed, error = np.where(at_limit, context.limit_mps, speed), np.where(at_limit, 0.0, error)
     return np.where(moves(context), (speed, error), 0.0)  # type: ignore[return-value]

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import MappingProxyType
 
 from rulec.extraction.recording_parts import whole_recording
-from rulec.recordings.recording import Recording, Rounding, WholeRecording
+from rulec.extraction.traffic_thresholds import USUAL, Thresholds
+from rulec.recordings.recording import Recording, Rounding, StatedError, WholeRecording
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,11 +102,13 @@ _MOST_SIGMAS = 2.0
 _NGSIM = re.compile(r"USA_(US101|I80|Lanker|Peach)")
 
 
-def tolerances_of(recording: Recording, whole: WholeRecording | None = None) -> Tolerances:
+def tolerances_of(
+    recording: Recording, limits: Thresholds = USUAL, whole: WholeRecording | None = None
+) -> Tolerances:
     """The tolerances of a recording, by its form, by where it was made, and by what it says.
 
-    And by the noise that its tracks have, if that is more. ``whole`` is what ``whole_recording``
-    says of it, if that is known already.
+    And by the noise that its tracks have, or what a user says of them, if that is more. ``whole``
+    is what ``whole_recording`` says of it, if that is known already.
     """
     whole = whole or whole_recording(recording)
     if recording.form == "SUMO data":
@@ -114,15 +117,13 @@ def tolerances_of(recording: Recording, whole: WholeRecording | None = None) -> 
         known = NGSIM if _NGSIM.match(recording.name) else BY_FORM.get(recording.form, OTHERS)
     # Of two places, which distances have, and both ends of a mean over a second
     noise = _MOST_SIGMAS * _DIAGONAL * whole.noise_m
-    known = replace(known, place_m=max(known.place_m, noise), speed_mps=max(known.speed_mps, noise))
-    stated = whole.stated_error
-    if stated is None:
-        return known
+    stated = whole.stated_error or StatedError(0.0, 0.0)
+    own = known.stated_mps
     # Both of two places may be anywhere in their areas, all of which outlines cover
-    return replace(
-        known,
-        place_m=max(known.place_m, 2 * stated.place_m),
-        speed_mps=max(known.speed_mps, stated.speed_mps),
+    return Tolerances(
+        place_m=max(known.place_m, noise, 2 * stated.place_m, 2 * limits.place_error_m),
+        speed_mps=max(known.speed_mps, noise, stated.speed_mps, limits.speed_error_mps),
+        stated_mps=None if own is None else max(own, limits.speed_error_mps),
     )
 
 

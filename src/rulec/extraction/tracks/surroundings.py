@@ -14,6 +14,7 @@ from rulec.extraction.tracks.junction_passages import JunctionPassages, junction
 from rulec.extraction.tracks.rings import ring_lanelets
 from rulec.extraction.tracks.source_tolerances import Tolerances, tolerances_of
 from rulec.extraction.tracks.tracks import ObjectTypes, Tracks
+from rulec.extraction.traffic_thresholds import Thresholds
 from rulec.recordings.recording import Lanelet, Recording, Side, WholeRecording, is_lane
 from rulec.scenario.recorded.reference_line import turn
 from rulec.scenario.recorded.route import directions_beside, lanelet_area, lanes_beside
@@ -36,15 +37,16 @@ class Surroundings:
 
     recording: Recording
     tracks: Tracks
+    thresholds: Thresholds
     computed: dict[object, object] = field(default_factory=dict)
     of_map: dict[object, object] = field(default_factory=dict)
     _directions: dict[str, Directions] = field(default_factory=dict)
     _rings: dict[Side, frozenset[str]] = field(default_factory=dict)
     _opposite_m: dict[str, float] = field(default_factory=dict)
 
-    def __reduce__(self) -> tuple[type[Surroundings], tuple[Recording, Tracks]]:
+    def __reduce__(self) -> tuple[type[Surroundings], tuple[object, ...]]:
         # What has been found is found again: functions that say for what cannot be pickled.
-        return Surroundings, (self.recording, self.tracks)
+        return Surroundings, (self.recording, self.tracks, self.thresholds)
 
     def and_one(self, other: Surroundings, row: int, types: ObjectTypes) -> Surroundings:
         """These, and behind all who are there a row of others in the same recording.
@@ -65,8 +67,8 @@ class Surroundings:
 
     @cached_property
     def tolerances(self) -> Tolerances:
-        """How well the source knows places and speeds."""
-        return tolerances_of(self.recording, self.whole)
+        """How well places and speeds are known."""
+        return tolerances_of(self.recording, self.thresholds, self.whole)
 
     @cached_property
     def passages(self) -> JunctionPassages:

@@ -330,7 +330,7 @@ def tracks_of(
         Poses(x, y, heading, stated, steers),
         thresholds.smoothing_s,
         recording.step_s,
-        tolerances or tolerances_of(recording),
+        tolerances or tolerances_of(recording, thresholds),
     )
     types = ObjectTypes(bodies)
     users = present & types.of("vulnerable_user")[:, None]

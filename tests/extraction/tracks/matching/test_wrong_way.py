@@ -187,7 +187,7 @@ def test_round_a_ring_the_wrong_way():
     }
     body = replace(body, states=turned)
     found = recording(ring, [body])
-    assert len(Surroundings(found, tracks_of(found, USUAL)).ring("right")) == 4
+    assert len(Surroundings(found, tracks_of(found, USUAL), USUAL).ring("right")) == 4
     (drive,) = drives(found)
     assert isinstance(drive, Drive)
     assert {state["driving_side"] for state in drive.trace.states} == {"wrong_way"}
