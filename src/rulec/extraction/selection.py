@@ -15,11 +15,11 @@ from rulec.extraction.recording_parts import RecordingPart, egos_of, recording_p
 from rulec.extraction.to_trace import Drive, DrivePlaces, TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds, hinted, pair_of
+from rulec.recordings.mending.short_holes import without_short_holes
+from rulec.recordings.mending.steady_headings import with_steady_headings
 from rulec.recordings.recording import Recording, Side
 from rulec.recordings.recording_messages import NOT_IN_RECORDING
 from rulec.rulebook.rulebook_model import Traffic
-from rulec.scenario.recorded.short_holes import without_short_holes
-from rulec.scenario.recorded.steady_headings import with_steady_headings
 from rulec.trace import Value
 from rulec.value_display import short_repr
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary

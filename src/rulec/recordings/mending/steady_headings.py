@@ -14,9 +14,9 @@ import numpy as np
 from numpy import bool_, float64, int64, intp
 from numpy.typing import NDArray
 
+from rulec.recordings.mending.rows_of_states import moved_outline, row_of, steps_of, turns
 from rulec.recordings.recording import Participant, Recording, TrackState
 from rulec.recordings.track import TrackOutlines, TrackStates, outlines_on_track
-from rulec.scenario.recorded.short_holes import moved_outline, row_of, steps_of, turns
 
 _LEAST_RADIUS_M = 2.0
 _LEAST_TURN = np.radians(30.0)

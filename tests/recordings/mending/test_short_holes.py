@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rulec.recordings.mending.short_holes import without_short_holes
 from rulec.recordings.recording import Participant, Recording, TrackState
 from rulec.recordings.track import Track, TrackOutlines, TrackStates, rectangles
-from rulec.scenario.recorded.short_holes import without_short_holes
 
 STEP_S = 0.1
 

@@ -8,7 +8,8 @@ import numpy as np
 from numpy import float64, int64, intp
 from numpy.typing import NDArray
 
-from rulec.recordings.recording import Lamp, Participant, Points, Recording, TrackState
+from rulec.recordings.mending.rows_of_states import moved_outline, row_of, steps_of, turns
+from rulec.recordings.recording import Lamp, Participant, Recording, TrackState
 from rulec.recordings.track import Track, TrackOutlines, TrackStates
 
 _FASTER, _FASTER_MPS = 1.3, 3.0
@@ -72,18 +73,6 @@ def _filled(body: Participant, most: int, step_s: float) -> Participant:
     )
 
 
-def steps_of(body: Participant) -> NDArray[int64]:
-    """The steps of a participant's states, ascending."""
-    if isinstance(body.states, TrackStates):
-        return body.states.track.steps
-    return np.sort(np.fromiter(body.states, dtype=int64, count=len(body.states)))
-
-
-def row_of(state: TrackState) -> tuple[float, ...]:
-    """A state as a row of a track."""
-    return state.x, state.y, state.heading, state.speed, state.acceleration
-
-
 @dataclass(frozen=True, eq=False, slots=True)
 class _Known:
     """The steps of a track and their rows; states up to ``near`` steps away tell of a hole."""
@@ -123,12 +112,6 @@ class _Known:
         return near
 
 
-def turns(angles: NDArray[float64]) -> NDArray[float64]:
-    """Angles from -π to π."""
-    turned: NDArray[float64] = (angles + np.pi) % (2 * np.pi) - np.pi
-    return turned
-
-
 def _cubic(
     steps: NDArray[int64], places: NDArray[float64], wanted: NDArray[int64]
 ) -> NDArray[float64]:
@@ -139,14 +122,6 @@ def _cubic(
         weight = np.prod((wanted[:, None] - others) / (step - others), axis=1)
         found += weight[:, None] * places[k]
     return found
-
-
-def moved_outline(outline: Points, before: TrackState, now: TrackState) -> Points:
-    """An outline as it is when its body has moved on."""
-    turned = now.heading - before.heading
-    cos, sin = np.cos(turned), np.sin(turned)
-    x, y = (outline - (before.x, before.y)).T
-    return np.stack((x * cos - y * sin + now.x, x * sin + y * cos + now.y), axis=1)
 
 
 def _lamps(

@@ -1,0 +1,1 @@
+"""Tracks with the short faults of detectors and trackers mended."""
