@@ -358,6 +358,19 @@ def test_when_it_is_not_told_whether_one_goes_across(way, begins, told):
     assert told == ("?" if unknown else "FT"[int(found.about["goes_across"][0, -6])])
 
 
+@pytest.mark.parametrize(("hole", "told"), [(0, "T"), (15, "?")])
+def test_who_crosses_is_not_known_to_stand_after_a_hole_in_its_track(hole, told):
+    """It crosses for a second, and stands in the middle of the lane from then on."""
+    y = np.concatenate((np.linspace(-1.5, 0.0, 11), np.zeros(30)))
+    there = [k for k in range(len(y)) if not 9 <= k < 9 + hole]
+    places = {k: (30.0, float(y[k])) for k in there}
+    walker = vehicle(8, places, "pedestrian", length=0.4, width=0.4)
+    ego = steady(7, 0, 0, speed=0.5, steps=len(y), step_s=0.1)
+    found = participant_signals(context_of(recording(lanes(1), [ego, walker], step_s=0.1)))
+    unknown = found.unknown["goes_across"][0, -6]
+    assert told == ("?" if unknown else "FT"[int(found.about["goes_across"][0, -6])])
+
+
 def test_who_is_behind_another_one_is_not_followed():
     signals = participant_signals(context(steady(8, 30, 0), steady(9, 15, 0), steady(6, 20, 4)))
     assert signals.about["one_between"][:, 0].tolist() == [True, False, False]

@@ -71,6 +71,13 @@ def test_one_close_behind_has_no_room_to_react(gap_m, clear):
     assert told(driving(8, 96 - gap_m, np.full(STEPS, 4.0), steady_speed())) == clear
 
 
+@pytest.mark.parametrize(("aside_m", "clear"), [(0.3, "?"), (1.2, "False")])
+def test_one_that_lies_in_ego_may_be_its_own_box_seen_twice(aside_m, clear):
+    """Both are 2 m wide: 1.2 m aside it is a car that ego runs into."""
+    y = across(BEGINS, ENDS, 0.0, 4.0) + aside_m
+    assert told(driving(8, 100.5, y, steady_speed())) == clear
+
+
 def test_ego_draws_away_from_one_close_behind():
     """It is 2 m/s slower: 5 m behind in the state of the change it has 7.6 m less to go."""
     slower = driving(8, 96 - 5.0 + 7.6, np.full(STEPS, 4.0), steady_speed(18.0))

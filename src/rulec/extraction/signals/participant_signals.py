@@ -249,20 +249,22 @@ def _goes_across(context: DriveContext) -> SignalColumns:
         went = goes[users] & ~unsure[users]
         goes[users] |= context.spans.latest(goes[users]) > context.spans.latest(off)
         unsure[users] &= context.spans.latest(went) <= context.spans.latest(off)
-        known = (goes[users] | off) & context.tracks.present[users]
-        known = context.spans.latest(known) >= context.spans.first
-        unsure[users] |= _appears_there(context, users) & ~known
+        present = context.tracks.present[users]
+        known, away = map(context.spans.latest, ((goes[users] | off) & present, ~present))
+        unsure[users] |= _appears_there(context, users, away) & (known <= away)
     return SignalColumns(about={"goes_across": goes}, unknown={"goes_across": unsure})
 
 
-def _appears_there(context: DriveContext, rows: NDArray[intp]) -> Flags:
+def _appears_there(context: DriveContext, rows: NDArray[intp], away: NDArray[intp]) -> Flags:
     """Flags of participants of these rows that the recording, once it runs, has first in the road.
 
-    Such a track may go on with that of one who went across.
+    Or again, after the states in which they were last ``away``. Such a track may go on with that of
+    one who went across.
     """
     first, bodies = context.surroundings.whole.first, context.tracks.participants
     later = [span_of(bodies[row])[0] > first for row in rows.tolist()]
-    found: Flags = np.array(later)[:, None] & context.tracks.on_lane[rows]
+    appears = np.array(later)[:, None] | (away >= context.spans.first)
+    found: Flags = appears & context.tracks.on_lane[rows]
     return found
 
 

@@ -97,8 +97,12 @@ BY_FORM: Mapping[str, Tolerances] = MappingProxyType(
     }
 )
 _DIAGONAL = 2**0.5
-_MOST_SIGMAS = 2.0
-"""95 in 100 errors are smaller than so many standard deviations."""
+_MOST_SIGMAS = 3.0
+"""997 in 1,000 errors are smaller than so many standard deviations.
+
+A drive has hundreds of states, of which one is enough to be accused: of those at a limit one in
+twenty would not do.
+"""
 _NGSIM = re.compile(r"USA_(US101|I80|Lanker|Peach)")
 
 

@@ -298,7 +298,7 @@ def _disturbed(context: DriveContext, states: NDArray[intp]) -> tuple[Flags, Fla
     One beside ego has to, and one behind it that would have to brake harder than
     ``disturbing_mps2`` after its reaction time not to run into it, but for who has to brake as hard
     for one in between. Perhaps those whose lane forks in between, of whom nobody knows whether they
-    come into ego's.
+    come into ego's; and those whose bodies lie in ego's by half, which is its own box seen twice.
     """
     limits = context.thresholds
     station, gap = relations.station(context)[:, states], relations.gap(context)[:, states]
@@ -314,7 +314,25 @@ def _disturbed(context: DriveContext, states: NDArray[intp]) -> tuple[Flags, Fla
     disturbed[rows, numbers], perhaps[rows, numbers] = come_into_lane(
         context, rows, states[numbers]
     )
-    return disturbed, perhaps
+    twice = disturbed & _lies_in_ego(context, states)
+    return disturbed & ~twice, perhaps | twice
+
+
+def _lies_in_ego(context: DriveContext, states: NDArray[intp]) -> Flags:
+    """Flags of those whose bodies and ego's overlap by half of the smaller one in these states."""
+    own, others = context.ego_extents, context.extents
+    length, width = (
+        np.minimum((high - low)[:, states], (own_high - own_low)[:, states])
+        for high, low, own_high, own_low in (
+            (others.s_max, others.s_min, own.s_max, own.s_min),
+            (others.d_max, others.d_min, own.d_max, own.d_min),
+        )
+    )
+    along, across = (
+        way(context)[:, states] for way in (relations.way_along, relations.way_across)
+    )
+    flags: Flags = (along < -length / 2) & (across < -width / 2)
+    return flags
 
 
 def _brakes_for_another(context: DriveContext, states: NDArray[intp], behind: Flags) -> Flags:

@@ -34,7 +34,7 @@ _BRIEFLY_S = 1.0
 """Speeds are means over so long: who touches the brake for less is not held up."""
 
 _GRAZES_M = 0.15
-"""Boxes that overlap by no more than twice this do not tell that bodies with corners cut do."""
+"""Boxes that overlap by no more do not tell that bodies do, whose corners are cut."""
 
 _BEHIND_S = 0.3
 """Who gets to a place so short a time before another one has left it passes behind it."""
@@ -112,12 +112,12 @@ def _collide(
 ) -> bool:
     """True if two bodies overlap in one of the columns, by more than places may be wrong.
 
-    And by so much of each at least.
+    And by so much more at least.
     """
     tracks = context.surroundings.passages.tracks
     ours, theirs = (tracks.participants[passage.row].outlines for passage in (own, other))
     steps = range(tracks.first + columns.start, tracks.first + columns.stop)
-    inner = -max(context.tolerances.place_m, least_m)
+    inner = -(context.tolerances.place_m + least_m)
     return any(
         shapely.Polygon(ours[step]).buffer(inner).intersects(shapely.Polygon(theirs[step]))
         for step in steps
@@ -150,7 +150,7 @@ def _runs_into(
     inside = (until - enters) * context.recording.step_s > _BEHIND_S
     if not (drive and inside):
         return None
-    creeps = slowest[0] < _DRIVES_MPS and not _collide(context, own, other, there)
+    creeps = slowest[0] < _DRIVES_MPS and not _collide(context, own, other, there, _GRAZES_M)
     sure = not creeps and not _slows_down(context, own, enters, until)
     return max(int(present[0]), first_column(context)), sure
 
