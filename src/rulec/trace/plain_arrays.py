@@ -81,6 +81,12 @@ def median(values: NDArray[Any]) -> float:
     return float(ascending[(len(ascending) - 1) // 2] + ascending[middle]) / 2
 
 
+def most_frequent(values: NDArray[np.integer[Any]]) -> int:
+    """The number that is in an array most often: of several the first."""
+    _, places, counts = np.unique(values, return_inverse=True, return_counts=True)
+    return int(values[counts[places].argmax()])
+
+
 def quantile(values: NDArray[Any], share: float) -> float:
     """The number that a share of those in an array are below, of which there is one at least.
 

@@ -59,6 +59,14 @@ def test_speeds_are_signed_along_the_heading(tmp_path):
     assert [state.speed for state in only.states.values()] == [-10.0, -10.0]
 
 
+def test_the_type_of_most_states_counts(tmp_path):
+    rows = rows_of("9", "vehicle", {k: (k, 0) for k in range(5)})
+    for row, kind in zip(rows, ("cyclist", "bus", "bus", "cyclist", "bus"), strict=True):
+        row["object_type"] = kind
+    (only,) = read_recording(write_motion(tmp_path, rows)).participants
+    assert only.type == "bus"
+
+
 def test_accelerations_are_changes_of_speed(tmp_path):
     places = {0: (0, 0), 1: (1, 0), 3: (3, 0)}
     faster = rows_of("9", "vehicle", places)

@@ -182,6 +182,21 @@ def test_a_vehicle_that_rolls_back_has_a_negative_speed(tmp_path):
     assert car.states[0].speed == -3.0
 
 
+def test_what_most_messages_say_of_a_body_counts(tmp_path):
+    """The first one takes a lorry of 12 m by 2.5 m for a car, and sees half of it."""
+    said = [(4, (6.0, 2.4)), (7, (12.2, 2.5)), (7, (12.0, 2.5)), (7, None), (4, (11.8, 2.6))]
+    messages = [
+        osi.ground_truth(
+            k * STEP, osi.vehicle(7, 10 + k, 0.0, vehicle=kind, size=size), ROAD, host=7
+        )
+        for k, (kind, size) in enumerate(said)
+    ]
+    (body,) = read(tmp_path, osi.trace(messages)).participants
+    assert body.type == "truck"
+    # In the middle of 6, 11.8, 12 and 12.2 m
+    assert np.ptp(body.outlines[0], axis=0) == pytest.approx([11.9, 2.5])
+
+
 def test_a_size_that_is_not_said_is_usual(tmp_path):
     found = read(tmp_path, osi.trace(moved(size=None, vehicle=12)))
     assert np.ptp(found.participants[0].outlines[0], axis=0) == pytest.approx((12, 2.5))

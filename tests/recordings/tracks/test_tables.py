@@ -99,6 +99,13 @@ def test_types(tmp_path, word, kind):
     assert only(read(tmp_path, f"{HEAD},type", *driving(more=f",{word}"))).type == kind
 
 
+def test_the_type_that_most_rows_state_counts(tmp_path):
+    kinds = ["car", "", "truck", "truck", "", "", "", "car", "truck"]
+    rows = [f"a,{k / 10},{20 + k},0,{kind}" for k, kind in enumerate(kinds)]
+    (body,) = read_recording(written(tmp_path, table("track,t,x,y,type", *rows))).participants
+    assert body.type == "truck"
+
+
 def test_a_size_of_nothing_is_the_usual_one(tmp_path):
     rows = driving(more=",pedestrian,0,")
     person = only(read(tmp_path, f"{HEAD},type,length,width", *rows))

@@ -29,6 +29,7 @@ from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.recording import MOST_STEPS, Participant, Recording
 from rulec.recordings.track import Track, tracked
+from rulec.trace.plain_arrays import most_frequent
 
 MOTION = FileFormat(
     "a motion forecasting scenario of Argoverse 2",
@@ -101,7 +102,7 @@ def _participants(table: ArrowTable) -> Iterator[Participant]:
         if len(twice):
             row = int(rows[twice[0] + 1])
             raise table.refused(row, f"`{short(name)}` is twice in time step {steps[row]}")
-        kind = kinds.values[int(kinds.codes[rows[0]])]
+        kind = kinds.values[most_frequent(kinds.codes[rows])]
         if kind not in MOTION_TYPES:
             raise table.refused(int(rows[0]), f"`object_type` is `{short(kind)}`")
         yield _participant(name, kind, own, states[rows])

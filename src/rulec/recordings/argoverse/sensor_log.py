@@ -32,6 +32,7 @@ from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, re
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.xml_element import short
 from rulec.recordings.recording import Recording
+from rulec.trace.plain_arrays import most_frequent
 
 SENSOR = FileFormat(
     "a sensor log of Argoverse 2",
@@ -148,7 +149,7 @@ def _tracks(table: ArrowTable, sweeps: _Sweeps, sweep_of: NDArray[intp]) -> Iter
     order = np.lexsort((sweep_of, names.codes))
     starts = np.flatnonzero(np.diff(names.codes[order], prepend=-1))
     for number, rows in enumerate(np.split(order, starts[1:])):
-        category, own = kinds.values[int(kinds.codes[rows[0]])], sweep_of[rows]
+        category, own = kinds.values[most_frequent(kinds.codes[rows])], sweep_of[rows]
         twice = np.flatnonzero(np.diff(own) == 0)
         if len(twice):
             row = int(rows[twice[0] + 1])

@@ -29,6 +29,7 @@ from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, re
 from rulec.recordings.encodings.arrow.nested_columns import Nested
 from rulec.recordings.encodings.xml_element import LARGEST, short
 from rulec.recordings.recording import Participant, Recording
+from rulec.trace.plain_arrays import most_frequent
 
 EGO = "ego"
 """The id of ego, which has no box."""
@@ -167,7 +168,7 @@ def _tracks(table: ArrowTable, about: Mapping[Any, Any]) -> Iterator[TrackBoxes]
     order = np.lexsort((sweep_of, names.codes))
     starts = np.flatnonzero(np.diff(names.codes[order], prepend=-1))
     for number, rows in enumerate(np.split(order, starts[1:]) if len(order) else ()):
-        own, label = sweep_of[rows], int(labels.values[rows[0]])
+        own, label = sweep_of[rows], most_frequent(labels.values[rows])
         twice = np.flatnonzero(np.diff(own) == 0)
         name = names.values[number]
         if len(twice):

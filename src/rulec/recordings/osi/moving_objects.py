@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from array import array
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from math import cos, sin
@@ -16,6 +17,7 @@ from rulec.recordings.osi.message_fields import Fields, number, part, places
 from rulec.recordings.osi.message_times import TimeGrid
 from rulec.recordings.recording import Lamp, Participant, Points
 from rulec.recordings.track import Track, tracked
+from rulec.trace.plain_arrays import median
 
 _CARS = ("small_car", "compact_car", "car", "luxury_car", "van")
 _KINDS: Mapping[str, str] = {
@@ -55,7 +57,7 @@ _STANDING: Mapping[str, str] = {
 }
 """What stands on the ground and is in the way; one drives under bridges, and over bumps."""
 
-_MOTION = 7
+_MOTION, _NUMBERS = 7, 9
 _CREEPING_MPS = 0.1
 
 _INDICATORS: Mapping[str, frozenset[Lamp]] = {
@@ -98,11 +100,9 @@ _Shown = tuple[frozenset[Lamp], frozenset[Lamp]]
 
 @dataclass(slots=True)
 class MovingObject:
-    """A moving object as far as a trace has been read; 64 bytes each moment."""
+    """A moving object as far as a trace has been read; 80 bytes each moment."""
 
-    kind: str
-    length: float = 0.0
-    width: float = 0.0
+    kinds: Counter[str] = field(default_factory=Counter)
     moments: array[int] = field(default_factory=lambda: array("q"))
     rows: array[float] = field(default_factory=lambda: array("d"))
     # At moments from which on it has others lit, or tells of others
@@ -113,11 +113,10 @@ class MovingObject:
         """Note its state at a moment. Raises RulecError R0610."""
         base = part(fields, "base")
         place, size = part(base, "position"), part(base, "dimension")
-        if not self.length > 0:
-            self.length, self.width = (abs(number(size, x, file)) for x in ("length", "width"))
         if self.moments and self.moments[-1] == moment:
             return
         self.moments.append(moment)
+        self.kinds[_kind_of(fields)] += 1
         self.rows.extend((number(place, "x", file), number(place, "y", file)))
         self.rows.append(
             number(base["orientation"], "yaw", file) if "orientation" in base else np.nan
@@ -126,12 +125,25 @@ class MovingObject:
             vector = base.get(name)
             for axis in ("x", "y"):
                 self.rows.append(np.nan if vector is None else number(vector, axis, file))
+        self.rows.extend(abs(number(size, name, file)) for name in ("length", "width"))
         shown = _lamps(part(fields, "vehicle_classification", "light_state"))
         if shown != self._last:
             self.shown[moment] = self._last = shown
 
+    @property
+    def kind(self) -> str:
+        """The type that it has in most messages."""
+        return max(self.kinds, key=self.kinds.__getitem__, default="unknown")
 
-def kind_of(fields: Fields) -> str:
+    @property
+    def size(self) -> tuple[float, float] | None:
+        """The medians of the lengths and widths that messages say; None if none says both."""
+        sizes = np.array(self.rows).reshape(-1, _NUMBERS)[:, _MOTION:]
+        said = sizes[sizes.min(axis=1) > 0]
+        return (median(said[:, 0]), median(said[:, 1])) if len(said) else None
+
+
+def _kind_of(fields: Fields) -> str:
     """The type of a moving object, in the words of recordings."""
     kind = fields.get("type", "unknown")
     if kind == "pedestrian":
@@ -161,11 +173,10 @@ def participants(objects: Mapping[str, MovingObject], grid: TimeGrid) -> Iterato
         moments = np.array(body.moments, dtype=int64)
         steps = grid.steps[moments]
         rows = _track_rows(
-            np.array(body.rows).reshape(-1, _MOTION), (steps * grid.step_s).astype(float64)
+            np.array(body.rows).reshape(-1, _NUMBERS)[:, :_MOTION],
+            (steps * grid.step_s).astype(float64),
         )
-        size = (body.length, body.width)
-        if min(size) <= 0:
-            size = USUAL_SIZES.get(body.kind, USUAL_SIZE)
+        size = body.size or USUAL_SIZES.get(body.kind, USUAL_SIZE)
         track = Track(steps, rows, *size)
         shows = frozenset().union(*(told for told, _ in body.shown.values()))
         lamps = _lamps_by_step(body, grid, shows)

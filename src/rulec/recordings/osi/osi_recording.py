@@ -130,7 +130,7 @@ def _remarks(content: TraceContent, grid: TimeGrid) -> Iterator[str]:
         )
     if content.skipped:
         yield f"{content.skipped:,} messages have the time of the one before and are left out"
-    sizes = [key for key, body in content.objects.items() if min(body.length, body.width) <= 0]
+    sizes = [key for key, body in content.objects.items() if body.size is None]
     if sizes:
         yield f"sizes that are not said are taken to be usual: of {_some(sizes)}"
     lost = [bulb.id for bulb in content.bulbs.values() if not bulb.lanes]

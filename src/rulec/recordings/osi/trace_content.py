@@ -9,7 +9,7 @@ from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.wire_format import Table, WireFile
 from rulec.recordings.osi.light_heads import Bulb
 from rulec.recordings.osi.message_fields import Fields, decoded, id_of
-from rulec.recordings.osi.moving_objects import MovingObject, kind_of
+from rulec.recordings.osi.moving_objects import MovingObject
 from rulec.recordings.osi.osi_tables import STATIC
 from rulec.recordings.osi.trace_file import OSI, Frame, frames
 from rulec.recordings.recording import MOST_STEPS
@@ -67,7 +67,7 @@ class TraceContent:
         body = self.objects.get(key)
         if body is None:
             self._check_count(len(self.objects), file)
-            body = self.objects[key] = MovingObject(kind_of(fields))
+            body = self.objects[key] = MovingObject()
         body.add(moment, fields, file)
 
     def _add_bulb(self, moment: int, fields: Fields, file: WireFile) -> None:

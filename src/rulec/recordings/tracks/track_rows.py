@@ -19,6 +19,7 @@ from rulec.recordings.tracks import derived_motion as motion
 from rulec.recordings.tracks.even_times import EvenTimes
 from rulec.recordings.tracks.headings_on_lanes import HeadingAt
 from rulec.recordings.tracks.road_user_types import TYPES, USUAL_TYPE, type_of, usual_size
+from rulec.trace.plain_arrays import most_frequent
 
 Floats = NDArray[float64]
 
@@ -117,7 +118,7 @@ class _Reading:
     def _participants(self, name: str, own: NDArray[np.intp]) -> Iterator[Participant]:
         """Those of a track: one for each part of it without gaps."""
         rows = self.rows
-        kind = USUAL_TYPE if rows.type is None else self.types[int(rows.type.codes[own[0]])]
+        kind = self._type(own)
         length, width = self._size(kind, own)
         if rows.ego is not None and (rows.ego[own] == 1).any():
             if self.ego:
@@ -151,6 +152,14 @@ class _Reading:
                 shows=frozenset(rows.lamps),
             )
             start = end
+
+    def _type(self, own: NDArray[np.intp]) -> str:
+        """The type that most rows state: one takes a lorry for a car here and there."""
+        if self.rows.type is None:
+            return USUAL_TYPE
+        codes = self.rows.type.codes[own]
+        stated = codes[[bool(self.rows.type.names[code]) for code in codes.tolist()]]
+        return self.types[most_frequent(stated if len(stated) else codes)]
 
     def _size(self, kind: str, own: NDArray[np.intp]) -> tuple[float, float]:
         """Length and width: those in the middle of what is stated, else the usual ones."""
