@@ -1,6 +1,7 @@
 """What a candidate comes to is what ``verify`` says of the recording in which ego drives it."""
 
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rulec.api.rulebook_compilation import machines
+from rulec.diagnostics import RulecError
 from rulec.extraction import candidate_drives
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts
@@ -117,6 +119,56 @@ def test_what_a_candidate_jerks_blurs_nothing_that_was_recorded():
     gap = found.drives[0].drive.trace.states[0]["gap"]["slow"]
     # Places of recordings built by programs are known to 5 cm
     assert gap.high - gap.low < 0.11
+
+
+def detected(number, speed, x, turned=(), lost=()):
+    """Straight on, but for states in which the box is turned round, or is not seen."""
+    k = np.arange(40)
+    heading = np.where(np.isin(k, turned), np.pi, 0.0)
+    t = 0.1 * k
+    body = build_participant(number, "car", t, x + speed * t, 0 * t, step_s=0.1, heading=heading)
+    return replace(
+        body,
+        states={step: one for step, one in body.states.items() if step not in lost},
+        outlines={step: one for step, one in body.outlines.items() if step not in lost},
+    )
+
+
+def test_recorded_faults_are_mended_and_candidates_are_meant():
+    """Boxes turned round and holes of the past and of others; a future may look anywhere."""
+    lane = build_lanelet("road", [(-50, 0), (300, 0)], types=["urban"])
+    bodies = [
+        detected("ego", 10.0, 0.0, turned=[5], lost=[8]),
+        detected("slow", 9.0, 20.0, turned=[12, 13], lost=[20, 21]),
+        detected("behind", 10.0, -15.0, turned=[25]),
+    ]
+    whole = build_recording([lane], bodies, step_s=0.1, side="right")
+    world = TrafficWorld(whole, "ego", 1.4)
+    # What is lost for a moment is no end of the past
+    assert len(world.past) == 15
+    assert np.abs(world.past[:, 2]).max() < 1e-9
+    ahead = [(14.0 + k, 0.0, 0.0, 10.0) for k in range(1, 25)]
+    turned = [(x, y, np.pi if k % 7 == 3 else h, v) for k, (x, y, h, v) in enumerate(ahead)]
+    backwards = [(14.0 + k, 0.0, np.pi, 10.0) for k in range(1, 25)]
+    jumps = [(14.0 + 30 * (k % 2), 3.0 * (k % 3), 0.5 * k, 10.0) for k in range(1, 25)]
+    futures = np.array([ahead, turned, backwards, jumps])
+    for after in (None, world.past):
+        scores = assert_equal_to_verify(futures, world, GERMAN, after)
+        headings = [
+            {state.heading for state in world.body_along(future, world.past).states.values()}
+            for future in futures[:2]
+        ]
+        assert [np.pi in own for own in headings] == [False, True]
+        assert len(scores) == 4
+
+
+def test_who_does_not_drive_has_no_future_to_be_scored():
+    lane = build_lanelet("road", [(-50, 0), (300, 0)], types=["urban"])
+    t = STEP_S * np.arange(5)
+    walker = build_participant("walker", "pedestrian", t, 1.0 * t, 0 * t, step_s=STEP_S)
+    whole = build_recording([lane], [car("ego", 10.0), walker], step_s=STEP_S, side="right")
+    with pytest.raises(RulecError, match="no vehicle `walker` that drives"):
+        TrafficWorld(whole, "walker")
 
 
 def test_order_and_company_change_nothing():

@@ -15,8 +15,7 @@ from rulec.extraction.recording_parts import RecordingPart, egos_of, recording_p
 from rulec.extraction.to_trace import Drive, DrivePlaces, TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds, hinted, pair_of
-from rulec.recordings.mending.short_holes import without_short_holes
-from rulec.recordings.mending.steady_headings import with_steady_headings
+from rulec.recordings.mending.mended_recording import mended
 from rulec.recordings.recording import Recording, Side
 from rulec.recordings.recording_messages import NOT_IN_RECORDING
 from rulec.rulebook.rulebook_model import Traffic
@@ -121,8 +120,7 @@ def selected_drives(
     """
     side, mirrored = chosen_side(recording, request, traffic)
     writer = TraceWriter(vocabulary, names, request.assumed, request.defaults)
-    recording = with_steady_headings(recording)
-    recording = without_short_holes(recording, request.thresholds.away_s)
+    recording = mended(recording, request.thresholds.away_s)
     known = egos_of(recording)
     if not known and not request.egos:
         raise NOT_IN_RECORDING.error(

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
 
 from rulec.diagnostics import did_you_mean, named
+from rulec.recordings.mending.mended_recording import LONGEST_HOLE_S
 from rulec.scenario.recorded.lane_coordinates import TOUCHING_M
 from rulec.value_display import brief, short_repr
 
@@ -45,7 +46,7 @@ class Thresholds:
     """Who is farther away along the road is not there."""
     beside_road_m: float = 8.0
     """Who walks or comes towards ego beside its lanes is there up to this distance from them."""
-    away_s: float = 1.0
+    away_s: float = LONGEST_HOLE_S
     """Who is away for no longer was there all the time."""
     reaction_s: float = 1.0
     braking_mps2: float = 8.0

@@ -247,6 +247,9 @@ class Weather:
 HEADINGS = "headings"
 """What a recording is complete in if ego's headings are known apart from the way that it moves."""
 
+MENDED = "mended"
+"""And what it is complete in if its tracks have been mended: a plan among them is meant so."""
+
 
 class StatedError(NamedTuple):
     """The radius of the areas (m), and half the intervals of speeds (m/s), that a file says."""

@@ -13,11 +13,12 @@ from numpy.typing import ArrayLike, NDArray
 from rulec.diagnostics import SourceLocation, did_you_mean
 from rulec.diagnostics.argument_kinds import expected, finite
 from rulec.extraction.candidate_drives import CandidateDrives
-from rulec.extraction.recording_parts import span_of, whole_recording
+from rulec.extraction.recording_parts import egos_of, span_of, whole_recording
 from rulec.extraction.selection import RequestedDrives, chosen_side
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.encodings.speed_units import KMH
 from rulec.recordings.encodings.xml_element import LARGEST
+from rulec.recordings.mending.mended_recording import mended
 from rulec.recordings.recording import HEADINGS, Participant, Recording, is_lane
 from rulec.recordings.recording_messages import NOT_IN_RECORDING
 from rulec.recordings.track import Track, TrackOutlines, TrackStates, rectangles
@@ -64,13 +65,14 @@ class TrafficWorld:
         expected("wanted", "RequestedDrives", self.wanted)
         name = self.ego or self.recording.ego
         known = {body.id: body for body in self.recording.participants if body.states}
-        if name not in known or known[name].standing:
+        drivers = [own for own in egos_of(self.recording) if own in known]
+        if name not in drivers:
             raise NOT_IN_RECORDING.error(
                 SourceLocation(self.recording.name),
-                f"there is no vehicle `{name}` that moves"
+                f"there is no vehicle `{name}` that drives"
                 if name
                 else "it does not say who is ego",
-                help=did_you_mean(name, known) or "name a vehicle of the recording",
+                help=did_you_mean(name, drivers) or "name a vehicle of the recording",
             )
         object.__setattr__(self, "ego", name)
         spans = [span_of(body) for body in known.values() if not body.standing]
@@ -110,9 +112,9 @@ class TrafficWorld:
         """
         future = _numbers("a candidate", candidate, 2)
         body = self.body_along(future, self.past_of(after))
-        found = replace(self._with_headings, participants=(*self._others, body), ego=self.ego)
+        found = replace(self._known, participants=(*self._others, body), ego=self.ego)
         # A candidate that jerks makes nothing that was recorded less exact
-        noise_m = whole_recording(self.recording).noise_m
+        noise_m = whole_recording(self._known).noise_m
         return replace(found, whole=replace(whole_recording(found), noise_m=noise_m))
 
     def past_of(self, after: ArrayLike | None) -> NDArray[float64]:
@@ -199,7 +201,7 @@ class TrafficWorld:
         span = min(first, low), max(last, high)
         key = side, mirrored, span
         if key not in self._prepared:
-            recording = replace(self._with_headings, participants=(*self._others, self._body))
+            recording = replace(self._known, participants=(*self._others, self._body))
             if mirrored:
                 recording = mirrored_recording(recording)
             self._prepared.clear()
@@ -215,17 +217,18 @@ class TrafficWorld:
         return shapely.STRtree(areas)
 
     @cached_property
-    def _with_headings(self) -> Recording:
+    def _known(self) -> Recording:
+        found = mended(self.recording, self.wanted.thresholds.away_s)
         # Who plans a future knows which way ego looks in it
-        return replace(self.recording, complete=self.recording.complete | {HEADINGS})
+        return replace(found, complete=found.complete | {HEADINGS})
 
     @cached_property
     def _body(self) -> Participant:
-        return next(body for body in self.recording.participants if body.id == self.ego)
+        return next(body for body in self._known.participants if body.id == self.ego)
 
     @cached_property
     def _others(self) -> tuple[Participant, ...]:
-        return tuple(body for body in self.recording.participants if body.id != self.ego)
+        return tuple(body for body in self._known.participants if body.id != self.ego)
 
     @cached_property
     def _span(self) -> tuple[int, int] | None:

@@ -14,6 +14,7 @@ from statistics import median
 
 import numpy as np
 
+from rulec.recordings.mending.mended_recording import mended
 from rulec.recordings.recording import Lanelet, Recording, TrackState
 from rulec.scenario.geometry import Box
 from rulec.scenario.motion import swept
@@ -71,6 +72,7 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
     Raises RulecError R0612 if what is chosen is not in it, ValueError if its lanes cannot be laid
     out along a line.
     """
+    recording = mended(recording)
     start = ego_start(recording, choice, file)
     own = reference_lanelet(recording, choice, start.state, file)
     way = route(recording, own, lanelets_at(recording, start.targets))

@@ -328,9 +328,7 @@ def _lies_in_ego(context: DriveContext, states: NDArray[intp]) -> Flags:
             (others.d_max, others.d_min, own.d_max, own.d_min),
         )
     )
-    along, across = (
-        way(context)[:, states] for way in (relations.way_along, relations.way_across)
-    )
+    along, across = (way(context)[:, states] for way in (relations.way_along, relations.way_across))
     flags: Flags = (along < -length / 2) & (across < -width / 2)
     return flags
 

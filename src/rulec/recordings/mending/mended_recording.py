@@ -1,0 +1,22 @@
+"""Recordings with all that is mended in tracks, once."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from rulec.recordings.mending.short_holes import without_short_holes
+from rulec.recordings.mending.steady_headings import with_steady_headings
+from rulec.recordings.recording import MENDED, Recording
+
+LONGEST_HOLE_S = 1.0
+
+
+def mended(recording: Recording, longest_hole_s: float = LONGEST_HOLE_S) -> Recording:
+    """A recording with steady headings and without holes up to so long.
+
+    It says of itself that it is ``MENDED``, and is not mended again.
+    """
+    if MENDED in recording.complete:
+        return recording
+    found = without_short_holes(with_steady_headings(recording), longest_hole_s)
+    return replace(found, complete=found.complete | {MENDED})
