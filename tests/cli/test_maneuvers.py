@@ -1,6 +1,7 @@
 """``rulec maneuvers`` and ``rulec traces`` as their user meets them."""
 
 import json
+import re
 
 import pytest
 
@@ -149,7 +150,54 @@ def test_a_scenario_that_does_not_fit_the_vocabulary(tmp_path, capsys):
     status, _, err = answer(capsys, "s2", "--rulebook", str(source))
     assert status == 2
     assert "object `o1` is of type `vehicle`" in err
-    assert "--> s2" in err
+    assert re.search(r"--> .*s2\.toml:\d+", err)
+
+
+SAYS = """\
+[road]
+s = [-30.0, 60.0]
+lanes = [-1.75, 1.75]
+[ego]
+s = 0.0
+d = 0.0
+[[obstacle]]
+id = "van"
+type = "car"
+length = 6.0
+width = 2.2
+s = 14.0
+d = 0.0
+signals = { stopped = "yes" }
+[[obstacle]]
+id = "cart"
+type = "lorry"
+length = 6.0
+width = 2.2
+s = 34.0
+d = 0.0
+[obstacle.signals]
+parked = 1
+[signals]
+built_up = 3
+gap = 5
+"""
+
+
+def test_what_a_scenario_says_wrongly_is_shown_where_it_says_it(tmp_path, capsys):
+    file = tmp_path / "road.toml"
+    file.write_text(SAYS)
+    lines = SAYS.splitlines()
+    status, _, err = answer(capsys, str(file), "-r", "de")
+    assert status == 2
+    found = re.findall(r"error\[(R\d+)\].*\n *--> .*road.toml:(\d+):", err)
+    # What is said of an obstacle of a type that there is not is no mistake of its own.
+    assert {lines[int(line) - 1]: code for code, line in found} == {
+        "built_up = 3": "R0503",
+        "gap = 5": "R0503",
+        'signals = { stopped = "yes" }': "R0503",
+        'type = "lorry"': "R0505",
+    }
+    assert "help: write it of an obstacle: `signals = { gap = … }`" in err
 
 
 def test_relations_of_two_partitions(tmp_path, capsys):

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.diagnostics import RulecError, SourceLocation, named
+from rulec.diagnostics import Diagnostic, RulecError, SourceLocation, named
 from rulec.diagnostics.argument_kinds import checked_kinds
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.free_names import names_in
 from rulec.monitoring.assumptions import Assumptions
+from rulec.monitoring.state_validation import check_objects, check_state
 from rulec.monitoring.verdict import NO_PAST, CarriedState
 from rulec.planning.planning_messages import TWO_PARTITIONS
 from rulec.planning.product.graph_instance import GraphInstance
 from rulec.planning.product.graph_instances import instances
 from rulec.rulebook.rulebook_model import Strength
-from rulec.trace import Trace, TraceGraph
+from rulec.trace import State, Trace, TraceGraph
 from rulec.trace.vocabulary_projection import project_graph
 from rulec.vocabulary import Vocabulary
 
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from rulec.partition import NavigationGraph, PartitionName
     from rulec.planning.trace_history import Before
     from rulec.rulebook.rulebook_model import Rulebook
-    from rulec.scenario import Obstacle
+    from rulec.scenario import Obstacle, Scenario
 
 
 RELATIONS_OF: dict[PartitionName, tuple[str, ...]] = {
@@ -180,7 +181,46 @@ def bind_rules(
     try:
         return instances(paths, rules, graph.step, strengths, past)
     except RulecError as error:
+        _check_said(graph.scenario, paths.objects, rules.vocabulary)
         place = SourceLocation(graph.scenario.name)
         raise RulecError(
             [replace(diagnostic, place=place) for diagnostic in error.diagnostics]
         ) from None
+
+
+def _check_said(scenario: Scenario, objects: Mapping[str, str], vocabulary: Vocabulary) -> None:
+    """Raise RulecError R0502, R0503 or R0505 for what a file of a scenario says, where it does."""
+    obstacles = {obstacle.id: obstacle for obstacle in scenario.obstacles}
+    wrong: list[Diagnostic] = []
+    odd = set()
+    for (name, about), place in scenario.places.items():
+        state: State = {}
+        own: dict[str, str] = {}
+        if about:
+            own[about] = objects.get(about, obstacles[about].type)
+            state = {name: {about: obstacles[about].signals[name]}} if name else {}
+        else:
+            state = {name: scenario.signals[name]}
+        found = _wrong_in(state, own, vocabulary, place)
+        if found and not name:
+            odd.add(about)
+        # Of an obstacle of a type that there is not, only that.
+        if not (name and about in odd):
+            wrong += found
+    if wrong:
+        raise RulecError(wrong)
+
+
+def _wrong_in(
+    state: State, objects: Mapping[str, str], vocabulary: Vocabulary, place: SourceLocation
+) -> Sequence[Diagnostic]:
+    try:
+        check_objects(objects, vocabulary, place)
+        check_state(state, objects, vocabulary, "the scenario", place)
+    except RulecError as error:
+        names = [name for name in state if name in vocabulary.declarations]
+        if objects or not any(vocabulary.declarations[name].parameters for name in names):
+            return error.diagnostics
+        way_out = f"write it of an obstacle: `signals = {{ {names[0]} = … }}`"
+        return [replace(one, help=way_out) for one in error.diagnostics]
+    return ()

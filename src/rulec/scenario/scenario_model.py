@@ -12,6 +12,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Literal, get_args
 
+from rulec.diagnostics import SourceLocation
 from rulec.diagnostics.argument_kinds import expected_fields, finite
 from rulec.scenario.geometry import Box, centred
 from rulec.scenario.motion_bounds import MotionBounds
@@ -207,7 +208,9 @@ class Scenario:
     ``signals`` hold in every state. ``goal`` is a region that a maneuver has to reach; None means
     that every cell of the last layer will do. ``account`` is there if the scene was recorded: then
     signals and types that a rulebook does not know are no mistake, ``step_s`` is only the longest
-    step that is good, and, if the map ends, ``horizon_s`` the longest horizon.
+    step that is good, and, if the map ends, ``horizon_s`` the longest horizon. ``places`` are those
+    in the file of signals with the obstacle that each is about, of types with no signal; without an
+    obstacle of the scene's.
     """
 
     __repr__ = short_repr
@@ -222,6 +225,9 @@ class Scenario:
     step_s: float = 1.0
     about: str = ""
     account: Account | None = None
+    places: Mapping[tuple[str, str], SourceLocation] = field(
+        default_factory=dict, compare=False, repr=False
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,12 @@ from rulec.scenario.motion import swept
 from rulec.scenario.motion_bounds import read_bounds
 from rulec.scenario.scenario_model import Ego, MissingLane, Road, Scenario, SignalValue, Stretch
 from rulec.scenario.time_grid import timing
-from rulec.scenario.toml.obstacle_tables import LocatedObstacle, read_obstacles, read_signals
+from rulec.scenario.toml.obstacle_tables import (
+    LocatedObstacle,
+    places_of,
+    read_obstacles,
+    read_signals,
+)
 from rulec.scenario.toml.schema import (
     MOST_STRETCHES,
     RawEgo,
@@ -64,6 +69,10 @@ def to_scenario(raw: Mapping[str, object], name: str, file: TomlFile) -> Scenari
         horizon_s=top.horizon_s,
         step_s=top.step_s,
         about=top.about,
+        places={
+            **{(name, ""): TomlTable(file, "", "signals").place(name) for name in signals},
+            **{at: place for one in obstacles for at, place in places_of(*one).items()},
+        },
     )
 
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import msgspec
 
+from rulec.diagnostics import SourceLocation
 from rulec.scenario import scenario_model as model
 from rulec.scenario.motion import stands_forever
 from rulec.scenario.scenario_messages import MISSING_OR_UNKNOWN_FIELD, UNFITTING_FIELD
@@ -77,6 +78,17 @@ def read_obstacles(raw: object, file: TomlFile) -> list[LocatedObstacle]:
             )
         listed.append((obstacle, table))
     return listed
+
+
+def places_of(obstacle: model.Obstacle, table: TomlTable) -> dict[tuple[str, str], SourceLocation]:
+    """Where the file says what type an obstacle is of, and its signals."""
+    own = TomlTable(table.file, "", "obstacle.signals", table.number)
+    found = {("", obstacle.id): table.place("type")}
+    for name in obstacle.signals:
+        place = own.place(name)
+        # A table in braces has no heading.
+        found[name, obstacle.id] = table.place("signals") if place.line is None else place
+    return found
 
 
 def read_signals(raw: Mapping[str, object], table: TomlTable) -> dict[str, model.SignalValue]:
