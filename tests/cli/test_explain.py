@@ -128,7 +128,7 @@ def test_a_word_of_a_vocabulary(capsys):
     assert out == (
         "gap: a word of the vocabulary `road`\n"
         "\n"
-        "    quantity gap(road_user) in m default 1000\n"
+        "    quantity gap(o: road_user) in m default 1000\n"
         "\n"
         "The distance along the road between ego and o.\n"
         "\n"
@@ -143,7 +143,7 @@ def test_a_word_of_a_vocabulary(capsys):
     [
         (
             "beside",
-            ["    station(road_user) is one of behind, beside, in_front_of\n", "is one of its"],
+            ["    station(o: road_user) is one of behind, beside, in_front_of\n", "is one of its"],
         ),
         ("enters_box", ["vocabulary `road`", "No format of recordings tells it."]),
         ("tunnel", ["Recordings that can tell it: ", "sumo"]),

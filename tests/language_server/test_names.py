@@ -47,7 +47,7 @@ def hovered(editor, name, position):
 
 def test_a_quantity_says_its_unit_its_meaning_and_who_supplies_it(books):
     text = hovered(books, "base.rules", at(BASE, "gap(o) <", "ap("))
-    assert "quantity gap(road_user) in m default 1000" in text
+    assert "quantity gap(o: road_user) in m default 1000" in text
     assert "The distance along the road between ego and o." in text
     assert "Supplied by the scene" in text
     assert "vocabulary `road`" in text

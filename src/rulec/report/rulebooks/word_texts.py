@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from textwrap import fill, indent
@@ -62,7 +63,7 @@ def word_text(name: str, symbols: SymbolTable, *, recorded: bool) -> WordText:
         sentences.append(f"{said[0].upper()}{said[1:]}.")
     if recorded:
         sentences.append(_tellers(item.name))
-    return WordText(declared(item), tuple(sentences))
+    return WordText(_declared(item, symbols.spans[item.name]), tuple(sentences))
 
 
 def type_text(name: str, symbols: SymbolTable) -> WordText:
@@ -91,9 +92,13 @@ def described(span: Span) -> Iterator[str]:
         yield said
 
 
-def declared(item: Declaration) -> str:
-    """A declaration as in a rulebook, on one line."""
+def _declared(item: Declaration, span: Span) -> str:
+    """A declaration on one line, as in its file, of whose variables the comment speaks."""
+    parameters = re.compile(rf"\b{re.escape(item.name)}\s*(\([^()]*\))")
+    written = parameters.search(span.source.text, span.start)
     about = f"({', '.join(item.parameters)})" if item.parameters else ""
+    if written is not None and about:
+        about = " ".join(written[1].split())
     match item:
         case Quantity():
             return f"quantity {item.name}{about} in {item.unit}{_default(item.default)}"
