@@ -14,6 +14,7 @@ from rulec.monitoring.verify import verify, verify_or_reason
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.trace import Trace
 from rulec.vocabulary import Signal, Vocabulary
+from rulec.vocabulary.partial_values import Interval
 from support.builders.measured_vocabulary import MEASURED, closer, gap, number, others_near
 from support.builders.rulebooks import (
     P,
@@ -203,7 +204,8 @@ RULES = compile_rulebook(book(rule("A", always(implies(near("x"), Q)), "x: car")
         (trace("ggg", q=2), "R0503", "`q` is `2`; it is true or false", ""),
         (trace("ggg", q=numpy.True_), "R0503", "`True (numpy.bool", "`.item()` makes a value"),
         (trace("ggg", q=None), "R0503", "`None (NoneType)`", "is `rulec.UNKNOWN`"),
-        (trace("ggg", q={"car1": True}), "R0503", "`q` is given per object", ""),
+        (trace("ggg", q={"car1": True}), "R0503", "gives `q` by object", '{"q": VALUE}'),
+        (trace("ggg", q=Interval(1, 2)), "R0503", "`q` is from 1 to 2; it is true", ""),
         (trace("ggg", light="rad"), "R0503", "one of `red`, `green`", "`red`"),
         (trace("ggg", light="far_side_of"), "R0503", "one of `red`", "`left_of` where traffic"),
         (trace("ggg", near_side_of=True), "R0502", "`near_side_of`", "a word of formulas"),

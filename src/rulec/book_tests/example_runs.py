@@ -213,7 +213,7 @@ def example_warning(outcome: ExampleOutcome) -> Diagnostic:
     return EXAMPLE_FAILED.at(
         example.span,
         f"example {name} of rule `{rule.name}` says `{claim}`, but the rule {truth} it",
-        help="either the formula or the example does not say what is meant",
+        help="mend the example, or the formula, which `rulec show` reads aloud",
         labels=tuple(labels),
         notes=tuple(notes),
         severity="warning",

@@ -211,7 +211,12 @@ def _check_value(
                 way_out = _SIDES.get(value) or did_you_mean(value, declaration.values)
             if isinstance(declaration, Signal) and isinstance(value, str | int | float):
                 way_out = _TRUTHS_ELSEWHERE.get(value, "")
+            if isinstance(declaration, Quantity) and isinstance(value, str) and _is_number(value):
+                way_out = "numbers stand without quotes"
             message = f"{where} says `{name}` is {_shown(value)}; {expected}"
+            if isinstance(value, Mapping):
+                message = f"{where} gives `{name}` by object; {expected}, and about no object"
+                way_out = f'write {{"{name}": VALUE}}'
             raise UNFITTING_VALUE.error(place, message, help=way_out)
         return
     if value is UNKNOWN:
@@ -315,8 +320,8 @@ def _misfit(value: Any, declaration: Declaration) -> str:
 def _shown(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, Mapping):
-        return "given per object"
+    if isinstance(value, Interval):
+        return f"from {value.low:g} to {value.high:g}"
     if isinstance(value, str):
         text = json.dumps(value, ensure_ascii=False)
     elif isinstance(value, float):
@@ -329,6 +334,13 @@ def _shown(value: Any) -> str:
         of = "" if kind.__module__ == "builtins" else f"{kind.__module__}."
         text = f"{_written(value)} ({of}{kind.__name__})"
     return f"`{text[:60]}…`" if len(text) > 60 else f"`{text}`"
+
+
+def _is_number(text: str) -> bool:
+    try:
+        return math.isfinite(float(text))
+    except ValueError:
+        return False
 
 
 def _written(value: object) -> str:
