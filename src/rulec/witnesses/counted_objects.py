@@ -26,7 +26,14 @@ from rulec.witnesses.relevant_axioms import (
     relevant_axioms,
     subjects_read,
 )
-from rulec.witnesses.state_synthesis import JointState, Subject, Value, synthesize_state
+from rulec.witnesses.state_synthesis import (
+    JointState,
+    NumberSolver,
+    Subject,
+    Value,
+    float_values,
+    values_of,
+)
 from rulec.witnesses.undecided import UndecidedError
 
 MOST_COUNTED_OBJECTS = 40
@@ -307,6 +314,10 @@ def _first_of_each(
         for read, digit, is_about_it in zip(reads, known, counted.are_about_it, strict=True)
     ]
     seen = set()
+    own = [*compress(reads, counted.are_about_it)]
+    numbers = [place for place, read in enumerate(own) if isinstance(read, NumberRead)]
+    sums = tuple([read for read in own if isinstance(read, NumberRead)])
+    solver = _solver(sums, Itself(vocabulary))
     allowed = reduce(and_, counted.allowed, -1)
     weights = [*accumulate((read.size for read in counted.reads), mul, initial=1)][:-1]
     for digits in product(*choices):
@@ -316,11 +327,18 @@ def _first_of_each(
         adds = tuple([letters >> letter & 1 for letters in counted.counted])
         if adds in seen:
             continue
-        about_it = [*compress(zip(reads, digits, strict=True), counted.are_about_it)]
-        added = synthesize_state(vocabulary, about_it)
-        if added is not None:
+        own_digits = [*compress(digits, counted.are_about_it)]
+        solved = solver.solve([own_digits[place] for place in numbers])
+        if solved is not None:
             seen.add(adds)
-            yield CountedObject(counted.type, adds, added.values)
+            values = values_of([*zip(own, own_digits, strict=True)], vocabulary)
+            yield CountedObject(counted.type, adds, values | float_values(solved))
+
+
+# The sums of most states are alike.
+@lru_cache(maxsize=256)
+def _solver(sums: tuple[NumberRead, ...], vocabulary: Itself[Vocabulary]) -> NumberSolver:
+    return NumberSolver(sums, vocabulary.item, {})
 
 
 def _digit(read: Read | NumberRead, state: JointState, vocabulary: Vocabulary) -> int:

@@ -100,37 +100,66 @@ def solve_numbers(
     number_digits: NumberDigits, vocabulary: Vocabulary, least: Mapping[Count, int]
 ) -> dict[Term, Fraction] | None:
     """Numbers with these digits, preferably defaults, and counts from ``least`` on."""
-    terms = _terms_of(number_digits)
-    given = {
-        term: least.get(term, 0) if isinstance(term, Count) else _default(term, vocabulary)
-        for term in terms
-    }
-    parts = [
-        (part, tuple([(term, given[term]) for term in _terms_of(part)]))
-        for part in _apart(number_digits)
-    ]
-    for is_natural in (True, False):
-        found: dict[Term, Fraction] = {}
-        for own in parts:
-            solution = _part_solved(*own, is_natural=is_natural)
-            if solution is None:
-                break
-            found |= solution
-        else:
-            return {term: found[term] for term in reversed(terms)}
-    return None
+    solver = NumberSolver([read for read, _ in number_digits], vocabulary, least)
+    return solver.solve([digit for _, digit in number_digits])
 
 
-def _terms_of(number_digits: NumberDigits) -> list[Term]:
+class NumberSolver:
+    """Numbers for the digits of some sums, preferably defaults, and counts from ``least`` on.
+
+    What the sums have in common is told once, for there are many digits.
+    """
+
+    def __init__(
+        self, reads: Sequence[NumberRead], vocabulary: Vocabulary, least: Mapping[Count, int]
+    ) -> None:
+        self._terms = _terms_of(reads)
+        given = {
+            term: least.get(term, 0) if isinstance(term, Count) else _default(term, vocabulary)
+            for term in self._terms
+        }
+        self._reads = reads
+        self._parts = [
+            (places, tuple([(term, given[term]) for term in _terms_of([reads[k] for k in places])]))
+            for places in _apart(reads)
+        ]
+        self._solved: dict[tuple[int, bool, tuple[int, ...]], Mapping[Term, Fraction] | None] = {}
+
+    def solve(self, digits: Sequence[int]) -> dict[Term, Fraction] | None:
+        """Numbers with these digits, or None."""
+        for is_natural in (True, False):
+            found: dict[Term, Fraction] = {}
+            for number in range(len(self._parts)):
+                solution = self._part(number, digits, is_natural=is_natural)
+                if solution is None:
+                    break
+                found |= solution
+            else:
+                return {term: found[term] for term in reversed(self._terms)}
+        return None
+
+    def _part(
+        self, number: int, digits: Sequence[int], *, is_natural: bool
+    ) -> Mapping[Term, Fraction] | None:
+        places, given = self._parts[number]
+        own = tuple([digits[place] for place in places])
+        key = number, is_natural, own
+        if key not in self._solved:
+            pairs = tuple(zip([self._reads[place] for place in places], own, strict=True))
+            self._solved[key] = _part_solved(pairs, given, is_natural=is_natural)
+        return self._solved[key]
+
+
+def _terms_of(reads: Sequence[NumberRead]) -> list[Term]:
     """What the sums add up, quantities first."""
-    terms = dict.fromkeys(term for read, _ in number_digits for _, term in read.terms)
+    terms = dict.fromkeys(term for read in reads for _, term in read.terms)
     return sorted(terms, key=lambda term: isinstance(term, Count))
 
 
-def _apart(number_digits: NumberDigits) -> list[tuple[tuple[NumberRead, int], ...]]:
-    """Sums with their digits in groups, so that no term is in two of these."""
+def _apart(reads: Sequence[NumberRead]) -> list[list[int]]:
+    """The places of sums in groups, so that no term is in two of these."""
     groups: list[tuple[set[Term], list[int]]] = []
-    for place, (read, _) in enumerate(number_digits):
+    for place, read in enumerate(reads):
         terms, places = {term for _, term in read.terms}, [place]
         others = []
         for own, members in groups:
@@ -140,7 +169,7 @@ def _apart(number_digits: NumberDigits) -> list[tuple[tuple[NumberRead, int], ..
                 terms |= own
                 places += members
         groups = [*others, (terms, places)]
-    return [tuple([number_digits[place] for place in sorted(places)]) for _, places in groups]
+    return [sorted(places) for _, places in groups]
 
 
 @lru_cache(maxsize=1 << 12)
@@ -235,7 +264,7 @@ def _linear_system(
     number_digits: NumberDigits, least: Mapping[Count, int]
 ) -> tuple[list[LinearBound], list[QuantityTerm], list[Count]]:
     """Inequalities for these digits and least counts, and their unknowns."""
-    terms = _terms_of(number_digits)
+    terms = _terms_of([read for read, _ in number_digits])
     counts = [term for term in terms if isinstance(term, Count)]
     system = [bound for read, digit in number_digits for bound in _bounds_of(read, digit)]
     system += [
