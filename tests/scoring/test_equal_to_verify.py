@@ -162,6 +162,17 @@ def test_recorded_faults_are_mended_and_candidates_are_meant():
         assert len(scores) == 4
 
 
+def test_a_past_that_is_not_asked_about_counts_for_nothing():
+    """Another car comes 0.5 s after ego did, and before all that the candidate is judged by."""
+    lane = build_lanelet("road", [(-50, 0), (300, 0)], types=["urban"], limit_mps=50 / 3.6)
+    bodies = [detected("ego", 10.0, 0.0), detected("ahead", 10.0, 30.0, lost=range(5))]
+    world = TrafficWorld(build_recording([lane], bodies, step_s=0.1, side="right"), "ego", 1.0)
+    prepared, _ = world.drives("right", 11, 30)
+    assert prepared.surroundings.whole.first == 5
+    ahead = [(10.0 + k, 0.0, 0.0, 10.0) for k in range(1, 21)]
+    assert_equal_to_verify([ahead], world, GERMAN, None)
+
+
 def test_who_does_not_drive_has_no_future_to_be_scored():
     lane = build_lanelet("road", [(-50, 0), (300, 0)], types=["urban"])
     t = STEP_S * np.arange(5)

@@ -112,10 +112,7 @@ class TrafficWorld:
         """
         future = _numbers("a candidate", candidate, 2)
         body = self.body_along(future, self.past_of(after))
-        found = replace(self._known, participants=(*self._others, body), ego=self.ego)
-        # A candidate that jerks makes nothing that was recorded less exact
-        noise_m = whole_recording(self._known).noise_m
-        return replace(found, whole=replace(whole_recording(found), noise_m=noise_m))
+        return self._with_ego(body)
 
     def past_of(self, after: ArrayLike | None) -> NDArray[float64]:
         """What was before as an array, empty for nothing. Raises RulecError R0780."""
@@ -199,14 +196,22 @@ class TrafficWorld:
         side, mirrored = chosen_side(self.recording, self.wanted, traffic)
         low, high = self._span or (first, last)
         span = min(first, low), max(last, high)
-        key = side, mirrored, span
+        key = side, mirrored, span, first == span[0]
         if key not in self._prepared:
-            recording = replace(self._known, participants=(*self._others, self._body))
+            # Ego is there when a candidate is: not before, as it may have been
+            there = np.zeros((last + 1 - first, len(_COLUMNS)))
+            recording = self._with_ego(self.body_at(there, first))
             if mirrored:
                 recording = mirrored_recording(recording)
             self._prepared.clear()
             self._prepared[key] = CandidateDrives(recording, side, self.wanted.thresholds, span)
         return self._prepared[key], mirrored
+
+    def _with_ego(self, body: Participant) -> Recording:
+        found = replace(self._known, participants=(*self._others, body), ego=self.ego)
+        # A candidate that jerks makes nothing that was recorded less exact
+        noise_m = whole_recording(self._known).noise_m
+        return replace(found, whole=replace(whole_recording(found), noise_m=noise_m))
 
     @cached_property
     def _lanes(self) -> shapely.STRtree:
