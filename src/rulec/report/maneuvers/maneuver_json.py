@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict
 from fractions import Fraction
 from functools import partial
+from math import floor
 from typing import Any, TypeVar
 
 from msgspec import UNSET, UnsetType
@@ -92,7 +93,7 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
             worlds=_each(answers.worlds, _world),
             rules=_each(answers.prunings, partial(_pruning, maneuvers)),
             classes=UNSET if answers.classes is None else _classes(maneuvers, *answers.classes),
-            least_braking=UNSET if least is None else round(least, 3),
+            least_braking=UNSET if least is None else floor(1000 * least) / 1000,
             in_way=maneuvers.in_way if maneuver_report.lists_none(maneuvers, answers) else UNSET,
         )
     )

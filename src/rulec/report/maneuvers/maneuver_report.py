@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from math import prod
+from math import floor, prod
 from typing import TYPE_CHECKING, Any
 
 from rulec.diagnostics import named
@@ -119,6 +119,8 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
         lines += _class_counts(maneuvers, answers.classes[0])
     least = least_braking(maneuvers, answers)
     if least is not None:
+        # Rounded up it would be more than what is proved
+        least = floor(10 * least) / 10
         lines.append(f"emergency   every maneuver brakes by more than {least:.1f} m/s²")
     lines.append(f"computed in {seconds:.3f} s")
     if lists_none(maneuvers, answers):
