@@ -70,12 +70,14 @@ def test_what_a_file_says_of_its_errors_counts_if_it_is_more():
 def test_what_a_user_says_counts_if_it_is_more():
     # Each of two places may be wrong by 0.4 m; OTHERS know speeds to 0.1 m/s
     said = replace(USUAL, place_error_m=0.4, speed_error_mps=0.05)
-    assert tolerances_of(of_source("DEU_Test"), said) == replace(OTHERS, place_m=0.8)
+    assert tolerances_of(of_source("DEU_Test"), said) == replace(OTHERS, place_m=0.8, add_up=True)
     better = replace(USUAL, place_error_m=0.01)
-    assert tolerances_of(of_source("USA_US101"), better) == NGSIM
+    assert tolerances_of(of_source("USA_US101"), better) == replace(NGSIM, add_up=True)
     said = replace(USUAL, speed_error_mps=0.3)
     found = tolerances_of(of_source("fcd", form="SUMO data"), said)
     assert (found.stated_mps, found.speed_mps) == (0.3, 0.3)
+    # Two that drift may be wrong by all of it, each to its side
+    assert (found.joint(0.3, 0.4), NGSIM.joint(0.3, 0.4)) == pytest.approx((0.7, 0.5))
 
 
 @pytest.mark.parametrize(("said", "bounds"), [(0.0, (50.0, 50.0)), (0.3, (48.92, 51.08))])

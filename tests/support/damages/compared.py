@@ -34,9 +34,10 @@ class Said:
         return "open" if rule in self.open or rule in self.not_judged else "kept"
 
 
-def said(recording, rules, egos=(), was=None, assumed=None):
+def said(recording, rules, egos=(), was=None, assumed=None, **thresholds):
     """Vehicle -> what is said of it, by its id in the whole recording."""
-    wanted = RequestedDrives(egos=tuple(egos), assumed=assumed or {})
+    limits = rulec.Thresholds(**thresholds)
+    wanted = RequestedDrives(egos=tuple(egos), assumed=assumed or {}, thresholds=limits)
     found = defaultdict(Said)
     for one in rulec.verify_recording(recording, rules, wanted).answers():
         if not isinstance(one, DriveVerdict) or not isinstance(one.answer, Verdict):

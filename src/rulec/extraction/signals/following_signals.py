@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.presences import in_presences
 from rulec.extraction.signals import relations
-from rulec.extraction.signals.measured_numbers import LONGEST_S, joint_error, safe_distances
+from rulec.extraction.signals.measured_numbers import LONGEST_S, safe_distances
 from rulec.extraction.signals.signal_columns import (
     SignalColumns,
     rounded,
@@ -103,7 +103,7 @@ def _before(context: DriveContext, cells: Cells) -> Floats:
 def parts_soon(context: DriveContext) -> Flags:
     """Flags of those ahead in ego's lane whose lane is not ego's within ``parting_s``.
 
-    Or who are clear of ego at its side then, as on a broad lane; or who are lost from sight before,
+    Or who may be clear of ego at its side then, as on a broad lane; or who are lost from sight before,
     and go aside by ``_AWAY_MPS``, or do so from each other when they are seen last, such that they
     may be clear of each other then; if ego closes in on them, also where they go aside by
     ``_DRIFT_MPS``, and a change of lanes may have them clear. Where ways part in a junction nobody
@@ -114,7 +114,7 @@ def parts_soon(context: DriveContext) -> Flags:
     at, spans = Cells.of_drives(follows, context.spans)
     seen, way_across = at.of(context.relevant), at.of(relations.way_across(context))
     apart = at.of(context.extents.lane) != at.of(context.ego_extents.lane[0])
-    apart |= way_across > context.thresholds.touching_m
+    apart |= way_across > context.thresholds.touching_m - context.tolerances.place_m
     apart &= seen
     until = spans.columns + horizon
     inside = _in_junctions(context, at)
@@ -208,8 +208,9 @@ def keeps_safe_gap(context: DriveContext) -> SignalColumns:
     stand, and need not react first. And where it is too short for less than ``_BRIEF_S``, and by no
     more than ``_OUTLIERS`` tolerances: that may be what boxes err.
     """
-    place, limits, followed = context.tolerances.place_m, context.thresholds, safe_gaps(context)
-    short, wrong = followed.safe - followed.gap, joint_error(followed.safe_error, place)
+    known, limits, followed = context.tolerances, context.thresholds, safe_gaps(context)
+    short = followed.safe - followed.gap
+    wrong = known.joint(followed.safe_error, known.place_m)
     # Elsewhere the distance is long enough, whoever that is
     perhaps_short = (short > -wrong).nonzero()[0]
     short, wrong = short.take(perhaps_short), wrong.take(perhaps_short)
@@ -218,7 +219,7 @@ def keeps_safe_gap(context: DriveContext) -> SignalColumns:
     # One that stands, and that ego drives by, does not drive ahead
     aside = cells.of(relations.way_across(context)) - limits.touching_m
     room = np.where(stands, aside, -np.inf)
-    moot, follows = np.abs(room) < place, room <= 0
+    moot, follows = np.abs(room) < known.place_m, room <= 0
     asked = follows.nonzero()[0]
     moot[asked] |= _need_not_follow(context, cells.part(asked), short.take(asked))
     late = (follows & (short >= wrong)).nonzero()[0]

@@ -106,7 +106,7 @@ def difference_bounds(context: DriveContext) -> Bounds:
     difference, speeds = speed_differences(context)
     cells = presence_cells(context)
     their_error = np.where(speeds == 0, 0.0, cells.of(context.tracks.speed_error))
-    wrong = joint_error(cells.of(context.ego.speed_error[0]), their_error) * KMH
+    wrong = context.tolerances.joint(cells.of(context.ego.speed_error[0]), their_error) * KMH
     return rounded_outward(difference - wrong, difference + wrong)
 
 
@@ -135,7 +135,7 @@ def safe_distances(context: DriveContext, cells: Cells) -> tuple[Floats, Floats]
     error = cells.of(context.ego.speed_error[0])
     of_own = (limits.reaction_s + own / limits.braking_mps2) * error
     of_other = other / braking * cells.of(context.tracks.speed_error)
-    return distance, joint_error(of_own, of_other)
+    return distance, context.tolerances.joint(of_own, of_other)
 
 
 def _ahead(context: DriveContext, cells: Cells) -> tuple[Floats, Floats]:
@@ -151,13 +151,6 @@ def _ahead(context: DriveContext, cells: Cells) -> tuple[Floats, Floats]:
     alike &= others > 0
     others = np.where(alike, np.maximum(cells.of(context.tracks.speed), others), others)
     return np.maximum(cells.of(context.ego_extents.along[0]), 0.0), others
-
-
-def joint_error(one: Floats | float, other: Floats | float) -> Floats:
-    """How far a sum may be wrong by two errors that have nothing to do with each other."""
-    # What hypot does beyond this, for numbers near the largest, takes ten times as long
-    found: Floats = np.sqrt(np.square(one) + np.square(other))
-    return found
 
 
 def own_widths(context: DriveContext) -> Floats:

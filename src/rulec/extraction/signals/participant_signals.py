@@ -25,7 +25,6 @@ from rulec.extraction.signals.measured_numbers import (
     gap_bounds,
     gaps,
     headway_bounds,
-    joint_error,
     lateral_gap_bounds,
     moves,
     own_speed,
@@ -146,7 +145,7 @@ def _time_to_collision(context: DriveContext) -> SignalColumns:
     cells, place = relations.perhaps_ahead(context), context.tolerances.place_m
     closing = cells.of(context.ego_extents.along[0]) - cells.of(context.extents.along)
     errors = context.ego.speed_error[0], context.tracks.speed_error
-    wrong = joint_error(*map(cells.of, errors))
+    wrong = context.tolerances.joint(*map(cells.of, errors))
     way = cells.of(relations.way_along(context))
 
     def seconds(counts: Flags, more_m: float, faster: Floats) -> Floats:
@@ -241,7 +240,7 @@ def _goes_across(context: DriveContext) -> SignalColumns:
     along, across = np.abs(context.extents.along), np.abs(context.extents.across)
     goes: Flags = (across >= least) & (across > along)
     # Of a difference of speeds, which each may be wrong
-    wrong = np.sqrt(2.0) * context.tracks.speed_error
+    wrong = context.tolerances.joint(context.tracks.speed_error, context.tracks.speed_error)
     unsure = (np.maximum(along, across) >= least) & (np.abs(across - along) <= wrong)
     users = context.tracks.of_type("vulnerable_user").nonzero()[0]
     if len(users):

@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import travel_lanes_first
-from rulec.extraction.signals.measured_numbers import joint_error
 from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.tracks import Flags, Floats
@@ -124,7 +123,7 @@ def longest_gaps(context: DriveContext, speed: Floats, speed_error: Floats) -> F
     """The longest gap (m) in a queue behind which one drives at ``speed`` (m/s), by reading."""
     limits = context.thresholds
     wrong = limits.queue_headway_s * np.fmax(speed_error, 0.0)
-    wrong = joint_error(context.tolerances.place_m, wrong)
+    wrong = context.tolerances.joint(context.tolerances.place_m, wrong)
     longest, loose = (
         np.maximum(limits.queue_gap_m, headway_s * speed)
         for headway_s in (limits.queue_headway_s, limits.loose_headway_s)

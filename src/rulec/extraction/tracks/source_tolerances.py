@@ -10,10 +10,17 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import TypeAlias
+
+import numpy as np
+from numpy import float64
+from numpy.typing import NDArray
 
 from rulec.extraction.recording_parts import whole_recording
 from rulec.extraction.traffic_thresholds import USUAL, Thresholds
 from rulec.recordings.recording import Recording, Rounding, StatedError, WholeRecording
+
+Floats: TypeAlias = NDArray[float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,12 +29,20 @@ class Tolerances:
 
     Speeds are means over a second: what is wrong with a track for longer does not show in them.
     Over a shorter time they are known less well, by as much as it is shorter. ``stated_mps`` is the
-    tolerance of the file's own speeds, None if these do not count.
+    tolerance of the file's own speeds, None if these do not count. ``add_up``: a user states
+    bounds, which errors may reach all at once, as those of tracks that drift do.
     """
 
     place_m: float
     speed_mps: float
     stated_mps: float | None = None
+    add_up: bool = False
+
+    def joint(self, one: Floats | float, other: Floats | float) -> Floats:
+        """How far a sum may be wrong by two errors that have nothing to do with each other."""
+        # What hypot does beyond this, for numbers near the largest, takes ten times as long
+        found: Floats = one + other if self.add_up else np.sqrt(np.square(one) + np.square(other))
+        return found
 
 
 NGSIM = Tolerances(0.3, 0.3)
@@ -128,6 +143,7 @@ def tolerances_of(
         place_m=max(known.place_m, noise, 2 * stated.place_m, 2 * limits.place_error_m),
         speed_mps=max(known.speed_mps, noise, stated.speed_mps, limits.speed_error_mps),
         stated_mps=None if own is None else max(own, limits.speed_error_mps),
+        add_up=bool(limits.place_error_m or limits.speed_error_mps),
     )
 
 

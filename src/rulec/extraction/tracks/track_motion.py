@@ -127,7 +127,7 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
             single[off], 0.0, _most_around(slips[off], window.reach + steps) / seconds[off]
         )
     error = np.where(own[:, None], known.stated_mps or 0.0, error)
-    gained_error = np.hypot(*window.of(error)) / apart
+    gained_error = known.joint(*window.of(error)) / apart
     return Motion(
         vx=vx,
         vy=vy,

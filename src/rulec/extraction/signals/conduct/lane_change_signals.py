@@ -165,7 +165,9 @@ def _lane_is_clear(context: DriveContext) -> SignalColumns:
     clear: Flags = ~np.logical_or.reduce(disturbed)
     unknown = unsure
     if not clear.all():
-        stands = context.ego.speed[0] * KMH < context.thresholds.standing_kmh
+        # Or may, by its speed
+        slowest = context.ego.speed[0] - context.ego.speed_error[0]
+        stands = slowest * KMH < context.thresholds.standing_kmh
         just_stood = round(_JUST_STOOD_S / context.recording.step_s)
         stands |= _changes(context) & context.spans.within_last(stands, just_stood)
         unknown = np.where(clear, unsure, moot | stands)

@@ -8,6 +8,8 @@ has left the crossing, as on the other side of a wide road, is to be let across 
 
 from __future__ import annotations
 
+from math import ceil
+
 import numpy as np
 from numpy import intp
 from numpy.typing import NDArray
@@ -45,12 +47,24 @@ def _crossing_use(context: DriveContext) -> SignalColumns:
         too_late, may_be = _too_late(context, rows, used)
         own[rows] = np.where(_past_ego(context, rows) | too_late, 0, used)
         unsure[rows] = (may_be | _is_far_off(context, rows)) & (own[rows] > 0)
+        unsure[rows] |= _in_doubt(context, own[rows])
     return SignalColumns(
         about={"crossing_use": own},
         only={"crossing_use": context.tracks.of_type("pedestrian")},
         unknown={"crossing_use": unsure},
         texts={"crossing_use": _USES},
     )
+
+
+def _in_doubt(context: DriveContext, uses: NDArray[intp]) -> Flags:
+    """Flags of states around a change of use, as long as who walks takes for the places' error.
+
+    Where a user says how far places may be off: else the moment is taken as measured.
+    """
+    error_s = context.thresholds.place_error_m / _WALKS_MPS
+    steps = ceil(error_s / context.recording.step_s)
+    changes = context.spans.changes(uses) if steps else np.zeros(uses.shape, dtype=bool)
+    return context.spans.within(changes, steps, around=True)
 
 
 def _stopped_for_pedestrian(context: DriveContext) -> SignalColumns:
