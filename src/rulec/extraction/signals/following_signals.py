@@ -103,11 +103,11 @@ def _before(context: DriveContext, cells: Cells) -> Floats:
 def parts_soon(context: DriveContext) -> Flags:
     """Flags of those ahead in ego's lane whose lane is not ego's within ``parting_s``.
 
-    Or who may be clear of ego at its side then, as on a broad lane; or who are lost from sight before,
-    and go aside by ``_AWAY_MPS``, or do so from each other when they are seen last, such that they
-    may be clear of each other then; if ego closes in on them, also where they go aside by
-    ``_DRIFT_MPS``, and a change of lanes may have them clear. Where ways part in a junction nobody
-    is clear of one that stops before.
+    Or who may be clear of ego at its side then, as on a broad lane; or who are lost from sight
+    before, and go aside by ``_AWAY_MPS``, or do so from each other when they are seen last, such
+    that they may be clear of each other then; if ego closes in on them, also where they go aside
+    by ``_DRIFT_MPS``, and a change of lanes may have them clear. Where ways part in a junction
+    nobody is clear of one that stops before.
     """
     _, _, follows = relations.ahead_in_lane(context)
     horizon = round(context.thresholds.parting_s / context.recording.step_s)
