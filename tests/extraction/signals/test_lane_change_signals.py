@@ -303,13 +303,18 @@ def test_who_only_reaches_over_from_the_lane_beyond_may_not_have_to_brake(y, unk
     assert signals.unknown["lane_is_clear"].tolist() == [False, False, unknown, False]
 
 
-@pytest.mark.parametrize(("mps", "unknown"), [(0.0, True), (2.0, False)])
-def test_who_stands_and_drifts_across_a_mark_does_not_surely_disturb_others(mps, unknown):
-    """It drifts by 0.1 m/s, and is 0.3 m beyond the mark from state 23 on."""
+@pytest.mark.parametrize(
+    ("mps", "error_mps", "unknown"), [(0.0, 0.0, True), (2.0, 0.0, False), (2.0, 1.8, True)]
+)
+def test_who_stands_and_drifts_across_a_mark_does_not_surely_disturb_others(
+    mps, error_mps, unknown
+):
+    """It drifts by 0.1 m/s, 0.3 m beyond the mark from state 23 on. Below 0.28 m/s it stands."""
     places = {k: (mps * k / 2, 1.18 + 0.05 * k) for k in range(30)}
     ego = vehicle(7, places, speed=mps)
     other = steady(8, places[23][0] - 15 - 5.0 * 23, 4, speed=10, steps=30)
-    found = lane_change_signals(context_of(recording(lanes(2), [ego, other]), ("1",)))
+    there = recording(lanes(2), [ego, other])
+    found = lane_change_signals(context_of(there, ("1",), speed_error_mps=error_mps))
     assert np.flatnonzero(~found.world["lane_is_clear"]).tolist() == [23]
     assert found.unknown["lane_is_clear"][23] == unknown
 

@@ -189,6 +189,18 @@ def test_whether_one_that_leaves_within_four_seconds_is_followed_is_unknown(leav
     assert not beside.unknown["parts_soon"].any()
 
 
+@pytest.mark.parametrize(
+    ("aside_m", "error_m", "unknown"), [(2.27, 0.0, True), (2.23, 0.0, False), (1.4, 0.5, True)]
+)
+def test_one_that_may_be_clear_of_ego_within_four_seconds_may_have_left(aside_m, error_m, unknown):
+    """Both are 2 m wide; clear by 0.3 m it has left, and places are good to 0.05 m, or 1 m."""
+    places = {k: (40 + 5 * k, aside_m if k >= 6 else 0.0) for k in range(12)}
+    bodies = [steady(7, 0, 0, speed=10.0, steps=12), vehicle(8, places, speed=10.0)]
+    found = recording([straight("1", -100, 300, width=8.0)], bodies)
+    signals = participant_signals(context_of(found, place_error_m=error_m))
+    assert signals.unknown["parts_soon"][0, 0] == unknown
+
+
 @pytest.mark.parametrize(("seconds", "expected"), [(1.0, False), (30.0, True)])
 def test_who_leaves_the_lane_of_another_one_does_so_as_measured(seconds, expected):
     """Ego moves over by 4 m; if slowly, it is a little in the way of the other one for long."""
