@@ -137,6 +137,9 @@ def read_map(path: str | Path, step_s: float) -> RoadMap:
     if heads.is_track_head(heads.head_of(glance)):
         why = "it has tracks, and no lanes"
         raise MAP.refused(path, why, help_text="give it as the recording, and its map with --map")
+    if glance.name.endswith(heads.TABLES):
+        # Nothing else is a table: what it lacks as one of lanes is what is wrong with it.
+        _lanes(path, step_s)
     with opened(path):
         # A file that is not there, or must not be read, says so by itself.
         why = f"it is XML of `{short(glance.root)}`" if glance.root else "it is of no known format"

@@ -11,7 +11,7 @@ from rulec.diagnostics import RulecError
 from rulec.recordings.encodings.csv_head import PARQUET, is_number, is_parquet, names_in
 from rulec.recordings.recording_format import RECORDING, Glance
 
-_TABLES = (".csv", ".tsv", ".txt", *PARQUET)
+TABLES = (".csv", ".tsv", ".txt", *PARQUET)
 _HEADLESS_NGSIM = (18, 24)
 _TRACK = {"track", "track_id", "trackid", "id", "object_id", "vehicle_id"}
 _TIME = {f"{name}{unit}" for name in ("t", "time") for unit in ("", "_s", "_ms", "_us", "_ns")}
@@ -21,7 +21,7 @@ _LANE = {"lane", "lane_id", "lanelet", "lanelet_id"}
 
 def head_of(glance: Glance) -> tuple[str, ...]:
     """The names of a table's columns in small letters; none if it seems to be no table."""
-    if not glance.name.endswith(_TABLES):
+    if not glance.name.endswith(TABLES):
         return ()
     if not is_parquet(glance.name, glance.head):
         return names_in(glance.head)

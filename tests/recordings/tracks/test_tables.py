@@ -358,6 +358,33 @@ def test_ids_that_a_gap_made_decimals(tmp_path):
     assert [one.id for one in recording.participants] == ["7", "7.0"]
 
 
+def test_a_track_of_several_types_is_of_its_most_frequent_one(tmp_path):
+    types = ["", "car", "truck", "truck", "lorry"]
+    rows = [f"a,{k / 10},{20 + k},0,{kind}" for k, kind in enumerate(types)]
+    recording = read(tmp_path, f"{HEAD},type", *rows, *driving("b", y=3.5, more=","))
+    assert [one.type for one in recording.participants] == ["truck", "car"]
+    (said,) = (one for one in recording.remarks if "of several types" in one)
+    assert said.endswith("the most frequent one: `a` (truck, car)")
+
+
+@pytest.mark.parametrize(
+    ("lanes", "why"),
+    [
+        (b"\xff\xfe" + LANES.encode("utf-16-le"), "it is text in UTF-16"),
+        (LANES.replace("lane,x,y", "lane,x,x").encode(), "it has two columns `x`"),
+        (LANES.replace("lane,x,y", "lane,lon,lat").encode(), "it has no column `x`"),
+        (b"", "it is empty"),
+    ],
+)
+def test_a_table_beside_that_is_no_map_is_taken_for_one_of_lanes(tmp_path, lanes, why):
+    cars = written(tmp_path, table(HEAD, *driving()))
+    (tmp_path / "lanes.csv").write_bytes(lanes)
+    with pytest.raises(RulecError, match="lanes as a table: ") as refused:
+        read_recording(cars)
+    assert why in refused.value.diagnostics[0].message
+    assert refused.value.diagnostics[0].help
+
+
 def test_tracks_are_no_map(tmp_path):
     cars = written(tmp_path, table(HEAD, *driving()))
     with pytest.raises(RulecError, match="it has tracks, and no lanes") as refused:

@@ -145,7 +145,8 @@ class _LaneTable:
         for kind in types:
             if kind not in LANE_TYPES:
                 why = f"lane `{short(name)}` is of type `{short(kind)}`"
-                help_text = did_you_mean(kind, LANE_TYPES) or "leave it out"
+                known = "write one such as `urban`, `country`, `highway`, or leave it out"
+                help_text = did_you_mean(kind, LANE_TYPES) or known
                 raise self.columns.wrong(int(own[0]), why, "expected a type of lanes", help_text)
         junction = self._text("junction", own)
         stop = self.named.number("stop_line")

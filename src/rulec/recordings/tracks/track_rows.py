@@ -19,7 +19,6 @@ from rulec.recordings.tracks import derived_motion as motion
 from rulec.recordings.tracks.even_times import EvenTimes
 from rulec.recordings.tracks.headings_on_lanes import HeadingAt
 from rulec.recordings.tracks.road_user_types import TYPES, USUAL_TYPE, type_of, usual_size
-from rulec.trace.plain_arrays import most_frequent
 
 Floats = NDArray[float64]
 
@@ -88,6 +87,7 @@ class _Reading:
         self.heading_at = heading_at
         self.taken: Counter[str] = Counter()
         self.types = _types(rows)
+        self.of_several_types: list[str] = []
         self.ego = ""
 
     def result(self) -> ReadTracks:
@@ -106,6 +106,23 @@ class _Reading:
         found.sort(key=lambda one: id_order(one.id))
         return ReadTracks(tuple(found), self.ego, tuple(self._remarks()))
 
+    def _type(self, name: str, own: NDArray[np.intp]) -> str:
+        """The type of a track: that of most of its rows which tell one."""
+        if self.rows.type is None:
+            return USUAL_TYPE
+        words = self.rows.type.names
+        told: Counter[str] = Counter()
+        for code, count in zip(
+            *np.unique(self.rows.type.codes[own], return_counts=True), strict=True
+        ):
+            if words[code]:
+                told[self.types[code]] += int(count)
+        told = told or Counter([USUAL_TYPE])
+        (kind, _), *others = told.most_common()
+        if others:
+            self.of_several_types.append(f"`{short(name)}` ({', '.join([kind, *dict(others)])})")
+        return kind
+
     def _twice(self, name: str, own: NDArray[np.intp], at: int) -> RulecError:
         first, second = sorted(own[at : at + 2].tolist())
         rows = self.rows
@@ -118,7 +135,7 @@ class _Reading:
     def _participants(self, name: str, own: NDArray[np.intp]) -> Iterator[Participant]:
         """Those of a track: one for each part of it without gaps."""
         rows = self.rows
-        kind = self._type(own)
+        kind = self._type(name, own)
         length, width = self._size(kind, own)
         if rows.ego is not None and (rows.ego[own] == 1).any():
             if self.ego:
@@ -152,14 +169,6 @@ class _Reading:
                 shows=frozenset(rows.lamps),
             )
             start = end
-
-    def _type(self, own: NDArray[np.intp]) -> str:
-        """The type that most rows state: one takes a lorry for a car here and there."""
-        if self.rows.type is None:
-            return USUAL_TYPE
-        codes = self.rows.type.codes[own]
-        stated = codes[[bool(self.rows.type.names[code]) for code in codes.tolist()]]
-        return self.types[most_frequent(stated if len(stated) else codes)]
 
     def _size(self, kind: str, own: NDArray[np.intp]) -> tuple[float, float]:
         """Length and width: those in the middle of what is stated, else the usual ones."""
@@ -241,6 +250,10 @@ class _Reading:
     def _remarks(self) -> Iterator[str]:
         if self.rows.type is None:
             yield f"all tracks are taken to be of type `{USUAL_TYPE}`, as there is no column `type`"
+        if several := self.of_several_types:
+            more = f", and {len(several) - _NAMED} more" if len(several) > _NAMED else ""
+            some = ", ".join(several[:_NAMED])
+            yield f"tracks of several types are taken to be of the most frequent one: {some}{more}"
         usual = [what for what, _ in self.taken.most_common()]
         if usual:
             more = f", and {len(usual) - _NAMED} more" if len(usual) > _NAMED else ""
