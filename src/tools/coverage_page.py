@@ -159,16 +159,18 @@ def _chain(name: str) -> tuple[tree.File, ...]:
 
 
 def situations(folder: Path = SITUATIONS) -> Situations:
-    """What others than a book's authors have asked it, of the files in a folder.
+    """What others than a book's authors have asked it, of a folder's files and those in its ``asked``.
 
-    A situation is theirs if it says ``independent = true``, or its file does.
+    A situation is theirs if it says ``independent = true``, or its file does. What one asks is its
+    topics, and where it has none the rules that it violates.
     """
     asked: dict[str, frozenset[str]] = {}
-    for path in sorted(folder.glob("*.toml")):
+    for path in (*sorted(folder.glob("*.toml")), *sorted(folder.glob("asked/*.toml"))):
         text = path.read_text(encoding="utf-8")
         file: dict[str, Any] = parsed_toml(Source(path.name, text), WRONG_SETTINGS, "")
-        for case in file.get("case", ()):
-            if case.get("independent", file.get("independent", False)):
-                for book in case["verdicts"]:
-                    asked[book] = asked.get(book, frozenset()) | frozenset(case["topics"])
+        for one in (*file.get("case", ()), *file.get("situation", ())):
+            if one.get("independent", file.get("independent", False)):
+                for book in one["verdicts"] if "verdicts" in one else one["law"]:
+                    rules = frozenset(one["topics"] if "topics" in one else one["violated"])
+                    asked[book] = asked.get(book, frozenset()) | rules
     return asked

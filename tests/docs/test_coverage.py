@@ -80,4 +80,14 @@ def test_only_what_others_have_written_counts(tmp_path):
         case % ("gap", "", "de") + case % ("sign", "independent = true\n", "de")
     )
     (tmp_path / "others.toml").write_text("independent = true\n" + case % ("lamps", "", "fr"))
-    assert situations(tmp_path) == {"de": frozenset({"sign"}), "fr": frozenset({"lamps"})}
+    (tmp_path / "asked").mkdir()
+    drive = '[[situation]]\nindependent = %s\nlaw = { it = "s. 1" }\nviolated = [%s]\n'
+    (tmp_path / "asked" / "drives.toml").write_text(
+        drive % ("true", '"gap"') + drive % ("true", "") + 'topics = ["sign"]\n'
+        + drive % ("false", '"lamps"')
+    )
+    assert situations(tmp_path) == {
+        "de": frozenset({"sign"}),
+        "fr": frozenset({"lamps"}),
+        "it": frozenset({"gap", "sign"}),
+    }
