@@ -51,7 +51,7 @@ MOST_OF_ALL = 0.75
 PART = 4
 """A part lasts so many times as long as the drive that it begins with, for those that end in it."""
 
-MOST_KEPT = 1 << 21
+MOST_KEPT = 1 << 22
 """So many participants times steps are kept, of all roads; each takes some 150 bytes."""
 
 _Key: TypeAlias = tuple[int, int]
@@ -312,8 +312,10 @@ class Drives:
         if soon:
             awaited = {(ego, own.start) for ego, own in soon}
             self._parts[road] = _PlacesInPart(found, awaited)
-        while len(self._parts) > 1 and self._n_kept() > MOST_KEPT:
-            del self._parts[next(iter(self._parts))]
+        # The latest goes: drives take turns on their roads, and who drops the road that was asked
+        # about longest ago drops the one that is asked about next.
+        if len(self._parts) > 1 and self._n_kept() > MOST_KEPT:
+            self._parts.pop(road, None)
         return found
 
     def _n_kept(self) -> int:
