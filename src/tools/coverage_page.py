@@ -159,10 +159,10 @@ def _chain(name: str) -> tuple[tree.File, ...]:
 
 
 def situations(folder: Path = SITUATIONS) -> Situations:
-    """What others than a book's authors have asked it, of a folder's files and those in its ``asked``.
+    """What others than a book's authors have asked it, in a folder's files and its ``asked``.
 
-    A situation is theirs if it says ``independent = true``, or its file does. What one asks is its
-    topics, and where it has none the rules that it violates.
+    A situation is theirs if it says ``independent = true``, or its file does; it asks the rules
+    that are its topics, or that it violates.
     """
     asked: dict[str, frozenset[str]] = {}
     for path in (*sorted(folder.glob("*.toml")), *sorted(folder.glob("asked/*.toml"))):
@@ -170,7 +170,7 @@ def situations(folder: Path = SITUATIONS) -> Situations:
         file: dict[str, Any] = parsed_toml(Source(path.name, text), WRONG_SETTINGS, "")
         for one in (*file.get("case", ()), *file.get("situation", ())):
             if one.get("independent", file.get("independent", False)):
-                for book in one["verdicts"] if "verdicts" in one else one["law"]:
-                    rules = frozenset(one["topics"] if "topics" in one else one["violated"])
+                rules = frozenset(one.get("topics") or one["violated"])
+                for book in one.get("verdicts") or one["law"]:
                     asked[book] = asked.get(book, frozenset()) | rules
     return asked

@@ -83,7 +83,9 @@ def test_only_what_others_have_written_counts(tmp_path):
     (tmp_path / "asked").mkdir()
     drive = '[[situation]]\nindependent = %s\nlaw = { it = "s. 1" }\nviolated = [%s]\n'
     (tmp_path / "asked" / "drives.toml").write_text(
-        drive % ("true", '"gap"') + drive % ("true", "") + 'topics = ["sign"]\n'
+        drive % ("true", '"gap"')
+        + drive % ("true", "")
+        + 'topics = ["sign"]\n'
         + drive % ("false", '"lamps"')
     )
     assert situations(tmp_path) == {
