@@ -215,24 +215,18 @@ def test_a_graph_is_judged_by_machines_for_its_step():
         instances(graph, compile_rulebook(BOOK, step_s=1))
 
 
-ABOUT_NOBODY = Rulebook(
-    "test",
-    Vocabulary("words", {}, {"p": Signal("p", (), False)}),
-    (replace(ANSWERED, formula=always(implies(P, within(1, P)))),),
-)
-"""Scenarios have vehicles, of which it does not speak."""
-
-
 @pytest.mark.parametrize("step_s", [None, 0.5])
 def test_maneuvers_are_judged_by_machines_for_the_graphs_step(step_s):
-    found = find_maneuvers("s1", ABOUT_NOBODY, step_s=step_s)
+    only_p = replace(ANSWERED, formula=always(implies(P, within(1, P))))
+    words = Vocabulary("words", {}, {"p": Signal("p", (), False)})
+    found = find_maneuvers("s1", Rulebook("test", words, (only_p,)), step_s=step_s)
     assert [one.step_s for one in found.rules.rules] == [Fraction(step_s or 1)]
     assert found.satisfying == found.traces > 0
 
 
 def test_maneuvers_of_another_step_than_the_compiled_rulebooks():
     with pytest.raises(RulecError) as caught:
-        find_maneuvers("s1", compile_rulebook(ABOUT_NOBODY, step_s=0.5))
+        find_maneuvers("s1", compile_rulebook(BOOK, step_s=0.5))
     (problem,) = caught.value.diagnostics
     assert (problem.code, problem.place) == ("R0507", SourceLocation("s1"))
 

@@ -181,11 +181,16 @@ def bind_rules(
     try:
         return instances(paths, rules, graph.step, strengths, past)
     except RulecError as error:
-        _check_said(graph.scenario, paths.objects, rules.vocabulary)
+        if any(diagnostic.code in _OF_STATES for diagnostic in error.diagnostics):
+            _check_said(graph.scenario, paths.objects, rules.vocabulary)
         place = SourceLocation(graph.scenario.name)
         raise RulecError(
             [replace(diagnostic, place=place) for diagnostic in error.diagnostics]
         ) from None
+
+
+_OF_STATES = {"R0502", "R0503", "R0505"}
+"""What is wrong in a state, which may stand so in the scenario's file."""
 
 
 def _check_said(scenario: Scenario, objects: Mapping[str, str], vocabulary: Vocabulary) -> None:
