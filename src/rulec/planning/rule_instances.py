@@ -12,6 +12,7 @@ from rulec.diagnostics.argument_kinds import checked_kinds
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.free_names import names_in
 from rulec.monitoring.assumptions import Assumptions
+from rulec.monitoring.monitoring_messages import UNDECLARED_NAME, UNFITTING_VALUE
 from rulec.monitoring.state_validation import check_objects, check_state
 from rulec.monitoring.verdict import NO_PAST, CarriedState
 from rulec.planning.planning_messages import TWO_PARTITIONS
@@ -19,6 +20,7 @@ from rulec.planning.product.graph_instance import GraphInstance
 from rulec.planning.product.graph_instances import instances
 from rulec.rulebook.rulebook_model import Strength
 from rulec.trace import State, Trace, TraceGraph
+from rulec.trace.trace_messages import UNKNOWN_OBJECT
 from rulec.trace.vocabulary_projection import project_graph
 from rulec.vocabulary import Vocabulary
 
@@ -189,7 +191,7 @@ def bind_rules(
         ) from None
 
 
-_OF_STATES = {"R0502", "R0503", "R0505"}
+_OF_STATES = {one.code for one in (UNDECLARED_NAME, UNFITTING_VALUE, UNKNOWN_OBJECT)}
 """What is wrong in a state, which may stand so in the scenario's file."""
 
 
