@@ -13,7 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
-from itertools import product
+from itertools import chain, product
 
 from rulec.analysis.shared_compilation import AnalyzedRule
 from rulec.automata.alphabet import joined
@@ -125,11 +125,13 @@ class Contest:
             return synthesize_trace(alphabet.states_of(word), universe, step, shows)
         except ChangingConstantsError as changing:
             reads = [alphabet.read_of(name) for name in changing.names]
-            if None in reads:
+            said = [_said_of_constant(read, universe.vocabulary) for read in reads if read]
+            # What has one value already, and changes all the same, would be asked for ever
+            if None in reads or not set(given).isdisjoint(chain.from_iterable(said)):
                 raise
         # A trace has one value of each: the shortest one with any.
-        values = product(*(_said_of_constant(read, universe.vocabulary) for read in reads if read))
-        traces = (counterexample(self.forbidding, self._allowing, (*given, *x)) for x in values)
+        every = product(*said)
+        traces = (counterexample(self.forbidding, self._allowing, (*given, *x)) for x in every)
         found = [trace for trace in traces if trace is not None]
         return min(found, key=lambda trace: len(trace.states), default=None)
 
