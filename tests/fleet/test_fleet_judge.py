@@ -180,6 +180,44 @@ def test_a_recording_that_cannot_be_read_is_reported_and_the_next_is_judged(tabl
     assert [row[:2] for row in drives[1:]] == [("r001", x) for x in ("violated", "open", "open")]
 
 
+def with_no_text(table, name, row, *, packed):
+    """A table of which one cell, of a column of texts, holds bytes that are not UTF-8."""
+    cells = [None if cell is None else cell.encode() for cell in table[name].to_pylist()]
+    cells[row] = b"\xe3(x"
+    texts = pyarrow.array(cells, pyarrow.binary()).view(pyarrow.string())
+    texts = texts.dictionary_encode() if packed else texts
+    return table.set_column(table.column_names.index(name), name, texts)
+
+
+@pytest.mark.parametrize("packed", [False, True])
+def test_a_drive_with_a_text_that_is_not_utf8_is_reported_and_the_others_are_judged(
+    table, traces, folder, findings, packed
+):
+    judge = FleetJudge(fleet_rules(), lanes(folder))
+    names = ("vehicle", "outcome", "because")
+    row = traces["trace"].to_pylist().index("t004")
+    for name in ("object", "type"):
+        odd = with_no_text(traces, name, row, packed=packed)
+        found = {drive: about for drive, *about in rows_of(judge(odd), "drive", *names)}
+        why = f"the column `{name}` has a text that is not UTF-8"
+        assert found.pop("t004") == ["not_judged", why]
+        whole = {drive: about for drive, *about in rows_of(judge(traces), "drive", *names)}
+        assert whole.pop("t004")[0] == "violated"
+        assert found == whole
+    found = FleetJudge(fleet_rules(), lanes(folder))(with_no_text(table, "track", 0, packed=packed))
+    first, *others = rows_of(found, "drive", "recording", "outcome", "because")
+    assert first == ("r000", "not_judged", "the column `track` has a text that is not UTF-8")
+    assert others == rows_of(findings, "drive", "recording", "outcome", "because")[3:]
+
+
+@pytest.mark.parametrize("packed", [False, True])
+def test_a_table_whose_drives_have_no_readable_names_is_refused(table, traces, judge, packed):
+    for own, name in ((table, "recording"), (traces, "trace")):
+        message = rf"column `{name}` has a text that is not UTF-8 \[R0710\]"
+        with pytest.raises(rulec.RulecError, match=message):
+            judge(with_no_text(own, name, 1, packed=packed))
+
+
 def test_a_table_may_name_its_map_and_its_file(table, folder, findings):
     more = table.append_column("map", [[str(lanes(folder))] * len(table)])
     more = more.append_column("file", [["a.parquet"] * len(table)])

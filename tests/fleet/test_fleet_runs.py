@@ -291,6 +291,17 @@ def test_files_that_hold_no_drives_are_named_and_the_others_are_judged(folder_of
     assert f"  2: {why} (as in {tmp_path / 'a.csv'})\n" in as_text(done)
 
 
+def test_a_file_whose_drives_have_no_readable_names_is_named(folder_of, tmp_path):
+    texts = pyarrow.array([b"t0", b"\xe3"], pyarrow.binary()).view(pyarrow.string())
+    odd = pyarrow.table({"trace": texts, "step": [0, 0], "speed": [1.0, 2.0]})
+    parquet.write_table(odd, tmp_path / "odd.parquet")
+    done = run([folder_of, tmp_path / "odd.parquet"], tmp_path / "out")
+    ((problem,),) = [one.diagnostics for one in done.problems]
+    assert problem.place.file == str(tmp_path / "odd.parquet")
+    assert problem.message.endswith("the column `trace` has a text that is not UTF-8")
+    assert done.tally.judged == DRIVES
+
+
 def test_of_a_table_that_says_no_files_a_recording_is_named(tmp_path):
     path, columns = tmp_path / "tracks.parquet", tracks([0])
     columns["x"][3] = None

@@ -91,8 +91,8 @@ def test_rows_that_are_held_do_not_grow_with_the_number_of_drives(drives, tmp_pa
     most = []
     theirs = unit_slices.keyed_rows
 
-    def watched(source, groups, *, whole):
-        for some in theirs(source, groups, whole=whole):
+    def watched(source, groups, path, *, whole):
+        for some in theirs(source, groups, path, whole=whole):
             if whole:
                 read.append(len(some.codes))
             most.append(len(some.codes))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -9,8 +10,9 @@ from rulec.extraction.selection import RequestedDrives
 from rulec.fleet.carried_rulebook import CompiledRules, carried
 from rulec.fleet.drive_rows import DriveRows
 from rulec.fleet.finding_columns import arrow_table
+from rulec.fleet.fleet_messages import unnamed_drives
 from rulec.fleet.judged_by import judged_by
-from rulec.fleet.table_kind import SeenKeys, kind_of
+from rulec.fleet.table_kind import SeenKeys, keys_of, kind_of
 from rulec.fleet.table_recordings import TrackTableJudge
 from rulec.fleet.table_traces import TraceTableJudge
 from rulec.monitoring.assumptions import Assumptions
@@ -53,7 +55,7 @@ class FleetJudge:
 
         Nothing else comes of it: the same table gives the same findings, wherever and however often
         it is judged. Raises RulecError R0706 without pyarrow, R0709 for a drive that is cut, R0710
-        for a table of something else.
+        for a table of something else, or one whose drives have names that are not UTF-8.
         """
         table = _as_table(table)
         if not table.num_rows:
@@ -61,7 +63,9 @@ class FleetJudge:
         rules = self._rules.read()
         to_rows = DriveRows(rules, judged_by(rules, self._request, self._ends or ""))
         seen = None if self._grouped else self._seen
-        if kind_of(table.column_names) == "tracks":
+        kind = kind_of(table.column_names)
+        _check_names(table, keys_of(table.column_names, kind))
+        if kind == "tracks":
             tracks = TrackTableJudge(to_rows, self._request, self._roads, seen)
             return arrow_table(tracks.rows(table))
         assumed = Assumptions(self._ends, self._request.assumed, self._request.defaults)
@@ -69,6 +73,14 @@ class FleetJudge:
 
     def __repr__(self) -> str:
         return f"FleetJudge({self._rules.name!r})"
+
+
+def _check_names(table: Any, keys: Sequence[str]) -> None:
+    # As there is a table, Arrow is loaded.
+    from rulec.trace.formats.arrow.table_groups import not_utf8
+
+    if why := not_utf8(table, keys):
+        raise unnamed_drives(why)
 
 
 def _as_table(table: Any) -> Any:

@@ -49,6 +49,14 @@ def no_drives(columns: list[str]) -> RulecError:
     )
 
 
+def unnamed_drives(why: str, path: str = "") -> RulecError:
+    return NO_DRIVES_TABLE.error(
+        SourceLocation(path) if path else None,
+        f"drives of the table cannot be told by their names: {why}",
+        help="write the table's texts in UTF-8",
+    )
+
+
 NOT_COMPILED = Code(
     "R0711",
     title="a rulebook is not compiled",

@@ -49,20 +49,21 @@ class TrackTableJudge:
         Raises RulecError R0709 for one that is cut, if tables are not grouped by them.
         """
         # Arrow, 0.1 s: where there is a table of it, it is loaded.
-        from rulec.trace.formats.arrow.table_groups import extent, groups
+        from rulec.trace.formats.arrow.table_groups import extent, groups, not_utf8
 
         keys = keys_of(table.column_names, "tracks")
         for key, rows in groups(table, keys, []):
             own = dict(zip(keys, key, strict=True))
             own.setdefault(RECORDING, PurePath(own.get(FILE, "")).name or "tracks")
+            unread = not_utf8(rows, rows.column_names)
             lacks = lacking(rows, len(rows))
             if self.seen is not None:
-                if not lacks and self.seen.is_other(key, extent(rows)):
+                if not lacks and not unread and self.seen.is_other(key, extent(rows)):
                     lacks = "other rows of it came before"
                 if lacks:
                     raise cut_drive(f"recording `{own[RECORDING]}`", lacks, keys)
-            if lacks:
-                yield self.to_rows.of_nothing(own, lacks)
+            if lacks or unread:
+                yield self.to_rows.of_nothing(own, lacks or unread)
             else:
                 yield from self._of_recording(rows, own)
 

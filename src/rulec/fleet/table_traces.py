@@ -45,9 +45,9 @@ class TraceTableJudge:
     def _of_source(self, rows: Any, own: Mapping[str, str]) -> Iterator[Row]:
         """The rows of traces that are from one file and recording."""
         # As above.
-        from rulec.trace.formats.arrow.table_groups import trace_outlines, without_rows
+        from rulec.trace.formats.arrow.table_groups import not_utf8, trace_outlines, without_rows
 
-        outlines = trace_outlines(rows)
+        outlines, some_unread = trace_outlines(rows), not_utf8(rows, rows.column_names)
         is_counted = ROWS in rows.column_names
         cut = []
         for number, one in enumerate(outlines):
@@ -60,6 +60,8 @@ class TraceTableJudge:
                     lacks = "other rows of it came before"
                 if lacks:
                     raise cut_drive(f"trace `{one.name}`", lacks, [*own, TRACE])
+            if some_unread and not lacks:
+                lacks = not_utf8(rows.slice(one.first, one.rows), rows.column_names)
             if lacks:
                 yield self.to_rows.of_nothing({**own, "vehicle": one.name}, lacks)
                 cut.append(number)

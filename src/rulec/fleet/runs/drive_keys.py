@@ -11,7 +11,7 @@ import numpy as np
 from numpy import uint64
 from numpy.typing import NDArray
 
-from rulec.fleet.fleet_messages import no_fleet_input
+from rulec.fleet.fleet_messages import no_fleet_input, unnamed_drives
 from rulec.fleet.table_kind import TableKind, keys_of, kind_of
 from rulec.trace.formats.arrow.parquet import arrow
 
@@ -70,13 +70,15 @@ def opened_table(path: str) -> Iterator[Any]:
         raise no_fleet_input(path, str(reason).split("\n")[0]) from None
 
 
-def keyed_rows(source: Any, row_groups: Sequence[int], *, whole: bool) -> Iterator[KeyedRows]:
+def keyed_rows(
+    source: Any, row_groups: Sequence[int], path: str, *, whole: bool
+) -> Iterator[KeyedRows]:
     """The rows of some row groups in order: ``whole``, or only their columns of keys.
 
-    Raises RulecError R0710 for a table of something else.
+    Raises RulecError R0710 for a table of something else, or keys that are not UTF-8.
     """
     # Arrow, 0.1 s: where there is a table of it, it is loaded.
-    from rulec.trace.formats.arrow.table_groups import key_texts, table_of_batch
+    from rulec.trace.formats.arrow.table_groups import key_texts, not_utf8, table_of_batch
 
     names = source.schema_arrow.names
     kind = kind_of(names)
@@ -86,6 +88,8 @@ def keyed_rows(source: Any, row_groups: Sequence[int], *, whole: bool) -> Iterat
     )
     for batch in batches:
         rows = table_of_batch(batch)
+        if why := not_utf8(rows, keys):
+            raise unnamed_drives(why, path)
         codes, texts = key_texts(rows, keys, _BETWEEN_KEYS)
         yield KeyedRows(rows, codes, kind, texts)
 

@@ -97,7 +97,7 @@ def _drives_of(unit: WorkUnit) -> _Drives:
     start = waiting = 0
     for number, piece in enumerate((unit.piece, *unit.further)):
         with opened_table(piece.path) as source:
-            for batch in keyed_rows(source, piece.row_groups, whole=False):
+            for batch in keyed_rows(source, piece.row_groups, piece.path, whole=False):
                 which = spread if number else others
                 # Of the first piece all but the others, of further ones what is spread alone.
                 own = np.full(len(batch.texts), not number)
@@ -180,6 +180,6 @@ def _read_from(groups: Sequence[_Group], first: int) -> Iterator[_Place]:
         with opened_table(path) as source:
             for place in own:
                 start = groups[place].start
-                for batch in keyed_rows(source, [groups[place].number], whole=True):
+                for batch in keyed_rows(source, [groups[place].number], path, whole=True):
                     yield _Place(place, start, batch)
                     start += len(batch.codes)

@@ -118,7 +118,9 @@ def _pieces(path: str) -> Iterator[tuple[TablePiece, KeyHashes]]:
             groups.append(number)
             rows += source.metadata.row_group(number).num_rows
             # Nothing but keys is read here
-            found += (batch.key_hashes() for batch in keyed_rows(source, [number], whole=False))
+            found += (
+                batch.key_hashes() for batch in keyed_rows(source, [number], path, whole=False)
+            )
             # A table without rows has no drives
             if found and (rows >= MOST_ROWS or number + 1 == source.num_row_groups):
                 yield TablePiece(path, tuple(groups)), np.unique(np.concatenate(found))

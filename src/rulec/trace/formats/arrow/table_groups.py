@@ -35,7 +35,7 @@ def groups(table: Any, keys: Sequence[str], order: Sequence[str]) -> Iterator[tu
 
     Of equal rows the first stays first; a missing text comes before all others.
     """
-    table = table.combine_chunks()
+    table = _readable_by_row(table.combine_chunks())
     plain = {name: _plain(table.column(name)) for name in dict.fromkeys((*keys, *order))}
     plain |= {name: _as_text(plain[name]) for name in keys}
     plain = {name: _without_nulls(column) for name, column in plain.items()}
@@ -53,6 +53,22 @@ def groups(table: Any, keys: Sequence[str], order: Sequence[str]) -> Iterator[tu
     for start, stop in zip(starts, [*starts[1:], len(table)], strict=True):
         key = tuple(plain[name][start].as_py() for name in keys)
         yield key, rest.slice(start, stop - start)
+
+
+def _readable_by_row(table: Any) -> Any:
+    """A table in which a text that is not UTF-8 is met in its rows alone, in no dictionary."""
+    for place, (name, column) in enumerate(zip(table.column_names, table.columns, strict=True)):
+        if types.is_dictionary(column.type) and not _is_valid(column):
+            table = table.set_column(place, name, _plain(column))
+    return table
+
+
+def _is_valid(column: Any) -> bool:
+    try:
+        column.validate(full=True)
+    except pyarrow.ArrowInvalid:
+        return False
+    return True
 
 
 def _plain(column: Any) -> Any:
@@ -166,6 +182,12 @@ def key_texts(table: Any, keys: Sequence[str], between: str) -> tuple[NDArray[np
         return np.zeros(0, dtype=np.int64), []
     codes, texts = codes_in(whole_array(whole))
     return codes, [*texts]
+
+
+def not_utf8(table: Any, names: Sequence[str]) -> str:
+    """Which of some columns has a text that is not UTF-8, in words; empty if none has."""
+    bad = (name for name in names if not _is_valid(_plain(table.column(name))))
+    return f"the column `{name}` has a text that is not UTF-8" if (name := next(bad, "")) else ""
 
 
 def rows_where(table: Any, codes: NDArray[np.int64], kept: NDArray[np.bool_]) -> Any:
