@@ -36,6 +36,29 @@ def test_rules_that_ship_are_proved(name):
     assert reasons(data) == {}
 
 
+TWO_UNITS = """
+rulebook two_units
+type car
+quantity speed(v: car) in km/h default 0
+hard rule alone (v: car) { require always (speed(v) > 18 km/h or eventually speed(v) > 5 m/s) }
+hard rule counted {
+  require always (some v: car (speed(v) > 5 m/s) or next some v: car (speed(v) > 18 km/h))
+}
+"""
+
+
+def test_one_limit_in_two_units_is_one_comparison():
+    rules = rulec.compile_rulebook(rulec.parse_rulebook(TWO_UNITS))
+    data = to_json(replace(rules, prefixes=stored(rules))).encode()
+    assert len(proofs_of(data)) == 2
+    assert reasons(data) == {}
+    for speeds, violated in [((18, 19, 18), True), ((18, 18, 19), False)]:
+        states = [{"speed": {"a": speed}} for speed in speeds]
+        found = rulec.verify(rulec.Trace("t", 1.0, {"a": "car"}, states), rules)
+        assert ("alone" in {one.rule for one in found.violations}) is violated
+        assert "counted" in {one.rule for one in found.violations}
+
+
 @pytest.mark.parametrize("name", sorted(UNITS.keys() - {"in"}))
 def test_the_checker_has_every_unit_of_the_language(name):
     assert KNOWN_UNITS[name][0] == UNITS[name].factor

@@ -113,8 +113,15 @@ def _passes(value: Fraction | str | bool, limit: Fraction, inclusive: bool) -> b
 def subject(entry: Any) -> Any:
     """What a read or an atom is about, as something that can be compared."""
     if "terms" in entry:
-        return ("terms", json.dumps(entry["terms"], sort_keys=True))
+        return ("terms", json.dumps(_wordless(entry["terms"]), sort_keys=True))
     return ("word", entry["name"], tuple(entry["variables"]))
+
+
+def _wordless(data: Any) -> Any:
+    """Terms without the words of comparisons in counts, which may say one limit in two units."""
+    if isinstance(data, dict):
+        return {key: _wordless(part) for key, part in data.items() if key != "text"}
+    return [_wordless(part) for part in data] if isinstance(data, list) else data
 
 
 def _name(about: Any) -> str:

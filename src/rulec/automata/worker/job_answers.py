@@ -22,7 +22,7 @@ from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.tables import build_machine
 from rulec.automata.worker.random_words import agrees
 from rulec.logic.bounds import operations_of
-from rulec.logic.codec import to_data
+from rulec.logic.codec import from_data, to_data
 from rulec.logic.formula import Formula
 from rulec.rulebook.rules.axiom_instances import AxiomInstance
 from rulec.validation.table_proof import prove_words
@@ -94,10 +94,9 @@ def _is_right(machine: MealyMonitor, job: Job, found: Translated) -> bool:
 def _prove(machine: MealyMonitor, job: Job) -> None:
     """Raise UnprovableError unless a machine judges all words as its formula does."""
     true_in = letters_with(machine.reads, propositions_of(job.formula))
-    letters = {repr(to_data(one)): own for one, own in true_in.items()}
     prove_words(
         to_data(job.formula),
-        lambda atom: letters[repr(atom)],
+        lambda atom: true_in[from_data(atom)],  # by what it says: one limit may be in two units
         {
             "letters": machine.letters,
             "following": machine.successors,
