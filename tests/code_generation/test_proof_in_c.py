@@ -13,9 +13,11 @@ import rulec
 from rulec.cli.main import main
 from rulec.code_generation.c_files import c_source
 from rulec.code_generation.compiled_c.c_library import CLibrary
+from rulec.code_generation.compiled_c.rust_library import RustLibrary
 from rulec.code_generation.monitor_layout import monitor_layout
 from rulec.code_generation.proof import monitor_proof
 from rulec.code_generation.proof.monitor_proof import proof_of
+from rulec.code_generation.rust_reading_code import RustReadingCode
 from rulec.diagnostics import RulecError
 from support.builders.monitored_books import NARROW
 
@@ -81,6 +83,26 @@ def test_facts_that_count_and_counts_of_counts_are_no_fault():
     """C does not look at the facts; where not all is known it tells more of such a count."""
     compiled = rulec.compile_rulebook(rulec.parse_rulebook(COUNTING), step_s=1)
     assert differs_in(CLibrary(monitor_layout(compiled, {}), optimised=False)) == []
+
+
+NOTHING_TOLD = """\
+rulebook nothing_told
+type car
+signal p, near(c: car) default false
+mono is one of only default only
+hard rule c { require always (p or count c: car (near(c)) >= 0) }
+hard rule d (v: car) { require always (near(v) or count x: car (x = v and near(x)) < 0) }
+hard rule uint8_max { require always (p or count x: car (only and near(x)) >= 1) }
+"""
+
+
+def test_a_read_that_tells_nothing_apart_needs_no_table():
+    """``RULE_C`` besides is no name that a monitor may have."""
+    compiled = rulec.compile_rulebook(rulec.parse_rulebook(NOTHING_TOLD), step_s=1)
+    assert differs_in(CLibrary(monitor_layout(compiled, {}), optimised=False)) == []
+    if shutil.which("rustc"):
+        layout = monitor_layout(compiled, {}, RustReadingCode)
+        assert differs_in(RustLibrary(layout, optimised=False)) == []
 
 
 QUICK = ["at least for more than", "a seat for two"]

@@ -54,6 +54,8 @@ class ReadingCode:
         """Expression for the digits of a read. Raises RulecError R0750 if they are too many."""
         if read.size > MOST_DIGITS:
             raise too_large(f"{read.size} values of one read are told apart, at most {MOST_DIGITS}")
+        if read.size == 1:
+            return self._whole(0)  # as of a count that is at least 0: there is nothing to tell
         if isinstance(read, Read):
             return self._digits_of_value(read, places)
         match read.terms:

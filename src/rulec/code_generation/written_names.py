@@ -49,7 +49,7 @@ class Identifiers:
         text = _letters("_".join(part.strip() for part in parts))
         text = text.upper() if upper else text
         if text in _RESERVED or not text or _OF_STDINT.fullmatch(text):
-            text = f"{text}_of_rule"
+            text += "_OF_RULE" if upper else "_of_rule"
         elif text[0] in "_0123456789" or text.lower().startswith("rulec_"):
             text = f"{'X' if upper else 'x'}{text}"
         name = text
