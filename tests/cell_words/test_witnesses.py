@@ -141,6 +141,26 @@ def test_distances_to_junctions_between_two_places():
     assert found["distance_to_junction"] == Interval(0.0, 41.0)
 
 
+def test_nobody_is_there_before_it_is_recorded_nor_too_far_away_to_count(german):
+    """What is said of them would be unknown, and every rule about them open."""
+    comes = vehicle(10, {k: (80.0 + 5 * k, 4.0) for k in range(3, 13)}, speed=10.0)
+    far = vehicle(11, dict.fromkeys(range(13), (285.0, 0.0)), speed=0.0)
+    made = replace(recording(LANES, [comes, far], ego=(60, 0)), side="right")
+    scene = seen_from_ego(made, Choice(), "f.xml")
+    found = find_maneuvers(scene, german, horizon_s=2.0, step_s=1.0)
+    # Ego gets to 60 + 36 m at most, and who is 150 m ahead of its front counts
+    assert dict(found.words.present) == {"10": (2, 2)}
+
+
+def test_what_every_drive_is_told_is_told_in_cells(german):
+    """A source that says that there are no officers says so of maneuvers, too."""
+    made = recording(LANES, ego=(60, 0))
+    made = replace(made, side="right", complete=made.complete | {"officer"})
+    found = find_maneuvers(seen_from_ego(made, Choice(), "f.xml"), german, horizon_s=1.0)
+    states = [state for layer in found.words.states for state in layer]
+    assert {state["told_to_stop"] for state in states} == {False}
+
+
 @st.composite
 def scenes(draw):
     """Ego on one of two lanes among up to four vehicles of even speeds."""

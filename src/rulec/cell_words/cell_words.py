@@ -129,36 +129,49 @@ class _Words:
         )
 
     def _presences(self) -> dict[str, tuple[int, int]]:
-        """First and last layers of all who are on the scene's road, or count for ego.
+        """First and last layers of all who may count for ego, or are on the scene's road near it.
 
         By their ids in the recording: who leaves the scene's road and comes back may be beside it
-        meanwhile. Nobody is there for rules after the recording's end.
+        meanwhile. Nobody is there for rules who is farther away than who counts, wherever ego may
+        be, nor before or after it is recorded.
         """
         spans: dict[str, tuple[int, int]] = {}
-        seen = sum(layer.start_s <= self._until_s + _HAIR_S for layer in self._graph.layers) - 1
-        for name, obstacle in self._graph.objects.items():
-            first, last = self._graph.present[name]
-            if first > seen:
-                continue
-            last = min(last, seen)
-            low, high = spans.get(obstacle.id, (first, last))
-            spans[obstacle.id] = min(low, first), max(high, last)
-        for number, (now, boxes) in enumerate(zip(self._now, self._boxes, strict=True)):
-            if now is None or not len(boxes.s[0]):
-                continue
-            begin, end = boxes.s[0].min() - USUAL.near_m, boxes.s[1].max() + USUAL.near_m
-            far = (now.s[1] <= begin) | (now.s[0] >= end)
-            for row in np.flatnonzero(now.is_there & ~far).tolist():
-                first, last = spans.get(self._bodies[row].id, (number, number))
-                spans[self._bodies[row].id] = min(first, number), max(last, number)
+        on_road = [
+            (obstacle.id, *self._graph.present[name])
+            for name, obstacle in self._graph.objects.items()
+        ]
+        recorded = {item: self._recorded(item) for item, *_ in on_road}
+        for number, boxes in enumerate(self._boxes):
+            now = self._now[number]
+            there = [
+                item
+                for item, first, last in on_road
+                if first <= number <= last and number in recorded[item]
+            ]
+            if now is not None and len(boxes.s[0]):
+                aside = USUAL.near_m + boxes.half_length[1].max() + now.loose_s
+                begin, end = boxes.s[0].min() - aside, boxes.s[1].max() + aside
+                far = (now.s[1] <= begin) | (now.s[0] >= end)
+                there = [item for item in there if not far[self._rows[item]]]
+                rows = np.flatnonzero(now.is_there & ~far).tolist()
+                there += [self._bodies[row].id for row in rows]
+            for item in there:
+                first, last = spans.get(item, (number, number))
+                spans[item] = min(first, number), max(last, number)
         return spans
 
-    @property
-    def _until_s(self) -> float:
-        """The scene's time (s) at which the recording of the others ends."""
-        steps = [max(body.outlines) for body in self._bodies if body.outlines and not body.standing]
-        origin = self._probes.origin
-        return (max(steps, default=0) - origin.start.step) * origin.recording.step_s
+    def _recorded(self, item: str) -> range:
+        """The layers in which somebody is recorded, or was and will be, all in between."""
+        body, origin = self._bodies[self._rows[item]], self._probes.origin
+        starts = [layer.start_s for layer in self._graph.layers]
+        if body.standing or not body.outlines:
+            return range(len(starts))
+        begin, end = (
+            (step - origin.start.step) * origin.recording.step_s
+            for step in (min(body.outlines), max(body.outlines))
+        )
+        there = [p for p, at in enumerate(starts) if begin - _HAIR_S <= at <= end + _HAIR_S]
+        return range(there[0], there[-1] + 1) if there else range(0)
 
     def _layer(self, number: int) -> Iterator[State]:
         layer, boxes, now = self._graph.layers[number], self._boxes[number], self._now[number]

@@ -20,9 +20,8 @@ from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
 Words: TypeAlias = dict[str, Any]
 """Name -> its value, or for one about objects object -> value."""
 
-OF_SCENE = frozenset(
-    {"ego_on_call", "ego_type", "ego_length", "wet", "icy", "visibility", "raining", "night"}
-)
+OF_SCENE = frozenset({"ego_on_call", "ego_type", "ego_length", "told_to_stop", "told_to_go"})
+OF_SCENE |= {"wet", "icy", "visibility", "raining", "night"}
 """The same at all places and times."""
 
 OF_OTHERS = frozenset(

@@ -34,6 +34,7 @@ class OthersNow:
     that they reach into for sure, ``perhaps`` those that they may. ``along`` are speeds along the
     road, wrong as they may be (m/s). ``counts``: is it one who counts for ego, if it is near?
     ``is_there``: is it, or was it and will it be, so soon that it was there all the time?
+    ``loose_s`` (m) says how far distances along the road may be wrong.
     ``goes_along`` are vehicles that go ego's way for sure, ``may_go_along`` those that may,
     ``may_ride_along`` cycles that may.
     ``some_come``: does somebody move against ego's direction then, or later?
@@ -52,6 +53,7 @@ class OthersNow:
     may_ride_along: Flags
     some_come: bool
     ever_come: Flags
+    loose_s: float
 
 
 class RoadFrame:
@@ -164,6 +166,7 @@ class RoadFrame:
             may_ride_along=tracks.of_type("light_rider") & np.any(goes[:, columns], axis=1),
             some_come=bool(self._come[:, int(columns[0]) :].any()),
             ever_come=np.any(self._come, axis=1),
+            loose_s=self.loose_s,
         )
 
     def _straightened(self, left_of: Floats) -> Floats:
