@@ -51,6 +51,9 @@ def test_what_is_said_as_it_moves(tmp_path):
     assert told(tmp_path) == ()
     # A bit off, as estimated speeds and headings are, is no doubt
     assert told(tmp_path, speed=lambda row: 12.0, heading=lambda row: row["heading"] + 0.2) == ()
+    # All of them back, and say so by their speeds
+    turned = {"heading": lambda row: row["heading"] + np.pi}
+    assert told(tmp_path, speed=lambda row: -10.0, **turned) == ()
 
 
 @pytest.mark.parametrize(

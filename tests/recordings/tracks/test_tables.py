@@ -406,6 +406,16 @@ def test_headings_of_a_compass(tmp_path):
     assert "90° in the median" in found.message
 
 
+def test_all_back(tmp_path):
+    """Headings against the motion are those of who backs, where speeds are below 0."""
+    backing = driving(steps=40, more=",180,-10")
+    (car,) = read(tmp_path, f"{HEAD},heading_deg,speed", *backing).participants
+    assert abs(car.states[3].heading) == pytest.approx(pi)
+    assert car.states[3].speed == -10.0
+    found = message(tmp_path, f"{HEAD},heading_deg,speed", *driving(steps=40, more=",180,10"))
+    assert "180° in the median" in found.message
+
+
 @pytest.mark.parametrize(
     ("row", "way_out"),
     [

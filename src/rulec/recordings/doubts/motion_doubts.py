@@ -104,9 +104,13 @@ def _mean_mps(track: Track, step_s: float) -> float:
 
 
 def _askew_deg(track: Track) -> float:
-    """How far somebody goes away from its headings, in the mean of its way."""
+    """How far somebody goes away from its headings, in the mean of its way.
+
+    Who backs, by its own speeds, goes the other way.
+    """
     dx, dy = _ways(track).T
-    away = np.arctan2(dy, dx) - track.rows[1:, 2]
+    speed = track.rows[:, 3]
+    away = np.arctan2(dy, dx) - track.rows[1:, 2] + np.pi * (speed[1:] + speed[:-1] < 0)
     turned = np.abs((away + np.pi) % (2 * np.pi) - np.pi)
     return float(np.degrees(np.average(turned, weights=np.hypot(dx, dy))))
 

@@ -355,7 +355,9 @@ def _check_headings(rows: TrackRows) -> None:
         raise rows.columns.wrong(row, why, help_text=way_out)
     order, follow, (dx, dy) = _motions(rows)
     moving = follow & (np.hypot(dx, dy) > _MOVING_MPS) & ~np.isnan(heading[order][:-1])
-    off = np.abs(motion.wrapped(np.arctan2(dy, dx) - heading[order][:-1]))[moving]
+    # Who backs, by its own speeds, goes the other way
+    backs = 0.0 if rows.speed is None else np.pi * (rows.speed[order][:-1] < 0)
+    off = np.abs(motion.wrapped(np.arctan2(dy, dx) - heading[order][:-1] - backs))[moving]
     if len(off) > _ENOUGH and np.median(off) > _TURNED:
         row = int(order[:-1][moving][int(np.argmax(off))])
         why = (
