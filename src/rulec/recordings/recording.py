@@ -176,6 +176,9 @@ STRAIGHT_ON = "straightOn"
 JOINING = "accessRamp"
 """The type of a lane that ends beside others, to join them."""
 
+BROAD_LINE = "broadLineOnItsLeft"
+"""The type of a lane with a broad broken line on its left, as begins where lanes leave the road."""
+
 
 def is_lane(lanelet: Lanelet) -> bool:
     """True if a lanelet is a part of the carriageway."""

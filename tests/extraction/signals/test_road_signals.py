@@ -10,7 +10,7 @@ import pytest
 
 from rulec.extraction.signals.map.road_signals import road_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
-from rulec.recordings.recording import Weather
+from rulec.recordings.recording import BROAD_LINE, Weather
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
@@ -33,16 +33,16 @@ def against(y=4.0, start=300, end=0, number=5, **more):
     return lanelet(number, [(start, y), (end, y)], **more)
 
 
-def told(word, lanes, *, complete=(), xs=XS, weather=None):
+def told(word, lanes, *, complete=(), xs=XS, weather=None, route=("1", "2", "3"), y=0.0):
     """A word's values at three places, "?" where it is unknown; the same in the mirror."""
-    ego = vehicle(7, {k: (x, 0) for k, x in enumerate(xs)})
+    ego = vehicle(7, {k: (x, y) for k, x in enumerate(xs)})
     found = replace(
         recording(lanes, [ego]), complete=frozenset(complete), weather=weather or Weather()
     )
     sides = (found, "right"), (mirrored_recording(found), "left")
     values = []
     for one, side in sides:
-        signals = road_signals(context_of(one, ("1", "2", "3"), side))
+        signals = road_signals(context_of(one, route, side))
         if word not in signals.world:
             values.append(None)
             continue
@@ -145,6 +145,20 @@ def test_lanes_that_lead_on_join_and_leave():
     assert told("lane_kind", lanes) == ["entry_lane", "through_lane", "exit_lane"]
     assert told("lane_kind", road(["exitRamp"])) == ["exit_lane", "?", "?"]
     assert told("lane_kind", road(["urban"])) is None
+
+
+def test_lanes_beyond_a_broad_line():
+    """They may leave the road farther ahead (§ 7a(1) StVO): of two beyond it neither is told."""
+    main = {"types": frozenset({"mainCarriageWay"})}
+    broad = {"types": main["types"] | {BROAD_LINE}}
+    first, second, third = (straight(k, 0, 300, y=4.0 * (k - 1), **main) for k in (1, 2, 3))
+    first, third = replace(first, left_of="2"), replace(third, right_of="2")
+    second = replace(second, left_of="3", right_of="1", **broad)
+    assert told("lane_kind", [first, second, third], route=("1",)) == ["?"] * 3
+    assert told("lane_kind", [first, second, third], route=("2",), y=4.0) == ["?"] * 3
+    assert told("lane_kind", [first, second, third], route=("3",), y=8.0) == ["through_lane"] * 3
+    second = replace(second, **main)
+    assert told("lane_kind", [first, second, third], route=("1",)) == ["through_lane"] * 3
 
 
 def test_tunnels_are_told_by_maps_that_have_one():

@@ -8,7 +8,7 @@ import pytest
 
 from rulec import read_recording
 from rulec.diagnostics import RulecError
-from rulec.recordings.recording import Light, Weather
+from rulec.recordings.recording import BROAD_LINE, Light, Weather
 from support.builders.recordings import ROAD_XML
 
 BOX = "<rectangle><length>4</length><width>2</width></rectangle>"
@@ -52,6 +52,16 @@ def test_how_far_states_may_be_wrong_is_half_of_what_they_leave_open(read):
     (found,) = read((PLACE, f"<position>{area}</position>")).participants
     assert found.stated_error == pytest.approx((0.5, 0.0))
     assert read().participants[0].stated_error is None
+
+
+def test_a_broad_line_is_a_broken_one_of_a_kind(read):
+    for text, broad in (("dashed", False), ("broad_dashed", True), ("broad_solid", False)):
+        mark = f"<lineMarking>{text}</lineMarking>"
+        lanelet = read(("</leftBound>", f"{mark}</leftBound>")).lanelets["1"]
+        assert (BROAD_LINE in lanelet.types) == broad
+        assert lanelet.left_mark == ("solid" if text == "broad_solid" else "broken")
+        # On its right it is the next lane's
+        assert BROAD_LINE not in read((RIGHT, f"{mark}{RIGHT}")).lanelets["1"].types
 
 
 def test_of_several_states_the_median_counts():

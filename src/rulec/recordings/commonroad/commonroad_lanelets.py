@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from types import MappingProxyType
 from typing import NamedTuple
@@ -60,7 +60,7 @@ def read_lanelet(tree: Tree) -> LaneletEntry:
         predecessors=tree.ids("predecessor"),
         left_of=_neighbour(tree.first("adjacentLeft")),
         right_of=_neighbour(tree.first("adjacentRight")),
-        types=frozenset(kind.one_of(_TYPES.split()) for kind in tree.all("laneletType")),
+        types=frozenset(_types(tree)),
         # Version 2018b has limits without signs
         signs=frozenset() if limit is None else frozenset({MAX_SPEED}),
         limit_mps=None if limit is None else speed_limit(limit),
@@ -69,6 +69,14 @@ def read_lanelet(tree: Tree) -> LaneletEntry:
         stop_line=_stop_line(tree.first("stopLine")),
     )
     return LaneletEntry(lanelet, tree.ids("trafficSignRef"), tree.ids("trafficLightRef"))
+
+
+def _types(tree: Tree) -> Iterator[str]:
+    for kind in tree.all("laneletType"):
+        yield kind.one_of(_TYPES.split())
+    mark = tree.child("leftBound").first("lineMarking")
+    if mark is not None and mark.text == "broad_dashed":
+        yield recording.BROAD_LINE
 
 
 def _bound(tree: Tree) -> recording.Points:

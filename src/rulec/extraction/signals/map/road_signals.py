@@ -18,7 +18,7 @@ from rulec.extraction.signals.signal_passes import (
 )
 from rulec.extraction.tracks.surroundings import Directions
 from rulec.extraction.tracks.tracks import Flags
-from rulec.recordings.recording import Lanelet
+from rulec.recordings.recording import BROAD_LINE, Lanelet
 
 _OUTSIDE = frozenset({"country", "rural", "highway", "interstate"})
 _SETTINGS = _OUTSIDE | {"urban"}
@@ -71,13 +71,22 @@ def _ways(context: DriveContext) -> SignalColumns:
 def _lane_kind(context: DriveContext) -> SignalColumns:
     """The kind of the lane that ego has changed to last, as `lane_change` says it.
 
-    That of its middle is another one a little earlier: nobody would change from an entry lane.
+    That of its middle is another one a little earlier: nobody would change from an entry lane. Of
+    the main lanes those beyond a broad line may leave the road farther ahead.
     """
     if not _LANE_KINDS.keys() & map_contents(context).types:
         return SignalColumns()
-    kinds = lanelets_at(context, context.ego_extents.s[0], context.steady_lane).values(
-        lambda at: next((_LANE_KINDS[x] for x in _LANE_KINDS if x in at.types), "")
-    )
+    lanelets = context.recording.lanelets
+
+    def kind(at: Lanelet) -> str:
+        told = next((_LANE_KINDS[x] for x in _LANE_KINDS if x in at.types), "")
+        beyond: Lanelet | None = at if told == "through_lane" else None
+        while beyond is not None and BROAD_LINE not in beyond.types:
+            inward = beyond.left_of if context.side == "right" else beyond.right_of
+            beyond = lanelets.get(inward or "")
+        return told if beyond is None else ""
+
+    kinds = lanelets_at(context, context.ego_extents.s[0], context.steady_lane).values(kind)
     return _where_told("lane_kind", kinds)
 
 
