@@ -223,3 +223,12 @@ def test_the_surroundings_of_a_straight_line_are_a_strip():
     assert found.holds(np.full(4, 500.0), off).tolist() == [True, True, False, False]
     along = np.array([-100.0, -160.0, 1120.0, 1160.0])
     assert found.holds(along, np.zeros(4)).tolist() == [True, False, True, False]
+
+
+def test_surroundings_as_long_as_the_world_take_no_more_squares_than_others():
+    """Who is said to drive a million kilometres in a second may come from as far away."""
+    line = reference_line(np.array([[0.0, 0.0], [1000.0, 0.0]]))
+    found = line.surroundings(20.0, 1e12)
+    assert found.flags.size <= 1 << 18
+    along = np.array([-1e12, -1e6, 500.0, 1e12])
+    assert found.holds(along, np.array([0.0, 20.0, -20.0, 20.0])).all()

@@ -12,6 +12,9 @@ from rulec.recordings.recording import Points
 
 _SQUARE_M = 10.0
 _MOST_SQUARES = 1 << 22
+_MOST_ALONG = 1 << 16
+"""So many squares at most along the line, however far beyond its ends somebody may come from."""
+
 _Values = NDArray[float64]
 
 
@@ -39,11 +42,12 @@ class LineSurroundings:
 
 def line_surroundings(corners: Points, near_m: float) -> LineSurroundings:
     """The squares in which all places lie that are within ``near_m`` of a line through corners."""
-    size = _SQUARE_M
-    while (np.ptp(corners, axis=0) + 2 * near_m).prod() > _MOST_SQUARES * size**2:
-        size *= 2
     steps = np.hypot(*np.diff(corners, axis=0).T)
     arc = np.append(0.0, steps.cumsum())
+    size = _SQUARE_M
+    area = (np.ptp(corners, axis=0) + 2 * near_m).prod()
+    while area > _MOST_SQUARES * size**2 or arc[-1] > _MOST_ALONG * size:
+        size *= 2
     count = int(np.ceil(arc[-1] / (size / 2))) + 1
     at = np.linspace(0.0, arc[-1], count)
     samples = np.stack([np.interp(at, arc, column) for column in corners.T], axis=1)
