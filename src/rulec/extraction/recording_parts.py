@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import islice
+from math import comb, sqrt
 
 import numpy as np
 from numpy import intp
@@ -28,17 +29,17 @@ MOST_TIMES_ALONE = 2
 """Then it has up to so many times what one of its drives takes alone: in a crowd nearly all are
 there for each other's drives, and parts for few egos would look at the same ones again."""
 
-_SMOOTH_S = 0.2
-"""Between states no farther apart vehicles hardly change their acceleration."""
+_ORDERS = ((0.2, 3), (0.5, 5))
+"""Steps (s) up to which differences of so high an order hardly tell of motion.
+
+Within 0.2 s vehicles do not change their acceleration; over half a second they change it smoothly.
+"""
 
 _TRACKS, _STATES, _ENOUGH = 32, 128, 20
 """So much is looked at of a recording's noise, and so many differences are needed for it."""
 
 _MOVES_M = 0.3
-"""Who has moved so far in three steps is not one whose place has been held."""
-
-_THIRD = 20**0.5
-"""Third differences of places with normal errors have so many times their standard deviation."""
+"""Who has moved so far in so many steps is not one whose place has been held."""
 
 _OF_MEDIAN = 1.4826
 """The standard deviation of normal errors is so many times the median of their sizes."""
@@ -157,28 +158,32 @@ def whole_recording(recording: Recording) -> WholeRecording:
 
 
 def _noise_m(recording: Recording) -> float:
-    """The standard deviation (m) of places along or across ways, as the third differences tell it.
+    """The standard deviation (m) of places along or across ways, as their differences tell it.
 
-    Of some vehicles while they move, by the median: what a few do in a hurry does not count. None
-    where states are so far apart that these tell of motion. The axes of a file do not matter.
+    Those of an order at which motion hardly shows, whose standard deviation is that of normal
+    errors times the root of the sum of the squares of binomials, which is a binomial. Of some
+    vehicles while they move, by the median: what a few do in a hurry does not count. None where
+    states are so far apart that all differences tell of motion. The axes of a file do not matter.
     """
-    if recording.step_s > _SMOOTH_S + 1e-9:
+    orders = [order for step_s, order in _ORDERS if recording.step_s <= step_s + 1e-9]
+    if not orders:
         return 0.0
+    order = orders[0]
     bodies = [body for body in _moving(recording) if "vehicle" in body.object_types]
-    sizes = [_third_differences(body) for body in bodies[:: len(bodies) // _TRACKS + 1]]
+    sizes = [_differences(body, order) for body in bodies[:: len(bodies) // _TRACKS + 1]]
     every = np.concatenate([np.empty((0, 2)), *sizes])
     if len(every) < _ENOUGH:
         return 0.0
-    return max(median(own) for own in every.T) * _OF_MEDIAN / _THIRD
+    return max(median(own) for own in every.T) * _OF_MEDIAN / sqrt(comb(2 * order, order))
 
 
-def _third_differences(body: Participant) -> NDArray[np.float64]:
-    """The sizes of the third differences of a participant's first places, along and across."""
+def _differences(body: Participant, order: int) -> NDArray[np.float64]:
+    """The sizes of the differences of a participant's first places, along and across."""
     steps, places = _first_places(body)
-    way = places[3:] - places[:-3]
+    way = places[order:] - places[:-order]
     length = np.hypot(*way.T)
-    counts = (steps[3:] - steps[:-3] == 3) & (length > _MOVES_M)
-    (x, y), (dx, dy) = np.diff(places, 3, axis=0)[counts].T, way[counts].T / length[counts]
+    counts = (steps[order:] - steps[:-order] == order) & (length > _MOVES_M)
+    (x, y), (dx, dy) = np.diff(places, order, axis=0)[counts].T, way[counts].T / length[counts]
     sizes: NDArray[np.float64] = np.abs(np.stack((x * dx + y * dy, y * dx - x * dy), axis=-1))
     return sizes
 

@@ -114,11 +114,11 @@ BY_FORM: Mapping[str, Tolerances] = MappingProxyType(
     }
 )
 _DIAGONAL = 2**0.5
-_MOST_SIGMAS = 3.0
-"""997 in 1,000 errors are smaller than so many standard deviations.
+_MOST_SIGMAS = 4.0
+"""Three in 100,000 errors are larger, to one side, than so many standard deviations.
 
-A drive has hundreds of states, of which one is enough to be accused: of those at a limit one in
-twenty would not do.
+A drive has hundreds of states, each with errors of its own, of which one is enough to be accused:
+with three standard deviations it would be one in three of the drives that are just at a limit.
 """
 _NGSIM = re.compile(r"USA_(US101|I80|Lanker|Peach)")
 

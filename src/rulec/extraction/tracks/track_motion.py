@@ -93,9 +93,11 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     speed = np.where(steers[:, None], along, speed)
     own = np.zeros(len(present), dtype=bool)
     differ, told = _differ(speed, stated)
-    contradicts = np.zeros(len(present))
+    contradicts, just_then = np.zeros(len(present)), np.zeros(present.shape)
     if known.stated_mps is None:
-        contradicts = np.where(poses.steers & (differ <= _CONTRADICTS * told), differ, 0.0)
+        alike = poses.steers & (differ <= _CONTRADICTS * told)
+        contradicts = np.where(alike, differ, 0.0)
+        just_then = np.where(alike[:, None], np.abs(speed - window.mean(stated)), 0.0)
     else:
         # A middle cuts corners: it is slower there than the front, of which files state speeds
         turns = np.hypot(window.gained(cos), window.gained(sin)) > _TURNS
@@ -116,7 +118,7 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     error = known.speed_mps / np.where(single, 1.0, seconds)
     error += zero_if_nan(np.abs(gained) * beside)
     # What contradicts itself is known no better
-    error += contradicts[:, None]
+    error = np.maximum(error + contradicts[:, None], known.joint(error, zero_if_nan(just_then)))
     # A slip is anywhere in the time over which it shows
     steps = ceil(_SLIP_S / step_s - _HAIR)
     slips = np.maximum(_slips(poses, steps, step_s), _seams(poses, step_s))
@@ -248,6 +250,20 @@ class _Window:
         return begin + (inside[0] - begin) * (1 - self.part), end + (inside[1] - end) * (
             1 - self.part
         )
+
+    def mean(self, values: NDArray[float64]) -> NDArray[float64]:
+        """The mean of values between both ends, which are on straight lines between columns.
+
+        A window of no length has the value there.
+        """
+        whole = np.zeros(values.shape)
+        half = zero_if_nan((values[:, 1:] + values[:, :-1]) / 2)
+        whole[:, 1:] = half.cumsum(axis=1)
+        columns = np.arange(values.shape[1], dtype=float)[None].repeat(len(values), axis=0)
+        length = self.gained(columns)
+        there = length > 0
+        gained = self.gained(whole)
+        return np.where(there, gained / np.where(there, length, 1.0), values)
 
     def gained(self, values: NDArray[float64]) -> NDArray[float64]:
         """By how much values change from one end to the other."""
