@@ -3,7 +3,7 @@
 import os
 import random
 from dataclasses import replace
-from math import floor
+from math import atan2, floor, hypot
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,11 +13,12 @@ from hypothesis import strategies as st
 
 from rulec import Maneuver, RulecError, compile_rulebook, find_maneuvers, verify_many
 from rulec.cell_words.place_words import PlaceWords
-from rulec.cell_words.probe_drives import LaneProbe
+from rulec.cell_words.probe_drives import LaneProbe, probe_drives
+from rulec.cell_words.road_frame import RoadFrame
 from rulec.scenario import Choice
 from rulec.scenario.recorded.recorded_scene import seen_from_ego
-from rulec.vocabulary.partial_values import UNKNOWN, Interval
-from support.builders.recordings import RECORDINGS, recording, straight, vehicle
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
+from support.builders.recordings import RECORDINGS, lanelet, recording, straight, vehicle
 from support.generators.driven_motions import driven, paths_of
 from support.oracles.witness_drives import (
     contradicting,
@@ -42,7 +43,6 @@ TRIED = 5
 NARROW = {"BEL_Putte-10_2_T-1"}
 """No random motion keeps to the cells beside one that reaches into ego's lane."""
 
-HANDMADE_STEP_S = 0.5
 FILES = sorted(RECORDINGS.glob("*.xml"))
 LANES = (straight(1, 0, 300, left_of=2), straight(2, 0, 300, y=4, right_of=1))
 
@@ -188,14 +188,16 @@ def test_random_scenes(german, scene):
     check(found, 2)
 
 
-def driven_among(others, rules, motion, y=4.0, bounds="car", speed=10.0):
+def driven_among(
+    others, rules, motion, y=4.0, bounds="car", speed=10.0, *, lanes=LANES, aside=0.0, step_s=0.5
+):
     """Compare a motion on the left lane, from 2 to 6 m, with its maneuver: the words in cells."""
-    made = recording(LANES, others, ego=(60.0, y))
+    made = recording(lanes, others, ego=(60.0, y), step_s=step_s)
     (problem,) = made.problems
-    problem = replace(problem, start=replace(problem.start, speed=speed))
-    scene = seen_from_ego(replace(made, problems=(problem,)), Choice(), "file.xml")
-    horizon_s = HANDMADE_STEP_S * (len(motion) - 1)
-    found = find_maneuvers(scene, rules, horizon_s=horizon_s, step_s=HANDMADE_STEP_S, bounds=bounds)
+    start = replace(problem.start, speed=hypot(speed, aside), heading=atan2(aside, speed))
+    scene = seen_from_ego(replace(made, problems=(replace(problem, start=start),)), Choice(), "f")
+    horizon_s = step_s * (len(motion) - 1)
+    found = find_maneuvers(scene, rules, horizon_s=horizon_s, step_s=step_s, bounds=bounds)
     path = paths_of(found.graph, motion)
     nodes = tuple(next(iter(cells)) for cells in path)
     assert compared(found, [(nodes, np.array(motion))]) == 1
@@ -218,6 +220,76 @@ def test_who_comes_into_a_lane_is_behind_a_cycle_at_its_other_edge(german):
     motion = [(0.0, 10.0, -1.2, 0.0), (5.0, 10.0, -1.45, -1.0), (10.0, 10.0, -2.2, -2.0)]
     states = driven_among([rider], german, motion, 2.8)
     assert [state["precedes"]["10"] for state in states] == [False, False, UNKNOWN]
+
+
+def test_a_side_for_a_moment_is_that_before_and_after(german):
+    # Ego gets over the mark at y = 2 in the third state, and the other one 0.1 s later behind it:
+    # for a fifth of a second it would be left of it, and is in its lane before and after
+    comes = {k: (75.0 + k, 0.75 + 0.1 * k) for k in range(41)}
+    comes = vehicle(10, comes, speed=10.0)
+    motion = [(k * 1.0, 10.0, 1.75 + 0.15 * k, 1.5) for k in range(6)]
+    states = driven_among([comes], german, motion, 1.75, aside=1.5, step_s=0.1)
+    assert states[2]["lateral"]["10"] == OneOf(frozenset({"same_lane", "left_of"}))
+
+
+def corner(metres):
+    """Lanes round a corner that begins at x = 84, and places so far (m) outside its middle."""
+    angles = np.array([0.0, np.pi / 4, np.pi / 2])
+    lanes = (
+        straight(1, 0, 84, successors=[2]),
+        lanelet(2, around(12.0, angles), predecessors=[1], successors=[3]),
+        lanelet(3, [(96, 12), (96, 200)], predecessors=[2]),
+    )
+    angles = np.linspace(0.2, 1.4, 5)
+    return lanes, zip(angles.tolist(), around(12.0 + metres, angles), strict=True)
+
+
+def around(radius, angles):
+    return [(84 + radius * np.sin(one), 12 - radius * np.cos(one)) for one in angles]
+
+
+def test_lines_cut_corners_each_in_its_own_way(german):
+    """How far ego is from who stands beside a bend is not told more exactly than drives differ."""
+    lanes, places = corner(3.2)
+    riders = [
+        vehicle(n, dict.fromkeys(range(13), place), "bicycle", 1.8, 0.6, heading=turned)
+        for n, (turned, place) in enumerate(places, 10)
+    ]
+    motion = [(3.0 * k, 6.0, 0.0, 0.0) for k in range(5)]
+    driven_among(riders, german, motion, 0.0, speed=6.0, lanes=lanes)
+
+
+def frame_of(lanes, rules):
+    """The road of a scene on lanes, ego at x = 60."""
+    made = replace(recording(lanes, ego=(60.0, 0.0)), side="right")
+    graph = find_maneuvers(seen_from_ego(made, Choice(), "f"), rules, horizon_s=1.0).graph
+    origin = graph.scenario.account.origin
+    return RoadFrame(probe_drives(graph, origin, rules, "right", frozenset()))
+
+
+def test_where_a_lane_has_ended_those_of_the_other_direction_may_lie(german):
+    lanes = (
+        straight(1, 0, 100, left_of=2, successors=[3]),
+        straight(2, 0, 100, y=4, right_of=1),
+        straight(3, 100, 300, predecessors=[1]),
+    )
+    frame = frame_of(lanes, german)
+    ends = np.array([20.0, 20.0]), np.array([35.0, 60.0])
+    sides = np.array([-1.0, -1.0]), np.array([1.0, 1.0])
+    # Its left side at y = 1 m is 5 m from the left bound of two lanes, and 1 m from that of one
+    assert frame.own_room(ends, sides).tolist() == [5.0, 1.0]
+
+
+def test_beyond_a_split_somebody_is_in_any_of_its_lanes(german):
+    lanes = (
+        straight(1, 0, 100, successors=[2, 3]),
+        straight(2, 100, 300, left_of=3, predecessors=[1]),
+        straight(3, 100, 300, y=4, right_of=2, predecessors=[1]),
+    )
+    ahead = vehicle(10, {k: (130.0 + 5 * k, 0.0) for k in range(13)}, speed=10.0)
+    motion = [(5.0 * k, 10.0, 0.0, 0.0) for k in range(3)]
+    states = driven_among([ahead], german, motion, 0.0, lanes=lanes)
+    assert states[0]["lateral"]["10"] is UNKNOWN or "same_lane" in states[0]["lateral"]["10"].values
 
 
 def test_who_passes_a_cycle_may_overtake(german):

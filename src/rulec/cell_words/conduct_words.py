@@ -126,12 +126,8 @@ class ConductWords:
 
     def _on_own_side(self) -> Flags:
         """Ego is not beyond the middle of a two-way road, where it overtakes until it is back."""
-        (low, high), frame = self._boxes.d, self._frame
-        if frame.probes.among.side == "right":
-            own: Flags = high + frame.loose_d <= self._straight[-1]
-        else:
-            own = low - frame.loose_d >= self._straight[0]
-        return own | frame.one_way
+        own: Flags = self._relations.own_room >= self._frame.loose_d
+        return own | self._frame.one_way
 
     def _meets_nobody(self) -> Flags:
         """Nobody comes towards ego from now on: who is not there yet may meet it in time."""

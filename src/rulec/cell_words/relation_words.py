@@ -66,6 +66,7 @@ class Relations:
         half = boxes.half_length
         self.front = column(boxes.s[0] + half[0]), column(boxes.s[1] + half[1])
         self.rear = column(boxes.s[0] - half[1]), column(boxes.s[1] - half[0])
+        self._aside_d = column(frame.bounds_apart(boxes.s))
         self.stations = self._stations()
         self.laterals = self._laterals()
 
@@ -83,23 +84,21 @@ class Relations:
         Who is hardly in its lane, but in the way of its body, is in the lane.
         """
         boxes, others, straight = self._boxes, self._others, self._straight
-        low, high = column(boxes.d[0]) + _HAIR_M, column(boxes.d[1]) - _HAIR_M
+        begin, end = others.right[0], others.left[1]
+        low, high = self._sides()
+        low, high = low + _HAIR_M, high - _HAIR_M
         width = column(boxes.half_width[1]) + self._frame.loose_d
         touches, count = others.perhaps.any(axis=1), others.perhaps.shape[1]
         first = np.where(touches, others.perhaps.argmax(axis=1), 0)
         last = np.where(touches, count - 1 - others.perhaps[:, ::-1].argmax(axis=1), count - 1)
-        right_edge = np.where(touches, straight[first], others.d[0])
-        left_edge = np.where(touches, straight[last + 1], others.d[1])
+        right_edge = np.where(touches, straight[first], begin)
+        left_edge = np.where(touches, straight[last + 1], end)
         # Who reaches into ego's lane is in its way as far as ego's body is in theirs
         right_bound, left_bound = (straight[one] for one in self._own_lanes(low, high))
-        right = (high <= right_edge) & (
-            (others.d[0] >= left_bound + _HAIR_M) | (high + width < others.d[0])
-        )
-        left = (low >= left_edge) & (
-            (others.d[1] <= right_bound - _HAIR_M) | (low - width > others.d[1])
-        )
-        middle = (others.d[0] + others.d[1]) / 2
-        found = np.where(high < middle, RIGHT | SAME, np.where(low > middle, SAME | LEFT, _ALL))
+        right = (high <= right_edge) & ((begin >= left_bound + _HAIR_M) | (high + width < begin))
+        left = (low >= left_edge) & ((end <= right_bound - _HAIR_M) | (low - width > end))
+        before, beyond = ((others.right[k] + others.left[k]) / 2 for k in (0, 1))
+        found = np.where(high < before, RIGHT | SAME, np.where(low > beyond, SAME | LEFT, _ALL))
         found = np.where(right, RIGHT, np.where(left, LEFT, found))
         return np.where(self._surely_same(), SAME, found).astype(np.int8)
 
@@ -110,7 +109,8 @@ class Relations:
         doubt is unknown to extraction.
         """
         others, loose, straight = self._others, self._frame.apart_d, self._straight
-        low, high = (column(end) for end in self._boxes.d)
+        begin, end = others.right[0], others.left[1]
+        low, high = self._sides()
         lanes, some = others.lanes, others.lanes.any(axis=1)
         first = np.where(some, lanes.argmax(axis=1), 0)
         last = np.where(some, lanes.shape[1] - 1 - lanes[:, ::-1].argmax(axis=1), -1)
@@ -120,10 +120,15 @@ class Relations:
         # Of several lanes the innermost bounds are those that are reached beyond first
         nearest = np.minimum(straight[right + 1], straight[left])
         farthest = np.maximum(straight[left - 1], straight[right])
-        beyond = (others.d[1] - nearest > reach) | (farthest - others.d[0] > reach)
-        clear = np.maximum(others.d[0] - low - wide, high - wide - others.d[1]) > reach
+        beyond = (end - nearest > reach) | (farthest - begin > reach)
+        clear = np.maximum(others.right[1] - low - wide, high - wide - others.left[0]) > reach
         same: Flags = some & inside & ~(beyond & clear)
         return same
+
+    def _sides(self) -> Bounds:
+        """Between which places across the road (m) ego's middle is, by the lanes of drives."""
+        low, high = self._boxes.d
+        return column(low) - self._aside_d, column(high) + self._aside_d
 
     def _own_lanes(self, low: Floats, high: Floats) -> tuple[NDArray[intp], NDArray[intp]]:
         """The right bound of the first lane in which ego's middle is, and the left one of the last.
@@ -184,13 +189,15 @@ class Relations:
 
     def _within_own_half(self) -> Flags:
         """Cells in which no part of ego is beyond the middle of a two-way road."""
-        (low, high), frame = self._boxes.d, self._frame
-        wide = self._boxes.half_width[1] + frame.loose_d - USUAL.touching_m
-        if frame.probes.among.side == "right":
-            own: Flags = high + wide <= self._straight[-1]
-        else:
-            own = low - wide >= self._straight[0]
+        frame, wide = self._frame, self._boxes.half_width[1] - USUAL.touching_m
+        own: Flags = self.own_room >= wide + frame.loose_d
         return own | frame.one_way
+
+    @cached_property
+    def own_room(self) -> Floats:
+        """How far (m) ego's middle stays from the lanes of the other direction, by cell."""
+        places = self.rear[0][:, 0], self.front[1][:, 0]
+        return self._frame.own_room(places, self._boxes.d)
 
     def flow(self, below_kmh: float) -> list[Any]:
         """Whether traffic around ego is slower than this in the median, by cell.
@@ -218,7 +225,8 @@ class Relations:
 
     def _aside(self) -> Bounds:
         boxes, others = self._boxes, self._others
-        loose = self._frame.loose_d + self._frame.stretched
+        own, theirs = (self._frame.line_apart(ends) for ends in (boxes.s, others.s))
+        loose = self._frame.loose_d + self._frame.stretched + column(own) + theirs
         wide, narrow = column(boxes.half_width[1]), column(boxes.half_width[0])
         low, high = column(boxes.d[0]), column(boxes.d[1])
         least = np.maximum(others.d[0] - high - wide, low - wide - others.d[1]) - loose

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
+from math import ceil
 from typing import TypeAlias
 
 import numpy as np
@@ -16,7 +18,8 @@ from rulec.cell_words.probe_drives import ProbeDrives
 from rulec.extraction.drive_context import KMH
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.road_places import RoadPlaces
-from rulec.extraction.traffic_thresholds import USUAL
+from rulec.extraction.traffic_thresholds import LEAST_S, USUAL
+from rulec.recordings.recording import Lanelet
 
 _FAR_M = 300.0
 _HAIR_M = 0.05
@@ -30,8 +33,10 @@ Flags: TypeAlias = NDArray[bool_]
 class OthersNow:
     """Where others are at a time, a row each; NaN for who is not beside the road.
 
-    ``s`` and ``d`` (m) are the ends of their bodies in the scene's coordinates, ``lanes`` those
-    that they reach into for sure, ``perhaps`` those that they may. ``along`` are speeds along the
+    ``s`` and ``d`` (m) are the ends of their bodies in the scene's coordinates, ``right`` and
+    ``left`` the least and the greatest place of either side across the road, for so long before and
+    after as a side of ego lasts at least. As long, ``lanes`` are those that they reach into for
+    sure, and ``perhaps`` those that they may. ``along`` are speeds along the
     road, wrong as they may be (m/s). ``counts``: is it one who counts for ego, if it is near?
     ``is_there``: is it, or was it and will it be, so soon that it was there all the time?
     ``loose_s`` (m) says how far distances along the road may be wrong.
@@ -43,6 +48,8 @@ class OthersNow:
 
     s: tuple[Floats, Floats]
     d: tuple[Floats, Floats]
+    right: tuple[Floats, Floats]
+    left: tuple[Floats, Floats]
     lanes: Flags
     perhaps: Flags
     along: tuple[Floats, Floats]
@@ -81,6 +88,7 @@ class RoadFrame:
         self.crossings = self._in_scene(road, road.crossings)
         self.junctions = self._in_scene(road, road.junctions)
         lanelets = [lanelet for row in road.rows for lanelet in row if lanelet is not None]
+        self._splits = self._in_scene_splits(road)
         self.has_rails = any("level_crossing" in lanelet.types for lanelet in lanelets)
         self.one_way = all(among.surroundings.directions(one)[0] for one in lanelets)
         turns = [road.turned(start, end, aside_m=1.0) for start, end in road.junctions]
@@ -98,6 +106,60 @@ class RoadFrame:
         turned = float(np.abs(np.diff(headings)).sum())
         self.apart_s = _HAIR_M + min(turned * across / 2, across)
         self.loose_s = self.place_m + self.apart_s
+        self._line_s = origin.lanes.s[at] - origin.ego_s
+        self._line_d, self._bounds_d = self._apart(road)
+
+    def _apart(self, road: DrivenRoad) -> tuple[Floats, Floats]:
+        """How far (m) the scene's line, and the bounds of lanes, are from those of drives.
+
+        Where a road bends each line along it cuts the corners in its own way.
+        """
+        line_s, lanes = self._line_s, self._origin.lanes
+        there = np.pad(lanes.existing_at(line_s + self._origin.ego_s), ((0, 0), (1, 1)))
+        apart = np.zeros((len(self._straight) + 1, len(line_s)))
+        for number, d in enumerate((0.0, *self._straight.tolist())):
+            places, _ = self._origin.places(line_s, np.full(len(line_s), d))
+            found = road.line.coordinates(places)[:, :2]
+            beside = (found[:, 0] > 0.0) & (found[:, 0] < road.line.arc[-1])
+            aside = found[:, 1]
+            if number:
+                aside = road.lanes.from_bounds(found)[:, number - 1]
+                beside &= there[:, number - 1] | there[:, number]
+            apart[number, beside] = np.minimum(np.abs(aside[beside]), 1.0)
+        return apart[0], apart[1:].max(axis=0)
+
+    def own_room(self, places: tuple[Floats, Floats], sides: tuple[Floats, Floats]) -> Floats:
+        """How far (m) bodies stay from the lanes of the other direction, wherever they are.
+
+        From one place to another, which both count, and between two sides of the road. Where a lane
+        has ended those of the other direction may lie beside the one before.
+        """
+        lanes, first = self._origin.lanes, self._origin.ego_s
+        straight, there = self._straight, lanes.there
+        if self.probes.among.side == "right":
+            last = there.shape[1] - there[:, ::-1].argmax(axis=1)
+            edges = np.where(there.any(axis=1), straight[last], np.inf)
+        else:
+            edges = -np.where(there.any(axis=1), straight[there.argmax(axis=1)], -np.inf)
+        begins, ends = (lanes.pieces_at(place + first).tolist() for place in places)
+        nearest = [edges[k : end + 1].min() for k, end in zip(begins, ends, strict=True)]
+        reach = sides[1] if self.probes.among.side == "right" else -sides[0]
+        room: Floats = np.array(nearest, dtype=np.float64) - reach
+        return room
+
+    def line_apart(self, s: tuple[Floats, Floats]) -> Floats:
+        """How far (m) the two lines are apart, at most, each from one place to another."""
+        return self._most(self._line_d, s)
+
+    def bounds_apart(self, s: tuple[Floats, Floats]) -> Floats:
+        """The same of the bounds of lanes."""
+        return self._most(self._bounds_d, s)
+
+    def _most(self, values: Floats, s: tuple[Floats, Floats]) -> Floats:
+        begins = np.searchsorted(self._line_s, s[0] - self.apart_s, "right") - 1
+        ends = np.searchsorted(self._line_s, s[1] + self.apart_s, "left") + 1
+        rows = zip(np.maximum(begins, 0).tolist(), ends.tolist(), strict=True)
+        return np.array([values[begin:end].max(initial=0.0) for begin, end in rows])
 
     @cached_property
     def _come(self) -> Flags:
@@ -121,6 +183,38 @@ class RoadFrame:
             found.append((first, last))
         return found
 
+    def _in_scene_splits(self, road: DrivenRoad) -> list[tuple[float, int, list[int]]]:
+        """Where one lane becomes several, ahead or behind (1, -1), and which these are.
+
+        A drive that ends before does not tell into which of them it leads.
+        """
+        found = []
+        for way, rows, ends in (
+            (1, road.rows, road.borders[1:-1]),
+            (-1, road.rows[::-1], road.borders[-2:0:-1]),
+        ):
+            for (row, onward), end in zip(pairwise(rows), ends.tolist(), strict=True):
+                for lanelet in row:
+                    linked = () if lanelet is None else _linked(lanelet, way)
+                    into = [k for k, one in enumerate(onward) if one and one.id in linked]
+                    if len(into) > 1:
+                        found.append((end, way, into))
+        places = self._in_scene(road, [(end, end) for end, *_ in found])
+        return [
+            (place, way, into)
+            for (place, _), (_, way, into) in zip(places, found, strict=True)
+            if place * way > 0.0
+        ]
+
+    def _mingle(self, s: tuple[Floats, Floats], lanes: Flags, perhaps: Flags) -> None:
+        """Let who is beyond a split be in each of its lanes, for none of them sure."""
+        for place, way, into in self._splits:
+            beyond = s[1] > place if way > 0 else s[0] < place
+            there = beyond & perhaps[:, into].any(axis=1)
+            rows = np.flatnonzero(there)
+            perhaps[np.ix_(rows, np.array(into))] = True
+            lanes[rows] = False
+
     def at(self, seconds: float) -> OthersNow | None:
         """The others at a time of the scene; None before or after the recording."""
         column = self.probes.column(seconds)
@@ -137,11 +231,16 @@ class RoadFrame:
             return low[:, columns].min(axis=1), high[:, columns].max(axis=1)
 
         s0, s1 = hull(ends.s_min, ends.s_max)
-        d0 = self._straightened(ends.left_of_min[:, columns]).min(axis=1)
-        d1 = self._straightened(ends.left_of_max[:, columns]).max(axis=1)
         touching = places.thresholds.touching_m
-        inside, breadth = ends.inside[:, columns], ends.breadth[:, columns]
-        there = places.there[:, columns]
+        # A side that one is on for less is taken for that before and after
+        brief = ceil(LEAST_S["lateral"] / self.probes.recording.step_s - _HAIR_M) - 1
+        first, end = max(int(columns[0]) - brief, 0), int(columns[-1]) + brief + 1
+        around = slice(first, end)
+        low = self._straightened(ends.left_of_min[:, around])
+        high = self._straightened(ends.left_of_max[:, around])
+        now = columns - first
+        inside, breadth = ends.inside[:, around], ends.breadth[:, around]
+        there, absent = places.there[:, around], np.isnan(ends.s_min[:, around])
         least = np.minimum(touching, breadth / 2)
         error = tracks.speed_error[:, columns]
         along = ends.along[:, columns]
@@ -153,11 +252,17 @@ class RoadFrame:
         was, will = (
             np.any(places.counts[:, part], axis=1, keepdims=True) for part in (before, behind)
         )
+        s = s0 - self._origin.ego_s, s1 - self._origin.ego_s
+        lanes = np.all(((inside > least + _HAIR_M) & there) | absent[..., None], axis=1)
+        perhaps = np.any((inside > least - _HAIR_M) & there, axis=1)
+        self._mingle(s, lanes, perhaps)
         return OthersNow(
-            s=(s0 - self._origin.ego_s, s1 - self._origin.ego_s),
-            d=(d0, d1),
-            lanes=np.all((inside > least + _HAIR_M) & there, axis=1),
-            perhaps=np.any((inside > least - _HAIR_M) & there, axis=1),
+            s=s,
+            d=(low[:, now].min(axis=1), high[:, now].max(axis=1)),
+            right=(np.fmin.reduce(low, axis=1), np.fmax.reduce(low, axis=1)),
+            left=(np.fmin.reduce(high, axis=1), np.fmax.reduce(high, axis=1)),
+            lanes=lanes,
+            perhaps=perhaps,
             along=((along - error).min(axis=1), (along + error).max(axis=1)),
             counts=np.all(places.counts[:, columns], axis=1),
             is_there=(was & will)[:, 0],
@@ -180,3 +285,7 @@ class RoadFrame:
         beyond = np.where(low < 0, straight[lane] + low, straight[lane + 1] + high)
         found: Floats = np.where((low >= 0) & (high <= 0), inside, beyond)
         return found
+
+
+def _linked(lanelet: Lanelet, way: int) -> tuple[str, ...]:
+    return lanelet.successors if way > 0 else lanelet.predecessors
