@@ -52,6 +52,25 @@ def test_at_a_red_light_waiting_is_best():
     assert [found.nearest_allowed(number) for number in range(4)] == [0, 0, 0, 0]
 
 
+@pytest.mark.parametrize(
+    "aside",
+    [
+        lambda x: 3.5 * (x > 57.0),  # it jumps into the other lane while it crosses the line
+        lambda x: 2.0 * ((x > 57.0) & (x < 61.0)),  # it is there in one state
+        lambda x: np.interp(x, (35, 45, 70, 80), (0, 1.8, 1.8, 0)),  # on the mark, hardly beyond
+    ],
+)
+def test_the_green_light_of_the_next_lane_is_no_way_past_a_red_one(aside):
+    """The line at x = 60 is crossed between two lights; who has changed lanes before has a green one."""
+    world, straight = lit_junction(beside="green"), 10.0 * AHEAD
+    changes = np.interp(straight, (10, 40), (0, 3.5))
+    paths = [straight * 0 + aside(straight), straight * 0, changes]
+    ways = [np.column_stack((straight, y)) for y in paths]
+    found = scored(world, *ways, on_axis(braking_to(55.0)))
+    assert found.outcomes("red_light") == ["open", "violated", "kept", "kept"]
+    assert found.best == 3
+
+
 def test_straddling_two_lanes_is_no_way_past_a_slow_vehicle():
     # 8 m/s of 12 behind, 40 m away: at 12 m/s ego would be level with it after 10 s
     world = street([car("slow", 8.0, x=40.0)], speed=12.0)

@@ -1,5 +1,7 @@
 """Worlds drawn by hand, and futures in them, for scores."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from rulec.recordings.building import build_lanelet, build_participant, build_recording
@@ -37,8 +39,11 @@ def street(others=(), speed=10.0, past=4, beside=(), **more):
     return _world(lanes, others, speed, past)
 
 
-def lit_junction(speed=10.0, past=4):
-    """A street with a light, always red, at x = 60, and a junction behind it up to x = 80."""
+def lit_junction(speed=10.0, past=4, beside=None):
+    """A street with a light, always red, at x = 60, and a junction behind it up to x = 80.
+
+    With a lane ``beside`` it, at its left, whose light is always of that colour.
+    """
     red, town = Light(0, (("red", 1000),)), {"types": ["urban"], "limit_mps": 50 / 3.6}
     line = [(60, -1.75), (60, 1.75)]
     lanes = [
@@ -51,7 +56,26 @@ def lit_junction(speed=10.0, past=4):
         build_lanelet("over", [(70, -10), (70, 10)], successors=["to"], junction="j", **town),
         build_lanelet("to", [(70, 10), (70, 80)], **town),
     ]
+    if beside is not None:
+        lanes = [*_with_left(lanes[:3], Light(0, ((beside, 1000),))), *lanes[3:]]
     return _world(lanes, (), speed, past, complete={"light"})
+
+
+def _with_left(lanes, light):
+    """Lanes along the x axis with others at their left, 3.5 m wide, which lead to each other."""
+    for lane in lanes:
+        yield replace(lane, left_of=f"{lane.id} left")
+        yield replace(
+            lane,
+            id=f"{lane.id} left",
+            left=lane.left + (0, 3.5),
+            right=lane.left,
+            centre=lane.centre + (0, 3.5),
+            right_of=lane.id,
+            successors=tuple(f"{one} left" for one in lane.successors),
+            lights=(light,) if lane.lights else (),
+            stop_line=None if lane.stop_line is None else lane.stop_line + (0, 3.5),
+        )
 
 
 def _world(lanes, others, speed, past, **more):

@@ -343,7 +343,42 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
                 may_cross[state] |= (
                     crossed[state] and amber and at_place.any() and not at_place.all()
                 )
+    for state in _between_lights(context, colours, crosses):
+        crosses[state], colours[state] = True, ""
     return colours, crosses, may_cross
+
+
+def _between_lights(context: DriveContext, colours: SignalColumn, crosses: Flags) -> list[int]:
+    """The states in which ego crosses the lines of two lanes whose lights differ.
+
+    It reaches into the other lane, or has come from it since the state before: nobody knows which
+    light it passes. ``colours`` are those of its own lane where it ``crosses`` the line of that.
+    """
+    own, lane, reach = context.ego_extents, context.ego_lane, context.thresholds.touching_m
+    came_from = np.where(context.spans.columns > context.spans.first, np.roll(lane, 1), lane)
+    found = set[int]()
+    for piece, row in enumerate(context.road.rows):
+        lit = {
+            k
+            for k, one in enumerate(row)
+            if one is not None and one.lights and _own_lights(context, piece, k)
+        }
+        for k in sorted(lit) if len(row) > row.count(None) + 1 else ():
+            inside = (own.left_of_max[0, :, k] > reach) & (own.left_of_min[0, :, k + 1] < -reach)
+            beside = (inside | context.spans.before(inside) | (came_from == k)) & (lane != k)
+            if not beside.any():
+                continue
+            line = stop_line(context, piece, k)
+            moments = around_crossing(context, own_front(context), line)
+            lights = _own_lights(context, piece, k)
+            for state in (beside & passes(context, line[1])).nonzero()[0].tolist():
+                shown = {_colour(context, lights, moment) for moment in moments(state)}
+                # Its own lane has no line there, or it came to the one further on from beside
+                past = int(lane[state]) not in lit or came_from[state] == k
+                differs = past and not shown <= {"green_light", "no_light"}
+                if shown != {colours[state]} if crosses[state] else differs:
+                    found.add(state)
+    return sorted(found)
 
 
 def _own_lights(context: DriveContext, piece: int, lane: int) -> tuple[Light | ObservedLight, ...]:
