@@ -50,7 +50,8 @@ def test_every_word():
     cells = [line.split("|")[1] for line in DEFINITIONS.splitlines() if line.startswith("| `")]
     documented = {word for cell in cells for word in re.findall(r"`(\w+)`", cell)}
     lane = straight(1, 0, 99, signs=frozenset({"STOP", "YIELD", "NO_OVERTAKING_START"}))
-    lane = straight(1, 0, 99, signs=lane.signs, limit_mps=9.0, types=frozenset({"highway"}))
+    limits = {"limit_mps": 9.0, "minimum_mps": 5.0}
+    lane = straight(1, 0, 99, signs=lane.signs, types=frozenset({"highway"}), **limits)
     found = recording([lane], [vehicle(1, {0: (9, 0), 1: (19, 0)})])
     (drive,) = Drives(found, "right").of("1")
     assert drive.words | NOT_IN_THAT == documented

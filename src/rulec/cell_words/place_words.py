@@ -48,6 +48,7 @@ OF_OTHERS = frozenset(
 OF_PLACE = frozenset(
     {
         "limit",
+        "minimum_limit",
         "built_up",
         "road_class",
         "one_way",

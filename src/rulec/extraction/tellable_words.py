@@ -53,8 +53,8 @@ _EITHER = frozenset(
 )
 _COMMONROAD_ONLY = frozenset(
     (
-        *("icy", "night", "no_overtaking_sign", "no_turn_on_red_sign", "raining", "visibility"),
-        "wet",
+        *("icy", "minimum_limit", "night", "no_overtaking_sign", "no_turn_on_red_sign", "raining"),
+        *("visibility", "wet"),
     )
 )
 _SUMO_ONLY = frozenset(
@@ -86,7 +86,7 @@ _NOT_BY_LANE_CENTRES = frozenset(
 """Other signs than to stop, lamps, and kinds of lanes of a motorway."""
 _ON_ANY_MAP = frozenset(
     (
-        *("no_overtaking_sign", "no_turn_on_red_sign", "conflict_with_rail"),
+        *("minimum_limit", "no_overtaking_sign", "no_turn_on_red_sign", "conflict_with_rail"),
         *("enters_level_crossing", "guarded", "level_crossing_zone", "past_level_crossing_sign"),
         *("tracks_at_kerb", "tunnel"),
     )

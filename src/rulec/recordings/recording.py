@@ -129,6 +129,7 @@ class Lanelet:
     of its bounds, ``stop_line`` (two ends) the one that the map has drawn, None where the file does
     not say. ``junction`` is the one that it lies in. Of the ways through that, ``foes`` are those
     whose traffic is in the way of its own, ``first`` those of them that go first; None: not told.
+    ``minimum_mps`` is the least speed that signs ask for.
     """
 
     __repr__ = short_repr
@@ -151,6 +152,7 @@ class Lanelet:
     right_mark: LaneMark | None = None
     stop_line: Points | None = None
     junction: str = ""
+    minimum_mps: float | None = None
     foes: frozenset[str] | None = None
     first: frozenset[str] | None = None
 

@@ -17,6 +17,7 @@ from rulec.vocabulary.partial_values import PartialValue
 RECORDED_UNITS = {
     "speed": "km/h",
     "limit": "km/h",
+    "minimum_limit": "km/h",
     "speed_difference": "km/h",
     "gap": "m",
     "time_headway": "s",
@@ -33,7 +34,7 @@ RECORDED_UNITS = {
 }
 """The units of the quantities that recordings supply."""
 
-MEASURED = RECORDED_UNITS.keys() - {"limit", "ego_length", "visibility"}
+MEASURED = RECORDED_UNITS.keys() - {"limit", "minimum_limit", "ego_length", "visibility"}
 """Those of them that are measured, to a tolerance."""
 
 UNTOLD_VALUES: Mapping[str, frozenset[str]] = {

@@ -46,6 +46,12 @@ def test_the_limit_of_the_lanelet_under_ego():
     assert "limit" not in map_signals(context([90, 110])).world
 
 
+def test_the_least_speed_of_the_lanelet_under_ego():
+    found = map_signals(context([90, 110], first={"minimum_mps": 70 / 3.6})).world
+    assert found["minimum_limit"].tolist() == [70.0, 0.0]
+    assert "minimum_limit" not in map_signals(context([90, 110], first={"limit_mps": 9.0})).world
+
+
 @pytest.mark.parametrize(
     ("after", "turned", "limit"),
     [(70, 0, 70.0), (50, 0, NO_LIMIT_KMH), (None, 0, NO_LIMIT_KMH), (70, 90, NO_LIMIT_KMH)],

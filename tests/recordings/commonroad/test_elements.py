@@ -205,9 +205,9 @@ def test_signs_by_the_country_of_the_benchmark(read, country, number, name):
 
 
 def test_the_lowest_limit_holds_and_none_may_be_infinite(read):
-    def found(*limits):
+    def lanelet(*limits, number=274):
         posts = "".join(
-            "<trafficSignElement><trafficSignID>274</trafficSignID>"
+            f"<trafficSignElement><trafficSignID>{number}</trafficSignID>"
             f"<additionalValue>{limit}</additionalValue></trafficSignElement>"
             for limit in limits
         )
@@ -215,8 +215,15 @@ def test_the_lowest_limit_holds_and_none_may_be_infinite(read):
             (RIGHT, f'{RIGHT}<trafficSignRef ref="7"/>'),
             ("  <obstacle", f'<trafficSign id="7">{posts}</trafficSign><obstacle'),
         )
-        return recording.lanelets["1"].limit_mps
+        return recording.lanelets["1"]
 
+    def found(*limits):
+        return lanelet(*limits).limit_mps
+
+    # The least speed of sign 275 is another thing
+    least = lanelet("8.25", "13.5", number=275)
+    assert (least.limit_mps, least.minimum_mps) == (None, 13.5)
+    assert lanelet("13.5").minimum_mps is None
     assert found("inf") == inf
     assert found("13.5", "inf", "8.25") == 8.25
     assert found("80kmh") == pytest.approx(80 / 3.6)

@@ -80,6 +80,7 @@ class MapContents:
     signs: frozenset[str]
     untold_signs: frozenset[str]
     limits: bool
+    minima: bool
     lights: bool
     marks: bool
 
@@ -93,6 +94,7 @@ def map_contents(context: DriveContext) -> MapContents:
         signs=frozenset().union(*(lanelet.signs for lanelet in lanelets)),
         untold_signs=frozenset().union(*(lanelet.untold_signs for lanelet in lanelets)),
         limits=any(lanelet.limit_mps is not None for lanelet in lanelets),
+        minima=any(lanelet.minimum_mps is not None for lanelet in lanelets),
         lights=any(lanelet.lights for lanelet in lanelets),
         marks=any(lanelet.left_mark or lanelet.right_mark for lanelet in lanelets),
     )

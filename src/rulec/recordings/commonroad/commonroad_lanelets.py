@@ -11,7 +11,7 @@ import numpy as np
 
 from rulec.recordings import recording
 from rulec.recordings.commonroad.areas import read_points
-from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, SignElement, speed_limit
+from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, MIN_SPEED, SignElement, speed_limit
 from rulec.recordings.encodings.tree import Tree
 
 _MARKS: Mapping[str, recording.LaneMark | None] = MappingProxyType(
@@ -119,7 +119,9 @@ def complete(
     """A lanelet with what it refers to, as far as the file has it."""
     elements = [element for number in entry.signs for element in signs.get(number, ())]
     lanelet = entry.lanelet
-    limits = [element.limit_mps for element in elements] + [lanelet.limit_mps]
+    said = [element for element in elements if element.limit_mps is not None]
+    limits = [one.limit_mps for one in said if one.name == MAX_SPEED] + [lanelet.limit_mps]
+    least = [one.limit_mps for one in said if one.name == MIN_SPEED]
     inside = {"intersection"} if junction else set()
     ids = sorted(set(entry.lights), key=recording.id_order)
     return replace(
@@ -129,4 +131,5 @@ def complete(
         limit_mps=min((limit for limit in limits if limit is not None), default=None),
         lights=tuple(lights[number] for number in ids if number in lights),
         junction=junction,
+        minimum_mps=max((speed for speed in least if speed is not None), default=None),
     )

@@ -16,6 +16,7 @@ from rulec.recordings.encodings.speed_units import SPEED_UNITS
 from rulec.recordings.encodings.tree import Tree
 
 MAX_SPEED = "MAX_SPEED"
+MIN_SPEED = "MIN_SPEED"
 UNKNOWN = "UNKNOWN"
 _GERMAN_MAX_SPEED = "274"
 """Files of all countries have it."""
@@ -162,7 +163,7 @@ _WITH_UNIT = re.compile(r"(\d{1,3}(?:\.\d{1,3})?) ?(kmh|km/h|mph|m/s)", re.ASCII
 
 
 class SignElement(NamedTuple):
-    """A sign, of perhaps several on a post; the speed limit (m/s) that it says, if any."""
+    """A sign, of perhaps several on a post; the speed limit (m/s) that it says, or least speed."""
 
     name: str
     limit_mps: float | None
@@ -183,8 +184,9 @@ def _element(tree: Tree, country: str) -> SignElement:
     named = tree.first("signName")
     name = sign_name(tree.child("trafficSignID").word, country) if named is None else named.word
     value = tree.first("additionalValue")
-    limit = speed_limit(value) if name == MAX_SPEED and value is not None else None
-    return SignElement(name, limit)
+    if name not in (MAX_SPEED, MIN_SPEED) or value is None:
+        return SignElement(name, None)
+    return SignElement(name, speed_limit(value))
 
 
 def sign_name(number: str, country: str) -> str:

@@ -97,6 +97,13 @@ def _limit(context: DriveContext) -> SignalColumns:
     return SignalColumns({"limit": rounded(np.minimum(context.limit_mps * KMH, NO_LIMIT_KMH))})
 
 
+def _minimum_limit(context: DriveContext) -> SignalColumns:
+    if not map_contents(context).minima:
+        return SignalColumns()
+    least = own_lanelets(context).values(lambda at: at.minimum_mps or 0.0)
+    return SignalColumns({"minimum_limit": rounded(np.array(least) * KMH)})
+
+
 def _signs(context: DriveContext) -> SignalColumns:
     known = map_contents(context).signs | context.recording.complete
     values = {
@@ -300,6 +307,7 @@ map_signals = SignalPasses(
         ("distance_to_crossing",): _distance_to_crossing,
         ("crossing_zone",): _crossing_zone,
         ("limit",): _limit,
+        ("minimum_limit",): _minimum_limit,
         tuple(_SIGNS): _signs,
     }
 )
