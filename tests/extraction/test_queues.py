@@ -68,3 +68,26 @@ def test_the_lanes_of_the_road_that_ego_joins_do_not_begin_there(on_main):
     (drive,) = Drives(recording(lanes, cars), "right").of("1")
     told = drive.trace.states[3]["dense_all_lanes"]
     assert (told is False) is (on_main == 0)
+
+
+@pytest.mark.parametrize(
+    ("front", "ahead", "dense"),
+    [
+        # At 30 m/s gaps of a queue are up to 90 m, and the map has 200 m of it: too few for three
+        (60.0, None, False),
+        (112.0, None, UNKNOWN),
+        (60.0, 40.0, UNKNOWN),
+        (60.0, 95.0, False),
+    ],
+)
+def test_ego_leads_no_queue_of_a_short_map_where_its_lane_is_empty(front, ahead, dense):
+    """Its lane goes on for 200 m - ``front``, perhaps with somebody so far ahead of it."""
+    lanes = [straight(1, 0, 200, left_of=2), straight(2, 0, 200, y=4.0, right_of=1)]
+    places = [(front - 2.0, 0.0)] + ([] if ahead is None else [(front + ahead + 2.0, 0.0)])
+    cars = [
+        vehicle(k, {step: (x + 3.0 * (step - 1), y) for step in range(3)}, speed=30.0)
+        for k, (x, y) in enumerate(places, 1)
+    ]
+    found = recording(lanes, cars, step_s=0.1)
+    (drive,) = Drives(found, "right").of("1")
+    assert drive.trace.states[1]["dense_all_lanes"] is dense

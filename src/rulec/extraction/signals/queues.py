@@ -111,6 +111,17 @@ def _length_near(context: DriveContext, lengths: Floats, reach_m: Floats) -> Flo
     return by_state
 
 
+def _length_ahead(context: DriveContext) -> Floats:
+    """How much (m) of ego's lane there is ahead of it on the map, by state."""
+    there, _ = _lane_lengths(context)
+    s, front, lane = context.road.lanes.s, context.ego_extents.s_max[0], context.ego_lane
+    ahead = np.zeros(context.states)
+    for number, lengths in enumerate(there):
+        own = lane == number
+        ahead[own] = lengths[-1] - np.interp(front[own], s, lengths)
+    return ahead
+
+
 def _shortest_queue(context: DriveContext) -> Floats:
     """How much (m) ``fewest`` vehicles take up at the largest distances of a queue, by state."""
     limits, speed = context.thresholds, context.ego_extents.along[0]
@@ -281,8 +292,10 @@ def dense_lines(context: DriveContext) -> tuple[Flags, Flags, Flags]:
     dense, surely, perhaps = (
         all_queue[reading] & (gap <= longest[reading]) for reading in READINGS
     )
-    # Nor is there a queue where the world ends, whose traffic is all recorded
-    nobody_knows = ~decides[MEASURED].any(axis=0) & (not whole)
+    # Nor is there a queue where the world ends, whose traffic is all recorded, nor is ego in one
+    # that sees more of its lane empty before it
+    empty = (gap > longest[LOOSE]) & (_length_ahead(context) > longest[LOOSE])
+    nobody_knows = ~decides[MEASURED].any(axis=0) & ~empty & (not whole)
     # And who is last behind a queue may be in it or not
     surely &= ~few[MEASURED] & (gap_behind <= longest[LOOSE])
     return dense, surely, (perhaps | dense) & ~surely | cut_off | nobody_knows
