@@ -342,6 +342,16 @@ def test_who_overtakes_beyond_the_middle_does_so_from_going_there_until_it_is_ba
     assert "".join("?" if dark else "FT"[int(value)] for value, dark in told) == past
 
 
+def test_who_overtakes_and_is_back_for_half_a_second_overtakes_meanwhile():
+    """`driving_side` takes so short a time for noise, and would say that ego drives on the left."""
+    ys = [0, 0, 1, *[3.5] * 5, 0, *[3.5] * 6, 0]
+    ego = vehicle(7, {k: (7.0 * k, y) for k, y in enumerate(ys)}, speed=14)
+    other = vehicle(8, {k: (50 + 5.0 * k, 0.0) for k in range(len(ys))}, speed=10)
+    found = recording([straight(1, 0, 500), lanelet(2, [(500, 4), (0, 4)])], [ego, other])
+    told = overtaking_signals(context_of(found), frozenset({"overtaking"})).world["overtaking"]
+    assert "".join("FT"[int(value)] for value in told) == "FFFTTTTTTTTTTTTF"
+
+
 @pytest.mark.parametrize(
     ("kind", "past"), [("urban", "TTTTTTTTTTTTTTTF"), ("bicycleLane", "FFFFFFFFFFFFFFFF")]
 )
