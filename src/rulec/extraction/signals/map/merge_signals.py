@@ -40,6 +40,7 @@ def _narrowings(context: DriveContext) -> SignalColumns:
     front, lane = context.ego_extents.s_max[0], context.ego_lane
     narrowing, merged, perhaps = np.zeros((3, context.states), dtype=bool)
     abreast, perhaps_abreast = np.zeros((2, *context.relevant.shape), dtype=bool)
+    lets_in = _could_let_in(context)
     for place, right, sure in merges(context):
         on_one = (lane == right) | (lane == right + 1)
         before = on_one & (front > place - reach) & (front <= place)
@@ -51,8 +52,8 @@ def _narrowings(context: DriveContext) -> SignalColumns:
         if sure:
             narrowing |= before
             merged |= on_one & (front > place) & (front <= place + reach)
-            abreast |= beside & there
-            perhaps_abreast |= beside & lost
+            abreast |= beside & there & lets_in
+            perhaps_abreast |= beside & (lost | (there & ~lets_in))
         else:
             perhaps |= on_one & (np.abs(front - place) <= reach)
             perhaps_abreast |= beside
@@ -65,6 +66,17 @@ def _narrowings(context: DriveContext) -> SignalColumns:
             "abreast_at_narrowing": perhaps_abreast & ~abreast,
         },
     )
+
+
+def _could_let_in(context: DriveContext) -> Flags:
+    """Flags of those behind whom ego comes, braking no harder than it would have others do.
+
+    From where it is near the narrowing on. Whether the law asks for more of who passes one that
+    hardly moves, nobody knows.
+    """
+    limits, own, others = context.thresholds, context.ego_extents.along[0], context.extents.along
+    could: Flags = own**2 - others**2 <= 2 * limits.disturbing_mps2 * limits.approach_m
+    return could
 
 
 def _there_with_ego(context: DriveContext, place: float) -> tuple[Flags, Flags]:
