@@ -91,6 +91,13 @@ def test_classes_of_roads(lanes, words):
     assert told("road_class", lanes) == words
 
 
+def test_a_shoulder_is_of_the_class_of_the_lane_beside_it():
+    shoulders = [replace(one, left_of="9") for one in road(["shoulder"], ["shoulder", "country"])]
+    beside = straight(9, 0, 300, 4.0, right_of=1, types=frozenset({"interstate"}))
+    assert told("road_class", [*shoulders, beside]) == ["motorway", "ordinary_road", "?"]
+    assert told("built_up", [*shoulders, beside]) == ["False", "False", "?"]
+
+
 def test_a_road_of_two_directions():
     lanes = road((), (), (), against())
     assert told("one_way", lanes) == ["False"] * 3

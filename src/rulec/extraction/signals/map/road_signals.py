@@ -43,8 +43,8 @@ def _built_up(context: DriveContext) -> SignalColumns:
 
 
 def _road_class(context: DriveContext) -> SignalColumns:
-    town = _town(context)
-    classes = own_lanelets(context).values(lambda at: _class(at, town(at)))
+    town, types = _town(context), _types_of_road(context)
+    classes = own_lanelets(context).values(lambda at: _class(types(at), town(at)))
     told = context.spans.agreed([any(classes[columns]) for columns in context.spans.slices])
     return _where_told("road_class", classes) if told else SignalColumns()
 
@@ -112,10 +112,22 @@ def _weather(context: DriveContext) -> SignalColumns:
     )
 
 
-def _class(lanelet: Lanelet, town: bool | None) -> str:
+def _class(types: frozenset[str], town: bool | None) -> str:
     """The class of a road, empty if unknown; in a built-up area it is an ordinary one."""
-    told = next((_CLASSES[kind] for kind in _CLASSES if kind in lanelet.types), "")
+    told = next((_CLASSES[kind] for kind in _CLASSES if kind in types), "")
     return told or ("ordinary_road" if town else "")
+
+
+def _types_of_road(context: DriveContext) -> Callable[[Lanelet], frozenset[str]]:
+    """A function that tells the types of a lanelet, of a shoulder those of the lane beside it."""
+    known = context.recording.lanelets
+
+    def types(lanelet: Lanelet) -> frozenset[str]:
+        beside = (known.get(name or "") for name in (lanelet.left_of, lanelet.right_of))
+        is_alone = "shoulder" in lanelet.types and not lanelet.types & _SETTINGS
+        return next((x.types for x in beside if is_alone and x is not None), lanelet.types)
+
+    return types
 
 
 def _directions(context: DriveContext) -> Callable[[Lanelet], Directions]:
@@ -135,9 +147,10 @@ def _town(context: DriveContext) -> Callable[[Lanelet], bool | None]:
     crossings, and on which no limit of an urban lanelet contradicts it.
     """
     settled, fast = _settled(context), _has_fast_town(context)
+    types_of_road = _types_of_road(context)
 
     def town(lanelet: Lanelet) -> bool | None:
-        types = lanelet.types
+        types = types_of_road(lanelet)
         if "intersection" in types and "urban" not in types:
             near = [context.recording.lanelets.get(x) for x in lanelet.predecessors]
             types = next((x.types for x in near if x is not None), types)
