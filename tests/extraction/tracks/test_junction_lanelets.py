@@ -2,6 +2,7 @@
 
 from math import cos, radians, sin
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -39,6 +40,30 @@ def test_ways_that_do_not_meet_or_are_no_lanes_make_no_junction():
 def test_where_a_map_marks_junctions_only_those_count():
     marked = straight(3, 60, 80, types=frozenset({"intersection"}))
     assert junction_lanelets(recording([ALONG, across(2, 90), marked])) == {"3"}
+
+
+@pytest.mark.parametrize(
+    ("sign", "far", "found"),
+    [
+        ("YIELD", 12, {"2", "4", "6"}),
+        ("STOP", 12, {"2", "4", "6"}),
+        ("YIELD", 90, set()),
+        ("PRIORITY", 12, set()),
+    ],
+)
+def test_ways_that_join_behind_a_sign_are_in_a_junction_with_those_that_part(sign, far, found):
+    """Onto a ring, which a third way leaves: their middles do not cross. Ramps are longer."""
+    signs = frozenset({sign})
+    lanes = [
+        lanelet(1, [(-99, -9), (-far, -9)], successors=(2,), signs=signs),
+        lanelet(2, [(-far, -9), (0, 0)], predecessors=(1,), successors=(5,)),
+        lanelet(3, [(-99, 0), (-far, 0)], successors=(4, 6)),
+        lanelet(4, [(-far, 0), (0, 0)], predecessors=(3,), successors=(5,)),
+        lanelet(5, [(0, 0), (99, 0)], predecessors=(2, 4)),
+        lanelet(6, [(-far, 0), (0, 9)], predecessors=(3,), successors=(7,)),
+        lanelet(7, [(0, 9), (99, 9)], predecessors=(6,)),
+    ]
+    assert junction_lanelets(recording(lanes)) == found
 
 
 def test_a_level_crossing_is_no_junction_but_has_its_ways():

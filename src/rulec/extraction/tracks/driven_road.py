@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass
 from itertools import groupby
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 
 from rulec.extraction.tracks.matching.driven_route import pieces_of
 from rulec.extraction.tracks.tracks import Floats
-from rulec.recordings.recording import Lanelet, Points, Recording, is_lane
+from rulec.recordings.recording import STOP_SIGNS, Lanelet, Points, Recording, is_lane
 from rulec.scenario.recorded.lane_coordinates import (
     Lanes,
     borders_along,
@@ -28,7 +29,12 @@ from rulec.scenario.recorded.reference_line import (
     smoothed,
     turn,
 )
-from rulec.scenario.recorded.route import directions_beside, lanes_beside, roads_beyond
+from rulec.scenario.recorded.route import (
+    directions_beside,
+    lanelet_length,
+    lanes_beside,
+    roads_beyond,
+)
 
 _BESIDE_M = 20.0
 _AWAY_M = 30.0
@@ -43,6 +49,11 @@ TURN_REACH_M = 10.0
 
 What crosses others is often no more than the middle of a turn.
 """
+
+_WAY_M = 30.0
+"""Ways through a junction that only join others are shorter than roads that lead there."""
+
+_GIVES_WAY = STOP_SIGNS | {"YIELD"}
 
 _CROSSING_ANGLE = radians(30.0)
 """Ways that meet at a smaller angle run into each other, as where lanes join or part."""
@@ -267,7 +278,7 @@ def marks_junctions(recording: Recording) -> bool:
 
 
 def junction_lanelets(recording: Recording) -> frozenset[str]:
-    """The ids of the lanelets in junctions, by the map or by crossing ways.
+    """The ids of the lanelets in junctions, by the map, by ways that cross, or join behind a sign.
 
     Where a map marks any, only those count: whoever drew it has thought of junctions. So has who
     says that all are marked.
@@ -276,7 +287,24 @@ def junction_lanelets(recording: Recording) -> frozenset[str]:
     if not lanes or marks_junctions(recording):
         return frozenset(lanelet.id for lanelet in lanes if "intersection" in lanelet.types)
     pairs = [pair for pair in _crossing_pairs(lanes) if not any(map(_is_level_crossing, pair))]
-    return frozenset(lanelet.id for pair in pairs for lanelet in pair)
+    return frozenset(lanelet.id for pair in (*pairs, *_signed_joins(lanes)) for lanelet in pair)
+
+
+def _signed_joins(lanes: Sequence[Lanelet]) -> Iterator[tuple[Lanelet, ...]]:
+    """Short lanelets that lead to one, as onto a ring, where a sign makes one of them give way.
+
+    With those that part from them: who leaves there is in nobody's way.
+    """
+    short = {x.id: x for x in lanes if x.successors and lanelet_length(x) <= _WAY_M}
+    known, joining = {lanelet.id: lanelet for lanelet in lanes}, defaultdict(list)
+    for lanelet in short.values():
+        for after in lanelet.successors:
+            joining[after].append(lanelet)
+    for ways in joining.values():
+        before = [known[x] for way in ways for x in way.predecessors if x in known]
+        if len(ways) > 1 and any(_GIVES_WAY & x.signs for x in (*ways, *before)):
+            parting = {x for one in before for x in one.successors if x in short}
+            yield (*ways, *(short[x] for x in sorted(parting)))
 
 
 def level_crossing_lanelets(recording: Recording) -> frozenset[str]:
