@@ -281,6 +281,17 @@ def test_who_mixes_kinds_is_shown_how_it_is_written(formula, mended):
     assert mended in problem.value.diagnostics[0].help
 
 
+@pytest.mark.parametrize("unit", ["km/t", "km/u", "km/std", "kmt", "Km/T"])
+def test_an_hour_of_another_language_is_no_mass(unit):
+    """`t` is a tonne and `u` the unit of atomic mass; `m/s` is not what `km/std` is a slip of."""
+    param = f"param top : speed = 50 {unit}"
+    for more, formula in [("", f"pace <= 50 {unit}"), (param, "pace > 0")]:
+        with pytest.raises(RulecError) as problem:
+            parse_rulebook(TRAFFIC % formula + more)
+        helps = [one.help for one in problem.value.diagnostics]
+        assert "an hour is `h`: did you mean `km/h`?" in helps
+
+
 def test_without_a_word_for_a_speed_none_is_proposed():
     with pytest.raises(RulecError) as problem:
         parse_rulebook(TRAFFIC.replace("pace in km/h", "pace in m") % "gap(c) >= headway")

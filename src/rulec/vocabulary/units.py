@@ -44,6 +44,15 @@ def known_unit_names() -> tuple[str, ...]:
     return (*COMPOSITE, *UNITS)
 
 
+_KM_AN_HOUR = re.compile("km/?(t|tim|u|st|std|ч|год)", re.IGNORECASE)
+"""As where an hour is `time`, `uur`, `Stunde`; `t` and `u` alone are units of mass."""
+
+
+def hour_in_another_language(text: str) -> str:
+    """Way out for a unit that says an hour in the letters of another language, as `km/t`."""
+    return "an hour is `h`: did you mean `km/h`?" if _KM_AN_HOUR.fullmatch(text) else ""
+
+
 def _read(text: str) -> Unit | Refusal | None:
     if len(text) > _LONGEST:
         return None

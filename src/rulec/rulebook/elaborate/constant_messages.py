@@ -22,6 +22,7 @@ from rulec.vocabulary.dimensions import (
     TIME,
     Dimension,
 )
+from rulec.vocabulary.units import hour_in_another_language
 
 if TYPE_CHECKING:
     from rulec.rulebook.elaborate.scope import Scope
@@ -136,9 +137,9 @@ def parameter_of_another_kind(
     elif number.dimension == NUMBER and usual:
         way_out = f"write the unit, such as `{short(item.value)} {usual}`"
     else:
-        way_out = (
-            f"check the unit: a {wanted.name} is in {usual}, say" if usual else "check the unit"
-        )
+        such = f": a {wanted.name} is in {usual}, say" if usual else ""
+        unit = item.value.unit if isinstance(item.value, tree.NumberLiteral) else ""
+        way_out = hour_in_another_language(unit) or f"check the unit{such}"
     return MIXED_DIMENSIONS.at(
         item.value.span,
         f"`{item.name.text}` is a {wanted.name}, and `{short(item.value)}` "

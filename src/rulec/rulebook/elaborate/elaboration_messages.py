@@ -16,6 +16,7 @@ from rulec.syntax.messages.literal_values import NUMBER_TOO_LARGE
 from rulec.syntax.tree_printer import print_formula
 from rulec.vocabulary import Enumeration, Quantity
 from rulec.vocabulary.dimensions import DIMENSIONS, TIME, Dimension
+from rulec.vocabulary.units import hour_in_another_language
 
 OPERATOR_BEFORE_THEN = Code(
     "R0311",
@@ -223,7 +224,8 @@ def _other_unit(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:
         return ""
     if node.unit == "%":
         return f"a share is a factor: for 10 % more write `1.1 * {short(beside)}`"
-    return f"`{short(beside)}` is in {unit}: check the unit of `{short(node)}`"
+    slip = hour_in_another_language(node.unit)
+    return slip or f"`{short(beside)}` is in {unit}: check the unit of `{short(node)}`"
 
 
 def _kind_help(
