@@ -104,25 +104,25 @@ def test_a_state_that_cannot_be():
 
 def test_what_is_said_of_an_example_that_surprises():
     (one,) = run('hard rule A { require never p accept "named" { q; p; q } }').outcomes
-    warning = example_warning(one)
+    warning = example_warning(one, "sample")
     assert (warning.code, warning.severity) == ("R0406", "warning")
     assert warning.message == ("example `named` of rule `A` says `accept`, but the rule rejects it")
     assert "state 1" in warning.notes[0]
     assert len(warning.labels) == 1
     (one,) = run("hard rule A { require eventually p accept { q } }").outcomes
-    warning = example_warning(one)
+    warning = example_warning(one, "sample")
     assert warning.message.startswith("example number 1 of rule `A` says `accept`")
     assert warning.notes == (
         "the rule could still be kept, if the last state did not go on for ever",
     )
     finite = HEAD.replace("type t", "semantics finite\ntype t")
     (one,) = run("hard rule A { require eventually p accept { q } }", head=finite).outcomes
-    assert example_warning(one).notes == (
+    assert example_warning(one, "sample").notes == (
         "the rule could still be kept, if the example did not end here",
     )
     (one,) = run("hard rule A { require true reject { q } }").outcomes
-    assert example_warning(one).message.endswith("says `reject`, but the rule accepts it")
-    assert example_warning(one).notes == ()
+    assert example_warning(one, "sample").message.endswith("says `reject`, but the rule accepts it")
+    assert example_warning(one, "sample").notes == ()
 
 
 def test_only_rules_that_can_be_run_without_a_step_are_compiled():

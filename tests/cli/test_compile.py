@@ -1,5 +1,7 @@
 """``rulec compile`` as its user meets it."""
 
+from pathlib import Path
+
 import pytest
 
 from rulec.cli.main import main
@@ -61,3 +63,13 @@ def test_a_rule_that_explodes(formula, tmp_path, capsys):
     assert main(["compile", str(source), "-o", str(tmp_path / "out")]) == 2
     assert not (tmp_path / "out").exists()
     assert "rule `Boom` would be too large" in capsys.readouterr().err
+
+
+def test_a_folder_is_not_named_as_one_of_its_files(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    for name in ("law.json", "law.c"):
+        assert main(["compile", "esterle2019", "-o", name]) == 2
+        assert "write `-o law`" in capsys.readouterr().err
+    Path("law.json").mkdir()
+    assert main(["compile", "esterle2019", "-o", "law.json"]) == 0
+    assert [path.name for path in Path().iterdir()] == ["law.json"]

@@ -251,6 +251,8 @@ def test_an_inherited_example_is_mended_by_an_override(capsys, tmp_path, monkeyp
     ]
     _, out, _ = run(capsys, "below.rules", "--output-format", "junit")
     assert out.count("the example is inherited") == 2
+    main(["compile", "below.rules", "-o", "build"])
+    assert capsys.readouterr().err.count("the example is inherited") == 2
 
 
 def test_an_example_of_a_rule_that_an_option_switches_off(capsys, tmp_path, monkeypatch):

@@ -187,11 +187,18 @@ def example_warnings(
     # A rule with bounds in seconds but no examples need not fit the step that those would have.
     rules = tuple(rule for rule in rulebook.rules if rule.examples or not has_seconds(rule.formula))
     outcomes = run_rulebook_examples(replace(rulebook, rules=rules), compiled(rules)).outcomes
-    return [example_warning(outcome) for outcome in outcomes if not outcome.passed]
+    return [example_warning(one, rulebook.name) for one in outcomes if not one.passed]
 
 
-def example_warning(outcome: ExampleOutcome) -> Diagnostic:
-    """Warning (R0406) about an example that fails."""
+def is_inherited(outcome: ExampleOutcome, book: str) -> bool:
+    """Tell whether it is for a rulebook to undo what it made of a rule, and not to mend that."""
+    own, example = outcome.rule.span, outcome.example.span
+    apart = own is not None and example is not None and own.source != example.source
+    return outcome.rule.book != book or apart
+
+
+def example_warning(outcome: ExampleOutcome, book: str) -> Diagnostic:
+    """Warning (R0406) about an example that fails in a book."""
     rule, example = outcome.rule, outcome.example
     name = f"`{example.label}`" if example.label else f"number {outcome.number}"
     claim, truth = ("accept", "rejects") if example.accepts else ("reject", "accepts")
@@ -210,10 +217,18 @@ def example_warning(outcome: ExampleOutcome) -> Diagnostic:
             else "the last state did not go on for ever"
         )
         notes.append(f"the rule could still be kept, if {end}")
+    way_out = "mend the example, or the formula, which `rulec show` reads aloud"
+    if is_inherited(outcome, book):
+        variables = ", ".join(f"{variable.name}: {variable.type}" for variable in rule.variables)
+        head = f"{rule.name} ({variables})" if variables else rule.name
+        way_out = (
+            "the example is inherited: undo what makes the rule another one here, or give it "
+            f"examples of this rulebook's own in `override rule {head} {{ … }}`"
+        )
     return EXAMPLE_FAILED.at(
         example.span,
         f"example {name} of rule `{rule.name}` says `{claim}`, but the rule {truth} it",
-        help="mend the example, or the formula, which `rulec show` reads aloud",
+        help=way_out,
         labels=tuple(labels),
         notes=tuple(notes),
         severity="warning",

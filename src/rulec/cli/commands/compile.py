@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 
 _WRITTEN = (".hoa", ".json")
+_FILES = (*_WRITTEN, ".c", ".h", ".hpp", ".rs", ".csv", ".props", ".smv")
 
 
 def _bounds(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dict[str, int]:
@@ -102,6 +103,7 @@ def command(
     if not output:
         raise click.UsageError("--output names no folder. For this one, write `-o .`")
     refuse_standard_output(output)
+    _refuse_file(output)
     for rulebook in rulebooks:
         if "/" in rulebook and Path(rulebook).suffix in _WRITTEN:
             # What is written is called after rules, which are not known yet.
@@ -133,6 +135,16 @@ def command(
                 print_line(f"wrote {path}")
             written += 1
     return ExitStatus.after(answered=written == len(folders), failed=False)
+
+
+def _refuse_file(output: str) -> None:
+    """Refuse what names one of the files that are written, where it would be a folder for them."""
+    path = Path(output)
+    if path.suffix in _FILES and not path.is_dir():
+        raise click.UsageError(
+            f"--output names a folder, for several files, and `{output}` reads like one of these: "
+            f"write `-o {path.with_suffix('')}`"
+        )
 
 
 def _tell_step(compiled: CompiledRulebook) -> None:

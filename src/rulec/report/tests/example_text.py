@@ -8,7 +8,12 @@ from dataclasses import dataclass, replace
 
 from rulec.automata.thresholds import exact
 from rulec.book_tests.example_coverage import RuleCoverage, UncoveredEdge, asked_of, percent
-from rulec.book_tests.example_runs import ExampleOutcome, ExampleRun, example_warning
+from rulec.book_tests.example_runs import (
+    ExampleOutcome,
+    ExampleRun,
+    example_warning,
+    is_inherited,
+)
 from rulec.diagnostics import Diagnostic
 from rulec.logic.fold import fold_constants
 from rulec.logic.formula import Atom, Constant
@@ -96,7 +101,7 @@ def _failure(example_outcome: ExampleOutcome, rulebook: str, *, turned_round: bo
 
     ``turned_round``: all examples of its rule come out the other way.
     """
-    problem = replace(example_warning(example_outcome), severity="error")
+    problem = replace(example_warning(example_outcome, rulebook), severity="error")
     rule = example_outcome.rule
     if (
         example_outcome.accepted
@@ -105,20 +110,11 @@ def _failure(example_outcome: ExampleOutcome, rulebook: str, *, turned_round: bo
     ):
         why = "the rule's condition is false as options are set"
         return replace(problem, help=f"{why}: set them, or leave the example out")
-    stands_in = [
-        span.source for span in (rule.span, example_outcome.example.span) if span is not None
-    ]
-    if rule.book == rulebook and len(set(stands_in)) < 2:
+    if turned_round and not is_inherited(example_outcome, rulebook):
         why = f"all examples of rule `{rule.name}` come out the other way"
         way_out = f"{why}: a `not` may be missing or too many, or `accept` and `reject` exchanged"
-        return replace(problem, help=way_out) if turned_round else problem
-    variables = ", ".join(f"{variable.name}: {variable.type}" for variable in rule.variables)
-    head = f"{rule.name} ({variables})" if variables else rule.name
-    return replace(
-        problem,
-        help="the example is inherited: undo what makes the rule another one here, or give it "
-        f"examples of this rulebook's own in `override rule {head} {{ … }}`",
-    )
+        return replace(problem, help=way_out)
+    return problem
 
 
 def shortcomings(
