@@ -61,7 +61,7 @@ def test_at_a_red_light_waiting_is_best():
     ],
 )
 def test_the_green_light_of_the_next_lane_is_no_way_past_a_red_one(aside):
-    """The line at x = 60 is crossed between two lights; who has changed lanes before has a green one."""
+    """Who crosses the line at x = 60 between two lights; one has changed lanes before."""
     world, straight = lit_junction(beside="green"), 10.0 * AHEAD
     changes = np.interp(straight, (10, 40), (0, 3.5))
     paths = [straight * 0 + aside(straight), straight * 0, changes]
