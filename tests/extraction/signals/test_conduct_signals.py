@@ -398,6 +398,10 @@ def test_who_holds_up_others():
     assert found[:21] == "?" * 20 + "T"
     assert found[40] == "T"
     assert set(told(reason_signals, "impedes_traffic", road, slow, complete=SIMULATED)) == {"F"}
+    # Who falls back, by 1.5 m/s, from 8 m to 23 m behind within 10 s, is slow by itself
+    falls_back = steady(8, 85, 0, 8.5, 100)
+    found = told(reason_signals, "impedes_traffic", road, slow, falls_back, complete=SIMULATED)
+    assert set(found) == {"F"}
     leader = steady(9, 115, 0, 10, 100)
     queue = told(
         reason_signals, "impedes_traffic", road, slow, follower, leader, complete=SIMULATED

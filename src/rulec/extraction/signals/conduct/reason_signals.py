@@ -29,8 +29,8 @@ from rulec.trace.plain_arrays import distinct, zero_if_nan
 _REACH_S, _GENTLE_MPS2, _REACH_M = 3.0, 4.0, 20.0
 """What makes ego brake is no farther ahead than it drives in so long, brakes so hard, and this."""
 
-FOLLOWS_S = 3.0
-"""Who is so far behind by time, or nearer, is held up by ego."""
+FOLLOWS_S, _FALLS_BACK_MPS = 3.0, 1.0
+"""Who is so far behind by time, or nearer, is held up by ego, unless it is slower by so much."""
 
 _IN_WAY_M, _COMES_M, _ROAD_M, _CROSSES_M = 2.5, 6.0, 15.0, 30.0
 """Sideways: who is in ego's way, may come into it, is on its road, comes on a road across."""
@@ -332,7 +332,7 @@ def _impedes(context: DriveContext) -> SignalColumns:
     limit, speed = context.limit_mps, context.ego.speed[0]
     told = np.isfinite(limit)
     cycles = context.spans.spread([ego.type == "bicycle" for ego in context.ego.participants])
-    followed = _followed(context) & ~cycles
+    followed = _followed(context, _FALLS_BACK_MPS) & ~cycles
     caused, perhaps = _causes(context)
     gains = context.ego.acceleration[0] > context.thresholds.accelerating_mps2
     slow = told & (speed < _FAR_SLOWER * limit) & moves(context)
@@ -347,14 +347,18 @@ def _impedes(context: DriveContext) -> SignalColumns:
     )
 
 
-def _followed(context: DriveContext) -> Flags:
-    """Flags of states in which somebody is behind ego in its lane, near enough to be held up."""
+def _followed(context: DriveContext, slower_mps: float = np.inf) -> Flags:
+    """Flags of states in which somebody is behind ego in its lane, near enough to be held up.
+
+    And no slower than ego by so much: who falls back goes at a speed of its own.
+    """
     behind = relations.station(context) == relations.IN_FRONT_OF
     behind &= context.going_along
     behind &= context.in_ego_lane
     cells, followed = Cells.at(behind), np.zeros(context.states, dtype=bool)
     speed = np.maximum(cells.of(context.extents.along), 0.0)
     near = cells.of(relations.gap(context)) <= FOLLOWS_S * speed
+    near &= speed > context.ego_extents.along[0, cells.columns] - slower_mps
     followed[cells.columns[near]] = True
     return followed
 
