@@ -155,6 +155,31 @@ def test_a_doubt_between_two_sure_codes_is_about_when(codes, doubtful, there, on
     assert "".join(".?"[flag] for flag in found.tolist()) == only
 
 
+@pytest.mark.parametrize(
+    ("codes", "doubtful", "there", "found"),
+    [
+        # Noise goes to and fro between the codes before and after
+        ("ababb", ".???.", "-----", "abbbb"),
+        ("aababb", ".????.", "------", "aabbbb"),
+        ("aabab", ".???.", "-----", "aabbb"),
+        # A third code is something else, as is who is back, or away
+        ("abcab", ".???.", "-----", "abcab"),
+        ("ababa", ".???.", "-----", "ababa"),
+        ("ababb", ".???.", "-- --", "ababb"),
+        # What is sure stays, and what nobody knows the end of
+        ("ababb", ".....", "-----", "ababb"),
+        ("ababb", "????.", "-----", "ababb"),
+        # Each doubt by itself
+        ("ababbcbcc", ".???.???.", "---------", "abbbbcccc"),
+    ],
+)
+def test_who_gets_past_in_noise_does_so_once(codes, doubtful, there, found):
+    rows = [np.array([list(text)]) for text in (codes, doubtful, there)]
+    one = EndToEnd.of_one(len(codes))
+    (row,) = settling.over_once(rows[0], rows[1] == "?", rows[2] == "-", one)
+    assert "".join(row) == found
+
+
 def test_what_surely_is_brings_with_it_what_it_implies():
     rows = np.array([[True, True, False], [False, False, False]])
     signals = SignalColumns(

@@ -157,6 +157,34 @@ def without_blips(column: SignalColumn, least: int, spans: EndToEnd) -> SignalCo
     return found.reshape(column.shape)
 
 
+def over_once(codes: SignalColumn, doubtful: Flags, there: Flags, spans: EndToEnd) -> SignalColumn:
+    """Codes without what goes to and fro in doubt, between the sure codes before and after it.
+
+    Noise does so: where all in between are one of these two, the later one holds from where it
+    first comes. Rows with a column per state, in all of which one is ``there``.
+    """
+    if not doubtful.any():
+        return codes
+    cells, own = Cells.of_drives(doubtful, spans)
+    near, there, doubts = map(cells.of, (codes, there, doubtful))
+    sure, states = there & ~doubts, doubts.nonzero()[0]
+    before, behind = own.latest(sure).take(states), own.next_state(sure).take(states)
+    between = (before >= own.first.take(states)) & (behind < own.end.take(states))
+    states, before, behind = (values[between] for values in (states, before, behind))
+    away = (~there).cumsum()
+    code, early, late = (near.take(at) for at in (states, before, behind))
+    fits = (early != late) & ((code == early) | (code == late))
+    fits &= away.take(behind) == away.take(before)
+    fits &= np.bincount(before[~fits], minlength=len(near))[before] == 0
+    comes = np.full(len(near), len(near))
+    np.minimum.at(comes, before, np.where(code == late, states, len(near)))
+    found = np.array(codes)
+    found.ravel()[cells.places.take(states[fits])] = np.where(states >= comes[before], late, early)[
+        fits
+    ]
+    return found
+
+
 def only_when(
     codes: SignalColumn, doubtful: Flags, there: Flags, most: int, spans: EndToEnd
 ) -> Flags:
