@@ -228,6 +228,13 @@ def test_a_process_pool():
         assert maneuvers.satisfying == rulec.find_maneuvers("s1", rules).satisfying
 
 
+def test_verdicts_on_a_recording_and_its_drives_are_gone_through():
+    judged = rulec.verify_recording(RECORDING, "esterle2019", map_path=NET)
+    assert [one.drive.trace.id for one in judged] == [one.trace.id for one in judged.drives]
+    assert [one.answer.trace for one in judged] == ["f.0", "g.0"]
+    assert "_drives_of" not in repr(judged.drives)
+
+
 def test_a_compiled_rulebook_fits_itself_to_a_step_after_it_was_pickled():
     rules = pickle.loads(pickle.dumps(rulec.compile_rulebook("de")))
     assert {rule.step_s for rule in rules.at_step(0.1).rules} >= {None}

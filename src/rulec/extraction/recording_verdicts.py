@@ -103,11 +103,14 @@ class RecordingVerdicts(Rows):
         self.defaults = request.defaults
         self.egos = self.drives.egos
 
+    def __iter__(self) -> Iterator[DriveVerdict | NoDrive]:
+        return self.answers()
+
     def answers(self) -> Iterator[DriveVerdict | NoDrive]:
         """The verdict on each drive, in the order of the file."""
         waiting: list[Drive | NoDrive] = []
         states = 0
-        for drive in (drive for ego in self.egos for drive in self.drives.of(ego)):
+        for drive in self.drives:
             waiting.append(drive)
             states += drive.arrays.n_states if isinstance(drive, Drive) else 0
             if states >= MOST_STATES:

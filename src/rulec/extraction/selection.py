@@ -64,9 +64,13 @@ class SelectedDrives:
     recording: Recording
     mirrored: bool
     egos: tuple[str, ...]
-    parts: tuple[RecordingPart, ...]
-    _drives_of: Callable[..., Drives]
-    _looked_at: tuple[RecordingPart, Drives] | None = None
+    parts: tuple[RecordingPart, ...] = field(repr=False)
+    _drives_of: Callable[..., Drives] = field(repr=False)
+    _looked_at: tuple[RecordingPart, Drives] | None = field(default=None, repr=False)
+
+    def __iter__(self) -> Iterator[Drive | NoDrive]:
+        """All drives, in the order of the file."""
+        return (drive for ego in self.egos for drive in self.of(ego))
 
     def of(self, ego: str) -> Iterator[Drive | NoDrive]:
         """The drives of one vehicle, computed when they are asked for."""
@@ -84,7 +88,7 @@ class SelectedDrives:
 
     def kinds(self) -> dict[str, type]:
         """The Python type of each signal of all drives, empty if nobody has a drive."""
-        drives = (one for ego in self.egos for one in self.of(ego) if isinstance(one, Drive))
+        drives = (one for one in self if isinstance(one, Drive))
         first = next(drives, None)
         # Others than those asked for have the same
         return self._drives_of(self.recording).kinds() if first is None else dict(first.kinds)

@@ -128,5 +128,4 @@ def told_words(drives: SelectedDrives) -> frozenset[str]:
     # Extraction and its arrays, 250 ms: not for the tables above.
     from rulec.extraction.to_trace import Drive
 
-    found = (drive for ego in drives.egos for drive in drives.of(ego))
-    return frozenset().union(*(drive.words for drive in found if isinstance(drive, Drive)))
+    return frozenset().union(*(drive.words for drive in drives if isinstance(drive, Drive)))
