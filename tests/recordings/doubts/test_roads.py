@@ -216,3 +216,11 @@ def test_lanes_that_do_not_begin_where_those_before_end(gap, said):
     assert [remark for remark in found if "at 1 of 2 places" in remark and said] == found
     assert all(f"`b` {said} from that of `a`" in remark for remark in found)
     assert len(found) == (said is not None)
+
+
+def test_lanes_that_are_drawn_backwards(tmp_path):
+    """A road of one lane: whatever the axes are, it leads where nobody drives."""
+    lanes = "lane,x,y\na,200,-2\na,0,-2\n"
+    rows = [row for k in range(3) for row in driving(f"e{k}", start=10.0 * k, y=-2)]
+    found = read_recording(written(tmp_path, table(HEAD, *rows), lanes)).remarks
+    assert any("100% of the places" in x and "drawn backwards" in x for x in found)

@@ -84,6 +84,14 @@ def road_doubts(lanelets: Mapping[str, Lanelet], tracks: Sequence[Track]) -> Ite
                     f"lanes that lead their way, and {along:.0%} are as they are"
                 )
                 return
+        backwards = roads.shares([_turned(one) for one in moves])[1]
+        if backwards > _MOST:
+            yield (
+                f"{backwards:.0%} of the places of vehicles that move are on lanes that lead "
+                "against their way: lanes seem to be drawn backwards; each goes from its start to "
+                "its end, its left border at its left"
+            )
+            return
     if on < _FEW:
         yield (
             f"only {on:.0%} of the places of vehicles that move are on lanes: the map may be that "
@@ -128,6 +136,11 @@ def _exchanged(moves: Moves) -> Moves:
 
 def _downward(moves: Moves) -> Moves:
     there: Moves = moves * np.array([1.0, -1.0, 1.0, -1.0])
+    return there
+
+
+def _turned(moves: Moves) -> Moves:
+    there: Moves = moves * np.array([1.0, 1.0, -1.0, -1.0])
     return there
 
 

@@ -139,7 +139,8 @@ def ego_motion(
         raise choice_error(
             f"ego goes back along lanelet {reference}, at {-ahead:.1f} m/s",
             "choose with --at-time a moment at which it goes the way of its lane, with --reference "
-            "a lanelet that leads its way, or another ego with --ego",
+            "a lanelet that leads its way, or another ego with --ego; if the lanelet is drawn "
+            "backwards, turn its points round, and exchange its borders",
             file,
         )
     return {"speed": max(ahead, 0.0), "lateral_speed": sideways, "bounds": bounds}
