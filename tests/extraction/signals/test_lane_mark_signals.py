@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from rulec.extraction.signals.lane_mark_signals import lane_mark_signals
@@ -57,6 +58,28 @@ def test_a_line_between_lanes_without_any_mark_leaves_it_unknown():
 @pytest.mark.parametrize(("y", "solid"), [(0, False), (1.2, False), (1.4, True), (2.8, False)])
 def test_a_solid_line_lies_under_ego_from_thirty_centimetres_on(y, solid):
     assert marks(y, "solid", "solid")[0]["on_solid_line"] is solid
+
+
+@pytest.mark.parametrize(
+    ("ys", "mark", "told"),
+    [
+        # Clear of the line at 2 m on one side, then on the other: only when it lay on it is unknown
+        ((0, 0, 1, 2, 3, 4, 4), "solid", "FFFTFFF"),
+        ((4, 4, 3, 2, 1, 0, 0), "solid", "FFFTFFF"),
+        ((0, 0, 1, 2, 3, 4, 4), "broken", "FFFFFFF"),
+        # Back again, not yet clear of it, or seen first beside it
+        ((0, 0, 1, 2, 1, 0, 0), "solid", "FF???FF"),
+        ((0, 0, 1, 2, 3, 3, 3), "solid", "FF?????"),
+        ((1, 1, 1, 2, 3, 4, 4), "solid", "?????FF"),
+    ],
+)
+def test_who_gets_over_a_solid_line_has_been_on_it_however_badly_places_are_known(ys, mark, told):
+    road = lanes(2)
+    road = [replace(road[0], left_mark=mark), replace(road[1], right_mark=mark)]
+    ego = vehicle(7, {k: (8.0 * k, float(y)) for k, y in enumerate(ys)})
+    found = lane_mark_signals(context_of(recording(road, [ego]), place_error_m=0.4))
+    values = np.where(found.world["on_solid_line"], "T", "F")
+    assert "".join(np.where(found.unknown["on_solid_line"], "?", values)) == told
 
 
 def test_who_is_parked_on_a_line_does_not_cross_it():

@@ -128,10 +128,40 @@ def _lines_under_ego(context: DriveContext) -> SignalColumns:
     differs = (others_found[:, :-1] != found[states, :-1]).any(axis=1)
     differs |= ~found[states, 0] & _under(context, lines, states)[:, 0]
     not_told[states[differs]] = True
+    not_told &= ~_gets_over(context, found[:, 0], outer)
     not_told |= found[:, 0] & _not_moved_yet(context)
     found[stays], not_told[stays] = False, False
     unknown = {**dict.fromkeys(names, not_told), "broken_on_own_side": not_told | found[:, 3]}
     return SignalColumns(dict(zip(names, found.T, strict=False)), unknown=unknown)
+
+
+def _gets_over(context: DriveContext, on_it: Flags, outer: Flags) -> Flags:
+    """Flags of states in which ego gets from clear of a solid line to clear of it, to its far side.
+
+    So it lies across it as measured at some moment, and only the moment is in doubt. Of no more
+    than one line, solid from both sides all the time, no ``outer`` one.
+    """
+    if not on_it.any():
+        return on_it
+    own, spans, limits = context.ego_extents, context.spans, context.thresholds
+    error = context.tolerances.place_m + np.abs(context.map_offset_m)
+    side = np.where(error < own.left_of_min[0].T, 1, 0)
+    side -= -error > own.left_of_max[0].T
+    number, lines = _marked_rows(context).number, np.arange(len(side))[:, None]
+    kinds = (_line_kinds(context).take(number, axis=1)[:, None] >> lines) & 1 > 0
+    solid, broken_right, broken_left, _, untold = kinds
+    doubtful = (side == 0) & (solid | untold)
+    before, behind = spans.latest(side != 0), spans.next_state(side != 0)
+    longest = 2 * limits.passed_s / context.recording.step_s
+    over = (before >= spans.first) & (behind < spans.end) & (behind - before <= longest)
+    ends = np.maximum(before, 0), np.minimum(behind, context.states - 1)
+    first, last = (np.take_along_axis(side, at, axis=1) for at in ends)
+    over &= (side == 0) & (first * last < 0)
+    changes, lies = np.append(0, number[1:] != number[:-1]).cumsum(), on_it.cumsum()
+    over &= (changes[ends[0]] == changes[ends[1]]) & (lies[ends[0]] < lies[ends[1]])
+    over &= solid & ~broken_right & ~broken_left & ~untold & ~outer.T
+    found: Flags = over.any(axis=0) & (doubtful.sum(axis=0) == 1)
+    return found
 
 
 @once
