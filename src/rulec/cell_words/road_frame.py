@@ -129,10 +129,10 @@ class RoadFrame:
         return apart[0], apart[1:].max(axis=0)
 
     def own_room(self, places: tuple[Floats, Floats], sides: tuple[Floats, Floats]) -> Floats:
-        """How far (m) bodies stay from the lanes of the other direction, wherever they are.
+        """How far (m) rectangles stay from where lanes of the other direction may lie.
 
-        From one place to another, which both count, and between two sides of the road. Where a lane
-        has ended those of the other direction may lie beside the one before.
+        They reach from one of the places along the road to the other, and from side to side. Beyond
+        a lane's end that is beside the lane that goes on.
         """
         lanes, first = self._origin.lanes, self._origin.ego_s
         straight, there = self._straight, lanes.there
