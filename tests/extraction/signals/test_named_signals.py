@@ -60,7 +60,8 @@ COMPLETE = (
 def everything():
     """A drive of which everything is told that a recording can tell."""
     types = frozenset({"urban", "mainCarriageWay", "tunnel", "highway"})
-    road = lanes(2, types=types, limit_mps=30.0, left_mark="solid", right_mark="broken")
+    limits = {"limit_mps": 30.0, "minimum_mps": 20.0}
+    road = lanes(2, types=types, left_mark="solid", right_mark="broken", **limits)
     ego, car, walker, rider = (
         steady(7, 0, 0),
         steady(8, 20, 0, speed=5),
