@@ -93,10 +93,12 @@ def _is_right(machine: MealyMonitor, job: Job, found: Translated) -> bool:
 
 def _prove(machine: MealyMonitor, job: Job) -> None:
     """Raise UnprovableError unless a machine judges all words as its formula does."""
-    true_in = letters_with(machine.reads, propositions_of(job.formula))
+    # By what an atom says: one limit may be written in two units.
+    true_in: dict[Formula, int] = {}
+    true_in.update(letters_with(machine.reads, propositions_of(job.formula)).items())
     prove_words(
         to_data(job.formula),
-        lambda atom: true_in[from_data(atom)],  # by what it says: one limit may be in two units
+        lambda atom: true_in[from_data(atom)],
         {
             "letters": machine.letters,
             "following": machine.successors,
