@@ -63,18 +63,19 @@ def lit_junction(speed=10.0, past=4, beside=None):
 
 def _with_left(lanes, light):
     """Lanes along the x axis with others at their left, 3.5 m wide, which lead to each other."""
+    aside = np.array([0.0, 3.5])
     for lane in lanes:
         yield replace(lane, left_of=f"{lane.id} left")
         yield replace(
             lane,
             id=f"{lane.id} left",
-            left=lane.left + (0, 3.5),
+            left=lane.left + aside,
             right=lane.left,
-            centre=lane.centre + (0, 3.5),
+            centre=lane.centre + aside,
             right_of=lane.id,
             successors=tuple(f"{one} left" for one in lane.successors),
             lights=(light,) if lane.lights else (),
-            stop_line=None if lane.stop_line is None else lane.stop_line + (0, 3.5),
+            stop_line=None if lane.stop_line is None else lane.stop_line + aside,
         )
 
 
