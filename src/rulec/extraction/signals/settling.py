@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import ceil
+from typing import NamedTuple
 
 import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
 
 from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
 from rulec.extraction.tracks.tracks import Flags
@@ -165,24 +168,45 @@ def over_once(codes: SignalColumn, doubtful: Flags, there: Flags, spans: EndToEn
     """
     if not doubtful.any():
         return codes
-    cells, own = Cells.of_drives(doubtful, spans)
-    near, there, doubts = map(cells.of, (codes, there, doubtful))
-    sure, states = there & ~doubts, doubts.nonzero()[0]
-    before, behind = own.latest(sure).take(states), own.next_state(sure).take(states)
-    between = (before >= own.first.take(states)) & (behind < own.end.take(states))
-    states, before, behind = (values[between] for values in (states, before, behind))
-    away = (~there).cumsum()
+    _, near, states, before, behind, places = _between_sure(codes, doubtful, there, spans)
     code, early, late = (near.take(at) for at in (states, before, behind))
     fits = (early != late) & ((code == early) | (code == late))
-    fits &= away.take(behind) == away.take(before)
     fits &= np.bincount(before[~fits], minlength=len(near))[before] == 0
     comes = np.full(len(near), len(near))
     np.minimum.at(comes, before, np.where(code == late, states, len(near)))
+    later = states >= comes[before]
     found = np.array(codes)
-    found.ravel()[cells.places.take(states[fits])] = np.where(states >= comes[before], late, early)[
-        fits
-    ]
+    found.ravel()[places[fits]] = np.where(later, late, early)[fits]
     return found
+
+
+class _BetweenSure(NamedTuple):
+    """The doubtful states between two sure ones, in all of which one is there.
+
+    Their numbers, and those of the sure ones ``before`` and ``behind``, among the ``codes`` of the
+    ``spans`` with any doubt; their ``places`` in the whole.
+    """
+
+    spans: EndToEnd
+    codes: SignalColumn
+    states: NDArray[intp]
+    before: NDArray[intp]
+    behind: NDArray[intp]
+    places: NDArray[intp]
+
+
+def _between_sure(
+    codes: SignalColumn, doubtful: Flags, there: Flags, spans: EndToEnd
+) -> _BetweenSure:
+    cells, own = Cells.of_drives(doubtful, spans)
+    codes, there, doubts = map(cells.of, (codes, there, doubtful))
+    sure, states = there & ~doubts, doubts.nonzero()[0]
+    before, behind = own.latest(sure).take(states), own.next_state(sure).take(states)
+    chosen = ((before >= own.first.take(states)) & (behind < own.end.take(states))).nonzero()[0]
+    away = (~there).cumsum()
+    chosen = chosen[away.take(behind[chosen]) == away.take(before[chosen])]
+    states, before, behind = (values.take(chosen) for values in (states, before, behind))
+    return _BetweenSure(own, codes, states, before, behind, cells.places.take(states))
 
 
 def only_when(
@@ -196,17 +220,10 @@ def only_when(
     found = np.zeros(doubtful.shape, dtype=bool)
     if not doubtful.any():
         return found
-    cells, own = Cells.of_drives(doubtful, spans)
-    codes, there, doubts = map(cells.of, (codes, there, doubtful))
-    sure, states = there & ~doubts, doubts.nonzero()[0]
-    before, behind = own.latest(sure).take(states), own.next_state(sure).take(states)
-    between = (before >= own.first.take(states)) & (behind < own.end.take(states))
-    between &= behind - before - 1 <= most
-    states, before, behind = (values[between] for values in (states, before, behind))
-    away, changes = (~there).cumsum(), own.changes(codes).cumsum()
-    kept = away.take(behind) == away.take(before)
+    own, near, _, before, behind, places = _between_sure(codes, doubtful, there, spans)
+    changes = own.changes(near).cumsum()
     # Codes that differ at the ends are all different, or go to and fro
     one_way = changes.take(behind) - changes.take(before) <= _MOST_CHANGES
-    only = kept & one_way & (codes.take(before) != codes.take(behind))
-    found.ravel()[cells.places.take(states[only])] = True
+    only = one_way & (near.take(before) != near.take(behind)) & (behind - before - 1 <= most)
+    found.ravel()[places[only]] = True
     return found
