@@ -206,7 +206,8 @@ def _between_sure(
     away = (~there).cumsum()
     chosen = chosen[away.take(behind[chosen]) == away.take(before[chosen])]
     states, before, behind = (values.take(chosen) for values in (states, before, behind))
-    return _BetweenSure(own, codes, states, before, behind, cells.places.take(states))
+    places = cells.places.take(states)
+    return _BetweenSure(own, codes, states, before=before, behind=behind, places=places)
 
 
 def only_when(
