@@ -277,7 +277,7 @@ def test_where_a_lane_has_ended_those_of_the_other_direction_may_lie(german):
     ends = np.array([20.0, 20.0]), np.array([35.0, 60.0])
     sides = np.array([-1.0, -1.0]), np.array([1.0, 1.0])
     # Its left side at y = 1 m is 5 m from the left bound of two lanes, and 1 m from that of one
-    assert frame.own_room(ends, sides).tolist() == [5.0, 1.0]
+    assert frame.gap_to_oncoming_lanes(ends, sides).tolist() == [5.0, 1.0]
 
 
 def test_beyond_a_split_somebody_is_in_any_of_its_lanes(german):

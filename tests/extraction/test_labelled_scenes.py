@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import rulec
-from rulec.recordings.recording import BROAD_LINE
+from rulec.recordings.recording import BROAD_LEFT
 
 STEP_S, SECONDS, WIDE_M = 0.1, 5.0, 3.5
 T = np.arange(round(SECONDS / STEP_S) + 1) * STEP_S
@@ -99,7 +99,7 @@ def passes_on_a_ramp():
 def passes_beyond_a_broad_line():
     """R_I2. § 7a(1): right of it one may be faster, to leave; left of it one may not."""
     lanes = motorway(*[MAIN] * 4)
-    lanes[1] = replace(lanes[1], types=lanes[1].types | {BROAD_LINE})
+    lanes[1] = replace(lanes[1], types=lanes[1].types | {BROAD_LEFT})
     bodies = [steady("leaves", 20, 5, 5.25), steady("stays", 28.5, 5, 8.75)]
     return lanes, [*bodies, steady("left", 10, 50, 12.25)], {"near_side_passing": {"stays"}}
 

@@ -126,7 +126,7 @@ class ConductWords:
 
     def _on_own_side(self) -> Flags:
         """Ego is not beyond the middle of a two-way road, where it overtakes until it is back."""
-        own: Flags = self._relations.own_room >= self._frame.loose_d
+        own: Flags = self._relations.gap_to_oncoming_lanes >= self._frame.loose_d
         return own | self._frame.one_way
 
     def _meets_nobody(self) -> Flags:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rulec.cell_words.ego_boxes import EgoBoxes, Floats
 from rulec.cell_words.probe_drives import EVERY_M, LaneProbe, ProbeDrives
-from rulec.extraction.signals.map.junction_signals import COLOURS
+from rulec.extraction.signals.map.line_signals import COLOURS
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
 
 Words: TypeAlias = dict[str, Any]

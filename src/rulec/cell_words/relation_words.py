@@ -190,14 +190,14 @@ class Relations:
     def _within_own_half(self) -> Flags:
         """Cells in which no part of ego is beyond the middle of a two-way road."""
         frame, wide = self._frame, self._boxes.half_width[1] - USUAL.touching_m
-        own: Flags = self.own_room >= wide + frame.loose_d
+        own: Flags = self.gap_to_oncoming_lanes >= wide + frame.loose_d
         return own | frame.one_way
 
     @cached_property
-    def own_room(self) -> Floats:
+    def gap_to_oncoming_lanes(self) -> Floats:
         """How far (m) ego's middle stays from the lanes of the other direction, by cell."""
         places = self.rear[0][:, 0], self.front[1][:, 0]
-        return self._frame.own_room(places, self._boxes.d)
+        return self._frame.gap_to_oncoming_lanes(places, self._boxes.d)
 
     def flow(self, below_kmh: float) -> list[Any]:
         """Whether traffic around ego is slower than this in the median, by cell.

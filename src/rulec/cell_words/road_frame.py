@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from math import ceil
 from typing import TypeAlias
 
 import numpy as np
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 from rulec.cell_words.ego_boxes import Floats
 from rulec.cell_words.probe_drives import ProbeDrives
 from rulec.extraction.drive_context import KMH
+from rulec.extraction.signals.settling import fewest_states
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.traffic_thresholds import LEAST_S, USUAL
@@ -128,7 +128,9 @@ class RoadFrame:
             apart[number, beside] = np.minimum(np.abs(aside[beside]), 1.0)
         return apart[0], apart[1:].max(axis=0)
 
-    def own_room(self, places: tuple[Floats, Floats], sides: tuple[Floats, Floats]) -> Floats:
+    def gap_to_oncoming_lanes(
+        self, places: tuple[Floats, Floats], sides: tuple[Floats, Floats]
+    ) -> Floats:
         """How far (m) rectangles stay from where lanes of the other direction may lie.
 
         They reach from one of the places along the road to the other, and from side to side. Beyond
@@ -144,8 +146,8 @@ class RoadFrame:
         begins, ends = (lanes.pieces_at(place + first).tolist() for place in places)
         nearest = [edges[k : end + 1].min() for k, end in zip(begins, ends, strict=True)]
         reach = sides[1] if self.probes.among.side == "right" else -sides[0]
-        room: Floats = np.array(nearest, dtype=np.float64) - reach
-        return room
+        gap: Floats = np.array(nearest, dtype=np.float64) - reach
+        return gap
 
     def line_apart(self, s: tuple[Floats, Floats]) -> Floats:
         """How far (m) the two lines are apart, at most, each from one place to another."""
@@ -206,7 +208,7 @@ class RoadFrame:
             if place * way > 0.0
         ]
 
-    def _mingle(self, s: tuple[Floats, Floats], lanes: Flags, perhaps: Flags) -> None:
+    def _spread_over_splits(self, s: tuple[Floats, Floats], lanes: Flags, perhaps: Flags) -> None:
         """Let who is beyond a split be in each of its lanes, for none of them sure."""
         for place, way, into in self._splits:
             beyond = s[1] > place if way > 0 else s[0] < place
@@ -233,7 +235,7 @@ class RoadFrame:
         s0, s1 = hull(ends.s_min, ends.s_max)
         touching = places.thresholds.touching_m
         # A side that one is on for less is taken for that before and after
-        brief = ceil(LEAST_S["lateral"] / self.probes.recording.step_s - _HAIR_M) - 1
+        brief = fewest_states(LEAST_S["lateral"], self.probes.recording.step_s) - 1
         first, end = max(int(columns[0]) - brief, 0), int(columns[-1]) + brief + 1
         around = slice(first, end)
         low = self._straightened(ends.left_of_min[:, around])
@@ -255,7 +257,7 @@ class RoadFrame:
         s = s0 - self._origin.ego_s, s1 - self._origin.ego_s
         lanes = np.all(((inside > least + _HAIR_M) & there) | absent[..., None], axis=1)
         perhaps = np.any((inside > least - _HAIR_M) & there, axis=1)
-        self._mingle(s, lanes, perhaps)
+        self._spread_over_splits(s, lanes, perhaps)
         return OthersNow(
             s=s,
             d=(low[:, now].min(axis=1), high[:, now].max(axis=1)),

@@ -178,8 +178,8 @@ STRAIGHT_ON = "straightOn"
 JOINING = "accessRamp"
 """The type of a lane that ends beside others, to join them."""
 
-BROAD_LINE = "broadLineOnItsLeft"
-"""The type of a lane with a broad broken line on its left, as begins where lanes leave the road."""
+BROAD_LEFT, BROAD_RIGHT = "broadLineLeft", "broadLineRight"
+"""Types of lanes with a broad broken line on a side, as begins where lanes leave the road."""
 
 
 def is_lane(lanelet: Lanelet) -> bool:

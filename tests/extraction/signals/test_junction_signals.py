@@ -5,10 +5,14 @@ from math import cos, radians, sin
 import pytest
 
 from rulec.extraction.signals.map.junction_signals import junction_signals
+from rulec.extraction.signals.map.line_signals import line_signals
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 from support.generators.random_recordings import lanes
+
+at_junctions = SignalPasses.joined((junction_signals, line_signals))
 
 JUNCTION = frozenset({"intersection"})
 
@@ -22,7 +26,7 @@ def signals(body, middle=None, side="right", before=None, **thresholds):
     if middle is None:
         lanes.append(straight(3, 120, 300, predecessors=(2,)))
     route = tuple(lane.id for lane in lanes)
-    return junction_signals(context_of(recording(lanes, [body]), route, side, **thresholds))
+    return at_junctions(context_of(recording(lanes, [body]), route, side, **thresholds))
 
 
 def along(*xs, length=4.0):
@@ -166,7 +170,7 @@ def test_lights_of_several_colours_leave_egos_unknown():
 def test_where_no_ways_cross_there_is_no_light():
     # The map ends at 300 m, beyond which there may be one
     found = recording(lanes(2), [vehicle(7, {0: (240, 0), 1: (249, 0)})])
-    signals = junction_signals(context_of(found))
+    signals = at_junctions(context_of(found))
     assert signals.world["light"].tolist() == ["no_light"] * 2
     assert signals.unknown["light"].tolist() == [False, True]
     assert not signals.world["crosses_light_line"].any()

@@ -10,7 +10,7 @@ import pytest
 
 from rulec.extraction.signals.map.road_signals import road_signals
 from rulec.extraction.tracks.mirror import mirrored_recording
-from rulec.recordings.recording import BROAD_LINE, Weather
+from rulec.recordings.recording import BROAD_LEFT, BROAD_RIGHT, Weather
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
@@ -157,7 +157,7 @@ def test_lanes_that_lead_on_join_and_leave():
 def test_lanes_beyond_a_broad_line():
     """They may leave the road farther ahead (§ 7a(1) StVO): of two beyond it neither is told."""
     main = {"types": frozenset({"mainCarriageWay"})}
-    broad = {"types": main["types"] | {BROAD_LINE}}
+    broad = {"types": main["types"] | {BROAD_LEFT}}
     first, second, third = (straight(k, 0, 300, y=4.0 * (k - 1), **main) for k in (1, 2, 3))
     first, third = replace(first, left_of="2"), replace(third, right_of="2")
     second = replace(second, left_of="3", right_of="1", **broad)
@@ -166,6 +166,16 @@ def test_lanes_beyond_a_broad_line():
     assert told("lane_kind", [first, second, third], route=("3",), y=8.0) == ["through_lane"] * 3
     second = replace(second, **main)
     assert told("lane_kind", [first, second, third], route=("1",)) == ["through_lane"] * 3
+    # The line on its other side is where the road's edge is, or more lanes that leave
+    second = replace(second, types=main["types"] | {BROAD_RIGHT})
+    assert told("lane_kind", [first, second, third], route=("1",)) == ["through_lane"] * 3
+
+
+def test_lanes_that_are_left_of_each_other_have_no_end():
+    main = {"types": frozenset({"mainCarriageWay"})}
+    first, second = (straight(k, 0, 300, y=4.0 * (k - 1), **main) for k in (1, 2))
+    lanes = [replace(first, left_of="2", right_of="2"), replace(second, left_of="1", right_of="1")]
+    assert told("lane_kind", lanes, route=("1",)) == ["through_lane"] * 3
 
 
 def test_tunnels_are_told_by_maps_that_have_one():

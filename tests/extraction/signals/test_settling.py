@@ -176,7 +176,7 @@ def test_a_doubt_between_two_sure_codes_is_about_when(codes, doubtful, there, on
 def test_who_gets_past_in_noise_does_so_once(codes, doubtful, there, found):
     rows = [np.array([list(text)]) for text in (codes, doubtful, there)]
     one = EndToEnd.of_one(len(codes))
-    (row,) = settling.over_once(rows[0], rows[1] == "?", rows[2] == "-", one)
+    (row,) = settling.with_one_change(rows[0], rows[1] == "?", rows[2] == "-", one)
     assert "".join(row) == found
 
 

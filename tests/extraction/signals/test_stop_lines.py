@@ -13,9 +13,12 @@ from rulec.extraction.signals.map.line_signals import line_signals
 from rulec.extraction.signals.map.map_signals import map_signals
 from rulec.extraction.signals.map.priority_signals import priority_signals
 from rulec.extraction.signals.map.stop_lines import stop_line
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
+
+at_junctions = SignalPasses.joined((junction_signals, line_signals))
 
 INSIDE = frozenset({"intersection"})
 
@@ -56,7 +59,7 @@ def test_where_a_line_is(drawn, first):
     ],
 )
 def test_a_line_before_the_lanelet_s_end(xs, crosses):
-    found = junction_signals(context(road(95.0, ["STOP"]), *xs))
+    found = at_junctions(context(road(95.0, ["STOP"]), *xs))
     assert found.world["crosses_stop_line"].tolist() == crosses
 
 
@@ -75,7 +78,7 @@ def test_amber_lights_whose_line_may_be_where_ego_could_not_stop(drawn, xs, unkn
     before, *further = road(drawn)
     yellow = replace(before, lights=(Light(0, (("yellow", 99),)),))
     across = lanelet(5, [(108, -30), (108, 30)], types=INSIDE, junction="x")
-    found = junction_signals(context([yellow, *further, across], *xs))
+    found = at_junctions(context([yellow, *further, across], *xs))
     (state,) = np.flatnonzero(found.world["crosses_light_line"])
     assert found.world["light"][state] == "amber_light"
     assert found.unknown["crosses_light_line"].tolist() == [
@@ -96,7 +99,7 @@ def test_who_stands_before_a_line_behind_which_its_way_turns_round(kind, length,
     ego = vehicle(7, places, kind, length=length, width=width)
     stands = context_of(recording(lanes, [ego]), ("1", "2", "3"))
     assert stands.ego_extents.s_max[0, -1] > stop_line(stands, 0, 0)[1]
-    assert not junction_signals(stands).world["crosses_stop_line"].any()
+    assert not at_junctions(stands).world["crosses_stop_line"].any()
 
 
 @pytest.mark.parametrize(("marked", "length"), [(True, 10), (False, 10 + 40)])
@@ -127,7 +130,7 @@ def test_a_line_before_a_junction_in_which_no_way_crosses(marked, length):
 )
 def test_a_drive_that_ends_where_the_line_may_be(xs, unknown):
     """It is somewhere between 100 and 100.3 m."""
-    found = junction_signals(context(road(None, ["STOP"]), *xs))
+    found = at_junctions(context(road(None, ["STOP"]), *xs))
     assert not found.world["crosses_stop_line"].any()
     assert found.unknown["crosses_stop_line"].tolist() == [False, False, False, unknown]
 
@@ -149,7 +152,7 @@ def test_signs_hold_up_to_the_drawn_line():
 def test_signs_of_who_goes_first_hold_until_ego_drives_in(drawn, signs, name):
     """However far before the junction the line is: who is to give way does so as it drives in."""
     ego = context(road(drawn, [signs]), 84, 88, 93, 97, 99, 109, 112)
-    enters = junction_signals(ego).world["enters_junction"]
+    enters = at_junctions(ego).world["enters_junction"]
     (state,) = np.flatnonzero(enters)
     assert ego.ego_extents.s_max[0, state] > 100
     found = map_signals(ego).world[name]
@@ -254,7 +257,7 @@ def test_where_all_have_to_stop(own, other, comes_from, all_stop, unknown):
         lanelet(5, [(110, -10), (110, 10)], predecessors=before, types=INSIDE, junction="x"),
     ]
     lanes = road(None, [own], *(across if comes_from else across[1:]))
-    found = junction_signals(context(lanes, 80, 90, 102))
+    found = at_junctions(context(lanes, 80, 90, 102))
     assert found.world["all_way_stop"].tolist() == [all_stop] * 3
     assert found.unknown["all_way_stop"].tolist() == [unknown] * 3
     assert map_signals(context(lanes, 80, 90, 99)).world["stop_sign"].all()
@@ -276,6 +279,6 @@ def test_where_all_have_to_stop(own, other, comes_from, all_stop, unknown):
 def test_places_do_not_tell_whether_one_that_stands_at_a_line_has_crossed_it(fronts, may):
     told = context(road(95.0, ["STOP"]), *[front - 2 for front in fronts])
     told.__dict__["tolerances"] = replace(told.tolerances, place_m=0.5)
-    found = junction_signals(told)
+    found = at_junctions(told)
     assert "".join(".?"[x] for x in found.unknown["crosses_stop_line"].tolist()) == may
     assert not (found.world["crosses_stop_line"] & found.unknown["crosses_stop_line"]).any()

@@ -9,10 +9,14 @@ import numpy as np
 import pytest
 
 from rulec.extraction.signals.map.junction_signals import junction_signals
+from rulec.extraction.signals.map.line_signals import line_signals
+from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.recordings.recording import Light
 from support.builders.drive_contexts import context_of
 from support.builders.recordings import lanelet, recording, straight, vehicle
+
+at_junctions = SignalPasses.joined((junction_signals, line_signals))
 
 INSIDE = {"types": frozenset({"intersection"}), "junction": "x"}
 
@@ -46,7 +50,7 @@ def told(word, xs, lanes=None, **thresholds):
     found = recording(lanes or road(), [ego])
     values = []
     for one, side in ((found, "right"), (mirrored_recording(found), "left")):
-        signals = junction_signals(context_of(one, ("1", "2", "5"), side, **thresholds))
+        signals = at_junctions(context_of(one, ("1", "2", "5"), side, **thresholds))
         column, unknown = signals.world[word], signals.unknown.get(word, False)
         values.append(np.where(unknown, "?", column).tolist())
     assert values[0] == values[1]
@@ -63,7 +67,7 @@ def test_a_drive_that_ends_before_the_only_way_which_turns():
 
     def turns(*places):
         found = recording(bend, [vehicle(7, dict(enumerate(places)))])
-        signals = junction_signals(context_of(found, ("1", "3", "6")))
+        signals = at_junctions(context_of(found, ("1", "3", "6")))
         column, unknown = signals.world["turn"], signals.unknown["turn"]
         return np.where(unknown, "?", column).tolist()
 
@@ -104,7 +108,7 @@ def test_what_ego_prepares_for_is_not_known_near_the_drive_s_end():
     assert told("preparing_to_leave", (90, 94, 97))[-1] == "?"
     # A road without junctions gives nothing to prepare for
     ego = vehicle(7, {k: (x, 0) for k, x in enumerate(xs)})
-    alone = junction_signals(context_of(recording([straight(1, -200, 300)], [ego])))
+    alone = at_junctions(context_of(recording([straight(1, -200, 300)], [ego])))
     assert not alone.unknown["preparing_to_leave"].any()
 
 
@@ -144,7 +148,7 @@ def test_a_way_without_a_light_beside_others_with_one_leads_past_it(complete):
     lanes[0] = replace(lanes[0], lights=tuple(red.values()), lights_to=red)
     found = recording(lanes, [vehicle(7, {k: (x, 0) for k, x in enumerate((60, 97, 130))})])
     found = replace(found, complete=frozenset({"light"} if complete else ()))
-    signals = junction_signals(context_of(found, ("1", "2", "5")))
+    signals = at_junctions(context_of(found, ("1", "2", "5")))
     light = "no_light" if complete else "red_light"
     assert signals.world["light"].tolist() == [light] * 3
 
@@ -159,11 +163,11 @@ def test_who_follows_a_road_that_bends_may_not_have_turned():
     places = [(60, 0), (98, 0), (110, 4.2), (114, 30)]
     ego = vehicle(7, dict(enumerate(places)))
     route = ("1", "3", "6")
-    plain = junction_signals(context_of(recording(lanes, [ego]), route))
+    plain = at_junctions(context_of(recording(lanes, [ego]), route))
     assert plain.world["turn"].tolist() == ["straight_on", "turn_far", "turn_far", "straight_on"]
     assert not plain.unknown["turn"].any()
     lanes[1] = replace(lanes[1], types=lanes[1].types | {"straightOn"})
-    bends = junction_signals(context_of(recording(lanes, [ego]), route))
+    bends = at_junctions(context_of(recording(lanes, [ego]), route))
     assert bends.unknown["turn"].tolist() == [False, True, True, False]
     assert not bends.world["preparing_to_leave"].any()
 
@@ -178,6 +182,6 @@ def test_a_turn_behind_a_way_that_is_straight_on_is_one():
     ]
     lanes[1] = replace(lanes[1], types=lanes[1].types | {"straightOn"})
     ego = vehicle(7, dict(enumerate([(60, 0), (92, 0), (110, 4.2), (114, 30)])))
-    found = junction_signals(context_of(recording(lanes, [ego]), ("1", "2", "3", "6")))
+    found = at_junctions(context_of(recording(lanes, [ego]), ("1", "2", "3", "6")))
     assert found.world["turn"].tolist() == ["straight_on", "turn_far", "turn_far", "straight_on"]
     assert not found.unknown["turn"].any()

@@ -8,7 +8,7 @@ import pytest
 
 from rulec import read_recording
 from rulec.diagnostics import RulecError
-from rulec.recordings.recording import BROAD_LINE, Light, Weather
+from rulec.recordings.recording import BROAD_LEFT, BROAD_RIGHT, Light, Weather
 from support.builders.recordings import ROAD_XML
 
 BOX = "<rectangle><length>4</length><width>2</width></rectangle>"
@@ -58,10 +58,10 @@ def test_a_broad_line_is_a_broken_one_of_a_kind(read):
     for text, broad in (("dashed", False), ("broad_dashed", True), ("broad_solid", False)):
         mark = f"<lineMarking>{text}</lineMarking>"
         lanelet = read(("</leftBound>", f"{mark}</leftBound>")).lanelets["1"]
-        assert (BROAD_LINE in lanelet.types) == broad
+        assert (BROAD_LEFT in lanelet.types) == broad
         assert lanelet.left_mark == ("solid" if text == "broad_solid" else "broken")
-        # On its right it is the next lane's
-        assert BROAD_LINE not in read((RIGHT, f"{mark}{RIGHT}")).lanelets["1"].types
+        other = read((RIGHT, f"{mark}{RIGHT}")).lanelets["1"].types
+        assert other & {BROAD_LEFT, BROAD_RIGHT} == ({BROAD_RIGHT} if broad else set())
 
 
 def test_of_several_states_the_median_counts():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rulec.recordings.commonroad.commonroad_surroundings import Intersection, junctions
-from rulec.recordings.recording import Light, Weather
+from rulec.recordings.recording import BROAD_LEFT, BROAD_RIGHT, Light, Weather
 
 MARKS = {
     "solid": "solid",
@@ -67,7 +67,9 @@ def _assert_equal_lanelet(recording, theirs, said, junction):
         if theirs[beside] is not None or not recording.remarks:
             assert getattr(ours, beside) == _text(theirs[beside])
     assert ours.junction == junction
-    assert ours.types == {*theirs["types"], *(["intersection"] if junction else [])}
+    marks = (("left_mark", BROAD_LEFT), ("right_mark", BROAD_RIGHT))
+    broad = {kind for mark, kind in marks if theirs[mark] == "broad_dashed"}
+    assert ours.types == {*theirs["types"], *(["intersection"] if junction else []), *broad}
     elements = [
         element for number in theirs["signs"] for element in said["signs"].get(str(number), [])
     ]

@@ -30,7 +30,7 @@ from rulec.extraction.signals.measured_numbers import (
     own_speed,
     speed_differences,
 )
-from rulec.extraction.signals.settling import only_when, over_once
+from rulec.extraction.signals.settling import only_when, with_one_change
 from rulec.extraction.signals.signal_columns import (
     Bounds,
     SignalColumns,
@@ -73,7 +73,7 @@ def _station(context: DriveContext) -> SignalColumns:
     doubtful = np.logical_or.reduce([station != codes for codes in others])
     there = context.relevant & ~np.isnan(context.extents.s_min)
     longest = round(context.thresholds.passed_s / context.recording.step_s)
-    station = over_once(station, doubtful, there, context.spans)
+    station = with_one_change(station, doubtful, there, context.spans)
     doubtful &= ~only_when(station, doubtful, there, longest, context.spans)
     return SignalColumns(
         about={"station": station},
@@ -108,7 +108,7 @@ def _lateral(context: DriveContext) -> SignalColumns:
     found = relations.laterals(context)
     there = context.relevant & ~np.isnan(context.extents.s_min)
     longest = round(context.thresholds.passed_s / context.recording.step_s)
-    codes = over_once(found.codes, found.doubtful, there, context.spans)
+    codes = with_one_change(found.codes, found.doubtful, there, context.spans)
     over = only_when(codes, found.doubtful, there, longest, context.spans)
     return SignalColumns(
         about={"lateral": codes},

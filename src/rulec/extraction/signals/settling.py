@@ -28,6 +28,11 @@ _IMPLIED: Mapping[str, Sequence[str]] = {
 """Signal -> those that it holds with, as the vocabulary's facts say."""
 
 
+def fewest_states(least_s: float, step_s: float) -> int:
+    """How many states a value lasts for at least that lasts for so long (s)."""
+    return ceil(least_s / step_s - _HAIR)
+
+
 def settled(
     signals: SignalColumns, least_s: Mapping[str, float], step_s: float, spans: EndToEnd
 ) -> SignalColumns:
@@ -36,7 +41,7 @@ def settled(
     Such a value between two equal ones becomes theirs, and no better known than they. At the ends
     of a recording nobody knows it: it may be noise or last.
     """
-    least = {name: ceil(seconds / step_s - _HAIR) for name, seconds in least_s.items()}
+    least = {name: fewest_states(seconds, step_s) for name, seconds in least_s.items()}
     unknown = dict(signals.unknown)
     world, about = (
         {**columns, **_changed(columns, least, unknown, spans)}
@@ -160,7 +165,9 @@ def without_blips(column: SignalColumn, least: int, spans: EndToEnd) -> SignalCo
     return found.reshape(column.shape)
 
 
-def over_once(codes: SignalColumn, doubtful: Flags, there: Flags, spans: EndToEnd) -> SignalColumn:
+def with_one_change(
+    codes: SignalColumn, doubtful: Flags, there: Flags, spans: EndToEnd
+) -> SignalColumn:
     """Codes without what goes to and fro in doubt, between the sure codes before and after it.
 
     Noise does so: where all in between are one of these two, the later one holds from where it

@@ -10,6 +10,10 @@ _LAMPS: dict[model.Lamp, model.Lamp] = {
     "left_indicator": "right_indicator",
     "right_indicator": "left_indicator",
 }
+_BROAD_LINES = {
+    model.BROAD_LEFT: model.BROAD_RIGHT,
+    model.BROAD_RIGHT: model.BROAD_LEFT,
+}
 _OTHER: dict[model.Side | None, model.Side | None] = {"left": "right", "right": "left", None: None}
 
 
@@ -41,6 +45,7 @@ def _lanelet(lanelet: model.Lanelet) -> model.Lanelet:
         right_of=lanelet.left_of,
         left_mark=lanelet.right_mark,
         right_mark=lanelet.left_mark,
+        types=frozenset(_BROAD_LINES.get(kind, kind) for kind in lanelet.types),
         stop_line=None if lanelet.stop_line is None else _points(lanelet.stop_line),
     )
 

@@ -74,9 +74,13 @@ def read_lanelet(tree: Tree) -> LaneletEntry:
 def _types(tree: Tree) -> Iterator[str]:
     for kind in tree.all("laneletType"):
         yield kind.one_of(_TYPES.split())
-    mark = tree.child("leftBound").first("lineMarking")
-    if mark is not None and mark.text == "broad_dashed":
-        yield recording.BROAD_LINE
+    for bound, broad in (
+        ("leftBound", recording.BROAD_LEFT),
+        ("rightBound", recording.BROAD_RIGHT),
+    ):
+        mark = tree.child(bound).first("lineMarking")
+        if mark is not None and mark.text == "broad_dashed":
+            yield broad
 
 
 def _bound(tree: Tree) -> recording.Points:

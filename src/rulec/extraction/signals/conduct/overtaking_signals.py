@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from math import ceil
 
 import numpy as np
 from numpy import intp
@@ -26,7 +25,7 @@ from rulec.extraction.signals.ego_lanelets import (
 from rulec.extraction.signals.map.junction_signals import turn_at
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.queues import dense_lines
-from rulec.extraction.signals.settling import without_blips
+from rulec.extraction.signals.settling import fewest_states, without_blips
 from rulec.extraction.signals.signal_columns import SignalColumns, ids_by_state
 from rulec.extraction.signals.signal_passes import SignalPasses, once_a_road
 from rulec.extraction.tracks.lane_sets import is_in
@@ -36,7 +35,6 @@ from rulec.recordings.recording import JOINING
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import distinct
 
-_HAIR = 1e-6
 _DRIFT_MPS = 0.2
 """Who moves sideways by less keeps its lane."""
 
@@ -61,7 +59,7 @@ def _overtaking(context: DriveContext) -> SignalColumns:
     """
     there, perhaps = oncoming_side(context)
     # Who seems to be back for so short a time that `driving_side` takes it for noise is not
-    least = ceil(LEAST_S["driving_side"] / context.recording.step_s - _HAIR)
+    least = fewest_states(LEAST_S["driving_side"], context.recording.step_s)
     side = there | perhaps | without_blips(there | perhaps, least, context.spans)
     stands = (context.tracks.speed * KMH < context.thresholds.standing_kmh) & side
     overtakes, unsure = _overtakes(context, ~stands)

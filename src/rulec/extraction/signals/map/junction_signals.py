@@ -1,4 +1,4 @@
-"""Signals of junctions and traffic lights: entering, turning, crossing stop lines."""
+"""Signals of junctions: entering, turning, crossing stop lines."""
 
 from __future__ import annotations
 
@@ -14,17 +14,16 @@ from rulec.extraction.signals.map.priority_signals import (
 )
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.map.stop_lines import (
-    around_crossing,
     may_pass,
     passes,
     stop_line,
 )
 from rulec.extraction.signals.measured_numbers import own_front
-from rulec.extraction.signals.signal_columns import SignalColumn, SignalColumns
+from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.junctions import all_have_to_stop
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.recordings.recording import STOP_SIGNS, STRAIGHT_ON, Light, ObservedLight
+from rulec.recordings.recording import STOP_SIGNS, STRAIGHT_ON
 from rulec.trace.plain_arrays import distinct
 
 _SLOWEST_MPS = 5.0
@@ -35,16 +34,6 @@ _ASKEW_RAD = np.radians(10.0)
 
 _SWEEPS_M = 10.0
 """The middle of a longer body cuts the corner in a turn."""
-
-_AMBER = "amber_light"
-
-COLOURS = {
-    "red": "red_light",
-    "redYellow": "red_light",
-    "yellow": _AMBER,
-    "green": "green_light",
-    "inactive": "no_light",
-}
 
 
 def _junction_zone(context: DriveContext) -> SignalColumns:
@@ -76,7 +65,7 @@ def _turns(context: DriveContext) -> SignalColumns:
         turn[at_junction] = turn_at(context, start, end)
         bends |= at_junction & _bends_straight_on(context, start, end)
     bends &= turn != "straight_on"
-    unknown = _way_not_known(context) | bends
+    unknown = way_not_known(context) | bends
     limits = context.thresholds
     leaves = ((turn != "straight_on") & ~bends) | _on_exit(context)
     prepares = _within_preparation(context, leaves, limits.standing_kmh)
@@ -114,24 +103,6 @@ def _tells_stop_signs(context: DriveContext) -> bool:
     return bool(STOP_SIGNS & (context.recording.complete | map_contents(context).signs))
 
 
-def _traffic_lights(context: DriveContext) -> SignalColumns:
-    # Lights stand where ways cross, and nowhere else: without such a place there is none
-    nowhere = not context.surroundings.passages.junctions and not context.road.crossings
-    complete = "light" in context.recording.complete
-    if not (nowhere or complete or map_contents(context).lights):
-        return SignalColumns()
-    front = own_front(context)
-    light, crosses, may_cross = own_light(context)
-    unseen = front + context.thresholds.light_reach_m > context.road.borders[-1]
-    return SignalColumns(
-        {"light": light, "crosses_light_line": crosses},
-        unknown={
-            "light": (light == "") | (unseen & nowhere & (not complete)),
-            "crosses_light_line": may_cross,
-        },
-    )
-
-
 def _bends_straight_on(context: DriveContext, start: float, end: float) -> bool:
     """True if a way that the map calls straight on turns ego's road at a junction: it may bend."""
     road, least = context.road, np.radians(context.thresholds.turned_deg)
@@ -150,7 +121,7 @@ def _on_exit(context: DriveContext) -> Flags:
     return own_lanelets(context).flags(lambda lanelet: "exitRamp" in lanelet.types)
 
 
-def _way_not_known(context: DriveContext) -> Flags:
+def way_not_known(context: DriveContext) -> Flags:
     """Flags of states at a junction of whose ways the drive does not tell which ego takes."""
     rear = context.ego_extents.s_min[0]
     unknown = np.zeros(context.states, dtype=bool)
@@ -304,104 +275,6 @@ def turn_at(context: DriveContext, start: float, end: float) -> str:
     return "turn_near" if (turned < 0) == (context.side == "right") else "turn_far"
 
 
-@once
-def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
-    """The light for ego, empty where it is not known which, and flags of ego crossing its line.
-
-    In the state in which ego crosses the line the light is still the one that it crosses. The last
-    flags are of who may have crossed it (``may_pass``), and of amber ones crossed at a place of
-    which nobody knows whether ego came to it slowly enough to stop at once.
-    """
-    front = own_front(context)
-    colours = np.full(context.states, "no_light", dtype="<U11")
-    crosses, may_cross = np.zeros((2, context.states), dtype=bool)
-    slow = context.ego.speed[0] * KMH <= context.thresholds.stops_at_once_kmh
-    lanes = distinct(context.ego_lane).tolist()
-    for piece in range(len(context.road.rows) - 1, -1, -1):
-        if not any(row is not None and row.lights for row in context.road.rows[piece]):
-            continue
-        for lane in lanes:
-            lights = _own_lights(context, piece, lane)
-            if not lights:
-                continue
-            first, last = stop_line(context, piece, lane)
-            unsure = may_pass(context, last) & (context.ego_lane == lane)
-            crossed = passes(context, last) & ~unsure
-            may_cross |= unsure
-            ahead = ((front <= last) | unsure) & (front > first - context.thresholds.light_reach_m)
-            while_crossing = around_crossing(context, front, (first, last))
-            every = context.road.lanelet(piece, lane).lights
-            several = _way_not_known(context) if len(every) > len(lights) else crosses & False
-            for state in ((ahead | crossed) & (context.ego_lane == lane)).nonzero()[0].tolist():
-                own = every if several[state] else lights
-                moments = while_crossing(state) if crossed[state] else (state,)
-                shown = {_colour(context, own, moment) for moment in moments}
-                crosses[state] |= crossed[state]
-                colours[state] = shown.pop() if len(shown) == 1 else ""
-                at_place = slow[[*moments]]
-                amber = colours[state] == _AMBER and last - first > context.thresholds.touching_m
-                may_cross[state] |= (
-                    crossed[state] and amber and at_place.any() and not at_place.all()
-                )
-    for state in _between_lights(context, colours, crosses):
-        crosses[state], colours[state] = True, ""
-    return colours, crosses, may_cross
-
-
-def _between_lights(context: DriveContext, colours: SignalColumn, crosses: Flags) -> list[int]:
-    """The states in which ego crosses the lines of two lanes whose lights differ.
-
-    It reaches into the other lane, or has come from it since the state before: nobody knows which
-    light it passes. ``colours`` are those of its own lane where it ``crosses`` the line of that.
-    """
-    own, lane, reach = context.ego_extents, context.ego_lane, context.thresholds.touching_m
-    came_from = np.where(context.spans.columns > context.spans.first, np.roll(lane, 1), lane)
-    found = set[int]()
-    for piece, row in enumerate(context.road.rows):
-        lit = {
-            k
-            for k, one in enumerate(row)
-            if one is not None and one.lights and _own_lights(context, piece, k)
-        }
-        for k in sorted(lit) if len(row) > row.count(None) + 1 else ():
-            inside = (own.left_of_max[0, :, k] > reach) & (own.left_of_min[0, :, k + 1] < -reach)
-            beside = (inside | context.spans.before(inside) | (came_from == k)) & (lane != k)
-            if not beside.any():
-                continue
-            line = stop_line(context, piece, k)
-            moments = around_crossing(context, own_front(context), line)
-            lights = _own_lights(context, piece, k)
-            for state in (beside & passes(context, line[1])).nonzero()[0].tolist():
-                shown = {_colour(context, lights, moment) for moment in moments(state)}
-                # Its own lane has no line there, or it came to the one further on from beside
-                past = int(lane[state]) not in lit or came_from[state] == k
-                differs = past and not shown <= {"green_light", "no_light"}
-                if shown != {colours[state]} if crosses[state] else differs:
-                    found.add(state)
-    return sorted(found)
-
-
-def _own_lights(context: DriveContext, piece: int, lane: int) -> tuple[Light | ObservedLight, ...]:
-    """The lights for ego's way on, as far as the map tells them apart.
-
-    A way without any, beside others with lights, is one past them, if the map has all lights.
-    """
-    lanelet = context.road.lanelet(piece, lane)
-    if lanelet.lights_to and piece + 1 < len(context.road.rows):
-        onward = context.road.lanelet(piece + 1, lane).id
-        if onward in lanelet.lights_to:
-            return (lanelet.lights_to[onward],)
-        if "light" in context.recording.complete and onward in lanelet.successors:
-            return ()
-    return lanelet.lights
-
-
-def _colour(context: DriveContext, lights: tuple[Light | ObservedLight, ...], state: int) -> str:
-    step = int(context.steps[state])
-    shown = {COLOURS.get(light.colour_at(step), "") for light in lights}
-    return shown.pop() if len(shown) == 1 else ""
-
-
 junction_signals = SignalPasses(
     {
         ("junction_zone",): _junction_zone,
@@ -409,7 +282,6 @@ junction_signals = SignalPasses(
         ("turn", "preparing_to_leave"): _turns,
         ("crosses_stop_line",): _stop_signs,
         ("all_way_stop",): _all_way_stop,
-        ("light", "crosses_light_line"): _traffic_lights,
     }
 )
-"""The signals of junctions on ego's road, their lights and signs."""
+"""The signals of junctions on ego's road, and their signs."""

@@ -16,7 +16,7 @@ from rulec.extraction.signals.ego_lanelets import (
     map_contents,
     own_lanelets,
 )
-from rulec.extraction.signals.map.junction_signals import own_light
+from rulec.extraction.signals.map.line_signals import own_light
 from rulec.extraction.signals.map.stop_lines import stop_line
 from rulec.extraction.signals.measured_numbers import corner_ahead, own_front, own_widths
 from rulec.extraction.signals.settling import only_when

@@ -18,7 +18,8 @@ from rulec.extraction.signals.signal_passes import (
 )
 from rulec.extraction.tracks.surroundings import Directions
 from rulec.extraction.tracks.tracks import Flags
-from rulec.recordings.recording import BROAD_LINE, Lanelet
+from rulec.recordings.recording import BROAD_LEFT, BROAD_RIGHT, Lanelet
+from rulec.scenario.recorded.route import lanes_beside
 
 _OUTSIDE = frozenset({"country", "rural", "highway", "interstate"})
 _SETTINGS = _OUTSIDE | {"urban"}
@@ -76,15 +77,15 @@ def _lane_kind(context: DriveContext) -> SignalColumns:
     """
     if not _LANE_KINDS.keys() & map_contents(context).types:
         return SignalColumns()
-    lanelets = context.recording.lanelets
+    recording, inward_left = context.recording, context.side == "right"
+    broad = BROAD_LEFT if inward_left else BROAD_RIGHT
 
     def kind(at: Lanelet) -> str:
         told = next((_LANE_KINDS[x] for x in _LANE_KINDS if x in at.types), "")
-        beyond: Lanelet | None = at if told == "through_lane" else None
-        while beyond is not None and BROAD_LINE not in beyond.types:
-            inward = beyond.left_of if context.side == "right" else beyond.right_of
-            beyond = lanelets.get(inward or "")
-        return told if beyond is None else ""
+        if told != "through_lane":
+            return told
+        inward = (at.id, *lanes_beside(recording, at.id, left=inward_left))
+        return "" if any(broad in recording.lanelets[x].types for x in inward) else told
 
     kinds = lanelets_at(context, context.ego_extents.s[0], context.steady_lane).values(kind)
     return _where_told("lane_kind", kinds)
