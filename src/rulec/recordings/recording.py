@@ -178,6 +178,9 @@ STRAIGHT_ON = "straightOn"
 JOINING = "accessRamp"
 """The type of a lane that ends beside others, to join them."""
 
+RAMPS = frozenset({JOINING, "exitRamp"})
+"""The types of lanes that join others, or leave them."""
+
 BROAD_LEFT, BROAD_RIGHT = "broadLineLeft", "broadLineRight"
 """Types of lanes with a broad broken line on a side, as begins where lanes leave the road."""
 

@@ -54,6 +54,7 @@ def told(word, lanes, *, complete=(), xs=XS, weather=None, route=("1", "2", "3")
 
 
 ZEBRA = lanelet(9, [(200, -6), (200, 6)], types=frozenset({"crosswalk"}))
+MAIN_BESIDE = [straight(11, 0, 100), straight(12, 120, 300)]
 SIDE_ROAD = lanelet(8, [(110, -90), (110, 90)], types=INSIDE)
 
 
@@ -148,10 +149,19 @@ def test_a_lane_that_crosses_is_not_the_other_direction():
 
 
 def test_lanes_that_lead_on_join_and_leave():
-    lanes = road(["accessRamp"], ["mainCarriageWay"], ["exitRamp"])
+    lanes = road(["accessRamp"], ["mainCarriageWay"], ["exitRamp"], *MAIN_BESIDE)
+    lanes[0], lanes[2] = replace(lanes[0], left_of="11"), replace(lanes[2], left_of="12")
     assert told("lane_kind", lanes) == ["entry_lane", "through_lane", "exit_lane"]
-    assert told("lane_kind", road(["exitRamp"])) == ["exit_lane", "?", "?"]
+    assert told("lane_kind", [*road(["exitRamp"]), *MAIN_BESIDE]) == ["?", "?", "?"]
     assert told("lane_kind", road(["urban"])) is None
+
+
+@pytest.mark.parametrize("kind", ["accessRamp", "exitRamp"])
+def test_a_ramp_that_runs_by_itself_has_no_entry_or_exit_lanes(kind):
+    ramp, second = road([kind], [kind], [kind]), straight(11, 0, 100, types=frozenset({kind}))
+    assert told("lane_kind", ramp) == ["?", "?", "?"]
+    two = [replace(ramp[0], left_of="11"), *ramp[1:], replace(second, right_of="1")]
+    assert told("lane_kind", two) == ["?", "?", "?"]
 
 
 def test_lanes_beyond_a_broad_line():

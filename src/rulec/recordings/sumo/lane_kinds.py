@@ -15,11 +15,11 @@ from collections.abc import Mapping, Set
 
 import numpy as np
 
+from rulec.recordings.recording import RAMPS
 from rulec.recordings.sumo.net import SumoNet
 
 _AHEAD_M = 1000.0
 _MOTORWAY, _LINK = "motorway", "_link"
-_RAMPS = frozenset({"accessRamp", "exitRamp"})
 _Lanes = Mapping[str, list[str]]
 
 
@@ -62,7 +62,7 @@ def lane_kinds(net: SumoNet, drivable: Set[str]) -> dict[str, str]:
             elif goes_on and not onward[lane]:
                 kinds.update(dict.fromkeys(_from_joining(net, lane, edges, back), "accessRamp"))
         if motorway and not through and _LINK not in net.edges[edge].type:
-            going_on = [lane for lane in lanes if kinds.get(lane) not in _RAMPS]
+            going_on = [lane for lane in lanes if kinds.get(lane) not in RAMPS]
             kinds.update(dict.fromkeys(_that_stay(net, going_on, onward), "mainCarriageWay"))
     return kinds
 

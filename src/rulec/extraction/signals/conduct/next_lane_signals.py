@@ -26,7 +26,7 @@ from rulec.extraction.signals.signal_passes import (
     once_a_road,
 )
 from rulec.extraction.tracks.tracks import Flags, Floats, Tracks
-from rulec.recordings.recording import JOINING, Lanelet, LaneMark, Side
+from rulec.recordings.recording import RAMPS, Lanelet, LaneMark, Side
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import ranges
 
@@ -37,7 +37,6 @@ _SOLID = frozenset({"solid", "double_solid"})
 
 _BUS_LANE, _CYCLE_LANE = frozenset({"busLane"}), frozenset({CYCLE_LANE})
 _RESERVED = frozenset({SHOULDER, *_BUS_LANE})
-_RAMPS = frozenset({JOINING, "exitRamp"})
 
 _UNSEEN_S = 5.0
 """For so long one whose track has ended is thought to drive on as before."""
@@ -120,8 +119,8 @@ def _near_lane_is_free(context: DriveContext) -> Flags:
         return ~cycles_beside
     parted = own_lanelets(context).flags(lambda lanelet: _near_mark(lanelet, context) in _SOLID)
     turned, _ = _sorted_ahead(context)
-    on_ramp = own_lanelets(context).flags(lambda lanelet: not _RAMPS.isdisjoint(lanelet.types))
-    ramp_beside = _is_beside(context, _RAMPS) & ~on_ramp
+    on_ramp = own_lanelets(context).flags(lambda lanelet: not RAMPS.isdisjoint(lanelet.types))
+    ramp_beside = _is_beside(context, RAMPS) & ~on_ramp
     buses = context.ego_is("bus")
     bus_lane_beside = _is_beside(context, _BUS_LANE) & ~buses
     for_buses = own_lanelets(context).flags(lambda lanelet: not _BUS_LANE.isdisjoint(lanelet.types))

@@ -31,14 +31,13 @@ from rulec.extraction.signals.signal_passes import SignalPasses, once_a_road
 from rulec.extraction.tracks.lane_sets import is_in
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.extraction.traffic_thresholds import LEAST_S
-from rulec.recordings.recording import JOINING
+from rulec.recordings.recording import RAMPS
 from rulec.trace.cells import Cells
 from rulec.trace.plain_arrays import distinct
 
 _DRIFT_MPS = 0.2
 """Who moves sideways by less keeps its lane."""
 
-_RAMPS = frozenset({JOINING, "exitRamp"})
 """Types of lanes to join from or to leave by, beside those that go on."""
 
 _HALF_M = 4.0
@@ -142,7 +141,7 @@ def _being_overtaken(context: DriveContext) -> SignalColumns:
         )
     # Who is about to join gets up speed for it, beside others on the lanes that go on; who leaves
     # may be faster than they, too (StVO § 7a), and many lanes between ramps serve for both
-    on_ramp = own_lanelets(context).flags(lambda at: not at.types.isdisjoint(_RAMPS))
+    on_ramp = own_lanelets(context).flags(lambda at: not at.types.isdisjoint(RAMPS))
     by, open_end = by & ~on_ramp, open_end & ~on_ramp
     overtaken = by.any(axis=0)
     dense, surely, not_told = dense_lines(context)

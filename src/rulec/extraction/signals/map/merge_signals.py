@@ -19,7 +19,7 @@ from rulec.extraction.signals import relations
 from rulec.extraction.signals.signal_columns import SignalColumns
 from rulec.extraction.signals.signal_passes import SignalPasses, once_a_road
 from rulec.extraction.tracks.tracks import Flags
-from rulec.recordings.recording import Lanelet, Recording
+from rulec.recordings.recording import RAMPS, Lanelet, Recording
 from rulec.scenario.recorded.route import lanelet_length
 
 _TAPERED = 0.6
@@ -31,7 +31,6 @@ _JUST_BEFORE_M = 15.0
 _WAY_M = 30.0
 """Ways from the lanes before a junction, or where lanes are added, to those behind are shorter."""
 
-_RAMPS = frozenset({"accessRamp", "exitRamp"})
 """Who joins from an acceleration lane gives way, and who leaves a road does not go on beside it."""
 
 
@@ -116,7 +115,7 @@ def _merges(context: DriveContext) -> Iterator[tuple[float, int, bool]]:
     for piece, (row, after) in enumerate(pairwise(rows)):
         onward = {lanelet.id for lanelet in after if lanelet is not None}
         for right, (one, other) in enumerate(pairwise(row)):
-            if one is None or other is None or (one.types | other.types) & _RAMPS:
+            if one is None or other is None or (one.types | other.types) & RAMPS:
                 continue
             ways = [set(lanelet.successors) & onward for lanelet in (one, other)]
             if ways[0] == ways[1] and len(ways[0]) == 1:

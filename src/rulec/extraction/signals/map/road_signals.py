@@ -18,7 +18,7 @@ from rulec.extraction.signals.signal_passes import (
 )
 from rulec.extraction.tracks.surroundings import Directions
 from rulec.extraction.tracks.tracks import Flags
-from rulec.recordings.recording import BROAD_LEFT, BROAD_RIGHT, Lanelet
+from rulec.recordings.recording import BROAD_LEFT, BROAD_RIGHT, RAMPS, Lanelet
 from rulec.scenario.recorded.route import lanes_beside
 
 _OUTSIDE = frozenset({"country", "rural", "highway", "interstate"})
@@ -73,7 +73,8 @@ def _lane_kind(context: DriveContext) -> SignalColumns:
     """The kind of the lane that ego has changed to last, as `lane_change` says it.
 
     That of its middle is another one a little earlier: nobody would change from an entry lane. Of
-    the main lanes those beyond a broad line may leave the road farther ahead.
+    the main lanes those beyond a broad line may leave the road farther ahead. What a ramp that
+    runs by itself joins or has left is not told: several lanes of it may be used as any others.
     """
     if not _LANE_KINDS.keys() & map_contents(context).types:
         return SignalColumns()
@@ -83,7 +84,10 @@ def _lane_kind(context: DriveContext) -> SignalColumns:
     def kind(at: Lanelet) -> str:
         told = next((_LANE_KINDS[x] for x in _LANE_KINDS if x in at.types), "")
         if told != "through_lane":
-            return told
+            beside = [
+                x for left in (True, False) for x in lanes_beside(recording, at.id, left=left)
+            ]
+            return told if any(not recording.lanelets[x].types & RAMPS for x in beside) else ""
         inward = (at.id, *lanes_beside(recording, at.id, left=inward_left))
         return "" if any(broad in recording.lanelets[x].types for x in inward) else told
 
