@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TypeVar
 
+from rulec.diagnostics.phrases import named
 from rulec.recordings import recording
 from rulec.recordings.adjacency import with_neighbours
 from rulec.recordings.commonroad.commonroad_lanelets import LaneletEntry, complete, read_lanelet
@@ -24,6 +25,7 @@ from rulec.recordings.commonroad.commonroad_surroundings import (
     read_weather,
 )
 from rulec.recordings.commonroad.countries import country_in, side_in
+from rulec.recordings.commonroad.disordered_bounds import with_ordered_bounds
 from rulec.recordings.commonroad.planning_problems import (
     ProblemEntry,
     planning_problem,
@@ -154,11 +156,20 @@ def _enter(known: dict[str, _T], tree: Tree, read: Callable[[Tree], _T]) -> None
 
 
 def _lanelets(content: Content) -> dict[str, recording.Lanelet]:
-    plain = {number: entry.lanelet for number, entry in content.lanelets.items()}
+    plain, disordered = with_ordered_bounds(
+        {number: entry.lanelet for number, entry in content.lanelets.items()}
+    )
+    if disordered:
+        content.remarks.append(
+            "bounds go back on themselves, so that their points were put in order: "
+            f"those of the lanelets {named(disordered)}"
+        )
     inside = junctions(content.intersections.values(), plain)
     lights = {number: light for number, light in content.lights.items() if light is not None}
     found = {
-        number: complete(entry, content.signs, lights, inside.get(number, ""))
+        number: complete(
+            entry._replace(lanelet=plain[number]), content.signs, lights, inside.get(number, "")
+        )
         for number, entry in content.lanelets.items()
     }
     return _with_untold_signs(content, found)

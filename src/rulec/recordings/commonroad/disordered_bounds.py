@@ -1,0 +1,81 @@
+"""Bounds whose points are out of order, as some converters of maps write them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from rulec.recordings.recording import Lanelet, Points
+
+_BACK_M = 2.0
+"""A bound that goes back on itself by less is drawn carelessly, and hardly longer for it."""
+
+_SHARP = -0.5
+"""The cosine of the turn from which on a bound goes back; no lane bends so at one point."""
+
+_HAIR_M = 1e-6
+_MOST_POINTS, _MOST_PASSES = 100, 10
+"""Whoever writes more is no such converter, and each pass takes the square of their number."""
+
+
+def with_ordered_bounds(
+    lanelets: Mapping[str, Lanelet],
+) -> tuple[dict[str, Lanelet], tuple[str, ...]]:
+    """Lanelets by id with the points of their bounds in order, and the ids of those changed."""
+    disordered = _going_back(
+        [bound for own in lanelets.values() for bound in (own.left, own.right)]
+    )
+    ordered = dict(lanelets)
+    names, changed = tuple(lanelets), []
+    for name in dict.fromkeys(names[place // 2] for place in disordered):
+        lanelet = lanelets[name]
+        left, right = in_order(lanelet.left), in_order(lanelet.right)
+        if left is not lanelet.left or right is not lanelet.right:
+            ordered[name] = replace(lanelet, left=left, right=right, centre=0.5 * (left + right))
+            changed.append(name)
+    return ordered, tuple(changed)
+
+
+def in_order(points: Points) -> Points:
+    """The points so that the line through them is short; the first and the last one stay.
+
+    Each inner point goes to where the line is shortest (the move *or-opt* of Or, 1976, for one
+    point), for as long as it gets shorter. A line that nowhere goes back stays as it is, and so
+    does one of very many points.
+    """
+    if len(points) > _MOST_POINTS or not _going_back([points]):
+        return points
+    order = list(range(len(points)))
+    for _ in range(_MOST_PASSES):
+        is_shorter = False
+        for point in range(1, len(points) - 1):
+            rest = [x for x in order if x != point]
+            line = points[rest]
+            gaps = np.hypot(*np.diff(line, axis=0).T)
+            ways = np.hypot(*(line - points[point]).T)
+            longer = ways[:-1] + ways[1:] - gaps
+            at = order.index(point)
+            best = int(longer.argmin()) + 1
+            if longer[best - 1] < longer[at - 1] - _HAIR_M:
+                order, is_shorter = [*rest[:best], point, *rest[best:]], True
+        if not is_shorter:
+            break
+    return points[order]
+
+
+def _going_back(bounds: Iterable[Points]) -> list[int]:
+    """The numbers of the bounds that go back on themselves, each once for each point there."""
+    bounds = list(bounds)
+    if not bounds:
+        return []
+    number = np.arange(len(bounds)).repeat([len(bound) for bound in bounds])
+    ways = np.diff(np.concatenate(bounds), axis=0)
+    lengths = np.hypot(*ways.T)
+    lengths[number[1:] != number[:-1]] = 0.0
+    before, after = lengths[:-1], lengths[1:]
+    is_long = np.minimum(before, after) > _BACK_M
+    turns = (ways[:-1] * ways[1:]).sum(axis=1)
+    found: list[int] = number[1:-1][is_long & (turns < _SHARP * before * after)].tolist()
+    return found
