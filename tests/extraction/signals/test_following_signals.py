@@ -109,3 +109,17 @@ def test_who_comes_towards_ego_is_not_followed():
     ego, other = steady(7, 0, 0, steps=8), steady(8, 90, 0.5, speed=-2.0, steps=8)
     found = violated(recording(lanes(2), [ego, other]), GERMAN, defaults=False, egos=("7",))
     assert "following_distance" not in found["7"]
+
+
+@pytest.mark.parametrize("backs", [True, False])
+def test_who_backs_towards_ego_is_not_followed(backs):
+    """It comes from 18 m ahead to 2 m, or ego draws near to one that slows down; 3 m are too few.
+
+    One that backs has come by itself, whatever ego does.
+    """
+    start, mps = (18.0, [-2.0] * 9) if backs else (6.5, np.linspace(2.0, 0.4, 9))
+    places = start + np.concatenate(([0.0], np.cumsum(mps[:-1]) * STEP_S))
+    other = vehicle(8, {k: (x, 0.0) for k, x in enumerate(places)}, speed=2.0, heading=0.0)
+    ego = steady(7, 0, 0, speed=2.0, steps=9)
+    found = violated(recording(lanes(2), [ego, other]), GERMAN, defaults=False, egos=("7",))
+    assert ("following_distance" in found["7"]) is not backs

@@ -107,7 +107,8 @@ def parts_soon(context: DriveContext) -> Flags:
     before, and go aside by ``_AWAY_MPS``, or do so from each other when they are seen last, such
     that they may be clear of each other then; if ego closes in on them, also where they go aside
     by ``_DRIFT_MPS``, and a change of lanes may have them clear. Where ways part in a junction
-    nobody is clear of one that stops before.
+    nobody is clear of one that stops before. And of those who back: they come, and ego stands or
+    waits behind them.
     """
     _, _, follows = relations.ahead_in_lane(context)
     horizon = round(context.thresholds.parting_s / context.recording.step_s)
@@ -130,8 +131,16 @@ def parts_soon(context: DriveContext) -> Flags:
     since = last.take(asked)
     left = until.take(asked) - since
     parts[asked] = _go_aside(context, at.part(asked), at.part(since), left)
+    parts |= _back(context, at)
     found: Flags = follows & at.laid(parts)
     return found
+
+
+def _back(context: DriveContext, cells: Cells) -> Flags:
+    """Flags of cells of those who surely move against ego's way."""
+    slowest = -cells.of(context.extents.along) - cells.of(context.tracks.speed_error)
+    back: Flags = slowest * KMH >= context.thresholds.standing_kmh
+    return back
 
 
 def _go_aside(context: DriveContext, cells: Cells, seen_last: Cells, left: NDArray[intp]) -> Flags:
