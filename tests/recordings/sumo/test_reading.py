@@ -154,6 +154,24 @@ def test_who_jumps_to_another_lane_does_so_with_all_parts(tmp_path):
     assert [one.states[k].y for k in (4, 5)] == pytest.approx([-4.8, -1.6])
 
 
+def test_who_turns_round_in_parts_does_so_along_its_way(tmp_path):
+    """On a half circle with a radius of 3 m at 1.5 m/s, its first part 100 degrees behind."""
+    way = [(-1.5 + 0.15 * k, 0.0, 90.0) for k in range(10)]
+    for k in range(64):
+        turned = 0.05 * k
+        angle = 90 - np.degrees(max(turned - 1.75, 0.0))
+        way.append((3 * np.sin(turned), 3 - 3 * np.cos(turned), angle))
+    way += [(-0.15 * k, 6.0, -10.0) for k in range(1, 110)]
+    rows = [body(x=x, y=y, angle=a, speed=1.5, kind="trailer") for x, y, a in way]
+    one = only(read(tmp_path, *(moment(k / 10, row) for k, row in enumerate(rows))))
+    state = one.states[len(way) - 1]
+    assert (state.x, state.y) == pytest.approx((-16.35 + 8.25, 6), abs=0.01)
+    assert abs(state.heading) == pytest.approx(np.pi, abs=0.01)
+    # The middle goes all of its way: nowhere farther than the front does
+    x, y = np.array([(state.x, state.y) for state in one.states.values()]).T
+    assert np.hypot(np.diff(x), np.diff(y)).max() < 0.16
+
+
 def test_time_begins_with_the_simulation(tmp_path):
     recording = read(tmp_path, moment(3600, body()), moment(3600.5, body()))
     assert recording.step_s == 0.5

@@ -259,7 +259,7 @@ def fcd_participants(
         rows[:, 2] = _steered(rows, starts)
     articulated = track_rows.element == "vehicle" and kind.articulated
     rows = (
-        _centres_along_way(rows, starts, kind.length)
+        _centres_along_way(rows, starts, kind.length, step_s)
         if articulated
         else _centres(rows, kind.length)
     )
@@ -293,23 +293,25 @@ def _steered(rows: NDArray[float64], starts: NDArray[intp]) -> NDArray[float64]:
 
 
 def _centres_along_way(
-    rows: NDArray[float64], starts: NDArray[intp], length: float
+    rows: NDArray[float64], starts: NDArray[intp], length: float, step_s: float
 ) -> NDArray[float64]:
     """The rows of one in parts, by its middle: there its front was half its length ago.
 
     Its angle in the data is that of its first part. It is turned as its rear lies to its front,
     which comes where that has been, as far back as it is long on its way; that begins with a
-    straight piece. What moves across its heading more than along it jumps to another lane in a
-    step, or is slid there, with all its parts.
+    straight piece. What moves across its heading more than along it, and farther than it drives,
+    jumps to another lane in a step, or is slid there, with all its parts.
     """
     found: NDArray[float64] = rows.copy()
     for start, end in zip(starts, [*starts[1:], len(rows)], strict=True):
-        x, y, angle = rows[start:end, :3].T
+        x, y, angle, speed = rows[start:end].T
         heading = np.pi / 2 - np.radians(angle)
+        drives = _JUMPS * step_s * np.maximum(speed[1:], speed[:-1])
         ways = np.stack((np.diff(x), np.diff(y)), axis=1)
         cos, sin = np.cos(heading[1:]), np.sin(heading[1:])
         along, across = ways[:, 0] * cos + ways[:, 1] * sin, ways[:, 1] * cos - ways[:, 0] * sin
-        ways[np.abs(across) > np.abs(along)] = 0.0
+        # Its first part turns late where it turns round at the end of a road
+        ways[(np.abs(across) > np.abs(along)) & (np.hypot(along, across) > drives)] = 0.0
         behind = 2 * length * np.array([[np.cos(heading[0]), np.sin(heading[0])]])
         ways = np.concatenate((behind, ways))
         driven = np.append(0.0, np.hypot(*ways.T).cumsum())
@@ -340,6 +342,9 @@ def _accelerations(
     changes = np.diff(speeds, prepend=speeds[0]) / (np.diff(steps, prepend=steps[0] - 1) * step_s)
     return np.where(np.isnan(stated), changes, stated)
 
+
+_JUMPS = 1.25
+"""Who moves by so many times as much as its speed says is put there."""
 
 _SHOWN = frozenset(lamp for _, lamps in _LAMPS for lamp in lamps)
 
