@@ -43,6 +43,22 @@ def test_stated_speeds_of_a_front_that_turns_are_taken():
     assert found.speed[0].tolist() == pytest.approx([10.0] * 12)
 
 
+def test_single_stated_speeds_that_cannot_be_are_known_no_better_than_places():
+    """At 10 m/s for 8 s; for 0.3 s stated at 19 m/s, which tyres would not gain."""
+    stated = np.full(81, 10.0)
+    stated[40:43] = 19.0
+    found = motion(np.arange(81.0), stated)
+    assert found.speed_error[0, 40:43] == pytest.approx([9.0] * 3)
+    assert np.delete(found.speed_error[0], [40, 41, 42]) == pytest.approx([EXACT.stated_mps] * 78)
+
+
+def test_who_stops_at_once_stands():
+    """Simulated cars may stop within a step: no more than the way to that state was driven."""
+    stated = np.where(np.arange(81) < 40, 10.0, 0.0)
+    found = motion(np.cumsum(stated) * 0.1, stated)
+    assert found.speed_error[0] == pytest.approx([EXACT.stated_mps] * 81)
+
+
 def test_who_backs_up_does_so_whatever_speed_is_stated():
     x, v = braking()
     found = motion(-x, v)

@@ -71,7 +71,8 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
 
     Where that is no whole number of steps, its ends are between two places, along a straight line.
     The speed of what steers is the part along its heading, or what the file states if its stated
-    speeds are ``known`` better and agree with its places.
+    speeds are ``known`` better and agree with its places. Where single ones of these cannot be, as
+    of who is moved by hand in a simulator, nobody knows which of both is meant.
     """
     present = ~np.isnan(poses.x)
     window = _Window.around(present, max(1.0, smoothing_s / 2 / step_s))
@@ -93,7 +94,7 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     speed = np.where(steers[:, None], along, speed)
     own = np.zeros(len(present), dtype=bool)
     differ, told = _differ(speed, stated)
-    contradicts, just_then = np.zeros(len(present)), np.zeros(present.shape)
+    contradicts, (just_then, denied) = np.zeros(len(present)), np.zeros((2, *present.shape))
     if known.stated_mps is None:
         alike = poses.steers & (differ <= _CONTRADICTS * told)
         contradicts = np.where(alike, differ, 0.0)
@@ -107,6 +108,8 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
         # Stated speeds do not say which way
         way = np.where(forward < 0, -stated, stated)
         vx, vy = np.where(own[:, None], (way * cos, way * sin), (vx, vy))
+        apart = np.where(_denied(poses, step_s), np.abs(stated - speed), 0.0)
+        denied = np.where(apart > _GRIP_MPS2 * zero_if_nan(seconds) / 2, apart, 0.0)
         speed = np.where(own[:, None], stated, speed)
     # At a track's ends the mean is of the time beside the state
     begin, end = window.of(columns)
@@ -128,7 +131,7 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
         error[off] += np.where(
             single[off], 0.0, _most_around(slips[off], window.reach + steps) / seconds[off]
         )
-    error = np.where(own[:, None], known.stated_mps or 0.0, error)
+    error = np.where(own[:, None], np.maximum(known.stated_mps or 0.0, denied), error)
     gained_error = known.joint(*window.of(error)) / apart
     return Motion(
         vx=vx,
@@ -138,6 +141,16 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
         acceleration=np.where(present, zero_if_nan(gained), np.nan),
         acceleration_error=zero_if_nan(gained_error),
     )
+
+
+def _denied(poses: Poses, step_s: float) -> NDArray[bool_]:
+    """Where neither the way to a state nor that from it could be driven at its stated speed."""
+    ways = np.hypot(np.diff(poses.x, axis=1), np.diff(poses.y, axis=1)) / step_s
+    ends = np.full((len(ways), 1), np.nan)
+    both = np.concatenate((ends, ways), axis=1), np.concatenate((ways, ends), axis=1)
+    beyond = np.maximum(poses.stated - np.fmax(*both), np.fmin(*both) - poses.stated)
+    denied: NDArray[bool_] = beyond > _GRIP_MPS2 * step_s
+    return denied
 
 
 def _slips(poses: Poses, steps: int, step_s: float) -> NDArray[float64]:
