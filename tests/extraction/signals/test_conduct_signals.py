@@ -377,6 +377,29 @@ def test_who_stands_before_a_zebra_crossing_for_nobody_has_no_cause(walker_y, co
     assert "".join(found[k] for k in (15, 25, 38)) == expected
 
 
+@pytest.mark.parametrize(
+    ("other", "expected"),
+    # Behind ego, waiting for it, or come as far from the side
+    [((-8.0, 0.0, 0.0), "T?F"), ((0.0, -15.0, 90.0), "TTT")],
+)
+def test_who_stands_in_a_junction_has_no_cause_in_who_waits_behind_it(other, expected):
+    """It stands from 4.5 to 20 s, in the middle of 40 m."""
+    speeds = [*np.linspace(20, 0, 9), *[0.0] * 32, *np.linspace(0, 20, 16), *[20.0] * 30]
+    x = 50 + np.concatenate(([0.0], np.cumsum(np.array(speeds[:-1]) / 2)))
+    ego = vehicle(7, {k: (place, 0) for k, place in enumerate(x)})
+    begin, end = float(x[10]) - 20, float(x[10]) + 20
+    road = [
+        straight(1, 0, begin, successors=(2,)),
+        straight(2, begin, end, predecessors=(1,), successors=(3,), **INSIDE),
+        straight(3, end, 900, predecessors=(2,)),
+    ]
+    ahead, left, turned = other
+    places = dict.fromkeys(range(len(x)), (float(x[10]) + ahead, left))
+    waits = vehicle(8, places, speed=0.0, heading=np.radians(turned))
+    found = told(reason_signals, "cause_to_brake", road, ego, waits, complete=SIMULATED)
+    assert "".join(found[k] for k in (15, 25, 38)) == expected
+
+
 @pytest.mark.parametrize("hazards_told", [False, True])
 def test_who_stands_when_it_is_first_seen_may_have_waited_until_then(hazards_told):
     speeds = [*[0.0] * 30, *np.linspace(0, 20, 16), *[20.0] * 20]

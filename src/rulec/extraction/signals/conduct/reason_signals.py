@@ -190,14 +190,18 @@ def _stands_for_nobody(context: DriveContext, crossing: Floats) -> Flags:
 def _stands_alone(context: DriveContext, where: Flags, whom: Flags) -> Flags:
     """Flags of states in which ego has stood somewhere for ``_MOVES_OFF_S``, and been alone there.
 
-    None of those of ``whom`` was within ``_CROSSES_M``. Only where all traffic is recorded.
+    None of those of ``whom`` was within ``_CROSSES_M``, but for who has come up behind ego, and
+    waits for it. Only where all traffic is recorded.
     """
     spans, alone = context.spans, np.zeros(context.states, dtype=bool)
     states = np.flatnonzero(where & ~moves(context))
     if not len(states) or not _all_are_recorded(context):
         return alone
     others = _others(context, states)
-    about = np.hypot(others.ahead, others.left)[whom[others.rows]] <= _CROSSES_M
+    about = (np.hypot(others.ahead, others.left) <= _CROSSES_M) & whom[others.rows][:, None]
+    cells = Cells.at(about & (others.ahead < 0))
+    turned = _motion(context, others.rows[cells.rows], states[cells.columns]).turned
+    about.ravel()[cells.places[np.abs(turned) < _ACROSS_RAD]] = False
     alone[states] = ~about.any(axis=0)
     steps = round(_MOVES_OFF_S / context.recording.step_s)
     found: Flags = ~spans.within_last(~alone, steps) & (spans.columns - spans.first >= steps)
