@@ -413,6 +413,17 @@ def test_who_stands_when_it_is_first_seen_may_have_waited_until_then(hazards_tol
     assert (set(found[:11]), set(found[11:28])) == ({"?"}, {"F"})
 
 
+@pytest.mark.parametrize(("back", "expected"), [(-2.0, "?"), (20.0, "F")])
+def test_who_stands_before_it_backs_may_have_to(back, expected):
+    """It stands from 4 to 8 s, backs for 4 s, or does not, and drives on."""
+    later = [*np.linspace(0, back, 5), *[back] * 4, *np.linspace(back, 20, 12), *[20.0] * 30]
+    speeds = [*np.linspace(20, 0, 9), *[0.0] * 8, *later]
+    x = 50 + np.concatenate(([0.0], np.cumsum(np.array(speeds[:-1]) / 2)))
+    ego = vehicle(7, {k: (place, 0) for k, place in enumerate(x)}, speed=10.0)
+    found = told(reason_signals, "cause_to_brake", LONG, ego, complete=SIMULATED)
+    assert set(found[10:16]) == {expected}
+
+
 def test_who_holds_up_others():
     road = [straight(1, 0, 2500, limit_mps=30.0)]
     slow, follower = steady(7, 100, 0, 10, 100), steady(8, 85, 0, 10, 100)

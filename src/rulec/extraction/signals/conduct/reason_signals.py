@@ -79,6 +79,9 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
         broken_down = stands & ~_drives_on(context, stands)
         perhaps = spans.within(broken_down, soon) & ~(stands & _shows_no_hazard(context))
         perhaps |= stands & spans.begins_here
+        # Who is about to back has to stand before
+        backs = context.ego_extents.along[0] * KMH <= -context.thresholds.standing_kmh
+        perhaps |= stands & spans.within(backs, soon)
     perhaps |= spans.columns + soon // 2 >= spans.end
     # Ego may want to get in behind one beside it, or let it in
     beside = (others.away > _IN_WAY_M) & (others.away <= _COMES_M)
