@@ -34,6 +34,11 @@ WORDS = (
         ("yield_sign", ["give_way_sign"]),
         ("passes", ["overtaking"]),
         ("blinker", ["near_indicator", "far_indicator"]),
+        ("motorvej", ["motorway"]),
+        ("Fußgängerüberweg", ["crossing_zone"]),
+        ("fodgængerfelt", ["crossing_zone"]),
+        ("väjningsplikt", ["give_way_sign"]),
+        ("制限速度", ["limit"]),
         ("driver_drunk", []),
         ("sign_of_zodiac", []),
         ("speed_camera_flash_lamp", []),
@@ -67,7 +72,11 @@ def test_check_offers_them(formula, way_out):
     assert mistake.help.startswith(way_out)
 
 
-def test_check_offers_types():
-    text = "rulebook a\nuse road\nhard rule r (l: lorry) { require never beside(l) }\n"
+@pytest.mark.parametrize(
+    ("said", "known"),
+    [("lorry", "truck"), ("sporvogn", "tram"), ("gående", "pedestrian"), ("peatón", "pedestrian")],
+)
+def test_check_offers_types(said, known):
+    text = f"rulebook a\nuse road\nhard rule r (o: {said}) {{ require never beside(o) }}\n"
     (mistake,) = diagnose("a.rules", text.encode()).findings
-    assert mistake.help == "did you mean `truck`?"
+    assert mistake.help == f"did you mean `{known}`?"

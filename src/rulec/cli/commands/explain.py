@@ -20,6 +20,9 @@ from rulec.settings import search_path
 if TYPE_CHECKING:
     from rulec.rulebook.word_search import FoundWord
 
+_ALIKE = 0.75
+"""As of names in formulas: what is less alike is seldom a slip, such as `trikk` of `truck`."""
+
 
 @click.command(cls=Verb)
 @click.argument("names", nargs=-1, metavar="[CODE|WORD]...", shell_complete=complete_codes)
@@ -95,6 +98,7 @@ def _way_out(name: str) -> str:
     from rulec.rulebook.files.catalogue import rulebooks_with_rule
     from rulec.rulebook.files.search_path import available_rulebooks
     from rulec.rulebook.files.words_in_files import words_of_vocabularies
+    from rulec.rulebook.names.word_meanings import described, offer
 
     if near := nearest_name(name.upper(), code_registry.all_codes()):
         return f"did you mean `{near}`?"
@@ -103,10 +107,11 @@ def _way_out(name: str) -> str:
     if books := rulebooks_with_rule(name, search_path()):
         more = f" (also of {first_of(books[1:], 3)})" if books[1:] else ""
         return f"it is a rule, which `rulec show {books[0]} {name}` explains{more}"
-    known = frozenset[str]().union(*words_of_vocabularies(search_path()).values())
-    if near := nearest_name(name, sorted(known)):
+    words = words_of_vocabularies(search_path())
+    known = sorted(frozenset[str]().union(*words.values()))
+    if near := nearest_name(name, known, _ALIKE):
         return f"did you mean the word `{near}`?"
-    return (
+    return offer(name, described(known, words)) or (
         "`rulec list codes` shows the codes, `rulec list vocabularies` where words are; `rulec "
         "show RULEBOOK RULE` explains a rule, `rulec verify` a violation"
     )

@@ -9,8 +9,7 @@ from pathlib import Path
 from rulec.diagnostics import Diagnostic, Label, Span, any_of, did_you_mean, named, nearest_name
 from rulec.diagnostics.code import Code
 from rulec.rulebook.names.symbol_table import SymbolTable
-from rulec.rulebook.names.word_meanings import DescribedWord, offer
-from rulec.rulebook.vocabulary_phrases import phrases_in
+from rulec.rulebook.names.word_meanings import described, offer
 from rulec.syntax import tree
 from rulec.syntax.keywords import INFIX_LETTERS, PREFIX_LETTERS
 from rulec.vocabulary import Enumeration, Quantity, Signal
@@ -181,23 +180,8 @@ def _unknown(
 
 def _by_meaning(name: str, known: Sequence[str], symbols: SymbolTable) -> str:
     """Words of the vocabularies that ship which mean what a name says."""
-    vocabularies = {file.name for file in symbols.of_vocabularies}
-    in_english, *others = (
-        {
-            word: text
-            for file in vocabularies
-            for word, text in phrases_in(Path(file).stem, language).items()
-        }
-        for language in ("en", "de", "fr")
-    )
-    return offer(
-        name,
-        tuple(
-            DescribedWord(word, in_english[word], tuple(other.get(word, "") for other in others))
-            for word in known
-            if word in in_english
-        ),
-    )
+    vocabularies = {Path(file.name).stem for file in symbols.of_vocabularies}
+    return offer(name, tuple(word for word in described(known, vocabularies) if word.phrase))
 
 
 def _declaration(use: tree.AtomUse, variables: Mapping[str, str | None]) -> str:

@@ -14,8 +14,9 @@ from dataclasses import dataclass
 from functools import cache
 from math import log
 from typing import Final
+from unicodedata import combining, normalize
 
-from rulec.rulebook.vocabulary_phrases import synonyms_of_the_field
+from rulec.rulebook.vocabulary_phrases import phrases_in, synonyms_of_the_field
 
 _NAME, _PHRASE, _TRANSLATED = 1.0, 0.8, 0.6
 """How surely a word is about a part of its name, of its phrase, and of that in other languages."""
@@ -50,6 +51,20 @@ class DescribedWord:
     name: str
     phrase: str = ""
     translations: tuple[str, ...] = ()
+
+
+def described(names: Iterable[str], vocabularies: Iterable[str]) -> tuple[DescribedWord, ...]:
+    """Words with their phrases in vocabularies that ship; those without one have their names."""
+    in_english, *others = (
+        {word: text for one in vocabularies for word, text in phrases_in(one, language).items()}
+        for language in ("en", "de", "fr")
+    )
+    return tuple(
+        DescribedWord(
+            name, in_english.get(name, ""), tuple(other.get(name, "") for other in others)
+        )
+        for name in names
+    )
 
 
 def offer(name: str, words: tuple[DescribedWord, ...]) -> str:
@@ -114,7 +129,7 @@ def _by_form() -> tuple[Mapping[str, str], int]:
 def _stems(text: str) -> Iterator[str]:
     """The parts of a name or a text, of those that mean the same always the same one."""
     main_of, longest = _by_form()
-    parts = [part.casefold() for part in _PART.findall(text)]
+    parts = [_without_accents(part.casefold()) for part in _PART.findall(text)]
     stems = [_stem(part) for part in parts]
     at = 0
     while at < len(parts):
@@ -133,6 +148,19 @@ def _stems(text: str) -> Iterator[str]:
 
 def _joined(form: str) -> str:
     return "_".join(_stem(part) for part in form.split("_"))
+
+
+_LETTERS: Final = str.maketrans(
+    {"ä": "ae", "æ": "ae", "ö": "oe", "ø": "oe", "ü": "ue", "å": "aa", "ł": "l"}
+)
+
+
+def _without_accents(part: str) -> str:
+    """As the synonyms are written: `å` is `aa`, `é` is `e`."""
+    if part.isascii():
+        return part
+    plain = normalize("NFKD", part.translate(_LETTERS))
+    return normalize("NFC", "".join(letter for letter in plain if not combining(letter)))
 
 
 @cache
