@@ -236,6 +236,8 @@ def reason_in_words(problem: OSError | ValueError) -> str:
         return "it is a folder"
     if isinstance(problem, FileExistsError):
         return "a file of this name is there, where a folder is wanted"
+    if isinstance(problem, NotADirectoryError):
+        return "what stands before a `/` in its name is a file, and no folder"
     known = problem.strerror if isinstance(problem, OSError) else None
     return (known or str(problem)).lower()
 
@@ -246,6 +248,8 @@ def unwritable(path: Path, problem: OSError) -> Diagnostic:
         way_out = f"make the folder `{path.parent}` first, or give a file in another one"
     if isinstance(problem, PermissionError):
         way_out = "change its permissions, or give a file in a folder that you may write to"
+    if isinstance(problem, FileExistsError | NotADirectoryError):
+        way_out = "move that file away, or name another folder"
     if problem.errno == errno.ENOSPC:
         way_out = "make room there, or give a file on another disk"
     if problem.errno == errno.EROFS:

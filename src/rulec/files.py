@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import replace
-from errno import EACCES, EISDIR
+from errno import EACCES, EEXIST, EISDIR, ENOTDIR, EROFS
 from io import SEEK_CUR, SEEK_END, BufferedReader, RawIOBase
 from pathlib import Path
 from typing import IO, Any, Final, cast
@@ -150,6 +150,30 @@ def is_replaced(path: Path) -> bool:
     if path.is_file() and not os.access(path, os.W_OK):
         raise PermissionError(EACCES, os.strerror(EACCES))
     return path.is_file()
+
+
+def refuse_unwritable(path: Path, *, is_folder: bool = False) -> None:
+    """Refuse a file, or a folder for files, of which can be told that it cannot be written.
+
+    It is asked before there is anything to write, which may take long; nothing is made.
+
+    Raises RulecError: R0702; R0730 behind a link out of the tree.
+    """
+    refuse_link_out(path)
+    with refusals(path):
+        place = path if is_folder else path.parent
+        if not is_folder and not is_replaced(path):
+            return
+        while is_folder and not os.path.lexists(place) and place != place.parent:
+            place = place.parent
+        if not place.is_dir():
+            place.stat()
+            wrong = EEXIST if place == path else ENOTDIR
+            raise OSError(wrong, os.strerror(wrong))
+        if os.statvfs(place).f_flag & os.ST_RDONLY:
+            raise OSError(EROFS, os.strerror(EROFS))
+        if not os.access(place, os.W_OK | os.X_OK):
+            raise PermissionError(EACCES, os.strerror(EACCES))
 
 
 def put_on_disk(stream: IO[bytes]) -> None:

@@ -1,5 +1,6 @@
 """``rulec compile`` as its user meets it."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -73,3 +74,27 @@ def test_a_folder_is_not_named_as_one_of_its_files(tmp_path, monkeypatch, capsys
     Path("law.json").mkdir()
     assert main(["compile", "esterle2019", "-o", "law.json"]) == 0
     assert [path.name for path in Path().iterdir()] == ["law.json"]
+
+
+@pytest.mark.parametrize(
+    ("folder", "why", "way_out"),
+    [
+        ("notes", "a file of this name is there, where a folder is wanted", "name another folder"),
+        ("notes/law", "what stands before a `/` in its name is a file", "name another folder"),
+        ("shut/law", "permission denied", "change its permissions"),
+    ],
+)
+def test_a_folder_that_cannot_be_is_refused_before_anything_is_compiled(
+    folder, why, way_out, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    Path("notes").touch()
+    Path("shut").mkdir(0o500)
+    # Who may do all things, as in a container, may write there, too.
+    monkeypatch.setattr(os, "access", lambda path, _: Path(path) != Path("shut"))
+    assert main(["compile", "no_such_book", "-o", folder]) == 2
+    err = capsys.readouterr().err
+    assert f"error[R0702]: the file cannot be written: {why}" in err
+    assert way_out in err
+    assert "R0703" not in err
+    assert not any(Path("shut").iterdir())

@@ -317,3 +317,19 @@ def test_an_answer_replaces_an_older_one(name, tmp_path, monkeypatch):
     for _ in range(2):
         words = ["verify", "cars.csv", "--map", "lanes.csv", "-r", "esterle2019", "-o", name]
         assert main(words) in {0, 1}
+
+
+@pytest.mark.parametrize(
+    ("file", "why"),
+    [("gone/found.csv", "no such file or directory"), ("notes/found.csv", "and no folder")],
+)
+def test_a_file_that_cannot_be_written_is_refused_before_anything_is_read(
+    file, why, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    Path("notes").touch()
+    assert main(["verify", "missing.xml", "-r", "de", "-o", file]) == 2
+    err = capsys.readouterr().err
+    assert err.startswith("error[R0702]: the file cannot be written: ")
+    assert why in err
+    assert "missing.xml" not in err

@@ -15,6 +15,7 @@ from rulec.cli.options.output_options import Output, refuse_overwriting, refuse_
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import errors_told, open_session, rulebooks_named, told_apart
 from rulec.diagnostics import SourceLocation, placed_at
+from rulec.files import refuse_unwritable
 from rulec.report.text.console import print_line, print_remark
 
 if TYPE_CHECKING:
@@ -104,6 +105,8 @@ def command(
         raise click.UsageError("--output names no folder. For this one, write `-o .`")
     refuse_standard_output(output)
     _refuse_file(output)
+    # Compiling may take minutes.
+    refuse_unwritable(Path(output), is_folder=True)
     for rulebook in rulebooks:
         if "/" in rulebook and Path(rulebook).suffix in _WRITTEN:
             # What is written is called after rules, which are not known yet.

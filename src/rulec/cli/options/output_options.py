@@ -19,6 +19,7 @@ import click
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.file_messages import OVERWRITES_INPUT
+from rulec.files import refuse_unwritable
 from rulec.report.verdict_findings.finding_writers import ENDINGS
 from rulec.work_trees import is_ordinary
 
@@ -243,6 +244,7 @@ def _refuse_doubtful(to: Sequence[Output], values: Mapping[str, Any]) -> None:
 
     Raises:
         click.UsageError: one of them is like that.
+        RulecError: R0702 or R0730, one of them cannot be written.
     """
     if sum(not output.is_file for output in to) > 1:
         raise click.UsageError("standard output takes one format.")
@@ -253,6 +255,9 @@ def _refuse_doubtful(to: Sequence[Output], values: Mapping[str, Any]) -> None:
     if len(set(map(_identity, written))) < len(written):
         raise click.UsageError("a file is named twice by -o.")
     refuse_overwriting(to, list(_texts(values.values())))
+    for output in to:
+        if output.is_file and not output.is_folder:
+            refuse_unwritable(Path(output.path))
     for name, goes_on in _ALSO_WRITTEN.items():
         read = (value for other, value in values.items() if other not in (name, goes_on))
         for path in _texts([values.get(name)]):
