@@ -12,6 +12,7 @@ import rulec
 from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.cli.main import main
 from rulec.code_generation.compiled_c import c_library
+from rulec.code_generation.code_messages import compiler_failed
 from rulec.code_generation.compiled_c.c_library import CLibrary
 from rulec.code_generation.compiled_c.rust_library import RustLibrary
 from rulec.code_generation.letter_cells import EXCLUDED, LEAF, letter_cells
@@ -245,6 +246,22 @@ def test_a_compiler_that_is_not_there_or_fails(esterle, script, code, said, monk
     assert found.code == code
     assert said in found.message
     assert "`CC`" in found.help
+
+
+@pytest.mark.parametrize(
+    ("said", "way_out"),
+    [
+        (
+            "error: rustup could not choose a version of rustc to run\n\nhelp: run 'rustup default'",
+            "rustup has no such compiler here: `rustup default stable` installs one",
+        ),
+        ("error: edition 2021 is unstable", "update Rust by `rustup update`"),
+    ],
+)
+def test_a_rust_compiler_that_fails(said, way_out):
+    (found,) = compiler_failed("rustc lib.rs", said, 1).diagnostics
+    assert found.help == way_out
+    assert "\n" not in found.message
 
 
 def test_a_variable_that_is_no_command(esterle, monkeypatch):

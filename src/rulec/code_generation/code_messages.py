@@ -88,13 +88,18 @@ def no_rust_compiler() -> RulecError:
 
 def compiler_failed(command: str, said: str, status: int | None = None) -> RulecError:
     """The error (R0752) about a compiler that has failed, with what it said, or its status."""
-    first = "\n".join(said.strip().splitlines()[:5])
+    # A message has one line.
+    first = "; ".join(line.strip() for line in said.strip().splitlines()[:5] if line.strip())
     if not first:
         ended = "ended" if status is None else f"ended with status {status}"
         first = f"it {ended if status is None or status >= 0 else f'was ended by signal {-status}'}"
         first += " and said nothing"
     is_rust = command.startswith("rustc")
-    another = "update Rust by `rustup update`" if is_rust else "name another compiler in `CC`"
+    another = "name another compiler in `CC`"
+    if is_rust and "rustup" in said:
+        another = "rustup has no such compiler here: `rustup default stable` installs one"
+    elif is_rust:
+        another = "update Rust by `rustup update`"
     return MONITOR_COMPILER_FAILED.error(None, f"`{command}` has failed: {first}", help=another)
 
 
