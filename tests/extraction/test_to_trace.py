@@ -112,7 +112,7 @@ def test_what_is_known_exactly_is_a_number():
 
 def test_assumptions_hold_in_every_state_whatever_was_recorded():
     assumed = {"speed": 5.0, "built_up": True}
-    words = vocabulary(Quantity("speed", (), "km/h"))
+    words = vocabulary(Quantity("speed", (), "km/h"), Signal("built_up", ()))
     found = drive(writer=TraceWriter(words, assumed=assumed))
     assert [dict(state) for state in found.trace.states] == [assumed] * 4
     assert found.kinds == {"speed": float, "built_up": bool}

@@ -120,7 +120,8 @@ def selected_drives(
 ) -> SelectedDrives:
     """The drives of a recording, in a vocabulary's words, for rules of a side of ``traffic``.
 
-    Raises RulecError R0612 for a vehicle that is not there, or if nobody drives.
+    Raises RulecError R0612 for a vehicle that is not there, or if nobody drives; R0502 or R0503 for
+    what is assumed and does not fit the vocabulary.
     """
     side, mirrored = chosen_side(recording, request, traffic)
     writer = TraceWriter(vocabulary, names, request.assumed, request.defaults)

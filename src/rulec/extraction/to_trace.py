@@ -59,6 +59,8 @@ from rulec.extraction.tracks.tracks import Floats
 from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.logic.formula import Relation
 from rulec.monitoring.explain.margins import Margin
+from rulec.monitoring.monitoring_messages import UNFITTING_VALUE
+from rulec.monitoring.state_validation import check_state
 from rulec.trace import Trace, Value
 from rulec.trace.cells import Cells
 from rulec.trace.trace_arrays import TraceArrays
@@ -256,6 +258,9 @@ class TraceWriter:
     what is unknown is left out, so that it takes its default, and the trace is over when it ends.
     Drives that are ``bare`` are judged and looked at no more: they lack places, and the numbers and
     ids behind signals.
+
+    Raises RulecError R0502 or R0503 if what is assumed does not fit the vocabulary: no drive could
+    be judged, and each would be refused as if it had said so itself.
     """
 
     vocabulary: Vocabulary | None = None
@@ -263,6 +268,16 @@ class TraceWriter:
     assumed: Mapping[str, Value] = field(default_factory=dict)
     defaults: bool = False
     bare: bool = False
+
+    def __post_init__(self) -> None:
+        if self.vocabulary is None:
+            return
+        for name in self.assumed:
+            declaration = self.vocabulary.declarations.get(name)
+            if declaration is not None and declaration.parameters:
+                why = f"`assumed` has `{name}`, which is about objects"
+                raise UNFITTING_VALUE.error(None, why, help="assume only what is about none")
+        check_state(self.assumed, {}, self.vocabulary, "`assumed`")
 
 
 ALL_SIGNALS = TraceWriter()

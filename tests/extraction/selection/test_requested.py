@@ -9,6 +9,7 @@ from rulec.extraction.drives import NoDrive
 from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.traffic_thresholds import USUAL
 from rulec.recordings.recording import TrackState
+from rulec.rulebook.loader import load_vocabulary
 from support.builders.drive_contexts import steady
 from support.builders.recordings import recording, rectangle, vehicle
 from support.generators.random_recordings import lanes
@@ -90,3 +91,27 @@ def test_who_has_sets_for_places_has_no_track():
     assert all(
         isinstance(one, NoDrive) and one.why.startswith("it has no track") for one in drives.of("7")
     )
+
+
+@pytest.mark.parametrize(
+    ("assumed", "code", "says", "way_out"),
+    [
+        ({"bulit_up": True}, "R0502", "`assumed` speaks of `bulit_up`", "did you mean `built_up`?"),
+        (
+            {"built_up": "true"},
+            "R0503",
+            'says `built_up` is `"true"`; it is true or',
+            "write `true`",
+        ),
+        ({"road_class": "freeway"}, "R0503", "is one of `ordinary_road`, `expressway`", ""),
+        ({"gap": 5.0}, "R0503", "`gap`, which is about objects", "assume only what is about none"),
+    ],
+)
+def test_what_no_drive_can_have_is_refused_at_once(assumed, code, says, way_out):
+    words = load_vocabulary("road")
+    with pytest.raises(RulecError) as caught:
+        selected_drives(RIGHT, RequestedDrives(assumed=assumed), "road.xml", vocabulary=words)
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == code
+    assert says in diagnostic.message
+    assert diagnostic.help == way_out
