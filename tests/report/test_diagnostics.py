@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rulec.diagnostics import Diagnostic, Label, Source, Span
+from rulec.diagnostics import Diagnostic, Label, RulecError, Source, Span
 from rulec.diagnostics.source_text import SourceLocation
-from rulec.report.findings.diagnostics_text import MAX_WIDTH, render_diagnostics
+from rulec.report.findings.diagnostics_text import MAX_WIDTH, Complaints, render_diagnostics
 
 
 def at(text, part, name="a.rules", occurrence=0):
@@ -187,3 +187,18 @@ def test_a_line_is_as_wide_as_it_is_told():
         shown = render_diagnostics([Diagnostic("R0202", "m", place)], columns=columns)
         assert next(row for row in shown.splitlines() if "xx" in row).count("x") == columns
     assert render_diagnostics([Diagnostic("R0202", "m", place)], columns=700).count("…") == 0
+
+
+def test_of_many_the_same_is_said_once_and_others_are_counted(capsys):
+    complaints = Complaints(most=2)
+    for message in ("of steps", "of steps", "of types", "of steps", "of sizes"):
+        complaints.add(RulecError(Diagnostic("R0507", message)))
+    complaints.add(RulecError(Diagnostic("R0503", "of steps")))
+    complaints.close()
+    lines = capsys.readouterr().err.split("\n")
+    assert [line for line in lines if line] == [
+        "error[R0507]: of steps",
+        "error[R0507]: of types",
+        "error[R0503]: of steps",
+        "… and 3 more of this kind [R0507]",
+    ]

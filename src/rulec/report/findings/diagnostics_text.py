@@ -109,24 +109,30 @@ def print_diagnostics(diagnostics: Sequence[Diagnostic], *, summary: bool = True
 
 
 class Complaints:
-    """Errors about many inputs: the first of each kind shown, others counted."""
+    """Errors about many inputs: the first of each kind shown, others counted.
+
+    So are those that are word for word the same, as of each drive of a recording.
+    """
 
     def __init__(self, most: int = 10) -> None:
         self._most = most
         self._seen: Counter[str] = Counter()
+        self._shown: dict[str, list[Diagnostic]] = {}
 
     def add(self, error: RulecError) -> None:
         """Show an error, or count it after many of its kind."""
         for diagnostic in error.diagnostics:
             self._seen[diagnostic.code] += 1
-            if self._seen[diagnostic.code] <= self._most:
+            shown = self._shown.setdefault(diagnostic.code, [])
+            if diagnostic not in shown and len(shown) < self._most:
+                shown.append(diagnostic)
                 print_diagnostics([diagnostic], summary=False)
 
     def close(self) -> None:
         """Say how many have not been shown."""
         for code, count in self._seen.items():
-            if count > self._most:
-                print_aside(f"… and {count - self._most:,} more of this kind [{code}]")
+            if hidden := count - len(self._shown[code]):
+                print_aside(f"… and {hidden:,} more of this kind [{code}]")
 
 
 def render_diagnostics(
