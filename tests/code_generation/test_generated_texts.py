@@ -11,8 +11,8 @@ import pytest
 import rulec
 from rulec.automata.mealy_monitor import IMPOSSIBLE
 from rulec.cli.main import main
-from rulec.code_generation.compiled_c import c_library
 from rulec.code_generation.code_messages import compiler_failed
+from rulec.code_generation.compiled_c import c_library
 from rulec.code_generation.compiled_c.c_library import CLibrary
 from rulec.code_generation.compiled_c.rust_library import RustLibrary
 from rulec.code_generation.letter_cells import EXCLUDED, LEAF, letter_cells
@@ -252,7 +252,7 @@ def test_a_compiler_that_is_not_there_or_fails(esterle, script, code, said, monk
     ("said", "way_out"),
     [
         (
-            "error: rustup could not choose a version of rustc to run\n\nhelp: run 'rustup default'",
+            "error: rustup could not choose a version of rustc to run\n\nhelp: rustup default",
             "rustup has no such compiler here: `rustup default stable` installs one",
         ),
         ("error: edition 2021 is unstable", "update Rust by `rustup update`"),
