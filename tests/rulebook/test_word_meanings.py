@@ -61,6 +61,8 @@ def test_a_word_is_offered_with_its_phrase():
     ("formula", "way_out"),
     [
         ("autobahn", "did you mean `motorway` (the road is a motorway)?"),
+        ("speed > 50 km / h", "a unit is one word: write `km/h`"),
+        ("speed > 50 / h", "declare it, such as `signal h`"),
         ("motorwai", "did you mean `motorway`?"),
         ("is_speeding", "words that may mean it: `limit` (the signposted speed limit), `minimum_"),
         ("driver_drunk", "declare it, such as `signal driver_drunk`"),

@@ -31,6 +31,7 @@ BY_ITSELF = "each value stands for itself: write"
 IN_A_FORMULA = "in a formula write"
 A_CLAUSE = "of a whole rule it is a clause"
 ONE_VARIABLE = "it has one variable; put one inside the other: "
+LASTING = "how long something lasts stands in a bound, such as "
 FORMULAS = [
     ("p => q", "=>", "write `implies` or `->`"),
     ("p → q", "→", "write `implies` or `->`"),
@@ -50,6 +51,15 @@ FORMULAS = [
     ("p ∨ q", "∨", "write `or` or `|`"),
     ("~p", "~", "write `not` or `!`"),
     ("¬p", "¬", "write `not` or `!`"),
+    ("p og q", "og", "write `and` or `&`"),
+    ("p eller q", "eller", "write `or` or `|`"),
+    ("p and nicht q", "q", "write `not` or `!` for `nicht`"),
+    ("lane is kerb", "is", "a value stands alone, such as `kerb`; of an object it is `kerb(lane)`"),
+    ("gap >= at least 3 m", "least", "for `at least` write `>=`"),
+    ("gap at least 3 m", "at", f"for `at least` write `>=`; {LASTING}`historically[>= 3 s] p`"),
+    ("gap at most 3 m", "at", f"for `at most` write `<=`; {LASTING}`historically[<= 3 s] p`"),
+    ("once[at least 3 s] p", "least", "for `at least` write `[>= 3 s]`"),
+    ("once[at most 2 steps] p", "most", "for `at most` write `[<= 2 steps]`"),
     ("□ p", "□", "write `always` or `G`"),
     ("◇ p", "◇", "write `eventually` or `F`"),
     ("○ p", "○", "write `next` or `X`"),
@@ -224,6 +234,11 @@ HEAD = "a rule's head is written `hard rule NAME (v: vehicle) in LEVEL weight NU
 SCOPES = "a scope is `initially`, `at start`, `throughout`, `at some point`, or `at end`"
 ONE_VALUE = "a state gives a quantity one value, such as `speed = 50 km/h`"
 LINES = [
+    (
+        "hard rule a { re\u00adquire p }",
+        "re",
+        "behind `re`, delete the character there, which cannot be seen",
+    ),
     ("title 'A'", "'A'", 'texts stand in straight double quotes: "…"'),
     ('title = "A"', "=", "delete the `=`"),
     ('title: "A"', ":", "delete the `:`"),

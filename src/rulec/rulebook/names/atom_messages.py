@@ -115,6 +115,7 @@ _ALIKE = 0.75
 """How alike a name is to what it is a slip of; what is less alike more often means another word."""
 
 _COMPARED = re.compile(r"\s*(?:[<>]=?|!?=)\s*[\d.]+[ \t]*([^\W\d][\w/^%]*|%)?")
+_PARTED_UNIT = re.compile(r"\d[ \t]*([^\W\d]+)[ \t]*/[ \t]*\Z")
 _ATOM = "expected a signal or a value"
 _GLUED = re.compile(rf"([{PREFIX_LETTERS}]+)(\w+)")
 _GLUED_BINARY = re.compile(rf"(\w+?)([{INFIX_LETTERS}])(\w+)")
@@ -161,7 +162,10 @@ def _unknown(
     atoms = symbols.atoms()
     quantities = [item.name for item in symbols.items.values() if isinstance(item, Quantity)]
     glued = _glued(name, set(atoms))
-    if name == "if":
+    parted = _PARTED_UNIT.search(use.span.source.text, 0, use.name.span.start)
+    if parted and parse_unit(f"{parted[1]}/{name}"):
+        way_out = f"a unit is one word: write `{parted[1]}/{name}`"
+    elif name == "if":
         way_out = "write `p implies q` for `if p then q`"
     elif glued:
         way_out = f"write `{glued}`"

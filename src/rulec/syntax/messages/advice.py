@@ -20,6 +20,7 @@ from rulec.syntax.messages.in_formulas import (
     IN_DIGITS,
     advise_on_aggregate,
     advise_on_formula,
+    sign_in_words,
 )
 from rulec.syntax.messages.in_items import (
     FORMS,
@@ -81,6 +82,11 @@ def _inside(scene: ParseContext) -> str:
         if text == "..":
             return _both_ends(before, scene.text_behind, scene.text_at(scene.at + 2))
         return f"say what it counts: `{before} s` or `{before} steps`"
+    if (sign := sign_in_words(before, text)) and scene.is_number(scene.at + 1):
+        amount = scene.source.text[
+            scene.tokens[scene.at + 1].start : _end_of_amount(scene, scene.at + 1)
+        ]
+        return f"for `{before} {text}` write `[{sign} {amount}]`"
     if before.casefold() in IN_DIGITS and scene.is_word():
         return f"write the number in digits: `{IN_DIGITS[before.casefold()]} {text}`"
     if text in ("<=", ">=") and scene.is_number(scene.at - 2):
@@ -185,6 +191,8 @@ def _misspelt(scene: ParseContext) -> str:
         return ""
     if token.text.casefold() in ("infinite", "twice"):
         return ""  # they are much like `finite` and `since`, and mean something else
+    if before and scene.operator and (sign := sign_in_words(before.text, token.text)):
+        return f"for `{before.text} {token.text}` write `{sign}`"
     words = {word for word in map(spelling, scene.accepted) if word in RESERVED | CONTEXTUAL}
     # One letter is a name, such as `f` behind `eventualy`, and no word misspelt.
     near = did_you_mean(token.text, words) if len(token.text) > 1 else ""

@@ -13,9 +13,9 @@ from rulec.syntax.messages.parse_context import COMPARISONS, ParseContext
 _OTHER_SPELLINGS: Final = {
     "implies": ("=>", "==>", "-->", "→", "⇒", "⟹", "⟶"),
     "iff": ("<=>", "===", "↔", "⇔", "⟺", "≡"),
-    "and": ("∧",),
-    "or": ("∨",),
-    "not": ("¬", "~"),
+    "and": ("∧", "und", "og", "och", "en", "et", "oraz"),
+    "or": ("∨", "oder", "eller", "of", "ou", "lub"),
+    "not": ("¬", "~", "nicht", "ikke", "inte", "niet", "nie", "pas", "non"),
     "always": ("□", "◻", "globally"),
     "eventually": ("◇", "◊", "⋄", "finally"),
     "next": ("○", "◯", "@"),
@@ -68,6 +68,11 @@ def advise_on_formula(scene: ParseContext) -> str:
         if way_out:
             return way_out
     return ""
+
+
+def sign_in_words(before: str, text: str) -> str:
+    """The sign for two words, such as `at least`; empty for others."""
+    return _IN_WORDS.get((before, text), "")
 
 
 def advise_on_aggregate(scene: ParseContext) -> str:
@@ -231,10 +236,17 @@ def _comparisons(scene: ParseContext) -> str:
         if sign := _IN_WORDS.get(said):
             return f"for `is {' '.join(said)}` write `{sign}`"
         if words[0].isidentifier() and words[0] not in keywords.RESERVED:
-            return f"what is of an object is written `{words[0]}({before})`"
+            about = f"`{words[0]}({before})`" if before.isidentifier() else "`left_of(v)`"
+            return f"a value stands alone, such as `{words[0]}`; of an object it is {about}"
         return "quantities are compared by `<`, `<=`, `=`, `!=`, `>=` or `>`"
     if scene.operator and scene.is_number(scene.at + 1) and (sign := _IN_WORDS.get((before, text))):
         return f"how many stands behind what is counted: `count x: vehicle (…) {sign} 3`"
+    meant = sign_in_words(text, scene.text_behind) if scene.operator and text == "at" else ""
+    if meant and scene.is_number(scene.at + 2):
+        lasting = (
+            f"how long something lasts stands in a bound, such as `historically[{meant} 3 s] p`"
+        )
+        return f"for `at {scene.text_behind}` write `{meant}`; {lasting}"
     if scene.operator and text == "==":
         value = scene.text_behind if scene.text_behind.isidentifier() else ""
         alone = f"; one of several values stands alone: `{value}`" if value else ""
@@ -272,6 +284,8 @@ def _operators(scene: ParseContext) -> str:
         return "`then` stands alone between two phases: write `p then q`"
     if text == "as" and scene.text_behind == "soon":
         return "for `as soon as p, q` write `always (p implies q)`, or `eventually[<= 2 s] q` in it"
+    if scene.operator and _MEANT.get(before) == "not":
+        return f"write `not` or `!` for `{before}`"
     word = _MEANT.get(text) or (
         text.casefold() if text.casefold() in keywords.OPERATOR_WORDS else None
     )

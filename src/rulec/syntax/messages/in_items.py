@@ -205,6 +205,9 @@ def advise_on_rule_head(scene: ParseContext) -> str:
     return _HEAD if "RPAR" not in scene.accepted else ""
 
 
+_BEHIND_AT: Final = ("start", "end", "some", "least", "most")
+
+
 def advise_on_clause(scene: ParseContext) -> str:
     if scene.kind == "example_head":
         return _example_head(scene)
@@ -221,7 +224,7 @@ def advise_on_clause(scene: ParseContext) -> str:
         return "the scope stands behind the formula, such as `unless p throughout`"
     if scoped and scene.accepted >= SCOPES and scene.is_word():
         return _SCOPE
-    if scene.operator and scene.text == "at" and scene.text_behind not in ("start", "end", "some"):
+    if scene.operator and scene.text == "at" and scene.text_behind not in _BEHIND_AT:
         state = scene.text_behind if scene.text_behind.isidentifier() else "q"
         return f"for `p at {state}` write `p and {state}`"
     if scene.first == "when" and scene.operator and scene.text in ("throughout", "at"):

@@ -130,6 +130,9 @@ def unknown_clause(source: Source, tokens: list[Token], piece: Piece) -> Diagnos
     words = frozenset(token.text for token in others)
     if token.text == "{":
         formula = "the states of an example stand between one `{` and `}`, with `;` between them"
+    if others and is_invisible(others[0].text) and others[0].start == token.end:
+        # Where word processors may break a line: the word goes on behind it.
+        formula = f"behind `{_short(token.text)}`, {DELETE_IT}"
     return UNEXPECTED_WORD.at(
         _span(source, token),
         f"no clause begins with `{_short(token.text)}`",
