@@ -416,6 +416,13 @@ def test_all_back(tmp_path):
     assert "180° in the median" in found.message
 
 
+def test_speeds_with_a_sign_that_headings_deny(tmp_path):
+    """Who drives where it heads drives forwards: nothing is wrong with its headings."""
+    found = message(tmp_path, f"{HEAD},heading_deg,speed", *driving(steps=40, more=",0,-10"))
+    assert "negative speed" in found.message
+    assert found.help.startswith("leave out the sign")
+
+
 @pytest.mark.parametrize(
     ("row", "way_out"),
     [

@@ -357,9 +357,14 @@ def _check_headings(rows: TrackRows) -> None:
     moving = follow & (np.hypot(dx, dy) > _MOVING_MPS) & ~np.isnan(heading[order][:-1])
     # Who backs, by its own speeds, goes the other way
     backs = 0.0 if rows.speed is None else np.pi * (rows.speed[order][:-1] < 0)
-    off = np.abs(motion.wrapped(np.arctan2(dy, dx) - heading[order][:-1] - backs))[moving]
+    turned = np.arctan2(dy, dx) - heading[order][:-1]
+    off = np.abs(motion.wrapped(turned - backs))[moving]
     if len(off) > _ENOUGH and np.median(off) > _TURNED:
         row = int(order[:-1][moving][int(np.argmax(off))])
+        if np.median(np.abs(motion.wrapped(turned))[moving]) <= _TURNED:
+            why = "most who move have a negative speed, and do not move backwards by their headings"
+            way_out = "leave out the sign: only who drives backwards has a negative speed"
+            raise rows.columns.wrong(row, why, help_text=way_out)
         why = (
             f"headings do not fit the motion: most of those who move are turned by more than 45° "
             f"away from where they go, {np.degrees(np.median(off)):.0f}° in the median"
