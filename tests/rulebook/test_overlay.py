@@ -276,3 +276,24 @@ def test_what_there_is_to_change_is_what_is_inherited(change, inherited, tmp_pat
         load_rulebook(path)
     (found,) = [one for one in problem.value.diagnostics if one.code == "R0212"]
     assert found.help == f"`base` has {inherited}"
+
+
+@pytest.mark.parametrize(
+    ("name", "way_out"),
+    [
+        ("queue_weavin", "did you mean `queue_weaving`?"),
+        ("bus_leaving", "`base` has `queue_weaving`, `red_light`"),
+        ("speed_limt", "`base` has `queue_weaving`, `red_light`"),
+    ],
+)
+def test_a_rule_of_another_name_is_no_slip(name, way_out, tmp_path):
+    rules = "\n".join(
+        f"hard rule {rule} {{ require never wet }}" for rule in ("queue_weaving", "red_light")
+    )
+    (tmp_path / "base.rules").write_text(f"rulebook base signal wet\n{rules}\n")
+    path = tmp_path / "own.rules"
+    path.write_text(f'rulebook own extends base\ndrop rule {name} because "why"\n')
+    with pytest.raises(RulecError) as problem:
+        load_rulebook(path)
+    (found,) = problem.value.diagnostics
+    assert found.help == way_out

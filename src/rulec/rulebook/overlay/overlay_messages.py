@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Final
 
 from rulec.diagnostics import Diagnostic, Fix, Label, Span, did_you_mean, named
 from rulec.diagnostics.code import Code
@@ -155,6 +156,10 @@ def rule_twice(again: tree.RuleItem, first: tree.RuleItem) -> Diagnostic:
     )
 
 
+_ALIKE: Final = 0.75
+"""Names of rules have many parts alike: `queue_weaving` is no slip of `bus_leaving`."""
+
+
 def nothing_to(
     verb: str, kind: str, name: tree.Name, known: Sequence[str], extends: str | None
 ) -> Diagnostic:
@@ -163,7 +168,7 @@ def nothing_to(
         way_out = "the rulebook extends no other; name one in its header by `extends NAME`"
     else:
         has = f"`{extends}` has {named(known) or 'none'}"
-        way_out = did_you_mean(name.text, known) or has
+        way_out = did_you_mean(name.text, known, _ALIKE) or has
     return NOT_INHERITED.at(
         name.span,
         f"there is no {kind} `{name.text}` to {verb}",
