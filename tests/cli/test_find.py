@@ -132,6 +132,7 @@ def test_what_is_wrong_is_said(files, case, capsys):
     assert code in capsys.readouterr().err
 
 
+LISTS = "`rulec list vocabularies` says where words are"
 PLACES = {
     ("-u", "NOSUCH", "wet"): ["there is no vocabulary `NOSUCH`"],
     ("-u", "road hard", "wet"): ["there is no vocabulary `road hard`"],
@@ -159,11 +160,22 @@ def test_only_what_somebody_has_written_is_shown(files, case, capsys):
             "(v: vehicle) is_passed_by(v)",
             "it is defined in the rulebook `schemas`: `--rulebook schemas`",
         ),
+        (
+            "drunk",
+            f"{LISTS}; those of a rulebook take `--rulebook NAME`",
+        ),
     ],
 )
 def test_a_word_from_elsewhere_is_had_by_an_option(files, formula, way_out, capsys):
     assert main(["find", formula, files[1]]) == 2
     assert f"= help: {way_out}\n" in capsys.readouterr().err
+
+
+def test_the_formula_stands_before_the_files(files, capsys):
+    _, drives = files
+    assert main(["find", drives, "speed > 50 km/h"]) == 2
+    said = f"`{drives}` is a file: the formula stands first, as in `rulec find 'speed > 50 km/h' "
+    assert said in capsys.readouterr().err
 
 
 def test_a_name_that_the_words_lack(files, capsys):

@@ -53,6 +53,7 @@ def test_help_lists_the_verbs_and_the_exit_status(capsys):
         ),
         (["maneuvers", "s2", "-r", "esterle2019", "--list", "-1"], "--list"),
         (["compile", "de", "--emit", "HOA"], "did you mean `automata`?"),
+        (["compile", "de", "--emit", "smv"], "did you mean `ltl`?"),
         (["list", "words"], "did you mean `vocabularies`?"),
     ],
 )

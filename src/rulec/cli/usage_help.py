@@ -199,6 +199,7 @@ _OTHER_VALUES = {
     **dict.fromkeys(("words", "signals", "types"), "vocabularies"),
     **dict.fromkeys(("hoa", "json", "python", "spot"), "automata"),
     **dict.fromkeys(("c++", "cpp", "cxx"), "c"),
+    **dict.fromkeys(("nusmv", "nuxmv", "prism", "smv"), "ltl"),
 }
 """What may be given for a value of an option or an argument, where it is one of its values."""
 

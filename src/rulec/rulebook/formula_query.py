@@ -30,6 +30,9 @@ _HEAD = re.compile(r"\s*(\(\s*\w+\s*(?::\s*\w+\s*)(?:,\s*\w+\s*(?::\s*\w+\s*)?)*
 
 _NAME = "what_is_asked"
 _SAID = "the formula"
+_NO_WORD = (
+    "`rulec list vocabularies` says where words are; those of a rulebook take `--rulebook NAME`"
+)
 _USUAL = "road"
 
 
@@ -91,6 +94,8 @@ def _in_words(problem: Diagnostic) -> Diagnostic:
     """The diagnostic without the rule's name, and with ways out for a formula that is no rule."""
     way_out = problem.help.replace("behind the rule's name", "before the formula")
     way_out = re.sub(r": `use (\w+)`$", r": `--use \1`", way_out)
+    # Nothing is declared in a formula.
+    way_out = re.sub(r"^declare it, such as .*", _NO_WORD, way_out)
     way_out = re.sub(r": `extends ([\w-]+)`, or copy it$", r": `--rulebook \1`", way_out)
     return replace(problem, message=problem.message.replace(f" of `{_NAME}`", ""), help=way_out)
 

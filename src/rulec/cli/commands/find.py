@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import chain
@@ -93,6 +94,11 @@ def command(
     from rulec.report.verdict_findings.finding_tables import RowWriter
     from rulec.rulebook.formula_query import read_query
 
+    if os.path.isfile(formula) and not any(map(os.path.exists, files)):  # noqa: PTH113 - Path raises on a null character
+        raise click.UsageError(
+            f"`{formula}` is a file: the formula stands first, as in `rulec find '{files[0]}' "
+            f"{formula}`"
+        )
     inputs = input_files(files)
     refuse_overwriting((to,), inputs.paths)
     query = read_query(
