@@ -1,5 +1,6 @@
 """`rulec verify` of recorded traffic, as the user meets it."""
 
+import gzip
 import json
 
 import pytest
@@ -257,3 +258,19 @@ def test_of_what_is_known_as_an_interval_evidence_has_the_bounds(tmp_path, capsy
     assert bounds["to"] == 1000.0
     assert (margin["limit"], margin["value_error"]) == (1.0, 0.0)
     assert margin["by"] == margin["at_least"] == pytest.approx(bounds["from"] - 1.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("cut", ["cut.csv.gz", "cut.xml.gz"])
+def test_a_packed_file_that_was_cut_short_does_not_keep_others_from_being_judged(
+    cut, verify, tmp_path
+):
+    broken = tmp_path / cut
+    packed = gzip.compress(b"track,t,x,y\n" * 9_000)
+    broken.write_bytes(packed[: len(packed) // 2])
+    whole = three_cars(tmp_path)
+    _, alone, _ = verify("--explain", "0")
+    status, out, err = verify("--explain", "0", files=(str(broken), whole))
+    assert status == 2
+    assert err.count("R0701]: the file cannot be read: it is packed, and ends too soon") == 1
+    assert alone.splitlines()[-1] in out.splitlines()
+    assert "not read    1 file, as said above" in out

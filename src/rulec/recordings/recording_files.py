@@ -34,10 +34,15 @@ def is_recording(file: str) -> bool:
     """True if a file's name or first bytes show recorded traffic.
 
     XML that is of no format is taken for a recording, too: nothing else that is read is XML. So
-    is a map, about which ``read_recordings`` has more to say than a reader of traces.
+    is a map, about which ``read_recordings`` has more to say than a reader of traces, and a file
+    that cannot be looked at, so that whoever reads it says why, and goes on with the others.
     """
     glance = Glance(Path(file))
-    return is_xml(glance.path) or any(form.recognises(glance) for form in (*FORMATS, *MAP_FORMATS))
+    try:
+        known = any(form.recognises(glance) for form in (*FORMATS, *MAP_FORMATS))
+    except RulecError:
+        return not glance.path.is_dir()
+    return known or is_xml(glance.path)
 
 
 _BESIDE_SUMO = ("routes", "additional", "configuration")
