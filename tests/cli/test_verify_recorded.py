@@ -266,7 +266,7 @@ def test_a_packed_file_that_was_cut_short_does_not_keep_others_from_being_judged
 ):
     broken = tmp_path / cut
     packed = gzip.compress(b"track,t,x,y\n" * 9_000)
-    broken.write_bytes(packed[: len(packed) // 2])
+    broken.write_bytes(packed[:20])  # before its first letter
     whole = three_cars(tmp_path)
     _, alone, _ = verify("--explain", "0")
     status, out, err = verify("--explain", "0", files=(str(broken), whole))
