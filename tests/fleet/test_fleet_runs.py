@@ -34,6 +34,7 @@ from rulec.fleet.runs.work_units import work_units
 from rulec.recordings.recording_format import RecordingSource
 from support.builders.fleet_inputs import fleet_file, fleet_rules, lanes, trace_table, tracks
 from support.builders.interrupted_runs import DyingWorker
+from support.builders.recorded_cars import three_cars
 
 LONG = os.environ.get("RULEC_TEST_PROFILE") == "long"
 DRIVES = 10
@@ -411,3 +412,13 @@ def test_without_arrow_nothing_is_written(folder_of, tmp_path, monkeypatch):
     with pytest.raises(RulecError, match=r"takes the package `pyarrow`.*R0706"):
         run([folder_of], tmp_path / "out")
     assert not (tmp_path / "out").exists()
+
+
+def test_a_recording_whose_name_is_no_text(tmp_path):
+    """A folder holds names in any encoding, of which Python makes halves of surrogate pairs."""
+    drives = tmp_path / "drives"
+    drives.mkdir()
+    Path(three_cars(drives)).rename(drives / os.fsdecode(b"k\xf8re.xml"))
+    first, again = (run([drives], tmp_path / "found") for _ in range(2))
+    assert (first.before, first.units, first.problems) == (0, 1, ())
+    assert (again.before, again.units) == (1, 1)

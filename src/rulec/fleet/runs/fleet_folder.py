@@ -111,7 +111,9 @@ class FleetFolder:
                 left.unlink()
         content = {"version": VERSION, "settings": settings, "inputs": list(inputs)}
         with written_whole(manifest) as stream:
-            stream.write(f"{json.dumps(content, indent=1, ensure_ascii=False)}\n".encode())
+            text = json.dumps(content, indent=1, ensure_ascii=False)
+            # Names of files may be no text.
+            stream.write(f"{text}\n".encode(errors="backslashreplace"))
 
     def _check(
         self, before: Mapping[str, Any], settings: Mapping[str, Any], inputs: Sequence[str]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
@@ -42,7 +43,7 @@ class WorkUnit:
     def digest(self) -> str:
         """What its file of findings is called by: that of its path and of where it begins."""
         start = "" if self.piece is None else f"#{self.piece.row_groups[0]}"
-        return sha256(f"{self.path}{start}".encode()).hexdigest()[:20]
+        return sha256(os.fsencode(f"{self.path}{start}")).hexdigest()[:20]
 
     @property
     def paths(self) -> Sequence[str]:
