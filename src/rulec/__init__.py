@@ -211,10 +211,13 @@ __all__ = ["__version__", *_MODULES]
 
 def __getattr__(name: str) -> Any:
     module = "rulec.version" if name == "__version__" else _MODULES.get(name)
-    if module is None:
+    if module is None and name != "fleet":
         raise AttributeError(f"module 'rulec' has no attribute {name!r}")
     # Nothing is imported at the top, see there.
     from importlib import import_module
+
+    if module is None:
+        return import_module("rulec.fleet")  # public, too
 
     # It is there from now on, and found without asking.
     found = globals()[name] = getattr(import_module(module), name)

@@ -153,3 +153,9 @@ def test_the_reference_names_all():
     page = Path("docs/python.md").read_text(encoding="utf-8")
     missing = [name for name in rulec._MODULES if f"`{name}" not in page]
     assert missing == []
+
+
+def test_the_fleet_is_there_without_an_import_of_its_own():
+    program = "import rulec; print(rulec.fleet.FleetJudge.__name__)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True)
+    assert done.stdout == b"FleetJudge\n"
