@@ -37,6 +37,7 @@ FOR_AUTHORS = {
     "R0323": "how the rule is said more simply",
     "R0363": "whether the fact or the rule says too much",
     "R0364": "whether the second exception takes something back from the first",
+    "R0365": "whether the point parts decimals or thousands",
     "R0409": "which of the facts says too much",
     "R0326": "which objects are counted in place of named",
 }

@@ -21,7 +21,7 @@ from rulec.logic.formula import (
     UnaryOperator,
     atoms_of,
 )
-from rulec.rulebook.loader import parse_rulebook
+from rulec.rulebook.loader import diagnose, parse_rulebook
 
 UNITS = {
     "length": {"m": Fraction(1), "km": Fraction(1000), "cm": Fraction(1, 100)},
@@ -304,3 +304,26 @@ def test_without_a_word_for_a_speed_none_is_proposed():
     with pytest.raises(RulecError) as problem:
         parse_rulebook(TRAFFIC.replace("pace in km/h", "pace in t") % "pace >= gap(c)")
     assert problem.value.diagnostics[0].help == "check the names and the units"
+
+
+@pytest.mark.parametrize(
+    ("number", "way_out"),
+    [
+        ("3.500", "say which is meant: `3.5 kg` or `3500 kg`"),
+        ("12.000", "say which is meant: `12 kg` or `12000 kg`"),
+        ("7.490", "say which is meant: `7.49 kg` or `7490 kg`"),
+        ("3.5", None),
+        ("3.505", None),
+        ("3.50", None),
+        ("0.500", None),
+        ("1234.500", None),
+        ("3.5000", None),
+    ],
+)
+def test_a_point_of_thousands_is_asked_about(number, way_out):
+    text = (
+        "rulebook a\nquantity mass in kg default 0\n"
+        f"hard rule r {{ require always mass <= {number} kg }}\n"
+    )
+    found = [one for one in diagnose("a.rules", text.encode()).findings if one.code == "R0365"]
+    assert [(one.severity, one.help) for one in found] == [("warning", way_out)] * bool(way_out)

@@ -10,7 +10,7 @@ from typing import Literal
 from rulec.logic.formula import Bound
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases, constant
 from rulec.rulebook.elaborate import bound_messages
-from rulec.rulebook.elaborate.elaboration_messages import too_long
+from rulec.rulebook.elaborate.elaboration_messages import point_of_thousands, too_long
 from rulec.rulebook.elaborate.scope import Evaluate, Scope
 from rulec.rulebook.names.declaration_messages import unknown_unit
 from rulec.syntax import tree
@@ -21,6 +21,9 @@ _LONGEST = 400
 
 _EXPONENT = re.compile(r"[eE]([+-]?[0-9]+)$")
 
+_IN_THOUSANDS = re.compile(r"[1-9][0-9]{0,2}\.[0-9]{2}0")
+"""How numbers of thousands are written in most of Europe, and nobody writes decimals."""
+
 _ONE_INSTANT = frozenset(("next", "weak next", "previously", "weak previously"))
 
 
@@ -29,6 +32,8 @@ def literal(node: tree.NumberLiteral, scope: Scope) -> NumberByCases | None:
     value = exact_value(node, scope)
     if value is None:
         return None
+    if _IN_THOUSANDS.fullmatch(node.text):
+        scope.report(point_of_thousands(node))
     if not node.unit:
         return constant(value, None if value == 0 else DIMENSIONS["number"], node.text)
     unit = scope.symbols.unit(node.unit)

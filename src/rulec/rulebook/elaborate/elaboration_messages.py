@@ -18,6 +18,18 @@ from rulec.vocabulary import Enumeration, Quantity
 from rulec.vocabulary.dimensions import DIMENSIONS, TIME, Dimension
 from rulec.vocabulary.units import hour_in_another_language
 
+POINT_OF_THOUSANDS = Code(
+    "R0365",
+    title="a number may be meant in thousands",
+    why="A point parts the decimals of a number: `3.500 kg` is three and a half kilograms. Where "
+    "points part thousands, as in German or Danish, it would be 3500. Three decimals that end with "
+    "a 0 are hardly written for anything else. Without the 0, or without the point, it is clear.",
+    bad="rulebook example\nquantity mass in kg default 0\n"
+    "hard rule r { require always mass <= 3.500 kg }\n",
+    good="rulebook example\nquantity mass in kg default 0\n"
+    "hard rule r { require always mass <= 3500 kg }\n",
+)
+
 OPERATOR_BEFORE_THEN = Code(
     "R0311",
     title="an operator speaks of a phase before `then`, not of the sequence",
@@ -280,6 +292,18 @@ def two_kinds(node: tree.Conditional, value: object, otherwise: object, scope: S
         expected=f"this is {what_of(otherwise)}",
         help=way_out,
         labels=origins(scope, node.value),
+    )
+
+
+def point_of_thousands(node: tree.NumberLiteral) -> Diagnostic:
+    few, many = node.text.rstrip("0").rstrip("."), node.text.replace(".", "")
+    few, many = (f"{text} {node.unit}".strip() for text in (few, many))
+    return POINT_OF_THOUSANDS.at(
+        node.span,
+        f"`{short(node)}` is {few}, and may be meant for {many}",
+        expected="the point parts decimals, not thousands",
+        help=f"say which is meant: `{few}` or `{many}`",
+        severity="warning",
     )
 
 
