@@ -302,7 +302,7 @@ def point_of_thousands(node: tree.NumberLiteral) -> Diagnostic:
         node.span,
         f"`{short(node)}` is {few}, and may be meant for {many}",
         expected="the point parts decimals, not thousands",
-        help=f"say which is meant: `{few}` or `{many}`",
+        help="write it without the last 0, or without the point",
         severity="warning",
     )
 
