@@ -21,6 +21,7 @@ from support.builders.recordings import lanelet, recording, straight, vehicle
 at_junctions = SignalPasses.joined((junction_signals, line_signals))
 
 INSIDE = frozenset({"intersection"})
+RED = Light(0, (("red", 99),))
 
 
 def road(drawn=None, signs=(), *more):
@@ -61,6 +62,20 @@ def test_where_a_line_is(drawn, first):
 def test_a_line_before_the_lanelet_s_end(xs, crosses):
     found = at_junctions(context(road(95.0, ["STOP"]), *xs))
     assert found.world["crosses_stop_line"].tolist() == crosses
+
+
+@pytest.mark.parametrize("what", [{"signs": frozenset({"STOP"})}, {"lights": (RED,)}])
+def test_a_lane_in_two_pieces_has_its_line_at_the_end(what):
+    """The map says of both pieces what holds on them; one stops once, before the junction."""
+    halves = [
+        straight("1a", 0, 60, successors=(1,), **what),
+        straight(1, 60, 100, predecessors=("1a",), successors=(2,), **what),
+    ]
+    _, *further = road()
+    found = at_junctions(context([*halves, *further], 55, 62, 95, 101, route=("1a", "1", "2", "3")))
+    name = "crosses_stop_line" if "signs" in what else "crosses_light_line"
+    assert found.world[name].tolist() == [False, False, False, True]
+    assert found.world["distance_to_stop_line"].tolist() == [43.0, 36.0, 3.0, 0.0]
 
 
 @pytest.mark.parametrize(

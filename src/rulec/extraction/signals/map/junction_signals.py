@@ -14,6 +14,7 @@ from rulec.extraction.signals.map.priority_signals import (
 )
 from rulec.extraction.signals.map.roundabout_signals import roundabouts
 from rulec.extraction.signals.map.stop_lines import (
+    ends_at_line,
     may_pass,
     passes,
     stop_line,
@@ -222,7 +223,8 @@ def _crosses_stop_line(context: DriveContext) -> tuple[Flags, Flags]:
     for piece in range(len(context.road.rows)):
         if any(row and STOP_SIGNS & row.signs for row in context.road.rows[piece]):
             for lane in distinct(context.ego_lane).tolist():
-                if STOP_SIGNS & context.road.lanelet(piece, lane).signs:
+                stops = bool(STOP_SIGNS & context.road.lanelet(piece, lane).signs)
+                if stops and ends_at_line(context, piece, lane):
                     first, last = stop_line(context, piece, lane)
                     unsure = may_pass(context, last) & (context.ego_lane == lane)
                     crosses |= passes(context, last) & (context.ego_lane == lane) & ~unsure

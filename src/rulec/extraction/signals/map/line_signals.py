@@ -7,7 +7,14 @@ import numpy as np
 from rulec.extraction.drive_context import KMH, DriveContext, once
 from rulec.extraction.signals.ego_lanelets import map_contents, own_lanelets
 from rulec.extraction.signals.map.junction_signals import way_not_known
-from rulec.extraction.signals.map.stop_lines import around_crossing, may_pass, passes, stop_line
+from rulec.extraction.signals.map.stop_lines import (
+    around_crossing,
+    ends_at_line,
+    has_line,
+    may_pass,
+    passes,
+    stop_line,
+)
 from rulec.extraction.signals.measured_numbers import LONGEST_S, moves, own_front, own_speed
 from rulec.extraction.signals.signal_columns import (
     SignalColumn,
@@ -17,7 +24,7 @@ from rulec.extraction.signals.signal_columns import (
 )
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.recordings.recording import STOP_SIGNS, Lanelet, Light, ObservedLight
+from rulec.recordings.recording import STOP_SIGNS, Light, ObservedLight
 from rulec.trace.plain_arrays import distinct
 
 _NO_JUNCTION_M = 1000.0
@@ -72,10 +79,10 @@ def _way_to_line(context: DriveContext) -> tuple[Floats, tuple[Floats, Floats]]:
     touching = context.thresholds.touching_m
     way, near, far = np.zeros((3, context.states))
     for piece in range(len(context.road.rows) - 1, -1, -1):
-        if not any(row is not None and _has_line(row) for row in context.road.rows[piece]):
+        if not any(row is not None and has_line(row) for row in context.road.rows[piece]):
             continue
         for lane in distinct(context.ego_lane).tolist():
-            if not _has_line(context.road.lanelet(piece, lane)):
+            if not ends_at_line(context, piece, lane):
                 continue
             first, last = stop_line(context, piece, lane)
             ahead = (front <= last) & (context.ego_lane == lane)
@@ -89,10 +96,6 @@ def _way_to_line(context: DriveContext) -> tuple[Floats, tuple[Floats, Floats]]:
         near[may] = 0.0
         far[may] = np.maximum(far, context.road.borders[-1] - front)[may]
     return way, (near, far)
-
-
-def _has_line(lanelet: Lanelet) -> bool:
-    return bool(lanelet.lights or lanelet.lights_to or STOP_SIGNS & lanelet.signs)
 
 
 def _to_junction(context: DriveContext) -> SignalColumns:
@@ -144,7 +147,7 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
             continue
         for lane in lanes:
             lights = _own_lights(context, piece, lane)
-            if not lights:
+            if not lights or not ends_at_line(context, piece, lane):
                 continue
             first, last = stop_line(context, piece, lane)
             unsure = may_pass(context, last) & (context.ego_lane == lane)
@@ -183,7 +186,10 @@ def _between_lights(context: DriveContext, colours: SignalColumn, crosses: Flags
         lit = {
             k
             for k, one in enumerate(row)
-            if one is not None and one.lights and _own_lights(context, piece, k)
+            if one is not None
+            and one.lights
+            and _own_lights(context, piece, k)
+            and ends_at_line(context, piece, k)
         }
         for k in sorted(lit) if len(row) > row.count(None) + 1 else ():
             inside = (own.left_of_max[0, :, k] > reach) & (own.left_of_min[0, :, k + 1] < -reach)

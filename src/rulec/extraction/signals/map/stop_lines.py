@@ -11,6 +11,7 @@ from rulec.extraction.drive_context import KMH, DriveContext
 from rulec.extraction.signals.measured_numbers import own_front
 from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.recordings.recording import STOP_SIGNS, Lanelet
 
 _LINE_REACH_M = 40.0
 
@@ -89,6 +90,30 @@ def drawn_lines(context: DriveContext) -> dict[str, float]:
     }
     places = context.road.line.coordinates(np.reshape([*drawn.values()], (-1, 2)))[:, 0]
     return dict(zip(drawn, places.tolist(), strict=True))
+
+
+def ends_at_line(context: DriveContext, piece: int, lane: int) -> bool:
+    """True if a lanelet has a stop sign or a light, and these stand at its end.
+
+    The map may have cut a lane in pieces and say of each what holds on it: the line is at the end
+    of the last one, unless it has drawn one before.
+    """
+    road = context.road
+    own = road.lanelet(piece, lane)
+    if not has_line(own):
+        return False
+    end = float(road.borders[piece + 1])
+    if own.stop_line is not None or piece + 1 == len(road.rows):
+        return True
+    following = road.lanelet(piece + 1, lane)
+    same = (own.signs & STOP_SIGNS, own.lights) == (following.signs & STOP_SIGNS, following.lights)
+    at_junction = any(low - _HAIR <= end < high for low, high in road.junctions)
+    return at_junction or not same or following.id not in own.successors
+
+
+def has_line(lanelet: Lanelet) -> bool:
+    """True if one may have to stop at its end."""
+    return bool(lanelet.lights or lanelet.lights_to or STOP_SIGNS & lanelet.signs)
 
 
 def stop_line(context: DriveContext, piece: int, lane: int) -> tuple[float, float]:
