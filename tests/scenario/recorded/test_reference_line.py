@@ -190,6 +190,13 @@ def test_most_feet_beside_a_gentle_road_are_sure_without_trying_all_pieces(angle
     assert found.mean() > 0.9 if sure else not found.any()
 
 
+def test_a_bend_too_small_to_divide_by_is_none():
+    line = reference_line(np.array([(0.0, 0.0), (10.0, 0.0), (20.0, 1e-308)]))
+    places = np.stack((np.linspace(1, 19, MANY), np.full(MANY, 3.0)), axis=1)
+    _, found = sure_feet(line.piece_fans, places)
+    assert found.all()
+
+
 @pytest.mark.parametrize(("aside", "sure"), [(10.0, True), (59.9, True), (61.0, False)])
 def test_feet_beside_a_circle_are_sure_up_to_its_centre(aside, sure):
     line = reference_line(arc(10, pi / 8))

@@ -50,7 +50,7 @@ class PieceFans:
         The length of the piece is taken off.
         """
         lengths, change = self.columns[4], np.abs(self.columns[6])
-        with np.errstate(divide="ignore"):
+        with np.errstate(divide="ignore", over="ignore"):
             room: _Values = lengths / (2 * change) - lengths
         return room
 
@@ -87,7 +87,7 @@ class PieceFans:
         gained = np.abs(np.outer(normals[0], normals[1]) - np.outer(normals[1], normals[0]))
         beyond[np.triu_indices(len(slope), 1)] *= -1
         np.fill_diagonal(beyond, np.inf)
-        with np.errstate(divide="ignore"):
+        with np.errstate(divide="ignore", over="ignore"):
             room: _Values = ((beyond - _HAIR_M) / gained).min(axis=1) / across
         alone: _Values = np.minimum(room[:-1], room[1:])
         return alone
