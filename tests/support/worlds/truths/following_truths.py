@@ -21,10 +21,10 @@ _ALIKE, _ASIDE_M = 0.1, 6.0
 
 _STANDS_MPS = 0.3
 
-_HEADWAY_S = {"gb": 2.0, "fr": 2.0}
+_HEADWAY_S = {"gb": 2.0, "fr": 2.0, "ie": 2.0}
 """Where the law counts seconds instead."""
 
-_LEAVES_MPS = {"fr": 0.8, "gb": 0.8}
+_LEAVES_MPS = {"fr": 0.8, "gb": 0.8, "ie": 0.8}
 """Where it asks of who follows, and one that is faster by 3 km/h is not followed but leaves."""
 
 
