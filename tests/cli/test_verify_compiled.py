@@ -84,3 +84,13 @@ def test_files_that_are_none(file, tmp_path, capsys):
         assert "1 rule: 1 proved" in out
     assert main(["verify-compiled", str(tmp_path / "missing.json")]) == 2
     assert "R0701" in capsys.readouterr().err
+
+
+def test_a_source_is_to_be_compiled_first_and_a_compiled_file_is_none(tmp_path, capsys):
+    source = tmp_path / "a.rules"
+    source.write_text("rulebook a\nsignal p\nhard rule r { require always p }\n")
+    assert main(["verify-compiled", str(source)]) == 2
+    assert f"help: compile it first: `rulec compile {source} -o DIR`" in capsys.readouterr().err
+    assert main(["compile", str(source), "-o", str(tmp_path)]) == 0
+    assert main(["check", str(tmp_path / "a.json")]) == 1
+    assert "help: give the source that it was compiled from\n" in capsys.readouterr().out

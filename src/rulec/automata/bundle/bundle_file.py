@@ -213,7 +213,11 @@ def refusal(data: bytes, file: str, why: str) -> RulecError:
 
 def _damaged(file: str, message: str) -> RulecError:
     return DAMAGED_BUNDLE.error(
-        SourceLocation(file), message, help="compile it again from its source with `rulec compile`"
+        SourceLocation(file),
+        message,
+        help=f"compile it first: `rulec compile {file} -o DIR` writes a compiled rulebook"
+        if file.endswith(".rules")
+        else "compile it again from its source with `rulec compile`",
     )
 
 

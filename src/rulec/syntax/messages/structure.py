@@ -120,6 +120,8 @@ def no_beginning(source: Source) -> Diagnostic:
         code, message = NOT_A_RULEBOOK, "the file is no rulebook"
     if _COMPILED in source.text[:_HEAD]:
         way_out = "give its name the ending `.json`; packed with gzip it may stay"
+        if source.name.endswith(".json"):
+            way_out = "give the source that it was compiled from"
         return code.at(place, "the file is a compiled rulebook, and no source", help=way_out)
     return code.at(place, message, help=HOW_TO_BEGIN)
 
