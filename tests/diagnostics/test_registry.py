@@ -1,5 +1,6 @@
 """The registry of codes: each is defined once, beside its pass, used, and asked for by a test."""
 
+import pickle
 import re
 from functools import cache
 from importlib import import_module
@@ -110,3 +111,14 @@ def test_a_code_makes_an_error():
     error = BROKEN.error(None, "this is broken", notes=("at night",))
     assert isinstance(error, RulecError)
     assert error.diagnostics == (BROKEN.at(None, "this is broken", notes=("at night",)),)
+
+
+def test_a_traceback_shows_each_way_out_once():
+    said = [
+        Diagnostic("R0703", "there is no `DE`", help="did you mean `de`?"),
+        Diagnostic("R0703", "there is no `de `", help="did you mean `de`?"),
+        Diagnostic("R0701", "it cannot be read"),
+    ]
+    error = pickle.loads(pickle.dumps(RulecError(said)))
+    assert error.__notes__ == ["help: did you mean `de`?"]
+    assert RulecError(said[2]).__notes__ == []

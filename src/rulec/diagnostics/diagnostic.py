@@ -89,6 +89,11 @@ class RulecError(Rows, Exception):
         # Whoever prints it has no trouble with what is no character, as in a file's name
         text = "; ".join(_one_line(d) for d in self.diagnostics)
         super().__init__(text.encode(errors="backslashreplace").decode())
+        # Tracebacks show it below the error, from Python 3.11 on
+        ways_out = dict.fromkeys(one.help for one in self.diagnostics[:20] if one.help)
+        self.__notes__ = [
+            f"help: {text.encode(errors='backslashreplace').decode()}" for text in ways_out
+        ]
 
     def __repr__(self) -> str:
         return f"RulecError({'; '.join(d.code for d in self.diagnostics[:20])}: {self.args[0]:.80})"
