@@ -328,3 +328,22 @@ def test_a_point_of_thousands_is_asked_about(number, says):
     found = [one for one in diagnose("a.rules", text.encode()).findings if one.code == "R0365"]
     said = [f"`{number} kg` {says}"] if says else []
     assert [one.message for one in found if one.severity == "warning"] == said
+
+
+def test_a_value_beside_a_sign_stands_alone():
+    with pytest.raises(RulecError) as problem:
+        parse_rulebook("rulebook a\nsignal p, q\nhard rule r { require always (nothing = q) }\n")
+    (found,) = [one for one in problem.value.diagnostics if one.code == "R0313"]
+    assert found.help == "what is true or false stands alone, such as `q`"
+    # What they quote is offered as an edit.
+    assert "`=`" not in found.expected + found.help
+
+
+def test_an_hour_of_another_language_in_an_example():
+    text = (
+        "rulebook a\nquantity pace in km/h default 0\n"
+        "hard rule r { require always pace <= 50 km/h accept { pace = 50 km/t } }\n"
+    )
+    with pytest.raises(RulecError) as problem:
+        parse_rulebook(text)
+    assert problem.value.diagnostics[0].help == "an hour is `h`: did you mean `km/h`?"

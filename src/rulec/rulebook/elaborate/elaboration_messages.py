@@ -123,6 +123,9 @@ def object_for_truth(node: tree.Formula, scope: Scope) -> Diagnostic:
     )
 
 
+_COMPARED = "only numbers are compared, and whether two objects are the same one"
+
+
 def no_number(
     node: tree.Formula, operand: object, scope: Scope, around: tree.Compare | None
 ) -> Diagnostic:
@@ -130,8 +133,10 @@ def no_number(
         expected = "expected a number"
         way_out = "a number is a quantity, a parameter, a count, or such as `1.5 m`"
     else:
-        expected = f"expected a number beside `{around.relation}`"
-        way_out = "numbers are compared, and objects by `=` and `!=`"
+        expected = "expected a number, as it is compared"
+        way_out = _COMPARED
+        if isinstance(node, tree.AtomUse):
+            way_out = f"what is true or false stands alone, such as `{short(node)}`"
     return NUMBER_OR_FORMULA.at(
         node.span,
         f"`{short(node)}` is {what_of(operand)}, not a number",
@@ -171,7 +176,7 @@ def truths_compared(node: tree.Compare, scope: Scope) -> Diagnostic:
     elif node.relation in ("=", "!="):
         way_out = f"formulas are compared by `{'iff' if node.relation == '=' else 'xor'}`"
     else:
-        way_out = "numbers are compared, and objects by `=` and `!=`"
+        way_out = _COMPARED
     return NUMBER_OR_FORMULA.at(
         node.span,
         f"both sides of `{node.relation}` are true or false, not numbers",

@@ -16,6 +16,7 @@ from rulec.syntax.messages.literal_values import NUMBER_TOO_LARGE
 from rulec.syntax.tree_printer import print_formula
 from rulec.vocabulary import Enumeration
 from rulec.vocabulary.dimensions import Unit
+from rulec.vocabulary.units import hour_in_another_language
 
 CONTRADICTORY_STATE = Code(
     "R0306",
@@ -137,12 +138,13 @@ def other_dimension(
 ) -> Diagnostic:
     assert fact.value is not None, "only a value has a unit"
     given_kind = given.dimension.name if given.dimension else "number"
+    given_unit = fact.value.span.text.rpartition(" ")[2]
     return MIXED_DIMENSIONS.at(
         fact.value.span,
         f"`{term_text(what)}` is a {unit.dimension.name} and `{print_formula(fact.value)}` "
         f"a {given_kind}",
         expected=f"expected a {unit.dimension.name}",
-        help=f"write it in {unit.text}",
+        help=hour_in_another_language(given_unit) or f"write it in {unit.text}",
     )
 
 
