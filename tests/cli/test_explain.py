@@ -114,6 +114,7 @@ def test_the_page_is_up_to_date(capsys):
         (["trikk"], "words that may mean it: `tram`, `tram_track` (ego drives on a tram track)\n"),
         (["fußgängerzone"], "did you mean `pedestrian_zone` (ego is in a pedestrian zone)?"),
         (["spead"], "did you mean the word `speed`?"),
+        (["R9"], "there is no code and no word `R9`; `rulec list codes` shows the codes"),
         (["verify"], "`rulec list codes` shows the codes, `rulec list vocabularies` where"),
         ([], "give a code, or --all"),
         (["R0101", "--all"], "give a code, or --all"),

@@ -141,7 +141,8 @@ def _stems(text: str) -> Iterator[str]:
                 at += size
                 break
         else:
-            if parts[at] not in _EMPTY and not parts[at].isdigit():
+            is_letter = parts[at].isascii() and len(parts[at]) == 1
+            if parts[at] not in _EMPTY and not parts[at].isdigit() and not is_letter:
                 yield stems[at]
             at += 1
 
