@@ -37,8 +37,11 @@ def head_of(glance: Glance) -> tuple[str, ...]:
 
 
 def is_track_head(names: Sequence[str]) -> bool:
-    """True if the names of columns are those of tracks, perhaps with a slip in one of them."""
-    given = {*names}
+    """True if the names of columns are those of tracks, perhaps with a slip in one of them.
+
+    Who writes units behind names, as in ``x [m]``, is told by the reader to leave them out.
+    """
+    given = {name.partition("[")[0].partition("(")[0].strip() for name in names}
     if "trace" in given:
         return False
     x, y = ({name, f"{name}_m", f"front_{name}"} & given for name in "xy")

@@ -416,6 +416,12 @@ def test_all_back(tmp_path):
     assert "180° in the median" in found.message
 
 
+def test_units_behind_the_names_of_columns(tmp_path):
+    found = message(tmp_path, "track,t [s],x [m],y (m)", *driving(steps=4))
+    assert found.message.endswith("it has no column `t`, but `t [s]`")
+    assert found.help == "if that is the one, call it `t`"
+
+
 def test_speeds_with_a_sign_that_headings_deny(tmp_path):
     """Who drives where it heads drives forwards: nothing is wrong with its headings."""
     found = message(tmp_path, f"{HEAD},heading_deg,speed", *driving(steps=40, more=",0,-10"))
