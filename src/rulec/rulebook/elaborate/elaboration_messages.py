@@ -135,7 +135,7 @@ def no_number(
     else:
         expected = "expected a number, as it is compared"
         way_out = _COMPARED
-        if isinstance(node, tree.AtomUse):
+        if isinstance(node, tree.AtomUse) and what_of(operand) == "true or false":
             way_out = f"what is true or false stands alone, such as `{short(node)}`"
     return NUMBER_OR_FORMULA.at(
         node.span,

@@ -18,6 +18,7 @@ from rulec.syntax.keywords import (
 )
 from rulec.syntax.messages.in_formulas import (
     IN_DIGITS,
+    RELATIONS,
     advise_on_aggregate,
     advise_on_formula,
     sign_in_words,
@@ -192,7 +193,9 @@ def _misspelt(scene: ParseContext) -> str:
     if token.text.casefold() in ("infinite", "twice"):
         return ""  # they are much like `finite` and `since`, and mean something else
     if before and scene.operator and (sign := sign_in_words(before.text, token.text)):
-        return f"for `{before.text} {token.text}` write `{sign}`"
+        # Without a sign before it, it is about how many.
+        is_twice = scene.text_at(scene.at - 2) in RELATIONS
+        return f"for `{before.text} {token.text}` write `{sign}`" if is_twice else ""
     words = {word for word in map(spelling, scene.accepted) if word in RESERVED | CONTEXTUAL}
     # One letter is a name, such as `f` behind `eventualy`, and no word misspelt.
     near = did_you_mean(token.text, words) if len(token.text) > 1 else ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 from rulec.diagnostics import did_you_mean
@@ -236,7 +237,9 @@ def _comparisons(scene: ParseContext) -> str:
         if sign := _IN_WORDS.get(said):
             return f"for `is {' '.join(said)}` write `{sign}`"
         if words[0].isidentifier() and words[0] not in keywords.RESERVED:
-            about = f"`{words[0]}({before})`" if before.isidentifier() else "`left_of(v)`"
+            about = f"`{words[0]}({before})`"
+            if re.search(rf"\b{re.escape(before)}\s*:", scene.source.text):
+                return f"what is of an object is written {about}"
             return f"a value stands alone, such as `{words[0]}`; of an object it is {about}"
         return "quantities are compared by `<`, `<=`, `=`, `!=`, `>=` or `>`"
     if scene.operator and scene.is_number(scene.at + 1) and (sign := _IN_WORDS.get((before, text))):
