@@ -11,8 +11,10 @@ import numpy as np
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.cell_words.cell_messages import other_side
 from rulec.cell_words.conduct_words import CONDUCT, ConductWords
-from rulec.cell_words.ego_boxes import EgoBoxes, ego_boxes
+from rulec.cell_words.ego_boxes import EgoBoxes, body_size, ego_boxes
+from rulec.cell_words.line_words import LineWords
 from rulec.cell_words.place_words import (
+    AT_LINE,
     NEEDS_CROSSING,
     NEEDS_JUNCTION,
     PlaceWords,
@@ -22,7 +24,7 @@ from rulec.cell_words.place_words import (
 )
 from rulec.cell_words.probe_drives import ProbeDrives, probe_drives
 from rulec.cell_words.relation_words import FLOWS, RELATIONS, Relations
-from rulec.cell_words.road_frame import OthersNow, RoadFrame
+from rulec.cell_words.road_frame import Flags, OthersNow, RoadFrame
 from rulec.extraction.drive_context import KMH
 from rulec.extraction.recording_verdicts import names_read
 from rulec.extraction.selection import RequestedDrives, chosen_side
@@ -86,9 +88,11 @@ class _Words:
         self._graph, self._probes, self._frame = graph, probes, frame
         self._vocabulary: Vocabulary = rules.vocabulary
         self._names = names_read(rules) & probes.told
-        self._boxes = list(ego_boxes(graph))
+        self._boxes = list(ego_boxes(graph, probes.recording.step_s))
         self._scene = self._scene_words()
+        self._at_lines = PlaceWords(probes, self._names & AT_LINE)
         self._places = PlaceWords(probes, self._names)
+        self._lines = LineWords(probes, frame, self._names, body_size(graph)[0])
         self._bodies = probes.among.recording.participants[:-1]
         self._rows = {body.id: row for row, body in enumerate(self._bodies)}
         self._now = [None if frame is None else frame.at(layer.start_s) for layer in graph.layers]
@@ -182,11 +186,34 @@ class _Words:
         places = self._places.of_cells(boxes)
         own = self._own_words(boxes)
         about = self._relations(boxes, now, items)
-        for cell, place in enumerate(places):
-            state: Words = {**shared, **place, **settled_by_place(place, self._names)}
+        crosses = self._lines.crossings(boxes, is_last=number == len(self._graph.layers) - 1)
+        at_lines = self._at_lines_of(boxes, places, [*crosses.values()], about)
+        own |= {name: [UNKNOWN if x else False for x in flags] for name, flags in crosses.items()}
+        if "light" in self._names:
+            own["light"] = self._lines.lights(boxes, at_lines, layer.start_s, crosses)
+        for cell, (place, at_line) in enumerate(zip(places, at_lines, strict=True)):
+            state: Words = {**shared, **place, **at_line, **settled_by_place(place, self._names)}
             state |= {name: values[cell] for name, values in own.items()}
             state |= {name: values[cell] for name, values in about.items()}
             yield state
+
+    def _at_lines_of(
+        self,
+        boxes: EgoBoxes,
+        places: Sequence[Words],
+        crosses: Sequence[Flags],
+        about: Mapping[str, Sequence[Any]],
+    ) -> list[Words]:
+        """What signs and lights say in each cell; where ego may have passed theirs, from before."""
+        passes = np.any([np.zeros(len(places), dtype=bool), *crosses], axis=0)
+        passes |= [one is not False for one in about.get("enters_junction", passes)]
+        if not (self._at_lines.differ and passes.any()):
+            return list(places)
+        before = self._at_lines.of_cells(boxes, boxes.came)
+        return [
+            one if there else place
+            for one, there, place in zip(before, passes.tolist(), places, strict=True)
+        ]
 
     def _shared(self, number: int, items: Sequence[str]) -> Words:
         """What is the same in all cells of a layer; what nobody knows is unknown."""

@@ -148,14 +148,13 @@ class ConductWords:
         return self._room(self._boxes.half_width[1] - USUAL.touching_m)
 
     def _stays_in_lane(self) -> Flags:
-        """Since the state before it has come from no other lane."""
-        step_s = self._frame.probes.recording.step_s
-        return self._room(self._boxes.sideways * step_s + USUAL.changed_m)
+        """Since the layer before it has come from no other lane."""
+        return self._room(self._boxes.sideways * self._boxes.came_s + USUAL.changed_m)
 
     def _at_no_entry(self) -> Flags:
-        """Ego's front is before all junctions, or was in them already in the state before."""
-        (front, far_front), frame = self._relations.front, self._frame
-        before = front[:, 0] - self._boxes.mean_speed[1] * frame.probes.recording.step_s
+        """Ego's front is before all junctions, or was in them already in the layer before."""
+        (_, far_front), frame = self._relations.front, self._frame
+        before = self._boxes.front_before
         away = np.ones(len(before), dtype=bool)
         for start, _ in frame.junctions:
             loose = frame.loose_s + _HAIR_M

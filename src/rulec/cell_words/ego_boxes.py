@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -22,6 +22,8 @@ _FASTEST_MPS = 100.0
 _WINDOW_S = 0.5
 """Extracted speeds are means from so long before to so long after."""
 
+_HAIR_S = 1e-6
+
 _BEND_RAD = np.radians(6.0)
 """The directions of two lines along one road differ by less, where it bends."""
 
@@ -30,10 +32,11 @@ _BEND_RAD = np.radians(6.0)
 class EgoBoxes:
     """Bounds for each cell when its layer begins.
 
-    ``s`` and ``d`` (m) are those of ego's centre, ``speed`` that along the road and ``mean_speed``
-    the one that extraction measures, a mean, whatever its direction (m/s). Half its body's extents
+    ``s`` and ``d`` (m) are those of ego's centre, ``mean_speed`` the speed that extraction
+    measures, a mean, whatever its direction (m/s). Half its body's extents
     along and across the road (m) are for all headings that ego may have; ``sideways`` is the
-    greatest speed across it (m/s).
+    greatest speed across it (m/s). ``front_before`` is where (m) ego's front was at least
+    ``came_s`` ago, in the layer before or, if that is earlier, in the state before.
     """
 
     s: Bounds
@@ -42,6 +45,13 @@ class EgoBoxes:
     half_length: Bounds
     half_width: Bounds
     sideways: Floats
+    front_before: Floats
+    came_s: float
+
+    @property
+    def came(self) -> Floats:
+        """How far (m) ego has come since then at most, by cell, if it is as far back as it can."""
+        return np.maximum(self.s[0] + self.half_length[0] - self.front_before, 0.0)
 
 
 def column(values: Floats) -> Floats:
@@ -49,16 +59,27 @@ def column(values: Floats) -> Floats:
     return values[:, None]
 
 
-def ego_boxes(graph: NavigationGraph) -> Iterator[EgoBoxes]:
-    """The bounds in each layer."""
+def ego_boxes(graph: NavigationGraph, state_s: float) -> Iterator[EgoBoxes]:
+    """The bounds in each layer; a recording has a state every ``state_s``."""
     motion = graph.bounds
     size = body_size(graph)
     last = len(graph.layers) - 1
+    came_s = max(graph.step_s, state_s)
+    fronts = None
     for number, layer in enumerate(graph.layers):
         reach = graph.reach[number] if graph.reach else (None,) * len(layer.cells)
         before = min(number * graph.step_s, _WINDOW_S)
         after = min((last - number) * graph.step_s, _WINDOW_S)
-        yield _boxes(layer, reach, size, _mean_margins(motion, before, after))
+        margins = _mean_margins(motion, before, after)
+        boxes = _boxes(layer, reach, size, margins, (came_s, motion))
+        if fronts is not None and came_s <= graph.step_s + _HAIR_S:
+            least = np.full(len(layer.cells), np.inf)
+            for front, onward in zip(fronts, graph.successors[number - 1], strict=True):
+                least[[*onward]] = np.minimum(least[[*onward]], front)
+            least[np.isinf(least)] = -np.inf  # No way leads there
+            boxes = replace(boxes, front_before=np.maximum(boxes.front_before, least))
+        fronts = (boxes.s[0] + boxes.half_length[0]).tolist()
+        yield boxes
 
 
 def body_size(graph: NavigationGraph) -> tuple[float, float]:
@@ -82,6 +103,7 @@ def _boxes(
     reach: tuple[Reach | None, ...],
     size: tuple[float, float],
     margins: tuple[float, float],
+    since: tuple[float, MotionBounds | None],
 ) -> EgoBoxes:
     rows = []
     for cell, own in zip(layer.cells, reach, strict=True):
@@ -100,6 +122,8 @@ def _boxes(
     widths = _extents(side, half, turned)
     most = np.hypot(fast, sideways)
     means = slow - margins[0], most + margins[1]
+    came_s, motion = since
+    braking = 0.0 if motion is None else motion.braking
     return EgoBoxes(
         s=(s0, s1),
         d=(d0, d1),
@@ -107,6 +131,8 @@ def _boxes(
         half_length=lengths,
         half_width=widths,
         sideways=sideways,
+        front_before=s0 + lengths[0] - fast * came_s - braking * came_s**2 / 2,
+        came_s=came_s,
     )
 
 

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from rulec.cell_words.ego_boxes import EgoBoxes, Floats
 from rulec.cell_words.probe_drives import EVERY_M, LaneProbe, ProbeDrives
-from rulec.extraction.signals.map.line_signals import COLOURS
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
 
 Words: TypeAlias = dict[str, Any]
@@ -69,17 +68,17 @@ OF_PLACE = frozenset(
         "past_level_crossing_sign",
         "guarded",
         "no_overtaking_sign",
-        "give_way_sign",
-        "stop_sign",
-        "turn_on_red_sign",
-        "no_turn_on_red_sign",
         "narrowing",
         "merged",
-        "light",
         "turn",
     }
 )
 """Decided by where ego is along the road, and in which lane."""
+
+AT_LINE = frozenset(
+    {"light", "give_way_sign", "stop_sign", "turn_on_red_sign", "no_turn_on_red_sign"}
+)
+"""The same, and they still hold in the state in which ego crosses their line."""
 
 DISTANCES = frozenset({"distance_to_crossing", "distance_to_junction"})
 
@@ -115,12 +114,10 @@ NEEDS_CROSSING = frozenset({"crossing_use", "stopped_for_pedestrian", "nearest_t
 _NEEDS_TYPE = {"emergency_vehicle_near": "emergency_vehicle", "conflict_with_rail": "rail_vehicle"}
 """False where nobody of a type is recorded."""
 
-_ANY_LIGHT = OneOf(frozenset(COLOURS.values()))
-
 _AT_ZONE: Mapping[str, Any] = {"enters_junction": False, "turn": "straight_on"}
 """What they are where ego is not at a junction."""
 
-_LOOSE_M = 2.0
+LOOSE_M = 2.0
 """Places of two roads through one place are no farther apart along them."""
 
 _NEXT_LANE_M = 0.5
@@ -166,26 +163,23 @@ class PlaceWords:
 
     def __init__(self, probes: ProbeDrives, names: frozenset[str]) -> None:
         self._probes = probes
-        self._names = names & OF_PLACE
+        self._names = names & (OF_PLACE | AT_LINE)
         self._distances = names & DISTANCES
         self._straight = probes.origin.lanes.straight
         self._lanes = [_runs(probe, self._names) for probe in probes.lanes]
         self._known: dict[object, Words] = {}
 
-    def of_cells(self, boxes: EgoBoxes) -> list[Words]:
-        """The words of each cell of a layer, shared where they are the same."""
-        low = boxes.s[0] - _LOOSE_M
-        high = boxes.s[1] + _LOOSE_M
-        first = np.searchsorted(self._straight, boxes.d[0] - _NEXT_LANE_M, "right") - 1
-        last = np.searchsorted(self._straight, boxes.d[1] + _NEXT_LANE_M, "left") - 1
-        top = len(self._straight) - 2
-        rows = zip(
-            low.tolist(),
-            high.tolist(),
-            np.clip(first, 0, top).tolist(),
-            np.clip(last, 0, top).tolist(),
-            strict=True,
-        )
+    @property
+    def differ(self) -> bool:
+        """Whether not the same is said everywhere along a lane."""
+        return any(len(lane.said) > 1 for lane in self._lanes)
+
+    def of_cells(self, boxes: EgoBoxes, behind: Floats | float = 0.0) -> list[Words]:
+        """The words of each cell of a layer, and of so far (m) behind it, shared where the same."""
+        low = boxes.s[0] - LOOSE_M - behind
+        high = boxes.s[1] + LOOSE_M
+        first, last = lanes_of(boxes, self._straight)
+        rows = zip(low.tolist(), high.tolist(), first.tolist(), last.tolist(), strict=True)
         return [self._between(*row) for row in rows]
 
     def _between(self, low: float, high: float, first: int, last: int) -> Words:
@@ -223,10 +217,7 @@ class PlaceWords:
         ]
         if not whole or not said:
             return dict.fromkeys(self._names, UNKNOWN)
-        words = {name: hull(one[name] for one in said) for name in self._names}
-        if words.get("light", UNKNOWN) != "no_light" and "light" in words:
-            words["light"] = _ANY_LIGHT  # another one at other times
-        return words
+        return {name: hull(one[name] for one in said) for name in self._names}
 
     def _ways(self, spans: Sequence[tuple[int, int, int]], low: float, high: float) -> Words:
         return {name: hull(self._distances_to(name, spans, low, high)) for name in self._distances}
@@ -246,6 +237,14 @@ class PlaceWords:
                     # The next one is from here on what was reached between the two places
                     nearest = max(_ends(before)[0] - EVERY_M, 0.0)
                     yield Interval(nearest, _ends(after)[1] + EVERY_M)
+
+
+def lanes_of(boxes: EgoBoxes, straight: Floats) -> tuple[NDArray[intp], NDArray[intp]]:
+    """The first and the last lane that ego may be in, by cell."""
+    first = np.searchsorted(straight, boxes.d[0] - _NEXT_LANE_M, "right") - 1
+    last = np.searchsorted(straight, boxes.d[1] + _NEXT_LANE_M, "left") - 1
+    top = len(straight) - 2
+    return np.clip(first, 0, top), np.clip(last, 0, top)
 
 
 def _runs(probe: LaneProbe, names: frozenset[str]) -> _Lane:
@@ -345,10 +344,6 @@ def settled_by_place(words: Words, names: frozenset[str]) -> Words:
     found: Words = {}
     if words.get("junction_zone") is False:
         found |= {name: value for name, value in _AT_ZONE.items() if name in names}
-    if words.get("light") == "no_light" and "crosses_light_line" in names:
-        found["crosses_light_line"] = False
-    if words.get("stop_sign") is False and "crosses_stop_line" in names:
-        found["crosses_stop_line"] = False
     if words.get("level_crossing_zone") is False and "enters_level_crossing" in names:
         found["enters_level_crossing"] = False
     return found

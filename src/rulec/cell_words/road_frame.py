@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -15,11 +15,12 @@ from numpy.typing import NDArray
 from rulec.cell_words.ego_boxes import Floats
 from rulec.cell_words.probe_drives import ProbeDrives
 from rulec.extraction.drive_context import KMH
+from rulec.extraction.signals.map.line_signals import lights_of
 from rulec.extraction.signals.settling import fewest_states
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.road_places import RoadPlaces
 from rulec.extraction.traffic_thresholds import LEAST_S, USUAL
-from rulec.recordings.recording import Lanelet
+from rulec.recordings.recording import Lanelet, Light, ObservedLight
 
 _FAR_M = 300.0
 _HAIR_M = 0.05
@@ -63,6 +64,26 @@ class OthersNow:
     loose_s: float
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class LaneLight:
+    """The lights at the end of a piece of a lane, ``end`` m along the scene's road.
+
+    ``drawn``: does the map have their line? ``goes_dark``: do they show nothing at times?
+    """
+
+    lane: int
+    end: float
+    lights: tuple[Light | ObservedLight, ...]
+    drawn: bool
+
+    @property
+    def goes_dark(self) -> bool:
+        """Whether they may show nothing at times."""
+        return any(
+            isinstance(one, ObservedLight) or "inactive" in dict(one.phases) for one in self.lights
+        )
+
+
 class RoadFrame:
     """A scene's road, with everybody on it as extraction has them.
 
@@ -70,7 +91,7 @@ class RoadFrame:
     the same lanes, ``apart_d`` how far those across it, ``loose_s`` and ``loose_d`` how far
     distances may be wrong for that and since places are known to ``place_m`` only. ``has_rails``:
     is there a level crossing on it? ``one_way``: does nobody come the other way on it, surely?
-    ``goes_straight``: does it turn in none of its junctions?
+    ``goes_straight``: does it turn in none of its junctions? ``lights`` are those of its lanes.
     Raises ValueError: no drive has such a road, or it meets itself.
     """
 
@@ -88,6 +109,7 @@ class RoadFrame:
         self.crossings = self._in_scene(road, road.crossings)
         self.junctions = self._in_scene(road, road.junctions)
         lanelets = [lanelet for row in road.rows for lanelet in row if lanelet is not None]
+        self.lights = tuple(self._lane_lights(road))
         self._splits = self._in_scene_splits(road)
         self.has_rails = any("level_crossing" in lanelet.types for lanelet in lanelets)
         self.one_way = all(among.surroundings.directions(one)[0] for one in lanelets)
@@ -108,6 +130,16 @@ class RoadFrame:
         self.loose_s = self.place_m + self.apart_s
         self._line_s = origin.lanes.s[at] - origin.ego_s
         self._line_d, self._bounds_d = self._apart(road)
+
+    def _lane_lights(self, road: DrivenRoad) -> Iterator[LaneLight]:
+        recording, ends = self.probes.recording, road.borders[1:].tolist()
+        places = self._in_scene(road, [(end, end) for end in ends])
+        for piece, (row, (end, _)) in enumerate(zip(road.rows, places, strict=True)):
+            for lane, lanelet in enumerate(row):
+                if lanelet is not None and lanelet.lights:
+                    lights = lights_of(recording, road, piece, lane)
+                    drawn = lanelet.stop_line is not None
+                    yield LaneLight(lane, end, lights or lanelet.lights, drawn)
 
     def _apart(self, road: DrivenRoad) -> tuple[Floats, Floats]:
         """How far (m) the scene's line, and the bounds of lanes, are from those of drives.

@@ -23,8 +23,9 @@ from rulec.extraction.signals.signal_columns import (
     rounded_outward,
 )
 from rulec.extraction.signals.signal_passes import SignalPasses
+from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.recordings.recording import STOP_SIGNS, Light, ObservedLight
+from rulec.recordings.recording import STOP_SIGNS, Lanelet, Light, ObservedLight, Recording
 from rulec.trace.plain_arrays import distinct
 
 _NO_JUNCTION_M = 1000.0
@@ -146,8 +147,8 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
         if not any(row is not None and row.lights for row in context.road.rows[piece]):
             continue
         for lane in lanes:
-            lights = _own_lights(context, piece, lane)
-            if not lights or not ends_at_line(context, piece, lane):
+            lights = lights_of(context.recording, context.road, piece, lane)
+            if not lights:
                 continue
             first, last = stop_line(context, piece, lane)
             unsure = may_pass(context, last) & (context.ego_lane == lane)
@@ -188,8 +189,7 @@ def _between_lights(context: DriveContext, colours: SignalColumn, crosses: Flags
             for k, one in enumerate(row)
             if one is not None
             and one.lights
-            and _own_lights(context, piece, k)
-            and ends_at_line(context, piece, k)
+            and lights_of(context.recording, context.road, piece, k)
         }
         for k in sorted(lit) if len(row) > row.count(None) + 1 else ():
             inside = (own.left_of_max[0, :, k] > reach) & (own.left_of_min[0, :, k + 1] < -reach)
@@ -198,7 +198,7 @@ def _between_lights(context: DriveContext, colours: SignalColumn, crosses: Flags
                 continue
             line = stop_line(context, piece, k)
             moments = around_crossing(context, own_front(context), line)
-            lights = _own_lights(context, piece, k)
+            lights = lights_of(context.recording, context.road, piece, k)
             for state in (beside & passes(context, line[1])).nonzero()[0].tolist():
                 shown = {_colour(context, lights, moment) for moment in moments(state)}
                 # Its own lane has no line there, or it came to the one further on from beside
@@ -209,23 +209,29 @@ def _between_lights(context: DriveContext, colours: SignalColumn, crosses: Flags
     return sorted(found)
 
 
-def _own_lights(context: DriveContext, piece: int, lane: int) -> tuple[Light | ObservedLight, ...]:
-    """The lights for ego's way on, as far as the map tells them apart.
+def lights_of(
+    recording: Recording, road: DrivenRoad, piece: int, lane: int
+) -> tuple[Light | ObservedLight, ...]:
+    """The lights for the way on of a lane, as far as the map tells them apart.
 
     A way without any, beside others with lights, is one past them, if the map has all lights.
     """
-    lanelet = context.road.lanelet(piece, lane)
-    if lanelet.lights_to and piece + 1 < len(context.road.rows):
-        onward = context.road.lanelet(piece + 1, lane).id
+    lanelet = road.lanelet(piece, lane)
+    if lanelet.lights_to and piece + 1 < len(road.rows):
+        onward = road.lanelet(piece + 1, lane).id
         if onward in lanelet.lights_to:
             return (lanelet.lights_to[onward],)
-        if "light" in context.recording.complete and onward in lanelet.successors:
+        if "light" in recording.complete and onward in lanelet.successors:
             return ()
     return lanelet.lights
 
 
 def _colour(context: DriveContext, lights: tuple[Light | ObservedLight, ...], state: int) -> str:
-    step = int(context.steps[state])
+    return colour_at(lights, int(context.steps[state]))
+
+
+def colour_at(lights: tuple[Light | ObservedLight, ...], step: int) -> str:
+    """What lights show at a time step, empty where it is not known or not the same."""
     shown = {COLOURS.get(light.colour_at(step), "") for light in lights}
     return shown.pop() if len(shown) == 1 else ""
 

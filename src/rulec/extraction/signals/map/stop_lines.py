@@ -13,7 +13,7 @@ from rulec.extraction.signals.signal_passes import once_a_road
 from rulec.extraction.tracks.tracks import Flags, Floats
 from rulec.recordings.recording import STOP_SIGNS, Lanelet
 
-_LINE_REACH_M = 40.0
+LINE_REACH_M = 40.0
 
 _HAIR = 1e-6
 _AT_ONCE_S = 0.05
@@ -121,24 +121,24 @@ def stop_line(context: DriveContext, piece: int, lane: int) -> tuple[float, floa
 
     Who is beyond a line by less than ``touching_m`` stands at it. Where the map has no line it is
     somewhere between the lanelet's end and the first place in the junction beyond where other ways
-    cross or join ego's, if they do before that junction ends and within ``_LINE_REACH_M``.
+    cross or join ego's, if they do before that junction ends and within ``LINE_REACH_M``.
     """
     lanelet, road = context.road.lanelet(piece, lane), context.road
     end, touching = float(road.borders[piece + 1]), context.thresholds.touching_m
     if lanelet.stop_line is not None:
         place = drawn_lines(context)[lanelet.id]
-        if abs(place - end) <= _LINE_REACH_M:
+        if abs(place - end) <= LINE_REACH_M:
             return place, place + touching
     begins, passages = 0.0, context.surroundings.passages
-    ends = [high for low, high in road.junctions if low <= end + _LINE_REACH_M and high > end]
+    ends = [high for low, high in road.junctions if low <= end + LINE_REACH_M and high > end]
     edge = None
     for further in range(piece + 1, len(road.rows)):
         begins = float(road.borders[further])
-        if begins - end > _LINE_REACH_M or (ends and begins >= ends[0]):
+        if begins - end > LINE_REACH_M or (ends and begins >= ends[0]):
             break  # no way crosses there, as where two roads meet in a corner
         edge = passages.first_meeting(road.lanelet(further, lane).id)
         if edge is not None:
             break
     if edge is None:
         return end, end + touching
-    return end, max(min(begins + edge, end + _LINE_REACH_M), end + touching)
+    return end, max(min(begins + edge, end + LINE_REACH_M), end + touching)
