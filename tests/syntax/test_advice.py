@@ -51,6 +51,7 @@ FORMULAS = [
     ("p ∨ q", "∨", "write `or` or `|`"),
     ("~p", "~", "write `not` or `!`"),
     ("¬p", "¬", "write `not` or `!`"),
+    ("gap <= ½ m", "m", "write `0.5` for `½`"),
     ("p og q", "og", "write `and` or `&`"),
     ("p eller q", "eller", "write `or` or `|`"),
     ("p and nicht q", "q", "write `not` or `!` for `nicht`"),
@@ -234,6 +235,12 @@ HEAD = "a rule's head is written `hard rule NAME (v: vehicle) in LEVEL weight NU
 SCOPES = "a scope is `initially`, `at start`, `throughout`, `at some point`, or `at end`"
 ONE_VALUE = "a state gives a quantity one value, such as `speed = 50 km/h`"
 LINES = [
+    ("hard rule a { require p accept { x = –5 m } }", "–", "write `-`"),
+    (
+        "hard rule a { require p accept { p(v) = true } }",
+        "true",
+        "what is true is said without `=`, such as `p(v)`, what is not as `not p(v)`",
+    ),
     (
         "hard rule a { re\u00adquire p }",
         "re",

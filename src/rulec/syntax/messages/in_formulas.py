@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from typing import Final
+from unicodedata import numeric
 
 from rulec.diagnostics import did_you_mean
 from rulec.syntax import keywords
@@ -204,6 +205,8 @@ def _numbers(scene: ParseContext) -> str:
         return ""
     if text == ":" and scene.is_number(scene.at - 1) and scene.is_number(scene.at + 1):
         return how_hours_are_written(f"{scene.text_before}:{scene.text_behind}")
+    if len(scene.text_before) == 1 and numeric(scene.text_before, 0) % 1:
+        return f"write `{numeric(scene.text_before):g}` for `{scene.text_before}`"
     around = scene.is_number(scene.at - 1) and scene.is_number(scene.at + 1)
     if text == "," and around:
         return scene.with_a_point()

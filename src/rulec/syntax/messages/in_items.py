@@ -277,6 +277,10 @@ def advise_on_state(scene: ParseContext) -> str:
     signal = scene.text_at(scene.at - 2)
     if scene.text_before == "=" and text in ("true", "false") and signal.isidentifier():
         return f"write `{signal}` for true and `not {signal}` for false, without `=`"
+    if scene.text_before == "=" and text in ("true", "false"):
+        return "what is true is said without `=`, such as `p(v)`, what is not as `not p(v)`"
+    if text in ("–", "−", "‑") and scene.is_number(scene.at + 1):
+        return "write `-`"
     number = "NUMBER" in scene.accepted and "NAME" not in scene.accepted
     sums = text in ("+", "-", "*", "/")
     if scene.text_before == "=" and scene.is_word():
