@@ -98,3 +98,15 @@ def test_a_folder_that_cannot_be_is_refused_before_anything_is_compiled(
     assert way_out in err
     assert "R0703" not in err
     assert not any(Path("shut").iterdir())
+
+
+def test_a_rule_that_is_too_large_for_a_step_says_for_which(tmp_path, capsys):
+    source = tmp_path / "long.rules"
+    source.write_text(
+        "rulebook long\nsignal p, q\n"
+        "hard rule wait { require always (p implies eventually[<= 200 s] q) }\n"
+    )
+    assert main(["compile", str(source), "-o", str(tmp_path / "out"), "--step", "0.01"]) == 2
+    err = capsys.readouterr().err
+    assert "one of its bounds has more than 10,000 steps for steps of 0.01 s\n" in err
+    assert "longer steps are fewer: of a recording every fifth state may do\n" in err

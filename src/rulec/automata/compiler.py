@@ -138,7 +138,7 @@ def build_all(
         if isinstance(answer, Done):
             compiled.append(_compiled(lowered.rule, lowered.step_s, answer))
         else:
-            problems.append(no_machine(lowered.rule, answer, cpu_limit_s))
+            problems.append(no_machine(lowered.rule, answer, cpu_limit_s, lowered.step_s))
             if isinstance(answer, Failed) and answer.why == "time":
                 break  # nor is any left for those behind it
     if problems:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 from rulec.automata.compiler_jobs import Failed
 from rulec.automata.worker.confinement import Confinement
 from rulec.diagnostics import Diagnostic
 from rulec.diagnostics.code import Code
 from rulec.diagnostics.diagnostic import at
 from rulec.logic.bounds import operations_of
+from rulec.logic.printing import number_in_words
 from rulec.resource_limits import COMPILING
 from rulec.rulebook.rulebook_model import Rule, provision_note
 from rulec.rulebook.rules.axiom_messages import contradictory_facts
@@ -79,8 +82,13 @@ _GET_SPOT = (
 )
 
 
-def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnostic:
-    """R0401 to R0403, or R0409; None if Spot's process ended. RuntimeError for bugs."""
+def no_machine(
+    rule: Rule, failed: Failed | None, cpu_limit_s: int, step_s: Fraction | None = None
+) -> Diagnostic:
+    """R0401 to R0403, or R0409; None if Spot's process ended. RuntimeError for bugs.
+
+    ``step_s`` is the step that its bounds were counted in.
+    """
     why = f"it takes more than {cpu_limit_s} s or 2 GiB to build"
     match failed:
         case Failed("bug", traceback):
@@ -114,6 +122,10 @@ def no_machine(rule: Rule, failed: Failed | None, cpu_limit_s: int) -> Diagnosti
     # Seconds or steps, it is the number of them that makes it large.
     has_bounds = any(operation.bound is not None for operation in operations_of(rule.formula))
     more = "; each bound takes as many states as it has steps" if has_bounds else ""
+    if has_bounds and step_s is not None:
+        # Who has a recording, and the law of a country, can change its step and not the law.
+        why += f" for steps of {number_in_words(step_s)} s"
+        more += ", and longer steps are fewer: of a recording every fifth state may do"
     return AUTOMATON_TOO_LARGE.at(
         rule.span,
         f"the automaton of rule `{rule.name}` would be too large: {why}",
