@@ -10,7 +10,7 @@ from rulec.recordings.recording import Light
 from rulec.scenario import Choice
 from rulec.scenario.recorded.recorded_scene import seen_from_ego
 from rulec.vocabulary.partial_values import UNKNOWN, OneOf
-from support.builders.recordings import recording, straight
+from support.builders.recordings import lanelet, recording, straight, vehicle
 
 RED = Light(0, (("red", 1000),))
 TURNS_GREEN = Light(-100, (("red", 103), ("green", 1000)))
@@ -29,7 +29,12 @@ def driven_to(line, rules, speed, **at_line):
         straight(1, 0, line, successors=[2], stop_line=ends, **at_line),
         straight(2, line, 300, predecessors=[1]),
     )
-    made = replace(recording(lanes, ego=(60.0, 0.0)), side="right")
+    return ahead_of(lanes, rules, speed)
+
+
+def ahead_of(lanes, rules, speed, others=()):
+    """The maneuvers of ego at x = 60 m for 2 s, in steps of one."""
+    made = replace(recording(lanes, others, ego=(60.0, 0.0)), side="right")
     (problem,) = made.problems
     start = replace(problem.start, speed=speed)
     made = replace(made, problems=(replace(problem, start=start),))
@@ -81,3 +86,20 @@ def test_who_may_have_crossed_has_done_so_at_any_light_since(german):
     _, crossing, beyond = said(found, "light")
     assert crossing == OneOf(frozenset({"red_light", "no_light"}))
     assert beyond == "no_light"
+
+
+def test_who_left_too_little_room_a_moment_ago_may_have_done_so_when_ego_entered(german):
+    """The junction is from x = 66 to 70 m; one drives off 2 m behind it, and ego behind that."""
+    lanes = (
+        straight(1, 0, 66, successors=[2]),
+        straight(2, 66, 70, predecessors=[1], successors=[3], junction="j"),
+        straight(3, 70, 300, predecessors=[2]),
+        lanelet(4, [(68.0, -60.0), (68.0, -2.0)], successors=[5]),
+        lanelet(5, [(68.0, -2.0), (68.0, 2.0)], predecessors=[4], successors=[6], junction="j"),
+        lanelet(6, [(68.0, 2.0), (68.0, 60.0)], predecessors=[5]),
+    )
+    gone = vehicle(10, {k: (74.0 + 7.5 * k, 0.0) for k in range(13)}, speed=15.0)
+    found = ahead_of(lanes, german, 16.0, [gone])
+    states = [layer[0] for layer in found.words.states]
+    assert [state["enters_junction"] for state in states] == [False, UNKNOWN, False]
+    assert [state["exit_clear"] for state in states] == [UNKNOWN, UNKNOWN, True]

@@ -24,7 +24,7 @@ from rulec.cell_words.place_words import (
 )
 from rulec.cell_words.probe_drives import ProbeDrives, probe_drives
 from rulec.cell_words.relation_words import FLOWS, RELATIONS, Relations
-from rulec.cell_words.road_frame import Flags, OthersNow, RoadFrame
+from rulec.cell_words.road_frame import Flags, RoadFrame
 from rulec.extraction.drive_context import KMH
 from rulec.extraction.recording_verdicts import names_read
 from rulec.extraction.selection import RequestedDrives, chosen_side
@@ -178,14 +178,14 @@ class _Words:
         return range(there[0], there[-1] + 1) if there else range(0)
 
     def _layer(self, number: int) -> Iterator[State]:
-        layer, boxes, now = self._graph.layers[number], self._boxes[number], self._now[number]
+        layer, boxes = self._graph.layers[number], self._boxes[number]
         if not layer.cells:
             return
         items = [item for item, (first, last) in self._present.items() if first <= number <= last]
         shared = self._shared(number, items)
         places = self._places.of_cells(boxes)
         own = self._own_words(boxes)
-        about = self._relations(boxes, now, items)
+        about = self._relations(boxes, number, items)
         crosses = self._lines.crossings(boxes, is_last=number == len(self._graph.layers) - 1)
         at_lines = self._at_lines_of(boxes, places, [*crosses.values()], about)
         own |= {name: [UNKNOWN if x else False for x in flags] for name, flags in crosses.items()}
@@ -262,9 +262,10 @@ class _Words:
         return found
 
     def _relations(
-        self, boxes: EgoBoxes, now: OthersNow | None, items: Sequence[str]
+        self, boxes: EgoBoxes, number: int, items: Sequence[str]
     ) -> dict[str, list[Any]]:
         """The relations to others, by cell, and how slow all are around ego."""
+        before, now = self._now[max(number - 1, 0)], self._now[number]
         names = self._names & RELATIONS
         unknown = dict.fromkeys(items, UNKNOWN)
         if now is None or self._frame is None:
@@ -273,7 +274,7 @@ class _Words:
         flows = {name: relations.flow(FLOWS[name]) for name in self._names & FLOWS.keys()}
         sure = np.broadcast_to(now.counts, relations.stations.shape)
         rows = [(item, self._rows.get(item)) for item in items]
-        conduct = ConductWords(boxes, now, self._frame, relations)
+        conduct = ConductWords(boxes, (before or now, now), self._frame, relations)
         found: dict[str, list[Any]] = {**flows, **conduct.words(self._names & CONDUCT)}
         for name, values in relations.words(names).items():
             found[name] = [

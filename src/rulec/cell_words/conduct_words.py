@@ -6,7 +6,7 @@ Each is known where the others, or the road, leave but one value for any of thes
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -38,12 +38,16 @@ _HAIR_M = 0.05
 
 
 class ConductWords:
-    """What ego does in each cell of a layer (rows), by where the others are (columns)."""
+    """What ego does in each cell of a layer (rows), by where the others are (columns).
+
+    Those are ``others`` as they were in the layer before, and as they are.
+    """
 
     def __init__(
-        self, boxes: EgoBoxes, others: OthersNow, frame: RoadFrame, relations: Relations
+        self, boxes: EgoBoxes, others: Sequence[OthersNow], frame: RoadFrame, relations: Relations
     ) -> None:
-        self._boxes, self._others, self._frame, self._relations = boxes, others, frame, relations
+        self._earlier, self._others = others
+        self._boxes, self._frame, self._relations = boxes, frame, relations
         self._straight = frame.probes.origin.lanes.straight
 
     def words(self, names: frozenset[str]) -> Mapping[str, list[Any]]:
@@ -162,17 +166,23 @@ class ConductWords:
         return away
 
     def _has_room_beyond(self) -> Flags:
-        """Nobody who may be ahead in ego's lane leaves too little room behind what ego enters."""
-        others, frame, loose = self._others, self._frame, self._frame.apart_s + _HAIR_M
+        """Nobody who may be ahead in ego's lane leaves too little room behind what ego enters.
+
+        Nor did so since the layer before, when ego may have entered it.
+        """
+        frame, loose = self._frame, self._frame.apart_s + _HAIR_M
+        others, earlier = self._others, self._earlier
+        nearest, farthest = np.fmin(others.s[0], earlier.s[0]), np.fmax(others.s[1], earlier.s[1])
         (_, far_front), (rear, _) = self._relations.front, self._relations.rear
         if frame.has_rails:
             return np.zeros(len(far_front), dtype=bool)
-        ahead = others.may_go_along & (self._relations.stations & BEHIND > 0) & self._may_share
+        ahead = others.may_go_along | earlier.may_go_along
+        ahead = ahead & (self._relations.stations & BEHIND > 0) & self._may_share
         room = 2 * column(self._boxes.half_length[1]) + ROOM_M + loose
         short = np.zeros(ahead.shape, dtype=bool)
         for start, end in (*frame.junctions, *frame.crossings):
             enters = (far_front >= start - USUAL.approach_m - loose) & (rear <= end + loose)
-            leaves_too_little = (others.s[1] > start - loose) & (others.s[0] < end + room)
+            leaves_too_little = (farthest > start - loose) & (nearest < end + room)
             short |= enters & leaves_too_little
         return _nobody(ahead & short)
 
