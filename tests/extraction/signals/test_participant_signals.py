@@ -7,6 +7,7 @@ import pytest
 
 from rulec.extraction.signals.measured_numbers import LONGEST_S, safe_distances
 from rulec.extraction.signals.participant_signals import participant_signals
+from rulec.extraction.signals.relations import stays
 from rulec.trace.cells import Cells
 from support.builders.drive_contexts import along, context_of, steady
 from support.builders.recordings import lanelet, recording, straight, vehicle
@@ -45,6 +46,22 @@ def test_relations_and_distances():
     )
     beside = about(steady(8, 1, 4))
     assert (beside["station"], beside["gap"]) == ("beside", 0.0)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.4, 0.8, 1.2])
+def test_who_stays_is_the_same_however_axes_lie(angle):
+    """Boxes wander to three corners that are 1.3 m from each other, or to two 1.6 m apart."""
+    cos, sin = np.cos(angle), np.sin(angle)
+
+    def box(number, *places):
+        moved = [(20 * number + cos * x - sin * y, sin * x + cos * y) for x, y in places]
+        return vehicle(number, dict(enumerate(moved)))
+
+    wanders = box(1, (0.0, 0.0), (1.3, 0.0), (0.65, 1.126))
+    boxes = [wanders, box(2, (0.0, 0.0), (1.6, 0.0), (0.8, 0.0))]
+    found = context_of(recording(lanes(2), [steady(7, 0, 0, steps=3), *boxes]))
+    assert [body.id for body in found.tracks.participants] == ["1", "2"]
+    assert stays(found, np.arange(2)).tolist() == [True, False]
 
 
 def test_headway_is_the_time_for_the_gap():

@@ -12,6 +12,7 @@ from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+import shapely
 from numpy import int8, intp
 from numpy.typing import NDArray
 
@@ -389,12 +390,20 @@ def stays(context: DriveContext, rows: NDArray[intp]) -> Flags:
 
 @once_a_recording
 def _who_stays(context: DriveContext) -> Flags:
-    """The same flags of everybody."""
+    """The same flags of everybody: no two of its places are farther apart."""
     tracks = context.surroundings.tracks
     spreads = [
         np.where(tracks.present, places, -np.inf).max(axis=1, initial=-np.inf)
         - np.where(tracks.present, places, np.inf).min(axis=1, initial=np.inf)
         for places in (tracks.x, tracks.y)
     ]
-    still: Flags = np.hypot(spreads[0], spreads[1]) <= _DRIFT_M
+    diagonal = np.hypot(spreads[0], spreads[1])
+    still: Flags = diagonal <= _DRIFT_M
+    # Of a few the spreads do not tell: they depend on how a file's axes lie
+    in_doubt = (np.maximum(spreads[0], spreads[1]) <= _DRIFT_M) & np.isfinite(diagonal) & ~still
+    for row in in_doubt.nonzero()[0].tolist():
+        own = tracks.present[row]
+        places = shapely.multipoints(np.column_stack((tracks.x[row, own], tracks.y[row, own])))
+        x, y = shapely.get_coordinates(shapely.convex_hull(places)).T
+        still[row] = np.hypot(x[:, None] - x, y[:, None] - y).max() <= _DRIFT_M
     return still
