@@ -27,6 +27,13 @@ FOUND_SINCE = {
     ("X5", "jp"): ["allowed"],
     ("X6", "jp"): ["allowed"],
     ("L29", "jp"): ["allowed"],
+    **{
+        (case, "it"): ["allowed"]
+        for case in (
+            *("X1", "X2", "X4", "X104", "X109", "X112", "X117", "X118", "X120"),
+            *("BD-R17", "BD-E11", "BA-M1", "ST-it-7", "OV3"),
+        )
+    },
 }
 """What a law says where who wrote the case found no rule, and one was read since.
 
@@ -34,7 +41,9 @@ Austria: § 26a(2) of the StVO binds in built-up areas alone; so does New South 
 its r. 164 wants who is beside a tram at a stop to wait, and its r. 160(2) nobody to pass one on
 its right. California: § 21756 wants who comes up behind a streetcar at its stop to wait behind it,
 and lets nobody past a safety zone faster than 10 mph. India: regulation 12(1)(f) of 2017 lets one
-turn left at red. Japan: art. 18(3) on passing cycles is in force since 2026-04-01.
+turn left at red. Italy: who gets past on the right without leaving its lane does not overtake, by
+the highway police and Cass. civ. 4820/1979, which none of these had read. Japan: art. 18(3) on
+passing cycles is in force since 2026-04-01.
 """
 
 
