@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rulec.extraction.signals.map.lanes_ahead import junctions_ahead
 from rulec.extraction.signals.measured_numbers import LONGEST_S, safe_distances
 from rulec.extraction.signals.participant_signals import participant_signals
 from rulec.extraction.signals.relations import stays
@@ -477,6 +478,24 @@ def test_a_lane_that_ends_at_the_junction_leads_elsewhere(x, goes_on, elsewhere)
     found = recording(road, [steady(7, 0, 0, speed=10, steps=8), other])
     signals = participant_signals(context_of(found, ("1", "2", "3")))
     assert signals.about["leads_elsewhere"][0, 0] == elsewhere
+
+
+@pytest.mark.parametrize("angle", np.linspace(0, 6, 9))
+def test_before_a_junction_in_which_the_map_begins_no_lane_leads_anywhere(angle):
+    """Wherever the world lies: the road begins at 0, but for the last digit."""
+    inside, cos, sin = frozenset({"intersection"}), np.cos(angle), np.sin(angle)
+    (x, y), ahead = (1000.1, 333.3), np.array([(0.0, 0.0), (37.0, 0.0), (200.0, 0.0)])
+
+    def at(places):
+        return np.array(places) @ np.array([(cos, sin), (-sin, cos)]) + (x, y)
+
+    road = [
+        lanelet(1, at(ahead[:2]), successors=(2,), types=inside),
+        lanelet(2, at(ahead[1:]), predecessors=(1,)),
+    ]
+    places = dict(enumerate(at([(60.0 + 5 * k, 0.0) for k in range(4)]).tolist()))
+    ego = vehicle(7, {k: tuple(place) for k, place in places.items()}, heading=angle)
+    assert junctions_ahead(context_of(recording(road, [ego]), ("1", "2"))) == ()
 
 
 @pytest.mark.parametrize("y", [-8, -1.5])

@@ -62,7 +62,7 @@ def junctions_ahead(context: DriveContext) -> Sequence[JunctionAhead]:
 def _junctions_ahead(context: DriveContext) -> Iterator[JunctionAhead]:
     road, ways = context.road, _ways_from(context)
     for low, high in road.junctions:
-        if low <= 0.0:
+        if low <= _HAIR_M:
             continue
         turned = road.turned(low, high)
         row = road.rows[int(road.piece(np.array([low - _HAIR_M]))[0])]
