@@ -112,6 +112,17 @@ def test_a_road_that_a_strip_divides():
     assert told("divided", lanes) == ["True"] * 3
 
 
+@pytest.mark.parametrize("corners", [(), (180,), (130,)])
+def test_the_other_direction_is_looked_for_beside_the_middle_wherever_corners_are(corners):
+    """It is beside the middle 20 m of the second lanelet, of 120 m."""
+    xs = (100, *corners, 220)
+    first, _, third = road()
+    second = lanelet(2, [(x, 0) for x in xs], predecessors=(1,), successors=(3,))
+    third = straight(3, 220, 300, predecessors=(2,))
+    lanes = [first, second, third, against(start=170, end=150)]
+    assert told("one_way", lanes, xs=(110, 160, 210)) == ["False"] * 3
+
+
 def test_a_map_without_any_road_of_two_directions_says_nothing():
     assert told("one_way", road()) is None
     assert told("divided", road()) is None

@@ -155,9 +155,7 @@ class Surroundings:
             for left in (True, False)
             for name in lanes_beside(self.recording, lanelet.id, left=left)
         ]
-        steps = np.hypot(*np.diff(lanelet.centre, axis=0).T)
-        longest = int(np.argmax(steps))
-        middle = shapely.Point(*((lanelet.centre[longest] + lanelet.centre[longest + 1]) / 2))
+        middle = shapely.LineString(lanelet.centre).interpolate(0.5, normalized=True)
         places = np.array([middle])
         heading = float(directions_beside(lanelet, places)[0])
         opposite = []
