@@ -8,6 +8,7 @@ import pytest
 from rulec import compile_rulebook, explain, find_maneuvers, verify_many
 from rulec.api.rulebook_compilation import machines
 from rulec.automata import compiler, step_compilation
+from rulec.automata.compiler_jobs import Failed
 from rulec.automata.step_compilation import StepCompiler
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.logic.formula import Bound, Unary, UnaryOperator
@@ -110,6 +111,43 @@ def test_where_a_step_does_not_fit_what_both_roundings_say_is_sure(text, lost, d
 
 def test_other_rules_are_judged_where_a_step_does_not_fit():
     assert violated(verify(trace("pq", 0.3), machines(BOOK))) == ["plain"]
+
+
+LARGE = """rulebook large
+signal p, q
+hard rule large { require always (p implies eventually[<= 100 s] q) }
+soft rule plain { require always (p implies q) }
+"""
+MILLISECOND = Fraction(1, 1000)
+
+
+@pytest.mark.parametrize("step_s", [MILLISECOND, Fraction(3, 10_000)])
+def test_of_recordings_other_rules_are_judged_where_one_is_too_large(step_s, tmp_path):
+    """100 s are 100,000 steps, or are rounded to 333,333 or more; 10,000 states are allowed."""
+    (tmp_path / "large.rules").write_text(LARGE)
+    every = compile_rulebook(tmp_path / "large.rules")
+    with pytest.raises(RulecError) as caught:
+        every.rounded_to(step_s)
+    assert {problem.code for problem in caught.value.diagnostics} == {"R0401"}
+    for judging in every.judging(step_s):
+        assert [one.name for one in judging.rules] == ["plain"]
+        assert [own[:2] for own in judging.too_large] == [("large", "hard")]
+        cut = replace(trace("p.", float(step_s)), ends="cut")
+        verdict = verify(cut, judging)
+        assert violated(verdict) == ["plain"]
+        (left_out,) = verdict.not_judged
+        assert left_out.rule == "large"
+        assert "too large for steps of 0.00" in left_out.why
+    assert every.judging(ONE)[0].too_large == ()
+
+
+def test_what_is_wrong_otherwise_is_refused_of_recordings_too(monkeypatch):
+    monkeypatch.setattr(
+        compiler, "answers_to", lambda jobs, **_: ([Failed("check")] * len(jobs), "")
+    )
+    with pytest.raises(RulecError) as caught:
+        StepCompiler(BOOK).judging(ONE)
+    assert {problem.code for problem in caught.value.diagnostics} == {"R0402"}
 
 
 def test_a_violation_is_explained_where_a_step_does_not_fit():

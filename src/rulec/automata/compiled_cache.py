@@ -185,6 +185,10 @@ class CachedSteps:
         down = self._answer(f"{name}-down", lambda: self._compiler().rounded(step_s)[0])
         return down, self._answer(f"{name}-up", lambda: self._compiler().rounded(step_s)[1])
 
+    def judging(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
+        """The rulebook without rules that are too large; which are is asked anew each time."""
+        return self._compiler().judging(step_s)
+
     def _answer(self, step: str, compile_it: Callable[[], CompiledRulebook]) -> CompiledRulebook:
         if step not in self._answers:
             if len(self._answers) >= MOST_FILES:

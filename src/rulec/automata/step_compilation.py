@@ -8,11 +8,17 @@ from fractions import Fraction
 from math import ceil, floor
 from typing import TYPE_CHECKING
 
-from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.bundle.compiled_rulebook import (
+    CompiledRule,
+    CompiledRulebook,
+    TooLargeRule,
+    is_too_large,
+)
 from rulec.automata.compiler import CompilerTime, RulebookFormulas, build_all, lower
 from rulec.diagnostics import RulecError
 from rulec.logic.bounds import Rounding, has_seconds, in_steps
 from rulec.logic.formula import Formula
+from rulec.logic.printing import number_in_words
 from rulec.resource_limits import STEPS
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 
@@ -36,6 +42,7 @@ class StepCompiler:
         self._answers: dict[Fraction, CompiledRulebook | RulecError] = {}
         self._header: CompiledRulebook | None = None
         self._roundings: dict[tuple[Formula, ...], StepCompiler] = {}
+        self._judging: dict[Fraction, tuple[CompiledRulebook, ...]] = {}
         self._built = 0
         self._time = time or CompilerTime()
 
@@ -81,6 +88,34 @@ class StepCompiler:
             )
         return self._roundings[formulas](step_s)
 
+    def judging(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
+        """The rulebook for a step (s), or rounded to it, without rules that are too large for it.
+
+        Raises RulecError as ``rounded`` for anything else.
+        """
+        if step_s not in self._judging:
+            self._judging[step_s] = self._judged_at(step_s)
+        return self._judging[step_s]
+
+    def _judged_at(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
+        try:
+            return _fitted(self, step_s)
+        except RulecError as error:
+            places = [problem.place for problem in error.diagnostics]
+            spans = [(rule, rule.span) for rule in self.rulebook.rules]
+            rules = [rule for rule, span in spans if span is not None and span.place in places]
+            if not (is_too_large(error) and rules):
+                raise
+            kept = tuple(rule for rule in self.rulebook.rules if rule not in rules)
+            why = f"its automaton is too large for steps of {number_in_words(step_s)} s"
+            left_out = [TooLargeRule(rule.name, rule.strength, why) for rule in rules]
+            smaller = StepCompiler(replace(self.rulebook, rules=kept), self._time)
+            # Rounded up others may be too large than rounded down
+            return tuple(
+                replace(book, too_large=(*left_out, *book.too_large))
+                for book in smaller.judging(step_s)
+            )
+
     def at_own_steps(self, rules: Sequence[Rule] | None = None) -> CompiledRulebook:
         """Compile rules for their examples' steps, all by default. Raises RulecError."""
         return self._compiled(self.rulebook.rules if rules is None else rules, None)
@@ -107,6 +142,15 @@ class StepCompiler:
 
     def _compiled(self, rules: Sequence[Rule], step_s: Fraction | None) -> CompiledRulebook:
         return self.built(lower(replace(self.rulebook, rules=tuple(rules)), step_s))
+
+
+def _fitted(compiler: StepCompiler, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
+    try:
+        return (compiler(step_s),)
+    except RulecError as error:
+        if is_too_large(error):
+            raise
+        return compiler.rounded(step_s)
 
 
 def _prefixes(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:

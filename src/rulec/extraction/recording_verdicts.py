@@ -33,9 +33,12 @@ MOST_STATES = 1 << 13
 
 
 def rounded_rulebooks(rulebook: CompiledRulebook, step_s: float) -> tuple[CompiledRulebook, ...]:
-    """A rulebook for a recording's step, with bounds that are no multiples rounded down and up."""
+    """A rulebook for a recording's step, with bounds that are no multiples rounded down and up.
+
+    Rules whose automata are too large for so short a step are left out: others can be judged.
+    """
     try:
-        return rulebook.rounded_to(step_s)
+        return rulebook.judging(step_s)
     except RulecError as error:
         if any(problem.code != OTHER_STEP.code for problem in error.diagnostics):
             raise
@@ -234,7 +237,7 @@ class ViolationTally:
 
     ``first_s``: rule -> drive -> time of its first violation (s of the recording). ``open_rules``
     are open in some drive, and ``open_on`` has all names on which open ones depend. ``untold``:
-    rule -> the names for want of which it is not judged in some drive.
+    rule -> the names for want of which it is not judged in some drive; ``reasons``: or why else.
     ``causes``: rule -> the objects that it is violated about -> the drives: many who pass one
     standing car are one finding. ``judged_in``: rule -> the number of drives in which it is neither
     open nor not judged. ``words`` are the names of the signals that every drive supplies.
@@ -248,6 +251,7 @@ class ViolationTally:
     open_rules: dict[str, None] = field(default_factory=dict)
     open_on: set[str] = field(default_factory=set)
     untold: dict[str, dict[str, None]] = field(default_factory=dict)
+    reasons: dict[str, str] = field(default_factory=dict)
     causes: dict[str, dict[tuple[str, ...], list[str]]] = field(default_factory=dict)
     judged_in: Counter[str] = field(default_factory=Counter)
     open_hard: int = 0
@@ -270,6 +274,7 @@ class ViolationTally:
         self.open_on |= later.open_on
         for rule, names in later.untold.items():
             self.untold.setdefault(rule, {}).update(names)
+        self.reasons.update(later.reasons)
         for rule, causes in later.causes.items():
             about = self.causes.setdefault(rule, {})
             for objects, drives in causes.items():
@@ -305,5 +310,7 @@ class ViolationTally:
             self.open_hard += result.strength == "hard"
         for rule in answer.not_judged:
             self.untold.setdefault(rule.rule, {}).update(dict.fromkeys(rule.untold))
+            if rule.why:
+                self.reasons[rule.rule] = rule.why
         doubtful = {x.rule for x in answer.open} | {x.rule for x in answer.not_judged}
         self.judged_in.update(rule for rule in rules if rule not in doubtful)

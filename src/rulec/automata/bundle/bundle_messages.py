@@ -4,6 +4,26 @@ from __future__ import annotations
 
 from rulec.diagnostics.code import Code
 
+_SIGNALS = ", ".join(f"s{number}" for number in range(1, 18))
+_EACH = [f"not s{number}" for number in range(1, 18)]
+
+AUTOMATON_TOO_LARGE = Code(
+    "R0401",
+    title="the automaton of a rule would be too large",
+    why="An automaton can be far larger than its formula. A rule may take 5 s of processor time "
+    "and 2 GiB of memory to compile, and as many acceptance sets as Spot has, 32, and read 65,536 "
+    "different letters (16 signals). Demands "
+    "that are joined by `and` can each have a rule of their own; those automata stand beside "
+    "each other instead of being multiplied.",
+    bad=f"rulebook example\nsignal {_SIGNALS}\nhard rule all_off {{\n"
+    f"  require always ({' and '.join(_EACH[:9])}\n"
+    f"                  and {' and '.join(_EACH[9:])})\n}}\n",
+    good=f"rulebook example\nsignal {_SIGNALS}\n"
+    f"hard rule these_off {{\n  require always ({' and '.join(_EACH[:9])})\n}}\n"
+    f"hard rule those_off {{\n  require always ({' and '.join(_EACH[9:])})\n}}\n",
+    kind="compiled",
+)
+
 DAMAGED_BUNDLE = Code(
     "R0404",
     title="a file is no compiled rulebook, or one of another version",

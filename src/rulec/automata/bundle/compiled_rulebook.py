@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
 
-from rulec.automata.bundle.bundle_messages import OTHER_STEP
+from rulec.automata.bundle.bundle_messages import AUTOMATON_TOO_LARGE, OTHER_STEP
 from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError, SourceLocation
@@ -65,6 +65,14 @@ class CompiledAxiom:
     place: SourceLocation | None = field(default=None, compare=False)
 
 
+class TooLargeRule(NamedTuple):
+    """A rule whose automaton would be too large for the step of some traces, and why it is."""
+
+    name: str
+    strength: model.Strength
+    why: str
+
+
 class Recompiler(Protocol):
     """A compiler of one rulebook for any step (s)."""
 
@@ -73,6 +81,9 @@ class Recompiler(Protocol):
 
     def rounded(self, step_s: Fraction) -> tuple[CompiledRulebook, CompiledRulebook]:
         """The rulebook with bounds rounded down to multiples of a step, and rounded up."""
+
+    def judging(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
+        """As ``CompiledRulebook.rounded_to``, without rules that are too large for the step."""
 
 
 PrefixCompiler: TypeAlias = "Callable[[CompiledRulebook], Mapping[str, OutcomeMachine | None]]"
@@ -94,6 +105,7 @@ class CompiledRulebook(Rows):
     compiled from, None if it was read from a compiled file. With ``recompile`` it fits itself to
     the step of the traces that it meets; None if it was read, or compiled for one step.
     ``prefixes`` gives the machines for traces that are cut, ``prepared`` what engines keep.
+    ``too_large`` are rules that are left out for the step of recorded traces.
     """
 
     __repr__ = short_repr
@@ -117,6 +129,7 @@ class CompiledRulebook(Rows):
     source: model.Rulebook | None = field(default=None, compare=False, repr=False)
     recompile: Recompiler | None = field(default=None, compare=False, repr=False)
     prefixes: PrefixCompiler | None = field(default=None, compare=False, repr=False)
+    too_large: tuple[TooLargeRule, ...] = field(default=(), compare=False, repr=False)
     prepared: Prepared = field(init=False, default_factory=Prepared, compare=False, repr=False)
 
     def place_of(self, name: str) -> SourceLocation | None:
@@ -162,10 +175,23 @@ class CompiledRulebook(Rows):
         """
         try:
             return (self.fitted_to(step_s),)
-        except RulecError:
-            if self.recompile is None:
+        except RulecError as error:
+            if self.recompile is None or is_too_large(error):
                 raise
             return self.recompile.rounded(exact_step(step_s))
+
+    def judging(self, step_s: Fraction | float) -> tuple[CompiledRulebook, ...]:
+        """As ``rounded_to``, without the rules that are ``too_large`` for the step."""
+        try:
+            return self.rounded_to(step_s)
+        except RulecError as error:
+            if self.recompile is None or not is_too_large(error):
+                raise
+            kept = {rule.name for rule in self.rules}
+            return tuple(
+                replace(book, rules=tuple(rule for rule in book.rules if rule.name in kept))
+                for book in self.recompile.judging(exact_step(step_s))
+            )
 
     def rows(self) -> list[dict[str, Any]]:
         """One row a rule."""
@@ -174,6 +200,11 @@ class CompiledRulebook(Rows):
             {"rule": rule.name, **{name: getattr(rule, name) for name in fields}}
             for rule in self.rules
         ]
+
+
+def is_too_large(error: RulecError) -> bool:
+    """True if all that is wrong are rules whose automata would be too large."""
+    return all(problem.code == AUTOMATON_TOO_LARGE.code for problem in error.diagnostics)
 
 
 _ALIKE = {

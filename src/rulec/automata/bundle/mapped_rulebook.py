@@ -61,7 +61,7 @@ def _rulebook(*parts: Any) -> CompiledRulebook:
     return replace(CompiledRulebook(*parts[:-1]), prefixes=parts[-1])
 
 
-_RULEBOOK = _of_fields(CompiledRulebook, ["source", "recompile"])
+_RULEBOOK = _of_fields(CompiledRulebook, ["source", "recompile", "too_large"])
 _KINDS: dict[type, _Kind] = {
     tuple: _Kind(tuple, lambda *items: items),
     dict: _Kind(

@@ -33,9 +33,10 @@ def judged_rules(
 ) -> JudgedRules:
     """The rules for a source that tells these names, all if None.
 
-    Left out are rules that no trace can be known to violate, and, of traces that are ``cut``, those
-    whose machine would be too large. Raises RulecError R0403 if Spot is not installed, which makes
-    the machines for these. The answer is remembered: it is asked for every trace.
+    Left out are rules that no trace can be known to violate, and those whose machine would be too
+    large, for the step or of traces that are ``cut``. Raises RulecError R0403 if Spot is not
+    installed, which makes the machines for these. The answer is remembered: it is asked for every
+    trace.
     """
     known: dict[object, JudgedRules] = rulebook.prepared.setdefault(JudgedRules, {})
     if (told, cut) not in known:
@@ -57,7 +58,8 @@ def _judged_rules(
         prefixes = {} if rulebook.prefixes is None else rulebook.prefixes(rulebook)
     unknown = untold_names(rulebook.vocabulary, told)
     types = untold_types(rulebook.vocabulary, told)
-    machines, not_judged = [], []
+    machines = []
+    not_judged = [RuleNotJudged(*rule[:2], (), rule.why) for rule in rulebook.too_large]
     for rule in rulebook.rules:
         outcomes = None if prefixes is None else prefixes.get(rule.name)
         if prefixes is not None and outcomes is None:

@@ -77,7 +77,8 @@ def _unjudged(rules: Sequence[CompiledRule], tally: ViolationTally, width: int) 
     """The rules that cannot be judged, hard ones first, by the words that they lack."""
     by_words: dict[tuple[str, tuple[str, ...]], list[str]] = {}
     for rule in sorted(rules, key=lambda one: one.strength != "hard")[:MOST_UNJUDGED]:
-        words = tuple(tally.untold.get(rule.name, ()))
+        reasons = [tally.reasons[rule.name]] if rule.name in tally.reasons else []
+        words = tuple(tally.untold.get(rule.name) or reasons)
         by_words.setdefault((rule.strength, words), []).append(rule.name)
     for strength in ("hard", "soft"):
         lacking = [

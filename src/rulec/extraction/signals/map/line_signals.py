@@ -25,7 +25,7 @@ from rulec.extraction.signals.signal_columns import (
 from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.driven_road import DrivenRoad
 from rulec.extraction.tracks.tracks import Flags, Floats
-from rulec.recordings.recording import STOP_SIGNS, Lanelet, Light, ObservedLight, Recording
+from rulec.recordings.recording import STOP_SIGNS, Light, ObservedLight, Recording
 from rulec.trace.plain_arrays import distinct
 
 _NO_JUNCTION_M = 1000.0
