@@ -146,7 +146,7 @@ def build_all(
         raise RulecError(dict.fromkeys(problems))
     return CompiledRulebook(
         **alike(Rulebook, rulebook),
-        vocabulary=with_implied(rulebook.vocabulary, [one.formula for one in rulebook.axioms]),
+        vocabulary=with_implied(rulebook.vocabulary, [axiom.formula for axiom in rulebook.axioms]),
         rules=tuple(compiled),
         sources=rulebook.sources,
         rulec=__version__,

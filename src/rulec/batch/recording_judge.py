@@ -128,10 +128,10 @@ def _relabelled(error: RulecError, path: str, label: str) -> RulecError:
     """An error whose place is called otherwise."""
     return RulecError(
         [
-            replace(one, place=replace(one.place, file=label))
-            if one.place is not None and one.place.file == path
-            else one
-            for one in error.diagnostics
+            replace(diagnostic, place=replace(diagnostic.place, file=label))
+            if diagnostic.place is not None and diagnostic.place.file == path
+            else diagnostic
+            for diagnostic in error.diagnostics
         ]
     )
 
@@ -285,7 +285,7 @@ class _RecordingJudge:
                 every_part=self._settings.every_part,
                 width=self._settings.width,
                 doubts=False,
-                whom=[whom_of(one, drive) for one in explained],
+                whom=[whom_of(explanation, drive) for explanation in explained],
                 times=StateTimes(drive.start_s, drive.arrays.step_s),
             )
             self._judged.blocks.append(f"\n{details}")

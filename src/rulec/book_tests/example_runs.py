@@ -120,7 +120,7 @@ def run_rulebook_examples(
 
 def _is_wanted(names: Sequence[str], patterns: Sequence[str]) -> bool:
     """Tell whether a pattern matches one of the names of a thing, or there is no pattern."""
-    return not patterns or any(fnmatchcase(name, one) for one in patterns for name in names)
+    return not patterns or any(fnmatchcase(name, pattern) for pattern in patterns for name in names)
 
 
 def _outcome(
@@ -187,7 +187,7 @@ def example_warnings(
     # A rule with bounds in seconds but no examples need not fit the step that those would have.
     rules = tuple(rule for rule in rulebook.rules if rule.examples or not has_seconds(rule.formula))
     outcomes = run_rulebook_examples(replace(rulebook, rules=rules), compiled(rules)).outcomes
-    return [example_warning(one, rulebook.name) for one in outcomes if not one.passed]
+    return [example_warning(outcome, rulebook.name) for outcome in outcomes if not outcome.passed]
 
 
 def is_inherited(outcome: ExampleOutcome, book: str) -> bool:

@@ -194,4 +194,4 @@ def _nobody(flags: Flags) -> Flags:
 
 
 def _known(flags: Flags, *, value: bool) -> list[Any]:
-    return [value if one else UNKNOWN for one in flags.tolist()]
+    return [value if flag else UNKNOWN for flag in flags.tolist()]

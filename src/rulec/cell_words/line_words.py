@@ -53,7 +53,7 @@ class LineWords:
         lanelets = probes.recording.lanelets.values()
         # Where a drive ends between the places where such a line may be, it has perhaps crossed it
         self._vague_signs = any(
-            STOP_SIGNS & one.signs and one.stop_line is None for one in lanelets
+            STOP_SIGNS & lanelet.signs and lanelet.stop_line is None for lanelet in lanelets
         )
 
     def crossings(self, boxes: EgoBoxes, *, is_last: bool) -> dict[str, Flags]:
@@ -81,10 +81,10 @@ class LineWords:
         for place, (may_cross, low, high, behind, ahead) in zip(places, rows, strict=True):
             near = tuple(
                 number
-                for number, one in enumerate(self._lights)
-                if low <= one.lane <= high
-                and behind - 2 * LINE_REACH_M <= one.end
-                and one.end <= ahead + USUAL.light_reach_m + LINE_REACH_M
+                for number, light in enumerate(self._lights)
+                if low <= light.lane <= high
+                and behind - 2 * LINE_REACH_M <= light.end
+                and light.end <= ahead + USUAL.light_reach_m + LINE_REACH_M
             )
             key = place.get("light", UNKNOWN), near, may_cross
             if key not in known:
@@ -95,16 +95,16 @@ class LineWords:
     def _shown(self, said: Any, near: Sequence[int], start_s: float, since_s: float) -> Any:
         """What lights may show to ego at a time of the scene, or when it crossed their lines."""
         lights = [self._lights[number] for number in near]
-        if said is UNKNOWN or (said == _DARK and not any(one.goes_dark for one in lights)):
+        if said is UNKNOWN or (said == _DARK and not any(light.goes_dark for light in lights)):
             return said
-        if not lights or (since_s and not all(one.drawn for one in lights)):
+        if not lights or (since_s and not all(light.drawn for light in lights)):
             return _ANY
         step_s, start = self._probes.recording.step_s, self._probes.origin.start.step
         begin = end = start_s / step_s
         if since_s:
             begin -= (since_s + _CROSSING_S) / step_s + 2
         steps = range(start + floor(begin + _HAIR), start + ceil(end - _HAIR) + 1)
-        shown = {colour_at(one.lights, step) for one in lights for step in steps}
+        shown = {colour_at(light.lights, step) for light in lights for step in steps}
         if "" in shown:
             return UNKNOWN
         dark = said == _DARK or (isinstance(said, OneOf) and _DARK in said.values)
@@ -127,17 +127,17 @@ def _where_crossed(probes: ProbeDrives, name: str, half_m: float) -> Iterator[tu
     """
     for lane, begin, end in probes.stretches:
         own = sorted(
-            (one for one in probes.lanes if one.lane == lane and begin <= one.s[0] <= end),
-            key=lambda one: float(one.s[0]),
+            (probe for probe in probes.lanes if probe.lane == lane and begin <= probe.s[0] <= end),
+            key=lambda probe: float(probe.s[0]),
         )
-        ends = [begin, *(float(at) for one in own for at in (one.s[0], one.s[-1])), end]
+        ends = [begin, *(float(at) for probe in own for at in (probe.s[0], probe.s[-1])), end]
         for number, (low, high) in enumerate(zip(ends[::2], ends[1::2], strict=True)):
             # The first state of a drive does not tell what it has crossed
             if high - low > 2 * EVERY_M or 0 < number < len(own):
                 yield low + half_m, high + half_m
-        for one in own:
-            perhaps = [state.get(name, UNKNOWN) is not False for state in one.states]
-            steps = pairwise([float(one.s[0]) - EVERY_M, *one.s.tolist()])
+        for probe in own:
+            perhaps = [state.get(name, UNKNOWN) is not False for state in probe.states]
+            steps = pairwise([float(probe.s[0]) - EVERY_M, *probe.s.tolist()])
             for (before, at), crosses in zip(steps, perhaps, strict=True):
                 if crosses:
                     yield before + half_m, at + half_m

@@ -196,9 +196,11 @@ class PlaceWords:
                 begin = max(int(np.searchsorted(lane.s, low, "right")) - 1, 0)
                 end = min(int(np.searchsorted(lane.s, high, "left")), len(lane.s) - 1)
                 untold -= {
-                    one
-                    for one in there
-                    if one[0] == lane.probe.lane and lane.s[0] <= one[1] and lane.s[-1] >= one[2]
+                    state
+                    for state in there
+                    if state[0] == lane.probe.lane
+                    and lane.s[0] <= state[1]
+                    and lane.s[-1] >= state[2]
                 }
                 spans.append((number, int(lane.run[begin]), int(lane.run[end])))
         key = tuple(spans), not untold

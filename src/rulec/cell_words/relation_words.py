@@ -94,7 +94,7 @@ class Relations:
         right_edge = np.where(touches, straight[first], begin)
         left_edge = np.where(touches, straight[last + 1], end)
         # Who reaches into ego's lane is in its way as far as ego's body is in theirs
-        right_bound, left_bound = (straight[one] for one in self._own_lanes(low, high))
+        right_bound, left_bound = (straight[own_lane] for own_lane in self._own_lanes(low, high))
         right = (high <= right_edge) & ((begin >= left_bound + _HAIR_M) | (high + width < begin))
         left = (low >= left_edge) & ((end <= right_bound - _HAIR_M) | (low - width > end))
         before, beyond = ((others.right[k] + others.left[k]) / 2 for k in (0, 1))

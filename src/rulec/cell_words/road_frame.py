@@ -80,7 +80,8 @@ class LaneLight:
     def goes_dark(self) -> bool:
         """Whether they may show nothing at times."""
         return any(
-            isinstance(one, ObservedLight) or "inactive" in dict(one.phases) for one in self.lights
+            isinstance(light, ObservedLight) or "inactive" in dict(light.phases)
+            for light in self.lights
         )
 
 
@@ -112,9 +113,9 @@ class RoadFrame:
         self.lights = tuple(self._lane_lights(road))
         self._splits = self._in_scene_splits(road)
         self.has_rails = any("level_crossing" in lanelet.types for lanelet in lanelets)
-        self.one_way = all(among.surroundings.directions(one)[0] for one in lanelets)
+        self.one_way = all(among.surroundings.directions(lanelet)[0] for lanelet in lanelets)
         turns = [road.turned(start, end, aside_m=1.0) for start, end in road.junctions]
-        self.goes_straight = all(abs(one) < _BENDS for one in turns)
+        self.goes_straight = all(abs(turn) < _BENDS for turn in turns)
         at = np.abs(origin.lanes.s - origin.ego_s) <= _FAR_M
         widths = np.diff(origin.lanes.bounds[at], axis=1)
         self.stretched = np.abs(widths - np.diff(self._straight)).sum(axis=1).max(initial=0.0)
@@ -230,7 +231,7 @@ class RoadFrame:
             for (row, onward), end in zip(pairwise(rows), ends.tolist(), strict=True):
                 for lanelet in row:
                     linked = () if lanelet is None else _linked(lanelet, way)
-                    into = [k for k, one in enumerate(onward) if one and one.id in linked]
+                    into = [k for k, lane in enumerate(onward) if lane and lane.id in linked]
                     if len(into) > 1:
                         found.append((end, way, into))
         places = self._in_scene(road, [(end, end) for end, *_ in found])

@@ -40,7 +40,9 @@ def dataclass(given: type | None = None, /, **options: bool) -> Any:
 
 def _is_plain(cls: type) -> bool:
     annotations = map(str, get_annotations(cls).values())
-    return cls.__module__.startswith("rulec.") and not any("InitVar" in one for one in annotations)
+    return cls.__module__.startswith("rulec.") and not any(
+        "InitVar" in annotation for annotation in annotations
+    )
 
 
 def _late(

@@ -146,8 +146,8 @@ def print_lost(deed: str, what: str, signal_number: int | None) -> None:
 def print_left_alone(left_alone: Sequence[LeftAlone], *, verbose: bool) -> None:
     """Say what was not looked into: each thing by itself, or how many of each kind."""
     if verbose:
-        for one in left_alone:
-            print_remark(f"left alone: {one.path}: {one.why}")
+        for file in left_alone:
+            print_remark(f"left alone: {file.path}: {file.why}")
     elif left_alone:
         # Sources below folders, 5 ms: verbs without folders do without.
         from rulec.rulebook.files.source_walk import in_words

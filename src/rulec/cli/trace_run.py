@@ -153,7 +153,7 @@ class TraceRun:
             from rulec.monitoring.explain.explanation import explain
 
             trace = cast("Trace", traces[place])
-            explained = [explain(one, trace, used) for one in verdict.violations[:left]]
+            explained = [explain(violation, trace, used) for violation in verdict.violations[:left]]
         if self.to.wants_lines:
             # As above: only where they are wanted.
             from rulec.report.verdicts import verdict_json

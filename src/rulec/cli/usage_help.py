@@ -71,7 +71,7 @@ def reworded(problem: click.ClickException) -> str:
     """The message, in the words that are used for sources, with what may be meant."""
     message = problem.format_message()
     if isinstance(problem, click.NoSuchOption) and problem.ctx is not None:
-        known = [option for one in problem.ctx.command.params for option in one.opts]
+        known = [option for parameter in problem.ctx.command.params for option in parameter.opts]
         if others := _OF_OTHER_VERBS.get(problem.option_name):
             return f"there is no option `{problem.option_name}` here; {others}"
         if problem.option_name in ("-r", "--rulebook") and "-r" not in known:
@@ -178,8 +178,8 @@ def _rulebook_meant(context: click.Context) -> tuple[str, ...]:
     from rulec.rulebook.files.search_path import available_rulebooks
 
     given: tuple[str, ...] = context.find_root().obj or ()
-    meant = [one for one in given[1:] if one.endswith(".rules") or one in available_rulebooks()]
-    return tuple(f"a rulebook is given by `-r {one}`" for one in meant[:1])
+    meant = [word for word in given[1:] if word.endswith(".rules") or word in available_rulebooks()]
+    return tuple(f"a rulebook is given by `-r {name}`" for name in meant[:1])
 
 
 def unknown_verb(name: str) -> str:

@@ -86,18 +86,20 @@ def verdict_outputs(
     outputs = VerdictOutputs()
     written: list[Output] = []
     with ExitStack() as files:
-        for one in to:
-            if one.is_file:
-                written.append(one)
-            if one.form in ("text", "json"):
-                lines = outputs._text if one.form == "text" else outputs._lines
-                lines.append(files.enter_context(answer_lines(one)))
+        for output in to:
+            if output.is_file:
+                written.append(output)
+            if output.form in ("text", "json"):
+                lines = outputs._text if output.form == "text" else outputs._lines
+                lines.append(files.enter_context(answer_lines(output)))
             else:
                 # Documents in JSON, 12 ms: only where there are findings to be written.
                 from rulec.report.verdict_findings.verdict_finding import FindingsOf
 
-                stream, name = files.enter_context(output_stream(one))
-                writer = finding_writer(one.form, stream, FindingsOf(rules, columns=columns), name)
+                stream, name = files.enter_context(output_stream(output))
+                writer = finding_writer(
+                    output.form, stream, FindingsOf(rules, columns=columns), name
+                )
                 outputs._writers.append((writer, name))
         if len(written) == len(to) and not outputs._text:
             outputs._text.append(print_result)
@@ -105,7 +107,7 @@ def verdict_outputs(
         for writer, _ in outputs._writers:
             writer.close()
     if len(written) == len(to):
-        for one in written:
-            is_whole = one.form in ("text", "json")
+        for output in written:
+            is_whole = output.form in ("text", "json")
             what = "the answer" if is_whole else counted(outputs._findings, "finding")
-            print_line(f"wrote {what} to {one.path}")
+            print_line(f"wrote {what} to {output.path}")

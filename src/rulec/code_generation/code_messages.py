@@ -34,7 +34,9 @@ def too_large(what: str, way_out: str = "") -> RulecError:
 def no_engine_in_c(error: RulecError, place: SourceLocation | None) -> RulecError:
     """The same of a trace that was to be judged in C."""
     way_out = "judge it with `--engine python`"
-    return RulecError([replace(one, place=place, help=way_out) for one in error.diagnostics])
+    return RulecError(
+        [replace(diagnostic, place=place, help=way_out) for diagnostic in error.diagnostics]
+    )
 
 
 NO_MONITOR_COMPILER = Code(

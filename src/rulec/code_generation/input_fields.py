@@ -57,7 +57,7 @@ class InputFields:
         identifiers = Identifiers(_OWN_CONSTANTS)
         found = {}
         for what, names in ((TYPE, self.types), (RULE, self.rules)):
-            found.update({(what, one): identifiers.of(what, one, upper=True) for one in names})
+            found.update({(what, name): identifiers.of(what, name, upper=True) for name in names})
         for item in self.read:
             if isinstance(item, Enumeration):
                 for value in item.values:

@@ -179,7 +179,9 @@ def _seats(fields: InputFields, bounds: Mapping[str, int]) -> dict[str, tuple[in
     found: dict[str, tuple[int, int]] = {}
     end = 0
     # A type's seats are followed by those of types below it, so that each has a stretch.
-    for kind in sorted(kinds, key=lambda kind: [kinds.index(one) for one in _above(kind, fields)]):
+    for kind in sorted(
+        kinds, key=lambda kind: [kinds.index(above) for above in _above(kind, fields)]
+    ):
         parent = _parent(kind, vocabulary)
         if kind in bounds:
             found[kind] = end, end + bounds[kind]

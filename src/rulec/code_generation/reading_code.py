@@ -133,7 +133,7 @@ class ReadingCode:
             ):
                 # Which of two decimals is the greater their doubles say, too.
                 sides = sum(1 if inclusive else 2 for _, inclusive in flags)
-                pair = [self._value(one.name, one.arguments, inner) for one in (first, second)]
+                pair = [self._value(term.name, term.arguments, inner) for term in (first, second)]
                 lines = self._returning(self._call("order", *pair, self._whole(sides)))
             case _:
                 lines = self._weighed(read, inner)

@@ -268,7 +268,7 @@ def _tables(layout: MonitorLayout) -> Iterator[str]:
     ]
     yield f"static FITS: [[bool; TYPES]; TYPES] = {_listed(fits)};"
     for name, place in (("FIRST", 0), ("END", 1)):
-        seats = _listed(layout.seats[one][place] for one in kinds)
+        seats = _listed(layout.seats[kind][place] for kind in kinds)
         yield f"static {name}: [usize; TYPES] = {seats};"
     for name, sizes in zip(("WORLD", "OWN", "SHARED"), layout.sizes, strict=True):
         yield f"static {name}_SIZES: [u8; {name}_READS] = {_listed(sizes or (0,))};"

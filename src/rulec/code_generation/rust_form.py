@@ -65,7 +65,7 @@ def _signature(indent: str, text: str) -> Iterator[str]:
         yield f"{indent}{text}"
         return
     yield f"{indent}{found[1]}("
-    yield from (f"{indent}{_STEP}{one}," for one in _parts(found[2]))
+    yield from (f"{indent}{_STEP}{part}," for part in _parts(found[2]))
     yield f"{indent}){found[3]}"
 
 
@@ -91,7 +91,7 @@ def _is_better_below(here: Sequence[str], below: Sequence[str]) -> bool:
     return (
         len(below) == 1
         or len(here) > len(below) + 1
-        or any(here[0].endswith(one) and not below[0].endswith(one) for one in "([{")
+        or any(here[0].endswith(bracket) and not below[0].endswith(bracket) for bracket in "([{")
     )
 
 
@@ -193,10 +193,10 @@ def _closes_early(inner: str) -> bool:
 def _depths(text: str) -> list[int]:
     """How many brackets are open behind each character; none within texts count."""
     depth, depths, quoted = 0, [], False
-    for one in text:
-        quoted ^= one == '"'
+    for character in text:
+        quoted ^= character == '"'
         if not quoted:
-            depth += (one in "([{") - (one in ")]}")
+            depth += (character in "([{") - (character in ")]}")
         depths.append(depth + quoted * 1000)
     return depths
 

@@ -68,12 +68,12 @@ def prefix_of(name: str) -> str:
 def _letters(text: str) -> str:
     """A name in letters, digits and single underscores of ASCII, no two different ones alike."""
     mapped = "".join(
-        one
-        if one.isascii() and (one.isalnum() or one == "_")
-        else f"_{ord(one):x}_"
-        if one not in "- "
+        character
+        if character.isascii() and (character.isalnum() or character == "_")
+        else f"_{ord(character):x}_"
+        if character not in "- "
         else "_"
-        for one in text
+        for character in text
     )
     # Identifiers with two underscores belong to C++.
     return re.sub("_{2,}", "_", mapped).rstrip("_")
@@ -115,9 +115,9 @@ def c_string(text: str) -> str:
 def rust_string(text: str) -> str:
     """A literal of Rust: plain letters, else numbers of characters; U+FFFD for what is none."""
     shown = "".join(
-        one
-        if one.isascii() and (one.isalnum() or one in " .,-_()")
-        else f"\\u{{{0xFFFD if 0xD800 <= ord(one) < 0xE000 else ord(one):x}}}"
-        for one in text
+        character
+        if character.isascii() and (character.isalnum() or character in " .,-_()")
+        else f"\\u{{{0xFFFD if 0xD800 <= ord(character) < 0xE000 else ord(character):x}}}"
+        for character in text
     )
     return f'"{shown}"'

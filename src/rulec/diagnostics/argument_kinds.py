@@ -67,9 +67,9 @@ def checked_kinds(function: AnyFunction) -> AnyFunction:
     looked at, too, and those of iterators when they come.
     """
     parameters = signature(function).parameters.values()
-    annotated = [_annotation(one) for one in parameters]
+    annotated = [_annotation(parameter) for parameter in parameters]
     by_name = dict(annotated)
-    more = [one for one in parameters if one.kind is Parameter.VAR_POSITIONAL]
+    more = [parameter for parameter in parameters if parameter.kind is Parameter.VAR_POSITIONAL]
     others = _annotation(more[0]) if more else ("", "")
 
     @wraps(function)
@@ -155,7 +155,7 @@ def _checked_items(name: str, annotation: str, items: Iterator[Any]) -> Iterator
 def _unexpected(name: str, annotation: str, value: object) -> TypeError:
     kinds = _kinds(annotation)
     items = [one for kind in kinds for own in kind.items for one in _kinds(own)]
-    names = [one.name for one in (*kinds, *items)]
+    names = [kind.name for kind in (*kinds, *items)]
     ways = [WAYS_OUT[name] for name in names if name in WAYS_OUT]
     said = [kind.said for kind in kinds if kind.name not in _UNSAID]
     listed = " or ".join(filter(None, (", ".join(said[:-1]), said[-1])))
@@ -204,7 +204,7 @@ def _alternatives(node: ast.expr) -> Iterator[_Kind]:
         yield from _alternatives(node.right)
     elif isinstance(node, ast.Subscript):
         own = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
-        yield _parametrized(ast.unparse(node.value), [ast.unparse(one) for one in own])
+        yield _parametrized(ast.unparse(node.value), [ast.unparse(expr) for expr in own])
     elif (name := ast.unparse(node).rpartition(".")[2]) in _ALIASES:
         yield from _kinds(_ALIASES[name])
     elif name in _PLAIN:
@@ -241,7 +241,9 @@ def _is_listed(given: type) -> bool:
 
 def _is_whole(given: type) -> bool:
     # Arrays of one number are, too, and others are not
-    return hasattr(given, "__index__") and "ndarray" not in [one.__name__ for one in given.__mro__]
+    return hasattr(given, "__index__") and "ndarray" not in [
+        parent.__name__ for parent in given.__mro__
+    ]
 
 
 _PLAIN: dict[str, tuple[str, Callable[[type], bool]]] = {

@@ -90,7 +90,9 @@ class RulecError(Rows, Exception):
         text = "; ".join(_one_line(d) for d in self.diagnostics)
         super().__init__(text.encode(errors="backslashreplace").decode())
         # Tracebacks show it below the error, from Python 3.11 on
-        ways_out = dict.fromkeys(one.help for one in self.diagnostics[:20] if one.help)
+        ways_out = dict.fromkeys(
+            diagnostic.help for diagnostic in self.diagnostics[:20] if diagnostic.help
+        )
         self.__notes__ = [
             f"help: {text.encode(errors='backslashreplace').decode()}" for text in ways_out
         ]
@@ -126,10 +128,13 @@ def placed_at(place: SourceLocation) -> Iterator[None]:
 
 def with_place(error: RulecError, place: SourceLocation | None) -> RulecError:
     """An error of which all that says no place is about this one."""
-    if place is None or all(one.place for one in error.diagnostics):
+    if place is None or all(diagnostic.place for diagnostic in error.diagnostics):
         return error
     return RulecError(
-        [one if one.place else replace(one, place=place) for one in error.diagnostics]
+        [
+            diagnostic if diagnostic.place else replace(diagnostic, place=place)
+            for diagnostic in error.diagnostics
+        ]
     )
 
 

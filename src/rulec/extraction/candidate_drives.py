@@ -143,7 +143,7 @@ class _Batch:
         states = 0
         for row in order:
             rows.append(row)
-            states += sum(one.last - one.first + 1 for one in self.stretches[row])
+            states += sum(stretch.last - stretch.first + 1 for stretch in self.stretches[row])
             if states * n_others >= MOST_CELLS:
                 yield self._block(rows, bare=bare and len(rows) < len(order))
                 rows, states = [], 0
@@ -157,13 +157,13 @@ class _Batch:
         apart = set()
         for row in rows:
             stretches = self.stretches[row]
-            own = [self._together(row, number, one) for number, one in enumerate(stretches)]
-            ready = [one for one in own if one is not None]
+            own = [self._together(row, number, stretch) for number, stretch in enumerate(stretches)]
+            ready = [trace for trace in own if trace is not None]
             if not own or len(ready) < len(own):
                 apart.add(row)
                 continue
-            for road, one in ready:
-                together[road].append(one)
+            for road, stretch in ready:
+                together[road].append(stretch)
         drives: dict[tuple[int, int], Drive] = {}
         for road, waiting in together.items():
             drives |= self._end_to_end(road, waiting, writer)
@@ -192,9 +192,11 @@ class _Batch:
 
     def _by_itself(self, row: int) -> tuple[Drive | NoDrive, ...]:
         """The drives of a candidate that is looked at by itself."""
-        one = _DrivesOfOne(self._among, self, row)
+        drives_of_one = _DrivesOfOne(self._among, self, row)
         return tuple(
-            one.along(len(self._among.surroundings.tracks.participants), self.stretches[row])
+            drives_of_one.along(
+                len(self._among.surroundings.tracks.participants), self.stretches[row]
+            )
         )
 
     def _end_to_end(
@@ -204,18 +206,20 @@ class _Batch:
         among = self._among
         egos = EgosOnRoad(
             self.places(road, stretches[0].row)[0],
-            [self.places(road, one.row)[1] for one in stretches],
-            [one.columns for one in stretches],
+            [self.places(road, stretch.row)[1] for stretch in stretches],
+            [stretch.columns for stretch in stretches],
             own=self.surroundings,
             alone=lambda number: self._surroundings_of(stretches[number].row),
         )
         context = drives_context(among.surroundings, among.places(road), among.side, egos)
-        ids = [self.surroundings.tracks.participants[one.row].id for one in stretches]
+        ids = [self.surroundings.tracks.participants[stretch.row].id for stretch in stretches]
         try:
-            drives = to_traces(context, ids, [one.name for one in stretches], writer)
+            drives = to_traces(context, ids, [stretch.name for stretch in stretches], writer)
         except UnlikeDrivesError:
             return {}
-        return {(one.row, one.number): x for one, x in zip(stretches, drives, strict=True)}
+        return {
+            (stretch.row, stretch.number): x for stretch, x in zip(stretches, drives, strict=True)
+        }
 
     def _surroundings_of(self, row: int) -> tuple[Surroundings, int]:
         """A candidate's surroundings, in which it is the last participant, and its row."""

@@ -386,4 +386,9 @@ class Drives:
         return flags[:, columns.start - first :]
 
     def _numbers_along(self, road: DrivenRoad) -> list[int]:
-        return [self._map.numbers[one.id] for row in road.rows for one in row if one is not None]
+        return [
+            self._map.numbers[lanelet.id]
+            for row in road.rows
+            for lanelet in row
+            if lanelet is not None
+        ]

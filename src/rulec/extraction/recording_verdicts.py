@@ -182,8 +182,8 @@ def verified(
     drives: Sequence[Drive | NoDrive], roundings: Sequence[CompiledRulebook]
 ) -> Iterator[DriveVerdict | NoDrive]:
     """The verdicts of a rulebook, rounded to their step, on drives together."""
-    for one in judged_drives(drives, roundings):
-        yield one.with_verdict() if isinstance(one, JudgedDrive) else one
+    for drive in judged_drives(drives, roundings):
+        yield drive.with_verdict() if isinstance(drive, JudgedDrive) else drive
 
 
 def judged_drives(

@@ -88,7 +88,7 @@ class SelectedDrives:
 
     def kinds(self) -> dict[str, type]:
         """The Python type of each signal of all drives, empty if nobody has a drive."""
-        drives = (one for one in self if isinstance(one, Drive))
+        drives = (drive for drive in self if isinstance(drive, Drive))
         first = next(drives, None)
         # Others than those asked for have the same
         return self._drives_of(self.recording).kinds() if first is None else dict(first.kinds)

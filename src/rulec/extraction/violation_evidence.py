@@ -91,7 +91,7 @@ def whom_of(explained: Explanation, drive: Drive) -> tuple[str, ...]:
         found = [one for name in decide for one in drive.whom[name][state]]
         if found:
             named = explained.violation.binding.values()
-            return tuple([one for one in dict.fromkeys(found) if one not in named])
+            return tuple([name for name in dict.fromkeys(found) if name not in named])
     return ()
 
 

@@ -50,20 +50,20 @@ class TraceTableJudge:
         outlines, some_unread = trace_outlines(rows), not_utf8(rows, rows.column_names)
         is_counted = ROWS in rows.column_names
         cut = []
-        for number, one in enumerate(outlines):
-            lacks = one.lacks
+        for number, outline in enumerate(outlines):
+            lacks = outline.lacks
             if not lacks and is_counted:
-                lacks = lacking(rows.slice(one.first, one.rows), one.rows)
+                lacks = lacking(rows.slice(outline.first, outline.rows), outline.rows)
             if self.seen is not None:
-                content = (one.rows, one.states)
-                if not lacks and self.seen.is_other((*own.values(), one.name), content):
+                content = (outline.rows, outline.states)
+                if not lacks and self.seen.is_other((*own.values(), outline.name), content):
                     lacks = "other rows of it came before"
                 if lacks:
-                    raise cut_drive(f"trace `{one.name}`", lacks, [*own, TRACE])
+                    raise cut_drive(f"trace `{outline.name}`", lacks, [*own, TRACE])
             if some_unread and not lacks:
-                lacks = not_utf8(rows.slice(one.first, one.rows), rows.column_names)
+                lacks = not_utf8(rows.slice(outline.first, outline.rows), rows.column_names)
             if lacks:
-                yield self.to_rows.of_nothing({**own, "vehicle": one.name}, lacks)
+                yield self.to_rows.of_nothing({**own, "vehicle": outline.name}, lacks)
                 cut.append(number)
         rest = without_rows(rows, [outlines[number] for number in cut])
         whole = [one for number, one in enumerate(outlines) if number not in {*cut}]
@@ -78,8 +78,8 @@ class TraceTableJudge:
         try:
             chunks = traces_of_table(rows, own.get(FILE, "") or "the table") if outlines else ()
         except RulecError as error:
-            for one in waiting:
-                yield to_rows.of_nothing({**own, "vehicle": one.name}, _why(error))
+            for outline in waiting:
+                yield to_rows.of_nothing({**own, "vehicle": outline.name}, _why(error))
             return
         for chunk in chunks:
             for traces, answers in verify_items(self.assumed.of(chunk), to_rows.rules):
@@ -97,10 +97,12 @@ class TraceTableJudge:
     ) -> list[tuple[Verdict, DriveFacts] | str]:
         """For each trace its verdict and what rates need, or why it has none."""
         # The reason, and not all that is said with it: a table may have as many as rows.
-        short = [_why(one.error) if isinstance(one, NotJudged) else one for one in answers]
-        verdicts = [None if isinstance(one, str) else one for one in short]
+        short = [
+            _why(answer.error) if isinstance(answer, NotJudged) else answer for answer in answers
+        ]
+        verdicts = [None if isinstance(answer, str) else answer for answer in short]
         facts = iter(facts_of_many(traces, verdicts, self.to_rows.rules))
-        return [one if isinstance(one, str) else (one, next(facts)) for one in short]
+        return [answer if isinstance(answer, str) else (answer, next(facts)) for answer in short]
 
     def _found(
         self, traces: Items, place: int, verdict: Verdict, own: Mapping[str, str]

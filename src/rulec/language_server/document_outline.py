@@ -51,12 +51,12 @@ def _symbols(
             rule = symbol(item.name, _KINDS[tree.RuleItem], item.span, _detail(item))
             rule.children = [
                 lsp.DocumentSymbol(
-                    name=f"{'accept' if one.accepts else 'reject'} {one.label or number}",
+                    name=f"{'accept' if example.accepts else 'reject'} {example.label or number}",
                     kind=lsp.SymbolKind.Event,
-                    range=positions.range(*names.bounds(one.span)),
-                    selection_range=positions.range(*names.bounds(one.span)),
+                    range=positions.range(*names.bounds(example.span)),
+                    selection_range=positions.range(*names.bounds(example.span)),
                 )
-                for number, one in enumerate(item.examples, 1)
+                for number, example in enumerate(item.examples, 1)
             ]
             yield rule
         case tree.SignalItem(signals):

@@ -97,11 +97,11 @@ def _names(server: EditorSession) -> None:
         if known is None:
             return None
         names, positions = known
-        one = names.at(positions.offset(params.position))
-        if one is None:
+        occurrence = names.at(positions.offset(params.position))
+        if occurrence is None:
             return None
-        text = lsp.MarkupContent(lsp.MarkupKind.Markdown, hover_text(names, one))
-        return lsp.Hover(text, positions.range(*names.bounds(one.span)))
+        text = lsp.MarkupContent(lsp.MarkupKind.Markdown, hover_text(names, occurrence))
+        return lsp.Hover(text, positions.range(*names.bounds(occurrence.span)))
 
     @server.feature(lsp.TEXT_DOCUMENT_DEFINITION)
     def definition(params: lsp.DefinitionParams) -> lsp.Location | None:
@@ -109,8 +109,10 @@ def _names(server: EditorSession) -> None:
         if known is None:
             return None
         names, positions = known
-        one = names.at(positions.offset(params.position))
-        return None if one is None else declaration_of(names, one.thing, server.editor)
+        occurrence = names.at(positions.offset(params.position))
+        return (
+            None if occurrence is None else declaration_of(names, occurrence.thing, server.editor)
+        )
 
     @server.feature(lsp.TEXT_DOCUMENT_REFERENCES)
     def references(params: lsp.ReferenceParams) -> list[lsp.Location]:
@@ -118,12 +120,12 @@ def _names(server: EditorSession) -> None:
         if known is None:
             return []
         names, positions = known
-        one = names.at(positions.offset(params.position))
-        if one is None:
+        occurrence = names.at(positions.offset(params.position))
+        if occurrence is None:
             return []
         return [
             place.location
-            for place in references_to(one.thing, names, server.editor)
+            for place in references_to(occurrence.thing, names, server.editor)
             if params.context.include_declaration or not place.declares
         ]
 

@@ -137,7 +137,9 @@ def _reasons(part: Formula, instant: int, columns: _Columns, *, ends: bool) -> I
             yield right, instant, instant
         case Binary(operator, left, right) if operator in _ALONE:
             pairs = zip((left, right), _ALONE[operator], strict=True)
-            alone = [one for one, value in pairs if columns[one].values[instant] == value]
+            alone = [
+                formula for formula, value in pairs if columns[formula].values[instant] == value
+            ]
             for operand in alone[:1] or (left, right):
                 yield operand, instant, instant
         case Unary(_, operand):

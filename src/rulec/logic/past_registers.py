@@ -86,10 +86,14 @@ def eliminate_past(formula: ltl.Formula, *, registers: bool = True) -> WithoutPa
     needed: list[Register | Memory] = []
     spoken_of = set(ltl.atoms_of(present))
     # None of them speaks of a later one.
-    for one in sorted(fresh, key=lambda proxy: result.order[proxy.atom], reverse=True):
-        if one.atom in spoken_of:
-            needed.insert(0, one)
-            for part in (one.left, one.right) if isinstance(one, Register) else (one.formula,):
+    for register in sorted(fresh, key=lambda proxy: result.order[proxy.atom], reverse=True):
+        if register.atom in spoken_of:
+            needed.insert(0, register)
+            for part in (
+                (register.left, register.right)
+                if isinstance(register, Register)
+                else (register.formula,)
+            ):
                 spoken_of.update(ltl.atoms_of(part))
     return WithoutPast(
         present,

@@ -28,7 +28,7 @@ def write_ltl(rulebook: Rulebook, lowered: RulebookFormulas, folder: Path) -> li
     if lowered.problems:
         raise RulecError(lowered.problems)
     phrases = phrases_of(rulebook)
-    rules = [rule_terms(rulebook, one, phrases) for one in lowered.rules]
+    rules = [rule_terms(rulebook, formula, phrases) for formula in lowered.rules]
     texts = {
         f"{rulebook.name}.csv": spot_table(rules),
         f"{rulebook.name}.props": prism_properties(rulebook, rules),
@@ -48,9 +48,9 @@ def spot_table(rules: Sequence[RuleTerms]) -> str:
     table = io.StringIO()
     rows = csv.writer(table, lineterminator="\n")
     rows.writerow(["rule", "formula", "facts", "history"])
-    for one in rules:
-        texts = (text_of(term, SPOT) for term in (one.formula, one.facts, one.history))
-        rows.writerow([one.rule.name, *texts])
+    for terms in rules:
+        texts = (text_of(term, SPOT) for term in (terms.formula, terms.facts, terms.history))
+        rows.writerow([terms.rule.name, *texts])
     return table.getvalue()
 
 
@@ -61,11 +61,11 @@ def prism_properties(rulebook: Rulebook, rules: Sequence[RuleTerms]) -> str:
         f"// Labels are what {rulebook.name}.propositions.json says; the model defines them, so",
         "// that facts and history are certain: else a label is not what it stands for.",
     ]
-    for one in rules:
-        name = fresh_identifier(one.rule.name, set())
-        lines += ["", f"// {one.rule.strength} rule"]
-        lines.append(f'"{name}": P=? [ {text_of(one.formula, PRISM)} ];')
-        for title, term in (("facts", one.facts), ("history", one.history)):
+    for terms in rules:
+        name = fresh_identifier(terms.rule.name, set())
+        lines += ["", f"// {terms.rule.strength} rule"]
+        lines.append(f'"{name}": P=? [ {text_of(terms.formula, PRISM)} ];')
+        for title, term in (("facts", terms.facts), ("history", terms.history)):
             if term != TRUE:
                 lines.append(f'"{name}_{title}": P=? [ {text_of(term, PRISM)} ];')
     return "\n".join(lines) + "\n"
@@ -76,14 +76,14 @@ def nuxmv_modules(rulebook: Rulebook, rules: Sequence[RuleTerms]) -> str:
     finite = rulebook.semantics == "finite"
     lines = [*_head(rulebook, "--")]
     main: list[str] = ["MODULE main", "VAR"]
-    for one in rules:
-        name = fresh_identifier(f"rule {one.rule.name}", set())
-        own = [each.name for each in one.propositions] + ["alive"] * finite
-        lines += ["", f"-- {one.rule.strength} rule", f"MODULE {name}({', '.join(own)})"]
-        if one.past:
-            lines += ["VAR", *(f"  {each.name} : boolean;" for each in one.past)]
-        assumed = [term for term in (one.facts, one.history) if term != TRUE]
-        said = one.formula
+    for terms in rules:
+        name = fresh_identifier(f"rule {terms.rule.name}", set())
+        own = [each.name for each in terms.propositions] + ["alive"] * finite
+        lines += ["", f"-- {terms.rule.strength} rule", f"MODULE {name}({', '.join(own)})"]
+        if terms.past:
+            lines += ["VAR", *(f"  {each.name} : boolean;" for each in terms.past)]
+        assumed = [term for term in (terms.facts, terms.history) if term != TRUE]
+        said = terms.formula
         for term in reversed(assumed):
             said = Term("->", (term, said))
         lines.append(f"LTLSPEC NAME {name}_is_kept := {text_of(said, NUXMV)};")
@@ -102,17 +102,17 @@ def meanings(rulebook: Rulebook, rules: Sequence[RuleTerms]) -> str:
         "version": 1,
         "rulebook": rulebook.name,
         "rulec": __version__,
-        "sources": [{"name": one.name, "sha256": one.sha256} for one in rulebook.sources],
+        "sources": [{"name": file.name, "sha256": file.sha256} for file in rulebook.sources],
         "semantics": rulebook.semantics,
         "rules": {
-            one.rule.name: {
-                "strength": one.rule.strength,
-                "cite": one.rule.cite,
-                "step_s": None if one.step_s is None else str(one.step_s),
-                "propositions": {each.name: _meaning(each) for each in one.propositions},
-                "an_instant_ago": {each.name: each.formula for each in one.past},
+            terms.rule.name: {
+                "strength": terms.rule.strength,
+                "cite": terms.rule.cite,
+                "step_s": None if terms.step_s is None else str(terms.step_s),
+                "propositions": {each.name: _meaning(each) for each in terms.propositions},
+                "an_instant_ago": {each.name: each.formula for each in terms.past},
             }
-            for one in rules
+            for terms in rules
         },
     }
     return json.dumps(document, indent=1, ensure_ascii=False) + "\n"
@@ -123,6 +123,6 @@ def _meaning(one: Proposition) -> dict[str, str]:
 
 
 def _head(rulebook: Rulebook, sign: str) -> list[str]:
-    sources = ", ".join(one.sha256[:16] for one in rulebook.sources)
+    sources = ", ".join(file.sha256[:16] for file in rulebook.sources)
     written = f"{sign} Rulebook {rulebook.name}, written by rulec {__version__}"
     return [f"{written}; SHA-256 of its sources begin with {sources}."]

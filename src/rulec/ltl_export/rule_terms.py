@@ -83,22 +83,25 @@ def rule_terms(rulebook: Rulebook, lowered: RuleFormula, phrases: Mapping[str, s
     groups = axiom_groups(
         own, axiom_instances(rule.variables, rulebook.axioms, vocabulary), vocabulary
     )
-    about = {ltl.subject_of(one) for one in own}
+    about = {ltl.subject_of(atom) for atom in own}
     known = [knowledge(reads_of(formula, vocabulary), own), *(group.known for group in groups)]
     # What facts say of other words alone is no business of the rule's.
     facts = [
         fold_constants(fact)
         for fact in known
-        if any(ltl.subject_of(one) in about for one in propositions_of(fact))
+        if any(ltl.subject_of(atom) in about for atom in propositions_of(fact))
     ]
-    spoken_of = dict.fromkeys([*own, *(one for fact in facts for one in propositions_of(fact))])
+    spoken_of = dict.fromkeys([*own, *(atom for fact in facts for atom in propositions_of(fact))])
     # Past operators become propositions of what held an instant ago.
     past = eliminate_past(formula, registers=False)
     names: dict[ltl.Proposition, str] = {}
-    for one in [*spoken_of, *(memory.atom for memory in past.memories)]:
-        names[one] = fresh_identifier(str(one), set(names.values()))
+    for atom in [*spoken_of, *(memory.atom for memory in past.memories)]:
+        names[atom] = fresh_identifier(str(atom), set(names.values()))
     terms = Terms(names, "alive" if rulebook.semantics == "finite" else None)
-    known_as = tuple(Proposition(names[one], str(one), _said(one, phrases)) for one in spoken_of)
+    known_as = tuple(
+        Proposition(names[proposition], str(proposition), _said(proposition, phrases))
+        for proposition in spoken_of
+    )
     ago = tuple(
         Proposition(names[memory.atom], formula_text(fold_constants(memory.formula)))
         for memory in past.memories

@@ -201,8 +201,8 @@ def _cut(plan: _Plan, times: Timing) -> NavigationGraph:
     places = _places(plan, times)
     first, *rest = _layers(plan, times, places)
     start = _start(plan, times, places, first.flat)
-    layers = (first.layer, *(one.layer for one in rest))
-    steps = edges(layers, [one.links for one in rest])
+    layers = (first.layer, *(layer.layer for layer in rest))
+    steps = edges(layers, [layer.links for layer in rest])
     graph = _graph(plan, times, places, start=start, layers=layers, steps=steps)
     if plan.bounds is None:
         return graph

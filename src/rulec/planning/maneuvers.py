@@ -219,7 +219,7 @@ class Maneuvers(Rows):
         as ``evaluate`` does, for soft rules too.
         """
         best = _first(n, front(self._every, self._ranks))
-        return [one for penalty in best for one in self._of_penalty(1, penalty, 1)]
+        return [maneuver for penalty in best for maneuver in self._of_penalty(1, penalty, 1)]
 
     @checked_kinds
     def ranked(self, n: int) -> list[RankedManeuver]:
@@ -270,10 +270,10 @@ class Maneuvers(Rows):
             return result
         doubtful = violating(self._every)
         return [
-            replace(one, open=doubtful[one.rule.name].accepted - one.violating)
-            if one.rule.name in doubtful
-            else one
-            for one in result
+            replace(pruning, open=doubtful[pruning.rule.name].accepted - pruning.violating)
+            if pruning.rule.name in doubtful
+            else pruning
+            for pruning in result
         ]
 
     def classes(self) -> HomotopyClasses:

@@ -191,7 +191,7 @@ def bind_rules(
         ) from None
 
 
-_OF_STATES = {one.code for one in (UNDECLARED_NAME, UNFITTING_VALUE, UNKNOWN_OBJECT)}
+_OF_STATES = {code.code for code in (UNDECLARED_NAME, UNFITTING_VALUE, UNKNOWN_OBJECT)}
 """What is wrong in a state, which may stand so in the scenario's file."""
 
 
@@ -229,5 +229,5 @@ def _wrong_in(
         if objects or not any(vocabulary.declarations[name].parameters for name in names):
             return error.diagnostics
         way_out = f"write it of an obstacle: `signals = {{ {names[0]} = … }}`"
-        return [replace(one, help=way_out) for one in error.diagnostics]
+        return [replace(diagnostic, help=way_out) for diagnostic in error.diagnostics]
     return ()

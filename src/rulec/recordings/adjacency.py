@@ -175,7 +175,7 @@ def _crossed(lanelets: Iterable[Lanelet]) -> set[str]:
 
 def with_untold_neighbours(recording: Recording) -> Recording:
     """The recording, with neighbours if its map, or its form, names none at all."""
-    told = any(one.left_of or one.right_of for one in recording.lanelets.values())
+    told = any(lanelet.left_of or lanelet.right_of for lanelet in recording.lanelets.values())
     return recording if told else with_neighbours(recording)
 
 
@@ -225,9 +225,9 @@ def side_by_lanes(lanelets: Iterable[Lanelet]) -> Side | None:
     They have their left borders in common where traffic keeps right, their right ones where it
     keeps left. None without such lanes, or where there are both kinds.
     """
-    lanes = [one for one in lanelets if is_lane(one) and not one.types & _RESERVED]
+    lanes = [lanelet for lanelet in lanelets if is_lane(lanelet) and not lanelet.types & _RESERVED]
     keeps_right, keeps_left = (
-        _oncoming_length([getattr(one, border) for one in lanes], _LEAST_M)
+        _oncoming_length([getattr(lanelet, border) for lanelet in lanes], _LEAST_M)
         for border in ("left", "right")
     )
     if keeps_right > _CLEARLY * keeps_left:

@@ -253,8 +253,8 @@ def build_recording(
     wrong: shapes of arrays, numbers that are none, ids that are double or lead nowhere.
     """
     lanes, bodies = tuple(lanelets), tuple(participants)
-    for one in (*lanes, *bodies):
-        expected_fields(one)
+    for part in (*lanes, *bodies):
+        expected_fields(part)
     checks = BuildingChecks("the recording")
     step_s = checks.positive("step_s", step_s)
     if side is not None:
@@ -262,8 +262,8 @@ def build_recording(
     for kind in sorted(set(complete) - COMPLETE):
         checks.one_of("complete", kind, COMPLETE)
     for what, ids in (
-        ("lanelets", [one.id for one in lanes]),
-        ("participants", [one.id for one in bodies]),
+        ("lanelets", [lane.id for lane in lanes]),
+        ("participants", [participant.id for participant in bodies]),
     ):
         if not ids:
             checks.wrong(f"it has no {what}")
@@ -272,13 +272,13 @@ def build_recording(
         )
         if twice:
             checks.wrong(f"there are two {what} {named(twice)}", help_text="give each its own id")
-    known = {one.id: one for one in lanes}
+    known = {lane.id: lane for lane in lanes}
     for lanelet in lanes:
         _check_lanelet(lanelet, known, checks)
     for body in bodies:
         _check_participant(body, checks)
     if str(ego):
-        checks.one_of("ego", str(ego), [one.id for one in bodies])
+        checks.one_of("ego", str(ego), [participant.id for participant in bodies])
     checks.raise_found()
     return Recording(
         name=name,
@@ -299,10 +299,10 @@ def _check_lanelet(lanelet: Lanelet, known: Mapping[str, Lanelet], to: BuildingC
     for side in ("left", "right", "centre"):
         checks.points(side, getattr(lanelet, side))
     for what, ids in _references(lanelet):
-        for one in ids:
-            if one not in known:
-                why = f"`{what}` has `{one!s:.40}`, which is no lanelet of the recording"
-                checks.wrong(why, help_text=did_you_mean(str(one), known))
+        for name in ids:
+            if name not in known:
+                why = f"`{what}` has `{name!s:.40}`, which is no lanelet of the recording"
+                checks.wrong(why, help_text=did_you_mean(str(name), known))
     to.found += checks.found
 
 

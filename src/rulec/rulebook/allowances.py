@@ -27,7 +27,9 @@ def without_allowed(findings: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
 
 def _unfit(findings: Sequence[Diagnostic], source: Source) -> Iterator[Diagnostic]:
     # Where there are errors, not all warnings are known.
-    if "rulec:" not in source.text or any(one.severity == "error" for one in findings):
+    if "rulec:" not in source.text or any(
+        diagnostic.severity == "error" for diagnostic in findings
+    ):
         return
     found = {
         (finding.place.line, finding.code)

@@ -59,7 +59,7 @@ def read_query(
     begin = head.end() if head else 0
     formula = text[begin:]
     asked = Source(_SAID, text)
-    folders = [Path(one) for one in search_path]
+    folders = [Path(folder) for folder in search_path]
     program = Source(_SAID, formula)
     parts: tuple[tuple[int, int, int], ...] = ((0, begin, len(formula)),)
     try:
@@ -83,9 +83,15 @@ def read_query(
     except RulecError as error:
         places = AskedParts(asked, program, parts)
         # What is asked at each moment by itself is not for the first state only.
-        found_wrong = [one for one in error.diagnostics if one.code != FIRST_STATE_ONLY.code]
-        raise RulecError([places.said(_in_words(one)) for one in found_wrong]) from None
-    own = next(one for one in found.rules if one.name == _NAME)
+        found_wrong = [
+            diagnostic
+            for diagnostic in error.diagnostics
+            if diagnostic.code != FIRST_STATE_ONLY.code
+        ]
+        raise RulecError(
+            [places.said(_in_words(diagnostic)) for diagnostic in found_wrong]
+        ) from None
+    own = next(rule for rule in found.rules if rule.name == _NAME)
     named = replace(found.vocabulary, name=words)
     return FormulaQuery(text.strip(), own, named, found.semantics, found.traffic)
 
@@ -106,7 +112,9 @@ def _word(vocabulary: str, folders: Sequence[Path]) -> str:
         try:
             load_vocabulary(vocabulary, folders)
         except RulecError as error:
-            unplaced = [replace(one, place=None, expected="") for one in error.diagnostics]
+            unplaced = [
+                replace(diagnostic, place=None, expected="") for diagnostic in error.diagnostics
+            ]
             raise RulecError(unplaced) from None
     return vocabulary
 

@@ -132,7 +132,7 @@ def with_book(trees: Trees, source: Source, search_path: Sequence[Path] = ()) ->
     return Trees(
         name=source.name,
         books=(*trees.books, book),
-        vocabularies=(*trees.vocabularies, *(one for one in read if one is not None)),
+        vocabularies=(*trees.vocabularies, *(file for file in read if file is not None)),
         sources=(*trees.sources, *files.sources),
         mistakes=(*mistakes, *files.mistakes, *trees.mistakes),
         dependencies=None if files.failed else trees.dependencies,

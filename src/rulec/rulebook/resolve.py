@@ -165,11 +165,11 @@ def with_rules(
     rules: list[Rule | None] = []
     contradictions: list[Diagnostic] = []
     for entry in laid.rules.values():
-        one = translate(entry, names, any(entry.law is book for book in own))
-        mistakes += one.mistakes
+        rule = translate(entry, names, any(entry.law is book for book in own))
+        mistakes += rule.mistakes
         if in_force(entry.item.in_force, at):
-            rules.append(one.rule)
-            contradictions += one.contradictions
+            rules.append(rule.rule)
+            contradictions += rule.contradictions
     good = [rule for rule in rules if rule is not None]
     mistakes = _once([*mistakes, *contradictions])
     wrong = any(mistake.severity == "error" for mistake in mistakes)

@@ -64,7 +64,7 @@ def _symbols(files: Sequence[tree.File]) -> SymbolTable:
 
 
 def _declares(file: tree.File, name: str) -> bool:
-    return any(name == one.text for item in file.items for one in _declared(item))
+    return any(name == declared.text for item in file.items for declared in _declared(item))
 
 
 def _declared(item: tree.Item) -> Iterator[tree.Name]:

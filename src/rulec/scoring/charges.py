@@ -61,7 +61,7 @@ class CandidateCharges:
             if isinstance(answer, Verdict):
                 violations += [at(violation, begins) for violation in answer.violations]
                 doubtful += answer.open
-                not_judged.update({one.rule: one for one in answer.not_judged})
+                not_judged.update({rule.rule: rule for rule in answer.not_judged})
         found = CandidateScore(
             self.number,
             violations=tuple(violations),
@@ -124,7 +124,9 @@ class CandidateScores(Sequence[CandidateScore]):
 
 def forget_reasons(charges: Sequence[CandidateCharges]) -> None:
     """Forget why what candidates leave open is so, for which all that they say is kept."""
-    judged = [own for one in charges for own in map(_judged, one.drives)]
+    judged = [
+        own for candidate_charges in charges for own in map(_judged, candidate_charges.drives)
+    ]
     for findings in {own.findings for own in judged if isinstance(own, JudgedTrace)}:
         findings.forget_reasons()
 
@@ -159,11 +161,11 @@ def columns_of(candidates: Sequence[CandidateScore], rules: CompiledRulebook) ->
     whose, which, are_violated = map(np.concatenate, zip(*_rows(charges, places), strict=True))
     order = whose.argsort(kind="stable")
     violated, doubtful = order[are_violated[order]], order[~are_violated[order]]
-    late = [one.late if isinstance(one, CandidateScore) else 0 for one in charges]
+    late = [candidate.late if isinstance(candidate, CandidateScore) else 0 for candidate in charges]
     return ScoreColumns(
         Charged(whose[violated], which[violated]),
         Charged(whose[doubtful], which[doubtful]),
-        off_road=np.array([one.off_road for one in charges], dtype=intp),
+        off_road=np.array([candidate.off_road for candidate in charges], dtype=intp),
         late=np.array(late, dtype=intp),
     )
 
@@ -178,8 +180,12 @@ def _rows(
     """All that candidates are charged with; ``places`` are the numbers of rules."""
     told: list[tuple[int, int, bool]] = []
     judged: dict[Findings, dict[int, int]] = defaultdict(dict)
-    for number, one in enumerate(charges):
-        for own in map(_judged, one.drives) if isinstance(one, CandidateCharges) else (one,):
+    for number, candidate in enumerate(charges):
+        for own in (
+            map(_judged, candidate.drives)
+            if isinstance(candidate, CandidateCharges)
+            else (candidate,)
+        ):
             if isinstance(own, JudgedTrace):
                 judged[own.findings][own.number] = number
             elif isinstance(own, Verdict | CandidateScore):

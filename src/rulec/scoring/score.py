@@ -91,13 +91,20 @@ def _scored(
         block = [(number - is_asked, own) for number, own in block]
         charges = _charges(block, first, (beside, back))
         if before:
-            scores = _anew([one.score() for one in charges], before, roundings, (first, half))
+            scores = _anew(
+                [candidate_charges.score() for candidate_charges in charges],
+                before,
+                roundings,
+                (first, half),
+            )
             if not is_kept:
                 scores = [
-                    without_drives(one, len(one.drives), partial(again, one.number))
-                    for one in scores
+                    without_drives(
+                        candidate, len(candidate.drives), partial(again, candidate.number)
+                    )
+                    for candidate in scores
                 ]
-            found.update({one.number: one for one in scores})
+            found.update({candidate.number: candidate for candidate in scores})
             del scores
         else:
             found.update({x.number: x if is_kept else x.later(again) for x in charges})
@@ -124,8 +131,8 @@ def _by_itself(
 
 
 def _violated(drives: Sequence[JudgedDrive | NoDrive]) -> tuple[Violation, ...]:
-    made = [one.with_verdict() for one in drives if isinstance(one, JudgedDrive)]
-    return tuple([one for _, verdict in _verdicts(made) for one in verdict.violations])
+    made = [drive.with_verdict() for drive in drives if isinstance(drive, JudgedDrive)]
+    return tuple([violation for _, verdict in _verdicts(made) for violation in verdict.violations])
 
 
 def _judged(
@@ -151,9 +158,9 @@ def _judged(
 def _verdicts(
     drives: Sequence[DriveVerdict | NoDrive],
 ) -> Iterator[tuple[Drive, Verdict]]:
-    for one in drives:
-        if isinstance(one, DriveVerdict) and isinstance(one.answer, Verdict):
-            yield one.drive, one.answer
+    for drive in drives:
+        if isinstance(drive, DriveVerdict) and isinstance(drive.answer, Verdict):
+            yield drive.drive, drive.answer
 
 
 def _charges(
@@ -172,9 +179,9 @@ def _charges(
         begins.append(
             [x.drive.first_step - first if isinstance(x, JudgedDrive) else 0 for x in drives]
         )
-        for one, start in zip(drives, begins[-1], strict=True):
-            if isinstance(one, JudgedDrive) and not isinstance(one.judged, NotJudged):
-                row[max(start, 0) : max(start + one.drive.arrays.n_states, 0)] = True
+        for drive, start in zip(drives, begins[-1], strict=True):
+            if isinstance(drive, JudgedDrive) and not isinstance(drive.judged, NotJudged):
+                row[max(start, 0) : max(start + drive.drive.arrays.n_states, 0)] = True
     off_road = beside | ~on_road
     leave, go_back = (np.logical_or.reduce(flags, axis=1).tolist() for flags in (off_road, back))
     counts = (off_road | back).sum(axis=1).tolist()
@@ -192,9 +199,9 @@ def _charges(
 
 def _why(drives: Sequence[JudgedDrive | NoDrive], *, leaves: bool, goes_back: bool) -> str:
     """Why states of a candidate are not judged, or off the road."""
-    reasons = [one.why for one in drives if isinstance(one, NoDrive)]
-    judged = [one.judged for one in drives if isinstance(one, JudgedDrive)]
-    reasons += [str(one.error) for one in judged if isinstance(one, NotJudged)]
+    reasons = [drive.why for drive in drives if isinstance(drive, NoDrive)]
+    judged = [drive.judged for drive in drives if isinstance(drive, JudgedDrive)]
+    reasons += [str(drive.error) for drive in judged if isinstance(drive, NotJudged)]
     if leaves and not reasons:
         reasons = ["it leaves the lanes that lead its way"]
     if goes_back:
@@ -231,18 +238,20 @@ def _anew(
     for future, answer in zip(futures, answers, strict=True):
         if isinstance(answer, Verdict):
             number, begins = future.number, max(begin, future.first_step) - first
-            own = [at(one, begins) for one in answer.violations if _key(one) in known]
+            own = [
+                at(violation, begins) for violation in answer.violations if _key(violation) in known
+            ]
             violations.setdefault(number, []).extend(own)
             doubtful.setdefault(number, []).extend(x for x in answer.open if _key(x) in known)
     return [
         replace(
             found,
             violations=(
-                *(one for one in found.violations if _key(one) not in known),
+                *(violation for violation in found.violations if _key(violation) not in known),
                 *violations.get(number, ()),
             ),
             open=(
-                *(one for one in found.open if _key(one) not in known),
+                *(open_verdict for open_verdict in found.open if _key(open_verdict) not in known),
                 *doubtful.get(number, ()),
             ),
             late=late.get(number, 0),
@@ -284,7 +293,7 @@ def _mended_after(
         traces = [
             own.since(first + after) for after, own in zip(middle.tolist(), futures, strict=True)
         ]
-        is_kept = np.array([_keeps(one, known) for one in agreed_answers(traces, books)])
+        is_kept = np.array([_keeps(answer, known) for answer in agreed_answers(traces, books)])
         low, high = np.where(is_kept, low, middle + 1), np.where(is_kept, middle, high)
         low = np.minimum(low, high)
     late: dict[int, int] = {}
@@ -296,8 +305,8 @@ def _mended_after(
 def _keeps(answer: Verdict | NotJudged, known: Collection[_Key]) -> bool:
     if not isinstance(answer, Verdict):
         return True
-    is_open = any(_key(one) in known for one in answer.open)
-    return not is_open and not any(_key(one) in known for one in answer.violations)
+    is_open = any(_key(open_verdict) in known for open_verdict in answer.open)
+    return not is_open and not any(_key(violation) in known for violation in answer.violations)
 
 
 def _key(found: Violation | OpenVerdict) -> _Key:

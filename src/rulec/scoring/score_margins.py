@@ -43,24 +43,24 @@ def margins_of(
 ) -> Iterator[RuleMargin]:
     """The margins of a candidate, whose first state is that step of the recording."""
     keys = {_key(violation) for violation in charged}
-    for one in drives:
-        if not isinstance(one.answer, Verdict):
+    for drive in drives:
+        if not isinstance(drive.answer, Verdict):
             continue
-        begins = one.drive.first_step - first
+        begins = drive.drive.first_step - first
         violated = set()
-        for violation in one.answer.violations:
+        for violation in drive.answer.violations:
             violated.add(_key(violation))
             if _key(violation) in keys:
                 found = explain(
-                    violation, one.drive.trace, rules, one.drive.decided_by, repaired=False
+                    violation, drive.drive.trace, rules, drive.drive.decided_by, repaired=False
                 )
                 for margin in found.margins():
                     at = found.decisive + begins
                     yield RuleMargin(violation.rule, True, violation.binding, at, margin)
-        untold = {found.rule for found in one.answer.not_judged}
+        untold = {found.rule for found in drive.answer.not_judged}
         for rule in rules.rules:
             if len(rule.variables) <= 1 and rule.name not in untold:
-                yield from _nearest(rule, one.drive, rules, violated, begins)
+                yield from _nearest(rule, drive.drive, rules, violated, begins)
 
 
 def _key(violation: Violation) -> tuple[str, tuple[str, ...]]:

@@ -67,9 +67,12 @@ def without_drives(
     again = _Again(scored)
     doubtful = [
         OpenVerdict.explained_later(
-            one.rule, one.strength, one.binding, partial(again.reasons, place)
+            open_verdict.rule,
+            open_verdict.strength,
+            open_verdict.binding,
+            partial(again.reasons, place),
         )
-        for place, one in enumerate(found.open)
+        for place, open_verdict in enumerate(found.open)
     ]
     drives = _LaterDrives(again, n_drives)
     return replace(found, open=tuple(doubtful), drives=drives)

@@ -148,7 +148,7 @@ class Scores(Rows):
         Raises IndexError for a number that there is not.
         """
         found = self.candidates[self._known(number)]
-        drives = [one for one in found.drives if isinstance(one, DriveVerdict)]
+        drives = [drive for drive in found.drives if isinstance(drive, DriveVerdict)]
         return tuple(margins_of(drives, found.violations, self.rules, self._first))
 
     def _known(self, number: int) -> int:
@@ -177,7 +177,7 @@ class Scores(Rows):
 
         The worst for all choices of objects. Raises ValueError for a rule that there is not.
         """
-        known = [one.name for one in self.rules.rules]
+        known = [compiled_rule.name for compiled_rule in self.rules.rules]
         if expected("rule", "str", rule) not in known:
             hint = did_you_mean(rule, known)
             raise ValueError(f"{self.rules.name} has no rule `{rule:.40}`" + (hint and f"; {hint}"))

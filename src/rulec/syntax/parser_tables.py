@@ -77,9 +77,9 @@ def _refer(value: Any, numbers: Mapping[int, int]) -> Any:
     if isinstance(value, dict):
         if "@" in value:
             return {"@": numbers[value["@"]]}
-        return {key: _refer(one, numbers) for key, one in value.items() if key != "states"}
+        return {key: _refer(item, numbers) for key, item in value.items() if key != "states"}
     if isinstance(value, list | tuple):
-        return [_refer(one, numbers) for one in value]
+        return [_refer(item, numbers) for item in value]
     return value
 
 

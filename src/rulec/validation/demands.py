@@ -129,7 +129,7 @@ class Demands:
         """The negation of a function of demands."""
         result = TRUE
         for term in function:
-            negations = frozenset([frozenset([self.negated(one)]) for one in term])
+            negations = frozenset([frozenset([self.negated(literal)]) for literal in term])
             result = self.algebra.both(result, negations or FALSE)
         return result
 

@@ -61,7 +61,7 @@ class FormulaProgression:
     def holds_at_the_end(self, state: DemandState) -> bool:
         """The verdict if nothing comes after the letters that led to a state."""
         parts = self._demands.parts
-        return any(all(_is_dual(parts[one]) for one in term) for term in state.demand)
+        return any(all(_is_dual(parts[literal]) for literal in term) for term in state.demand)
 
     def kept_for_ever(self, state: DemandState) -> int:
         """The letters that, repeated for ever from a state on, satisfy its demand."""
@@ -100,8 +100,8 @@ class _Step:
         whole: dict[Function, int] = {FALSE: self._full}
         for term in function:
             rest: dict[Function, int] = {TRUE: self._full}
-            for one in term:
-                rest = algebra.combined(rest, self._value(one), algebra.both)
+            for literal in term:
+                rest = algebra.combined(rest, self._value(literal), algebra.both)
             whole = algebra.combined(whole, rest, algebra.either)
         return whole
 
@@ -212,8 +212,8 @@ class _Repetition:
         found = 0
         for term in function:
             letters = self._full
-            for one in term:
-                letters &= self._value(one)[0]
+            for literal in term:
+                letters &= self._value(literal)[0]
             found |= letters
         return found
 

@@ -90,10 +90,10 @@ class FunctionAlgebra:
         """The values of an operation, each with its letters, from those of its operands."""
         self.count(len(first) * len(second))
         result: dict[_Result, int] = {}
-        for one, letters in first.items():
+        for letter, letters in first.items():
             for other, other_letters in second.items():
                 if common := letters & other_letters:
-                    value = operation(one, other)
+                    value = operation(letter, other)
                     result[value] = result.get(value, 0) | common
         return result
 

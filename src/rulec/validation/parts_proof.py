@@ -119,7 +119,7 @@ def _counted(phases: Sequence[Phase], exemptions: Sequence[tuple[str, Any]]) -> 
             for now in _choices(failing)
         )
     (first, bound), last = phases[0], len(phases) - 1
-    failing = [one for number, one in enumerate(failing) if one not in failing[:number]]
+    failing = [part for number, part in enumerate(failing) if part not in failing[:number]]
 
     def entered(number: int, due: Sequence[Any]) -> Any:
         """From the first instant of a phase on; ``due`` are to fail in what is left."""
@@ -135,7 +135,7 @@ def _counted(phases: Sequence[Phase], exemptions: Sequence[tuple[str, Any]]) -> 
             return _left((phase, own), end if is_last else True, entered(number + 1, due))
         ways = []
         for now in _choices(due):
-            rest = [one for one in due if one not in now]
+            rest = [part for part in due if part not in now]
             onward = []
             if not (is_last and rest):
                 step = ["next", entered(number + 1, rest)]

@@ -200,8 +200,8 @@ def led_to(good: set[Any], following: Mapping[Any, set[Any]]) -> set[Any]:
             before.setdefault(target, []).append(node)
     found, waiting = set(good), list(good)
     for node in waiting:
-        for one in before.get(node, ()):
-            if one not in found:
-                found.add(one)
-                waiting.append(one)
+        for row in before.get(node, ()):
+            if row not in found:
+                found.add(row)
+                waiting.append(row)
     return found

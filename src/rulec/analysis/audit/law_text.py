@@ -148,8 +148,12 @@ def _named(head: str) -> tuple[str, str] | None:
     if begins is None or _CONTINUED.match(plain[begins.end() :]):
         return None
     found, _ = references_in(begins[0].rstrip(".:"))
-    one = found[0] if len(found) == 1 and not found[0].parts else None
-    return None if one is None or one.kind == "sign" else (one.kind, one.number)
+    reference = found[0] if len(found) == 1 and not found[0].parts else None
+    return (
+        None
+        if reference is None or reference.kind == "sign"
+        else (reference.kind, reference.number)
+    )
 
 
 def _part(text: str, kind: PartKind, name: str) -> str | None:

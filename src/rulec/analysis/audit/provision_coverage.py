@@ -81,7 +81,9 @@ def _listed(provisions: Sequence[Provision]) -> Listed:
 
 
 def _known(listed: Listed) -> frozenset[tuple[str, str]]:
-    return frozenset((one.kind, one.number) for _, one in listed if one is not None)
+    return frozenset(
+        (reference.kind, reference.number) for _, reference in listed if reference is not None
+    )
 
 
 def _cited(rule: Rule, listed: Listed) -> Iterator[str]:
@@ -100,6 +102,8 @@ def _year(number: str) -> str:
 def _covering(cited: Reference, listed: Listed) -> list[str]:
     """The listed articles that a cited place is in, the closest first."""
     fitting = [
-        (len(one.parts), number) for number, one in listed if one is not None and covers(one, cited)
+        (len(reference.parts), number)
+        for number, reference in listed
+        if reference is not None and covers(reference, cited)
     ]
     return [number for _, number in sorted(fitting, key=lambda entry: -entry[0])]

@@ -95,7 +95,7 @@ def _step(
         deed: rule_lineage.LineageAction = "confirmed" if item.confirm else "overridden"
         changed = _changed_clauses(before, after)
         gives_law = item.cite is not None
-        parts = [one.span.text.removeprefix("also") for one in lost_exceptions(before, item)]
+        parts = [unless.span.text.removeprefix("also") for unless in lost_exceptions(before, item)]
         lost = tuple([" ".join(part.split()) for part in parts])
         return rule_lineage.LineageStep(book, deed, after, changed, gives_law=gives_law, lost=lost)
     after = replace(

@@ -79,7 +79,7 @@ def _group(
 ) -> tuple[str, ...]:
     """A rule with others that speak of the same, as long as all stay small together."""
     premises = [sides[premise] for premise in related.of(name) if premise in names]
-    return (name, *(one.rule.name for one in small_premises(sides[name], premises)))
+    return (name, *(rule.rule.name for rule in small_premises(sides[name], premises)))
 
 
 def _clash(group: Sequence[str], answers: RuleAnswers) -> Conflict | None:

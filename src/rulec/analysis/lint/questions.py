@@ -53,7 +53,7 @@ def answers_to(rules: ComparedRules, question: Question) -> Iterator[object]:
             case "violated":
                 yield can_be_violated(*own)
             case "implied":
-                yield tuple(one.rule.name for one in implied_by(own[0], own[1:]))
+                yield tuple(rule.rule.name for rule in implied_by(own[0], own[1:]))
             case "conflict":
                 yield conflict(own)
             case "compared":

@@ -195,7 +195,9 @@ def _needless(
             diagnostics.append((name, undecided))
             continue
         if premises:
-            diagnostics.append((name, _implied(rules[name], [rules[one] for one in premises])))
+            diagnostics.append(
+                (name, _implied(rules[name], [rules[premise] for premise in premises]))
+            )
             left.remove(name)
     yield from reversed(diagnostics)
 

@@ -263,7 +263,7 @@ def write_compiled(rulebook: CompiledRulebook, folder: Path) -> list[Path]:
 def _with_sources(hoa: str, rulebook: CompiledRulebook) -> str:
     """The automaton with what it was made from, as comments below its first line."""
     first, rest = hoa.split("\n", 1)
-    sources = [f"/* sha256 {one.sha256} {_spelt(one.name)} */" for one in rulebook.sources]
+    sources = [f"/* sha256 {file.sha256} {_spelt(file.name)} */" for file in rulebook.sources]
     return "\n".join([first, *sources, rest])
 
 

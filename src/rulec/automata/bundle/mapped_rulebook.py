@@ -50,7 +50,7 @@ class _Kind:
 
 def _of_fields(cls: type, without: Sequence[str] = ()) -> _Kind:
     """The kind of a dataclass; fields that are left out come last, and have defaults."""
-    names = [one.name for one in fields(cls) if one.init and one.name not in without]
+    names = [field.name for field in fields(cls) if field.init and field.name not in without]
     if len(names) == 1:
         return _Kind(lambda item: (getattr(item, names[0]),), cls)
     return _Kind(attrgetter(*names), cls)
@@ -125,7 +125,7 @@ class _Writer:
 
     def __init__(self, given: Sequence[object]) -> None:
         self._n_given = len(given)
-        self._given = {id(one): number for number, one in enumerate(given)}
+        self._given = {id(part): number for number, part in enumerate(given)}
         self._tables = TableWriter()
         # A value's number is below 0 until it is known how many there are.
         self._values: dict[tuple[type, object], int] = {}
@@ -166,11 +166,11 @@ class _Writer:
         """Where the integers of a tuple are, or those of its rows, which may be truth values."""
         if not item:
             return None
-        if all(type(one) is int for one in item):
+        if all(type(entry) is int for entry in item):
             return self._tables.place(item)
-        if not all(type(one) is tuple and one and len(one) == len(item[0]) for one in item):
+        if not all(type(inner) is tuple and inner and len(inner) == len(item[0]) for inner in item):
             return None
-        kinds = {type(one) for row in item for one in row}
+        kinds = {type(entry) for row in item for entry in row}
         if kinds == {int} or kinds == {bool}:
             return (*self._tables.place_rows(item), len(item[0]), kinds == {bool})
         return None

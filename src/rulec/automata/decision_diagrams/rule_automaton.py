@@ -73,10 +73,10 @@ def automaton_of(
     diagrams.declare_letters(names)
     possible = TRUE
     for fact in facts:
-        others = [one for one in propositions_of(fact) if one not in names]
-        hidden = {one: f"hidden {place}" for place, one in enumerate(others)}
+        others = [atom for atom in propositions_of(fact) if atom not in names]
+        hidden = {atom: f"hidden {place}" for place, atom in enumerate(others)}
         own = Diagrams()
-        own.declare_letters({**{one: names[one] for one in propositions}, **hidden})
+        own.declare_letters({**{atom: names[atom] for atom in propositions}, **hidden})
         left = own.for_some(own.of_state(fact), hidden.values())
         possible = diagrams.both(possible, own.copied(left, diagrams))
     known = diagrams.both(possible, diagrams.of_state(knowledge(reads, propositions)))
@@ -89,7 +89,7 @@ def automaton_of(
     return RuleAutomaton(
         automaton,
         diagrams,
-        {one: names[one] for one in propositions},
+        {atom: names[atom] for atom in propositions},
         possible,
         fresh_name("alive", set(names.values())) if ends else None,
     )
@@ -107,7 +107,9 @@ def over_letters(
     found: RuleAutomaton, reads: Sequence[Read | NumberRead]
 ) -> tuple[DeterministicAutomaton, int]:
     """The automaton with sets of the letters of ``reads``, as bits, and the possible ones."""
-    sets = {found.names[one]: letters for one, letters in letters_with(reads, found.names).items()}
+    sets = {
+        found.names[atom]: letters for atom, letters in letters_with(reads, found.names).items()
+    }
     everything = (1 << count_letters(reads)) - 1
     bits: dict[int, int] = {TRUE: everything}
     automaton = found.automaton

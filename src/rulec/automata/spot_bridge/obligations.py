@@ -70,8 +70,8 @@ class Obligations:
         self.propositions = spot.make_twa_graph(spot_formulas.dictionary)
         self.names = {atom: spot_formulas.names[atom] for atom in ltl.atoms_of(formula)}
         self._letters = {
-            one: buddy.bdd_ithvar(self.propositions.register_ap(name))
-            for one, name in self.names.items()
+            atom: buddy.bdd_ithvar(self.propositions.register_ap(name))
+            for atom, name in self.names.items()
         }
         self._variables: dict[_Obligation, Any] = {}
         self._taken = {*spot_formulas.names.values(), spot_formulas.alive or ""}
@@ -126,30 +126,30 @@ class Obligations:
     def _temporal(self, formula: ltl.Unary | ltl.Binary, span: Range, polarity: bool) -> Any:
         match formula:
             case ltl.Unary(ltl.UnaryOperator.NEXT | ltl.UnaryOperator.EVENTUALLY, operand):
-                one = _Obligation(True, _TRUE, operand, span)
+                obligation = _Obligation(True, _TRUE, operand, span)
             case ltl.Unary(ltl.UnaryOperator.WEAK_NEXT | ltl.UnaryOperator.ALWAYS, operand):
-                one = _Obligation(False, _FALSE, operand, span)
+                obligation = _Obligation(False, _FALSE, operand, span)
             case ltl.Unary(ltl.UnaryOperator.NEVER, operand):
-                one = _Obligation(False, _FALSE, ltl.Unary(_NOT, operand), span)
+                obligation = _Obligation(False, _FALSE, ltl.Unary(_NOT, operand), span)
             case ltl.Binary(ltl.BinaryOperator.UNTIL | ltl.BinaryOperator.THEN, left, right):
-                one = _Obligation(True, left, right, span)
+                obligation = _Obligation(True, left, right, span)
             case ltl.Binary(ltl.BinaryOperator.RELEASE, left, right):
-                one = _Obligation(False, left, right, span)
+                obligation = _Obligation(False, left, right, span)
             case ltl.Binary(ltl.BinaryOperator.STRONG_RELEASE, left, right, bound):
                 turned = ltl.Unary(_NOT, left), ltl.Unary(_NOT, right)
                 return self._now(
                     ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, *turned, bound), not polarity
                 )
             case ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, left, right) if span == Range(0, None):
-                one = _Obligation(False, right, ltl.Binary(_OR, left, right), Range(0, None))
+                obligation = _Obligation(False, right, ltl.Binary(_OR, left, right), Range(0, None))
             case ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, left, right):
                 return self._now(_weak_until(left, right, span), polarity)
             case _:
                 raise ValueError("operators of the past have no future")
         if not polarity:
-            turned = ltl.Unary(_NOT, one.left), ltl.Unary(_NOT, one.right)
-            one = _Obligation(not one.strong, *turned, span)
-        return self._unfolded(one)
+            turned = ltl.Unary(_NOT, obligation.left), ltl.Unary(_NOT, obligation.right)
+            obligation = _Obligation(not obligation.strong, *turned, span)
+        return self._unfolded(obligation)
 
     def _unfolded(self, _obligation: _Obligation) -> Any:
         strong, left, right, (low, high) = _obligation
@@ -174,10 +174,10 @@ class Obligations:
     def _implications(self) -> Any:
         """Implications between obligations: a shorter until implies a longer one."""
         families: dict[tuple[bool, ltl.Formula, ltl.Formula], list[tuple[float, Any]]] = {}
-        for one, variable in self._variables.items():
-            if one.span.low == 0:
-                reach = float("inf") if one.span.high is None else one.span.high
-                families.setdefault(one[:3], []).append((reach, variable))
+        for obligation, variable in self._variables.items():
+            if obligation.span.low == 0:
+                reach = float("inf") if obligation.span.high is None else obligation.span.high
+                families.setdefault(obligation[:3], []).append((reach, variable))
         known = buddy.bddtrue
         for (strong, _, _), family in families.items():
             family.sort(key=lambda each: each[0], reverse=not strong)
@@ -187,8 +187,8 @@ class Obligations:
 
     def ends_well(self, state: Any) -> bool:
         """Tell whether a word may end with its pending untils unfulfilled."""
-        for one, variable in self._variables.items():
-            state = buddy.bdd_restrict(state, -variable if one.strong else variable)
+        for obligation, variable in self._variables.items():
+            state = buddy.bdd_restrict(state, -variable if obligation.strong else variable)
         return bool(state == buddy.bddtrue)
 
 

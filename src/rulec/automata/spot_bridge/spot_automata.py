@@ -54,7 +54,7 @@ def _ordered(automaton: Any) -> Any:
                 text = spot.bdd_format_formula(fresh, condition)
                 conditions[edge.cond.id()] = (text, condition)
             edges.append((*conditions[edge.cond.id()], edge))
-        for _, condition, edge in sorted(edges, key=lambda one: one[0]):
+        for _, condition, edge in sorted(edges, key=lambda pair: pair[0]):
             if edge.dst not in position:
                 position[edge.dst] = len(states)
                 states.append(edge.dst)
@@ -72,8 +72,8 @@ def explore(translation: Translation, reads: Sequence[Read | NumberRead]) -> Det
     """Automaton with the letters of ``reads``; colours and letters as bits."""
     automaton = translation.automaton
     sets = {
-        translation.names[one]: letters
-        for one, letters in letters_with(reads, translation.names).items()
+        translation.names[atom]: letters
+        for atom, letters in letters_with(reads, translation.names).items()
     }
     everything = (1 << count_letters(reads)) - 1
     if translation.alive is not None:

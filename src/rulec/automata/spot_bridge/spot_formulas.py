@@ -124,10 +124,10 @@ def projected(known: Formula, propositions: Sequence[Proposition]) -> Formula:
         spot_formulas.formula_of(known), spot_formulas.dictionary, owner
     )
     others = buddy.bddtrue
-    for one in set(every) - set(propositions):
-        others &= buddy.bdd_ithvar(owner.register_ap(names[one]))
+    for atom in set(every) - set(propositions):
+        others &= buddy.bdd_ithvar(owner.register_ap(names[atom]))
     result = spot.bdd_to_formula(buddy.bdd_exist(condition, others), spot_formulas.dictionary)
-    return _read_back(result, {name: one for one, name in names.items()})
+    return _read_back(result, {name: proposition for proposition, name in names.items()})
 
 
 def _read_back(formula: Any, named: dict[str, Proposition]) -> Formula:

@@ -237,7 +237,7 @@ def _matrix(
     for name in names:
         with errors_told():
             read.append(read_rulebook(name, search_path(), asked.at))
-    books = [one.rulebook for one in read]
+    books = [loaded.rulebook for loaded in read]
     _refuse_unmatched(asked.patterns, books)
     # Treaties before those that build upon them, so that theirs is law A.
     books.sort(key=lambda book: len(book.extends))
@@ -251,7 +251,7 @@ def _matrix(
     with progress("comparing", steps(books, asked.patterns)) as tell:
         matrix = comparison_matrix(books, asked.patterns, asked.step_s, tell)
     is_complete = len(read) == len(names) and matrix.is_complete
-    paths = [path for one in read for path in one.paths]
+    paths = [path for loaded in read for path in loaded.paths]
     text = matrix_report.render(matrix, asked.form)
     return text, alone, is_complete, matrix.is_uniform, paths
 

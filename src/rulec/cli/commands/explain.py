@@ -41,9 +41,9 @@ def command(names: tuple[str, ...], every: bool, to: Output) -> None:
         raise click.UsageError("give a code, or --all")
     codes = {name: code_registry.code_named(name.upper()) for name in names}
     words = {name: _words(name) for name, code in codes.items() if code is None}
-    asked = [one for one in codes.values() if one is not None]
+    asked = [code for code in codes.values() if code is not None]
     asked = list(dict.fromkeys(asked)) if names else [*code_registry.all_codes().values()]
-    found = [one for words_of_name in words.values() for one in words_of_name]
+    found = [word for words_of_name in words.values() for word in words_of_name]
     match to.form:
         case "json":
             text = _as_json(asked, found)
@@ -51,7 +51,8 @@ def command(names: tuple[str, ...], every: bool, to: Output) -> None:
             text = code_registry.as_page()
         case "markdown":
             pages = [
-                f"# {one.code}: {one.title}\n\n{code_registry.as_markdown(one)}" for one in asked
+                f"# {code.code}: {code.title}\n\n{code_registry.as_markdown(code)}"
+                for code in asked
             ]
             text = "\n\n".join([*pages, *_texts(found, "markdown")])
         case _:

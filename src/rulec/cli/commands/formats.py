@@ -33,12 +33,12 @@ def command(
     from rulec.report.recordings import format_listing
 
     every = rulec.formats()
-    known = list(dict.fromkeys(one.name for one in every))
+    known = list(dict.fromkeys(format_.name for format_ in every))
     for name in names:
         if name not in known:
             hint = did_you_mean(name, known)
             raise click.UsageError(f"there is no format `{name}`{f'; {hint}' if hint else '.'}")
-    listed = [one for one in every if not names or one.name in names]
+    listed = [format_ for format_ in every if not names or format_.name in names]
     order = format_listing.words_in_order()
     match to.form:
         case "json":

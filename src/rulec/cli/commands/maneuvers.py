@@ -143,7 +143,7 @@ def command(
     print_written(to.path, to)
     answered = len(counts) == len(inputs.paths) * len(machines) and not inputs.problems
     return ExitStatus.after(
-        answered=answered and all(one.is_judged for one in counts), failed=failed
+        answered=answered and all(count.is_judged for count in counts), failed=failed
     )
 
 

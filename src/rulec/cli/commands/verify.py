@@ -157,7 +157,7 @@ def command(
     _check_outputs(request, to, n_books=len(books))
     for searched in inputs.searched:
         print_remark(f"rulec: {searched.in_words}")
-    if exposure and not any(one.form in TABLES for one in to):
+    if exposure and not any(output.form in TABLES for output in to):
         raise click.UsageError("--exposure is for tables: -o FILE.jsonl, FILE.csv, FILE.parquet.")
     with verdict_outputs(to, books[0], with_rows=exposure) as outputs:
         complaints = Complaints()
@@ -172,12 +172,12 @@ def command(
             # Verdicts and recordings: only where there are some.
             from rulec.report.verdicts import side_by_side
 
-            tallies = [(rules, one.total) for rules, one in zip(books, results, strict=True)]
+            tallies = [(rules, result.total) for rules, result in zip(books, results, strict=True)]
             outputs.text(f"\n{side_by_side.as_text(tallies)}")
     complaints.close()
     return ExitStatus.after(
-        answered=all(one.judged and one.complete for one in results),
-        failed=any(one.violated for one in results),
+        answered=all(result.judged and result.complete for result in results),
+        failed=any(result.violated for result in results),
     )
 
 
@@ -244,13 +244,13 @@ def _check_inputs(request: VerifyRequest) -> None:
 
 def _check_outputs(request: VerifyRequest, to: Sequence[Output], *, n_books: int) -> None:
     """Refuse formats that cannot hold all that is asked for. Raises click.UsageError."""
-    for one in to if n_books > 1 else ():
-        if one.form not in _OF_SEVERAL_BOOKS:
+    for output in to if n_books > 1 else ():
+        if output.form not in _OF_SEVERAL_BOOKS:
             raise click.UsageError(
-                f"{one.form} is of one rulebook; of several give one of "
+                f"{output.form} is of one rulebook; of several give one of "
                 f"{', '.join(_OF_SEVERAL_BOOKS)}, or judge by each in a call of its own"
             )
-    if len(request.recordings) > 1 and any(one.form == "mcap" for one in to):
+    if len(request.recordings) > 1 and any(printed.form == "mcap" for printed in to):
         raise click.UsageError("MCAP has one time line: give one recording.")
 
 

@@ -225,7 +225,7 @@ def chosen_format(
         return next(iter(endings))
     if said:
         return said[0]
-    known = ", ".join(dict.fromkeys(suffix for one in endings.values() for suffix in one))
+    known = ", ".join(dict.fromkeys(suffix for ending in endings.values() for suffix in ending))
     raise click.UsageError(
         f"`{path}` does not say by its ending what to write. Let it end in one of {known}, or "
         f"name the format: --output-format {next(iter(endings))}{instead and f'. {instead}'}"
@@ -277,7 +277,7 @@ def refuse_overwriting(to: Sequence[Output], paths: Iterable[str]) -> None:
         RulecError: R0735, one of them is among these paths, or a source, settings, a map, or what
             is read along with recordings.
     """
-    files = {_identity(one.path): one.path for one in to if one.is_file}
+    files = {_identity(output.path): output.path for output in to if output.is_file}
     for path in paths if files else ():
         is_path = path not in ("", STANDARD_OUTPUT) and "\0" not in path
         if is_path and _identity(path) in files and not _is_device(Path(path)):
@@ -327,9 +327,9 @@ def _identity(path: str) -> object:
 def _texts(values: Iterable[Any]) -> Iterator[str]:
     """What the other parameters may name as a path."""
     for value in values:
-        for one in value if isinstance(value, tuple) else (value,):
-            if isinstance(one, str | Path):
-                yield str(one)
+        for choice in value if isinstance(value, tuple) else (value,):
+            if isinstance(choice, str | Path):
+                yield str(choice)
 
 
 def _is_device(path: Path) -> bool:

@@ -115,7 +115,7 @@ def _day(context: click.Context, parameter: click.Parameter, value: str) -> str:
 
     wrong = why_not_a_day(value)
     if wrong:
-        options = [option for one in context.command.params for option in one.opts]
+        options = [option for param in context.command.params for option in param.opts]
         if _SECONDS.fullmatch(value) and "--at-time" in options:
             wrong = f"for a moment in seconds there is `--at-time {value}`"
         raise click.BadParameter(f"`{value}` is no date: {wrong}")

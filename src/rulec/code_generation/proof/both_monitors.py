@@ -88,7 +88,7 @@ class BothMonitors:
             mapping, expected = packed.get(id(said.rules), (None, b""))
             if mapping is not said.rules:
                 verdicts = said.verdict, *said.rules.values()
-                expected = b"".join([self._code(one) for one in verdicts])
+                expected = b"".join([self._code(verdict) for verdict in verdicts])
                 packed[id(said.rules)] = said.rules, expected
             n_lost = len(ours.violations) if self._known and not self._weighing else None
             if theirs.says(expected, n_lost):
@@ -130,7 +130,7 @@ class BothMonitors:
 def is_no_narrower(wide: RunningVerdict, narrow: RunningVerdict) -> bool:
     """Whether a verdict lies within another one, or is the same."""
     ranks: Sequence[int] = [
-        VERDICTS.index(one)
-        for one in (best_of(wide), best_of(narrow), worst_of(narrow), worst_of(wide))
+        VERDICTS.index(verdict)
+        for verdict in (best_of(wide), best_of(narrow), worst_of(narrow), worst_of(wide))
     ]
     return list(ranks) == sorted(ranks)

@@ -102,7 +102,7 @@ def _part(what: str, found: Iterator[str]) -> ProofPart:
 def _tables(library: CLibrary) -> Iterator[str]:
     ask = library.call("numbers")
     for number, own in enumerate(library.layout.rules):
-        cells, entries = ((ctypes.c_uint16 * len(one))() for one in (own.cells, own.entries))
+        cells, entries = ((ctypes.c_uint16 * len(column))() for column in (own.cells, own.entries))
         ask(number, cells, entries)
         for what, found, laid in (("cell", cells, own.cells), ("entry", entries, own.entries)):
             yield from _each(np.array(found) == np.array(laid), f"rule {own.rule.name}, {what}")

@@ -101,16 +101,18 @@ def weighs(what: Read | NumberRead | ltl.Count) -> bool:
             return False
         case NumberRead():
             return len(what.terms) > 1 or any(map(weighs, _counts(what)))
-    sums = [one for one in ltl.atoms_of(what.body) if isinstance(one, ltl.Comparison)]
-    return any(len(one.terms) > 1 or any(map(weighs, _counts(one))) for one in sums)
+    sums = [atom for atom in ltl.atoms_of(what.body) if isinstance(atom, ltl.Comparison)]
+    return any(
+        len(comparison.terms) > 1 or any(map(weighs, _counts(comparison))) for comparison in sums
+    )
 
 
 def nests(read: Read | NumberRead) -> bool:
     """Whether a count is of what counts: of what is not known Python tells less than C does."""
     return not isinstance(read, Read) and any(
-        isinstance(one, ltl.Comparison) and _counts(one)
+        isinstance(atom, ltl.Comparison) and _counts(atom)
         for count in _counts(read)
-        for one in ltl.atoms_of(count.body)
+        for atom in ltl.atoms_of(count.body)
     )
 
 
@@ -195,7 +197,7 @@ def everywhere(
         if not parameters:
             return draw()
         fitting = fitting_objects(parameters[0], objects, vocabulary)
-        return {one: of(parameters[1:]) for one in fitting}
+        return {value: of(parameters[1:]) for value in fitting}
 
     return of(item.parameters)
 

@@ -89,7 +89,8 @@ def _other_roads(road: DrivenRoad) -> Iterator[tuple[slice, list[int]]]:
     for piece, (before, after) in enumerate(pairwise(road.rows), 1):
         border = int(road.lanes.s.searchsorted(road.borders[piece]))
         both = [
-            one is not None and other is not None for one, other in zip(before, after, strict=True)
+            lanelet is not None and other is not None
+            for lanelet, other in zip(before, after, strict=True)
         ]
         come = [k for k, lane in enumerate(after) if lane and not before[k] and lane.predecessors]
         leave = [k for k, lane in enumerate(before) if lane and not after[k] and lane.successors]

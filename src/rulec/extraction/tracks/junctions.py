@@ -275,11 +275,11 @@ def all_have_to_stop(recording: Recording, junction: Junction) -> bool | None:
     """
     ways = [way for way in junction.ways if not way.on_rails]
     before = [approaches(recording, way) for way in ways]
-    signs = [{sign for entry in one for sign in entry.signs} for one in before]
-    if any(ALL_STOP in one for one in signs):
+    signs = [{sign for entry in lanes for sign in entry.signs} for lanes in before]
+    if any(ALL_STOP in sign for sign in signs):
         return True
-    untold = [any("STOP" in entry.untold_signs for entry in one) for one in before]
-    lacks = [way.entries and "STOP" not in one for one, way in zip(signs, ways, strict=True)]
+    untold = [any("STOP" in entry.untold_signs for entry in lanes) for lanes in before]
+    lacks = [way.entries and "STOP" not in sign for sign, way in zip(signs, ways, strict=True)]
     if any(missing and not may for missing, may in zip(lacks, untold, strict=True)):
         return False
     return None if any(lacks) or not all(way.entries for way in ways) else True

@@ -256,10 +256,10 @@ class _Window:
 
     def of(self, values: NDArray[float64]) -> tuple[NDArray[float64], NDArray[float64]]:
         """Values at both ends, by row and column."""
-        begin, end = (values[self.rows, one] for one in self.outer)
+        begin, end = (values[self.rows, column] for column in self.outer)
         if self.part == 1.0:
             return begin, end
-        inside = [values[self.rows, one] for one in self.inner]
+        inside = [values[self.rows, column] for column in self.inner]
         return begin + (inside[0] - begin) * (1 - self.part), end + (inside[1] - end) * (
             1 - self.part
         )

@@ -47,7 +47,7 @@ def fleet_inputs(arguments: Sequence[str]) -> FleetInputs:
         tables |= dict.fromkeys(below)
         found = input_files([argument])
         # A folder of tables alone has no recordings, and need not.
-        problems += (one for one in found.problems if not below or _is_link_out(one))
+        problems += (problem for problem in found.problems if not below or _is_link_out(problem))
         for path in found.paths:
             try:
                 # Each file is read by whichever process is free, perhaps on another machine.
@@ -84,7 +84,7 @@ def _tables_below(argument: str) -> Iterator[str]:
 
 
 def _is_link_out(problem: RulecError) -> bool:
-    return any(one.code == LINK_OUT.code for one in problem.diagnostics)
+    return any(diagnostic.code == LINK_OUT.code for diagnostic in problem.diagnostics)
 
 
 def _why_not(path: str) -> RulecError:

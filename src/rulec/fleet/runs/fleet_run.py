@@ -97,7 +97,9 @@ def run_fleet(
     engine = _ENGINES[settings.engine]()
     inputs = fleet_inputs(arguments)
     if not inputs.paths:
-        raise RulecError([one for problem in inputs.problems for one in problem.diagnostics])
+        raise RulecError(
+            [diagnostic for problem in inputs.problems for diagnostic in problem.diagnostics]
+        )
     carried_rules = carried(rules)
     by = judged_by(carried_rules.read(), settings.request, settings.ends or "")
     kept = FleetFolder(folder, by)

@@ -47,7 +47,7 @@ def rule_of(names: DocumentNames, name: str) -> Rule | None:
     """A rule of the document as meant; None if its rulebook has mistakes."""
     resolved = names.checked.resolved
     book = None if resolved is None else resolved.rulebook
-    return None if book is None else next((one for one in book.rules if one.name == name), None)
+    return None if book is None else next((rule for rule in book.rules if rule.name == name), None)
 
 
 def code_lenses(

@@ -39,7 +39,7 @@ def _in_item(item: tree.Item, names: DocumentNames) -> Iterator[Hint]:
     match item:
         case tree.RuleItem():
             yield from _inherited(item, names)
-            for formula in (item.require, item.when, *(one.formula for one in item.unless)):
+            for formula in (item.require, item.when, *(unless.formula for unless in item.unless)):
                 if formula is not None:
                     yield from _in_formula(formula, names)
         case tree.DefineItem(body=formula) | tree.FactItem(formula) | tree.ParamItem(value=formula):

@@ -72,7 +72,11 @@ def example_answer(book: Rulebook, rule: Rule) -> ExampleAnswer:
     return ExampleAnswer(
         sum(outcome.passed for outcome in run.outcomes),
         tuple(outcome.name for outcome in run.outcomes if not outcome.passed),
-        tuple(example for one in seen for example in missing_examples(one, compiled.vocabulary)),
+        tuple(
+            example
+            for witness in seen
+            for example in missing_examples(witness, compiled.vocabulary)
+        ),
         audited.rules[0].lacking,
     )
 

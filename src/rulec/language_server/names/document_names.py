@@ -53,9 +53,9 @@ class DocumentNames:
     def at(self, offset: int) -> Occurrence | None:
         """The name with a character, or that ends before it; the narrowest if there are several."""
         here = [
-            (end - start, number, one)
-            for number, one in enumerate(self.all())
-            for start, end in [self.bounds(one.span)]
+            (end - start, number, occurrence)
+            for number, occurrence in enumerate(self.all())
+            for start, end in [self.bounds(occurrence.span)]
             if start <= offset <= end
         ]
         return min(here)[2] if here else None

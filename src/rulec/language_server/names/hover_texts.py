@@ -93,7 +93,9 @@ def _rule(names: DocumentNames, name: str) -> Iterator[str]:
         return
     item = entry.item
     heads = ", ".join(
-        f"{one.name.text}: {one.type.text}" for one in item.variables if one.type is not None
+        f"{parameter.name.text}: {parameter.type.text}"
+        for parameter in item.variables
+        if parameter.type is not None
     )
     level = f" in {item.level.text}" if item.level else ""
     weight = f" weight {item.weight.text}" if item.weight else ""
@@ -182,7 +184,8 @@ def value_text(number: NumberByCases) -> str:
 
 def _head(item: tree.DefineItem) -> str:
     about = ", ".join(
-        one.name.text + (f": {one.type.text}" if one.type else "") for one in item.parameters
+        parameter.name.text + (f": {parameter.type.text}" if parameter.type else "")
+        for parameter in item.parameters
     )
     return f"define {item.name.text}{f'({about})' if about else ''}"
 
@@ -203,7 +206,7 @@ def _parameters_in(item: tree.Item) -> Iterator[tree.Parameter]:
             yield from variables
             for example in examples:
                 yield from example.objects
-            for part in (item.require, item.when, *(one.formula for one in item.unless)):
+            for part in (item.require, item.when, *(unless.formula for unless in item.unless)):
                 if part is not None:
                     yield from _counted(part)
         case tree.DefineItem(parameters=parameters, body=body):

@@ -207,7 +207,7 @@ def _in_rule(rule: tree.RuleItem, chain: NamesOfChain) -> Iterator[Occurrence]:
         yield from _at(rule.level, chain.level(rule.level.text))
     for topic in rule.topics:
         yield from _at(topic, chain.topic(topic.text))
-    for formula in (rule.require, rule.when, *(one.formula for one in rule.unless)):
+    for formula in (rule.require, rule.when, *(unless.formula for unless in rule.unless)):
         if formula is not None:
             yield from in_formula(formula, scope, chain)
     for example in rule.examples:
@@ -222,20 +222,21 @@ def _in_rule(rule: tree.RuleItem, chain: NamesOfChain) -> Iterator[Occurrence]:
 def variables_of(parameters: Iterable[tree.Parameter]) -> dict[str, NamedThing]:
     """What the names of parameters mean inside of their rule or definition."""
     return {
-        one.name.text: NamedThing("variable", one.name.text, one.name.span) for one in parameters
+        parameter.name.text: NamedThing("variable", parameter.name.text, parameter.name.span)
+        for parameter in parameters
     }
 
 
 def _variables(parameters: Iterable[tree.Parameter]) -> Iterator[Occurrence]:
-    for one in parameters:
-        thing = NamedThing("variable", one.name.text, one.name.span)
-        yield Occurrence(one.name.span, thing, declares=True)
+    for parameter in parameters:
+        thing = NamedThing("variable", parameter.name.text, parameter.name.span)
+        yield Occurrence(parameter.name.span, thing, declares=True)
 
 
 def _types(parameters: Iterable[tree.Parameter], chain: NamesOfChain) -> Iterator[Occurrence]:
-    for one in parameters:
-        if one.type is not None:
-            yield from _at(one.type, chain.type(one.type.text))
+    for parameter in parameters:
+        if parameter.type is not None:
+            yield from _at(parameter.type, chain.type(parameter.type.text))
 
 
 def in_formula(formula: tree.Formula, scope: Scope, chain: NamesOfChain) -> Iterator[Occurrence]:

@@ -44,7 +44,10 @@ def references_to(
         for place in _in_document(thing, names, book, editor):
             found.setdefault((place.uri, place.start), place)
     declared = uri_of(thing.span.source.name)
-    return sorted(found.values(), key=lambda one: (one.uri != declared, one.uri, one.start))
+    return sorted(
+        found.values(),
+        key=lambda name_place: (name_place.uri != declared, name_place.uri, name_place.start),
+    )
 
 
 def books_with(
@@ -90,8 +93,10 @@ def _in_document(
 ) -> Iterator[NamePlace]:
     uri = uri_of(names.checked.path or names.checked.name)
     positions = editor.positions(names.checked.text)
-    for one in names.all():
-        if names.is_same(one.thing, thing, origin):
-            start, end = names.bounds(one.span)
+    for occurrence in names.all():
+        if names.is_same(occurrence.thing, thing, origin):
+            start, end = names.bounds(occurrence.span)
             location = lsp.Location(uri, positions.range(start, end))
-            yield NamePlace(uri, start, end, location, declares=one.declares, listed=one.listed)
+            yield NamePlace(
+                uri, start, end, location, declares=occurrence.declares, listed=occurrence.listed
+            )

@@ -106,14 +106,16 @@ def _in_topics(
 ) -> Iterator[tuple[str, TextChange]]:
     """Topics list rules by the beginnings of their names, also rules of books upon them."""
     heads = re.compile(r"\brule\s+([^\W\d]\w*)")
-    texts = [one.text for one in map(editor.document, editor.sources()) if one is not None]
+    texts = [
+        document.text for document in map(editor.document, editor.sources()) if document is not None
+    ]
     others = Counter(match[1] for text in texts for match in heads.finditer(text))
     others[thing.name] -= sum(
         1
         for book in books_with(thing, names, editor)
-        for one in book.all()
-        if book.is_same(one.thing, thing, names) and not one.listed
-        if _heads_a_rule(book, one.span.start, one.span.end)
+        for occurrence in book.all()
+        if book.is_same(occurrence.thing, thing, names) and not occurrence.listed
+        if _heads_a_rule(book, occurrence.span.start, occurrence.span.end)
     )
     done: set[tuple[str, int]] = set()
     for book in books_with(thing, names, editor):
@@ -124,7 +126,7 @@ def _in_topics(
             if path is not None and editor.is_read_only(path):
                 continue
             for entry in _topic_entries(file):
-                if not any(one.text == longest for one in entry.rules):
+                if not any(rule.text == longest for rule in entry.rules):
                     continue
                 change = _in_topic(entry, thing.name, name, book, others)
                 if change is not None and (uri, change.start) not in done:
@@ -147,8 +149,8 @@ def _longest_listed(rule: str, book: DocumentNames) -> str:
     """The longest beginning of a rule's name that a topic lists: it alone says its topics."""
     files = book.chain.books
     entries = (entry for file in files for entry in _topic_entries(file))
-    listed = (one.text for entry in entries for one in entry.rules)
-    return max((one for one in listed if f"{rule}_".startswith(f"{one}_")), key=len, default="")
+    listed = (name.text for entry in entries for name in entry.rules)
+    return max((name for name in listed if f"{rule}_".startswith(f"{name}_")), key=len, default="")
 
 
 def _in_topic(
@@ -159,10 +161,10 @@ def _in_topic(
     def is_of(rule: str, listed: tree.Name) -> bool:
         return f"{rule}_".startswith(f"{listed.text}_")
 
-    listed = [one for one in entry.rules if is_of(old, one)]
-    if not listed or any(is_of(new, one) for one in entry.rules):
+    listed = [name for name in entry.rules if is_of(old, name)]
+    if not listed or any(is_of(new, name) for name in entry.rules):
         return None
-    longest = max(listed, key=lambda one: len(one.text))
+    longest = max(listed, key=lambda name: len(name.text))
     start, end = book.bounds(longest.span)
     still = any(count > 0 and is_of(rule, longest) for rule, count in others.items())
     if longest.text == old and not still:
@@ -187,7 +189,7 @@ def _refuse_other_meaning(
     for uri, was in before.items():
         now = _checked(trial, trial.documents[uri])
         file = was.path or was.name
-        if any(one.severity == "error" for one in was.findings):
+        if any(diagnostic.severity == "error" for diagnostic in was.findings):
             raise RefusedRenamingError(f"{file} has mistakes: mend them first")
         new = _first_new(was.findings, now.findings)
         if new is not None:
@@ -204,8 +206,8 @@ def _affected(
     """The documents that are changed, and all others upon them with the old name or the new one."""
     found = dict.fromkeys(changes)
     declared = os.path.realpath(thing.span.source.name)
-    for one in (thing, replace(thing, name=name)):
-        for other in books_with(one, names, editor):
+    for named_thing in (thing, replace(thing, name=name)):
+        for other in books_with(named_thing, names, editor):
             files = (*other.chain.books, *other.chain.vocabularies)
             if any(os.path.realpath(file.span.source.name) == declared for file in files):
                 found[uri_of(other.checked.path or other.checked.name)] = None
@@ -220,11 +222,11 @@ def _checked(editor: EditorWorkspace, document: Document) -> CheckedDocument:
 
 
 def _first_new(before: Sequence[Diagnostic], after: Sequence[Diagnostic]) -> Diagnostic | None:
-    known = Counter(one.code for one in before)
-    for one in after:
-        known[one.code] -= 1
-        if known[one.code] < 0:
-            return one
+    known = Counter(diagnostic.code for diagnostic in before)
+    for diagnostic in after:
+        known[diagnostic.code] -= 1
+        if known[diagnostic.code] < 0:
+            return diagnostic
     return None
 
 
@@ -258,7 +260,9 @@ def workspace_edit(changes: Changes, editor: EditorWorkspace) -> lsp.WorkspaceEd
     for uri, parts in changes.items():
         document = editor.document(uri)
         positions = editor.positions(document.text if document else "")
-        edits[uri] = [lsp.TextEdit(positions.range(one.start, one.end), one.text) for one in parts]
+        edits[uri] = [
+            lsp.TextEdit(positions.range(change.start, change.end), change.text) for change in parts
+        ]
     return lsp.WorkspaceEdit(changes=edits)
 
 
@@ -266,8 +270,8 @@ def placeholder(
     names: DocumentNames, offset: int, editor: EditorWorkspace
 ) -> tuple[NamedThing, int, int]:
     """What would be renamed at a character, and where. Raises RefusedRenamingError."""
-    one = names.at(offset)
-    if one is None:
+    occurrence = names.at(offset)
+    if occurrence is None:
         raise RefusedRenamingError("there is no name here that could be another one")
-    refuse_in_general(one.thing, editor)
-    return one.thing, *names.bounds(one.span)
+    refuse_in_general(occurrence.thing, editor)
+    return occurrence.thing, *names.bounds(occurrence.span)

@@ -190,7 +190,7 @@ class EditorWorkspace:
     def is_read_only(self, file: str | Path) -> bool:
         """Tell whether a file is not the author's: outside of the workspace, or rulec's own."""
         path = Path(os.path.realpath(file))
-        if any(path == Path(os.path.realpath(one)) for one in self._open_paths()):
+        if any(path == Path(os.path.realpath(open_path)) for open_path in self._open_paths()):
             return path.is_relative_to(os.path.realpath(rulebooks_folder())) and not any(
                 path.is_relative_to(os.path.realpath(folder)) for folder in self.folders
             )

@@ -44,13 +44,13 @@ _ONLY_THE_AUTHOR_KNOWS = re.compile(
 )
 
 _HIDING = frozenset(
-    one.code for one in (NOT_A_RULEBOOK, WRONG_KIND_OF_FILE, EXTENDS_CIRCLE, NAME_NOT_FOUND)
+    code.code for code in (NOT_A_RULEBOOK, WRONG_KIND_OF_FILE, EXTENDS_CIRCLE, NAME_NOT_FOUND)
 )
 """Behind these mistakes there may be others, which nobody has looked for."""
 
 _UNREADABLE = frozenset(
-    one.code
-    for one in (
+    code.code
+    for code in (
         *(UNEXPECTED_WORD, UNTERMINATED_TEXT),
         *(UNBALANCED_BRACE, OUTSIDE_BRACES, NOT_A_RULEBOOK),
     )
@@ -252,20 +252,23 @@ class _Trial:
         except RulecError:
             return False
         if finding.code in _HIDING:
-            is_gone = all(one.code != finding.code for one in found)
-            return is_gone and not any(one.code in _UNREADABLE for one in found)
+            is_gone = all(diagnostic.code != finding.code for diagnostic in found)
+            return is_gone and not any(diagnostic.code in _UNREADABLE for diagnostic in found)
         errors = len(_errors(found))
         return errors < self.errors or (errors == self.errors and len(found) < self.findings)
 
 
 def _errors(findings: Sequence[Diagnostic]) -> list[Diagnostic]:
-    return [one for one in findings if one.severity == "error"]
+    return [diagnostic for diagnostic in findings if diagnostic.severity == "error"]
 
 
 def code_action(fix: QuickFix, uri: str, text: str, editor: EditorWorkspace) -> lsp.CodeAction:
     """A quick fix as the editor offers it."""
     positions = editor.positions(text)
-    edits = [lsp.TextEdit(positions.range(one.start, one.end), one.text) for one in fix.changes]
+    edits = [
+        lsp.TextEdit(positions.range(change.start, change.end), change.text)
+        for change in fix.changes
+    ]
     return lsp.CodeAction(
         fix.title,
         kind=lsp.CodeActionKind.QuickFix,

@@ -161,8 +161,8 @@ def _scope(names: DocumentNames, piece: PieceAtCursor, offset: int) -> dict[str,
         case tree.RuleItem():
             entry = names.chain.names.constants.overlay.rules.get(item.name.text)
             inherited = entry.item.variables if entry is not None else ()
-            for one in item.variables or inherited:
-                scope[one.name.text] = one.type.text if one.type else ""
+            for parameter in item.variables or inherited:
+                scope[parameter.name.text] = parameter.type.text if parameter.type else ""
             for example in item.examples:
                 start, end = names.bounds(example.span)
                 if start <= offset <= end:
@@ -226,7 +226,7 @@ def _provisions(
     for name, item in constants.overlay.definitions.items():
         if wanted is not None:
             continue
-        types = [one.type.text if one.type else "" for one in item.parameters]
+        types = [parameter.type.text if parameter.type else "" for parameter in item.parameters]
         for objects in _fitting(types, scope, names) if types else [()]:
             label = f"{name}({', '.join(objects)})" if objects else name
             yield 3, lsp.CompletionItem(label, kind=_KINDS.Function, detail="definition")
@@ -291,7 +291,7 @@ def parameter_types(name: str, names: DocumentNames) -> list[str] | None:
     """The types that a word or a definition speaks of, empty for any; None for other names."""
     item = names.chain.names.constants.overlay.definitions.get(name)
     if item is not None:
-        return [one.type.text if one.type else "" for one in item.parameters]
+        return [parameter.type.text if parameter.type else "" for parameter in item.parameters]
     symbols = names.chain.names.symbols
     known = symbols.items.get(name) or symbols.value_of.get(name)
     return None if known is None else list(known.parameters)
@@ -343,8 +343,8 @@ def signature(names: DocumentNames, offset: int) -> lsp.SignatureHelp | None:
     definition = names.chain.names.constants.overlay.definitions.get(name)
     if definition is not None:
         labels = [
-            one.name.text + (f": {one.type.text}" if one.type else "")
-            for one in definition.parameters
+            parameter.name.text + (f": {parameter.type.text}" if parameter.type else "")
+            for parameter in definition.parameters
         ]
         span = definition.span
     else:

@@ -248,16 +248,16 @@ def _phases(formula: ltl.Binary, language: Language) -> Phrase:
         phases.append((phrase(rest.left, language, inside=True), lasts))
         rest = rest.right
     phases.append((phrase(rest, language, inside=True), ""))
-    if len(phases) <= MOST_IN_A_LINE and all(one.shape is Shape.CLAUSE for one, _ in phases):
+    if len(phases) <= MOST_IN_A_LINE and all(phase.shape is Shape.CLAUSE for phase, _ in phases):
         steps = language.phase_joint.join(
-            language.lasting_phase.format(lasts, one.text)
+            language.lasting_phase.format(lasts, phase.text)
             if lasts
-            else language.phase.format(one.text)
-            for one, lasts in phases
+            else language.phase.format(phase.text)
+            for phase, lasts in phases
         )
         return Phrase(language.phase_line.format(steps), Shape.LINE)
     items = tuple(
-        replace(one, text=language.lasting_item.format(lasts, one.text)) if lasts else one
-        for one, lasts in phases
+        replace(phase, text=language.lasting_item.format(lasts, phase.text)) if lasts else phase
+        for phase, lasts in phases
     )
     return Phrase(language.phases, Shape.LIST, items, language.then)

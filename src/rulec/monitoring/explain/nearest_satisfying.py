@@ -97,9 +97,13 @@ def _totals(
     """
     if beyond:
         targets = machine.successors[state]
-        return [one + beyond[target] for one, target in zip(distances, targets, strict=True)]
+        return [
+            distance + beyond[target] for distance, target in zip(distances, targets, strict=True)
+        ]
     kept = machine.outputs[state]
-    return [one if is_kept else _FAR for one, is_kept in zip(distances, kept, strict=True)]
+    return [
+        distance if is_kept else _FAR for distance, is_kept in zip(distances, kept, strict=True)
+    ]
 
 
 def _costs(machine: MealyMonitor, near: Sequence[_Near]) -> list[Sequence[int]]:

@@ -92,7 +92,7 @@ class ObservedStates:
         if any(isinstance(term, ltl.Count) for _, term in comparison.terms):
             return ()
         margins = [margin_in(comparison, self.bound, self.given(number)) for number in self.shown]
-        return tuple([None if isinstance(one, Unknown) else one for one in margins])
+        return tuple([None if isinstance(margin, Unknown) else margin for margin in margins])
 
     def changes(self, values: Sequence[object] | Mapping[int, object]) -> bool:
         """Tell whether the decisive state's value differs from the one before."""

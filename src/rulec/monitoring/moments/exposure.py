@@ -96,9 +96,11 @@ def alike_exposures(
         if all(rule.name in those for those in left_out):
             continue
         tally = _tally(truth, watched, outcomes.get(rule.name, {}))
-        for of_trace, those, one in zip(result, left_out, tally.exposures(step_s), strict=True):
+        for of_trace, those, exposure in zip(
+            result, left_out, tally.exposures(step_s), strict=True
+        ):
             if rule.name not in those:
-                of_trace[rule.name] = one
+                of_trace[rule.name] = exposure
     return result
 
 

@@ -63,7 +63,7 @@ def moments(trace: Trace | TraceArrays, query: FormulaQuery) -> list[Moment]:
         sure = np.all([flags for flags, _ in rows], axis=0)
         sure &= len(rows) == len(roundings)
         objects = dict(zip(asked.variables, choice, strict=True))
-        result += sorted(_of_one(objects, sure, possible), key=lambda one: one.first)
+        result += sorted(_of_one(objects, sure, possible), key=lambda moment: moment.first)
     return result
 
 

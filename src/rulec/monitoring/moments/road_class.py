@@ -18,7 +18,7 @@ def road_classes(tables: NameTables) -> list[str]:
     and ``built_up`` of the vocabulary ``road``.
     """
     declared = [tables.vocabulary.declarations.get(name) for name in ("motorway", "built_up")]
-    if not all(isinstance(one, Signal) and not one.parameters for one in declared):
+    if not all(isinstance(signal, Signal) and not signal.parameters for signal in declared):
         return [""] * tables.n_traces
     there = np.arange(tables.n_states) <= tables.last[:, None]
     on_motorway, not_on_motorway = _known(tables, "motorway", there)

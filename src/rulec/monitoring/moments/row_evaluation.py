@@ -156,7 +156,7 @@ class RowEvaluation:
             return tables.world(name).at(rows=self.trace, states=states)
         if len(arguments) == 1:
             return tables.about(name).at(rows=bound[arguments[0]], states=states)
-        several = np.broadcast_arrays(*[bound[one] for one in arguments])
+        several = np.broadcast_arrays(*[bound[argument] for argument in arguments])
         return tables.about_several(name, np.stack(several, axis=1)).at(states=states)
 
     def _comparison(self, comparison: ltl.Comparison, bound: Mapping[str, Places]) -> TruthRows:
@@ -205,6 +205,6 @@ def _digits(
         return digits
     spread = np.broadcast_arrays(ignored, *[numbers for _, numbers in summands])
     shape = spread[0].shape
-    flat = [one.ravel() for one in spread]
+    flat = [column.ravel() for column in spread]
     parts = [(factor, one) for (factor, _), one in zip(summands, flat[1:], strict=True)]
     return digits_of_sum(ready.read, parts, flat[0].size, flat[0]).astype(np.intp).reshape(shape)

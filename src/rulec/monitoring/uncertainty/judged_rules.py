@@ -68,7 +68,7 @@ def _judged_rules(
             continue
         machine = uncertain_machine(rule, outcomes)
         untold = machine.untold(unknown)
-        untold += tuple([one.type for one in rule.variables if one.type in types])
+        untold += tuple([variable.type for variable in rule.variables if variable.type in types])
         if untold:
             not_judged.append(RuleNotJudged(rule.name, rule.strength, untold))
         else:

@@ -197,7 +197,7 @@ class RunPairs:
             ((one, others),) = rows.items()
             return frozenset([(one, machine.greatest(others))])
         ranks = self._ranks
-        own = {ranks[one]: one for one in rows}
+        own = {ranks[row]: row for row in rows}
         firsts = sum(1 << rank for rank in own)
         # By rank what its own second states reach, and those of all whose first one is no worse
         reached: dict[int, int] = {}

@@ -133,7 +133,9 @@ class RequiredNames:
             middle = self._at_last(start, first)
             if middle is None:
                 return True
-            if middle not in tried and None in {self._at_last(middle, one) for one in letters}:
+            if middle not in tried and None in {
+                self._at_last(middle, letter) for letter in letters
+            }:
                 return True
             tried.add(middle)
         return False

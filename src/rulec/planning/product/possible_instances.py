@@ -99,7 +99,9 @@ class PossibleNodes:
         begun = [state for (name, _), state in past.states.items() if name == rule.name]
         if any(begun) or rule.name in past.doubtful_rules:
             return ()
-        types = [one.type for one in rule.variables if one.type in self._untold_types]
+        types = [
+            variable.type for variable in rule.variables if variable.type in self._untold_types
+        ]
         return (*uncertain_machine(rule, None).untold(self._untold), *types)
 
     def instances(self, rule: CompiledRule, past: CarriedState) -> list[GraphInstance]:

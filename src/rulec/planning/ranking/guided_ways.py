@@ -111,7 +111,9 @@ def beam_ways(
     numbers = count()
     beam = [_first(start) for start in product.counts[0] if start in to_come[0]]
     for _ in product.steps:
-        longer = [one for part in beam for one in _onward(part, product, graph, to_come)]
+        longer = [
+            longer_part for part in beam for longer_part in _onward(part, product, graph, to_come)
+        ]
         queue = [(part.promises(to_come), next(numbers), part) for part in longer]
         heapify(queue)
         beam = []

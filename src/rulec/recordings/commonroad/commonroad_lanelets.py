@@ -124,8 +124,8 @@ def complete(
     elements = [element for number in entry.signs for element in signs.get(number, ())]
     lanelet = entry.lanelet
     said = [element for element in elements if element.limit_mps is not None]
-    limits = [one.limit_mps for one in said if one.name == MAX_SPEED] + [lanelet.limit_mps]
-    least = [one.limit_mps for one in said if one.name == MIN_SPEED]
+    limits = [sign.limit_mps for sign in said if sign.name == MAX_SPEED] + [lanelet.limit_mps]
+    least = [sign.limit_mps for sign in said if sign.name == MIN_SPEED]
     inside = {"intersection"} if junction else set()
     ids = sorted(set(entry.lights), key=recording.id_order)
     return replace(

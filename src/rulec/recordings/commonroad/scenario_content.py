@@ -182,8 +182,10 @@ def _with_untold_signs(
 
     Published maps have signs to give way at sidewalks where these are nearer than the lane.
     """
-    beside = {n: one for n, one in lanelets.items() if recording.NO_LANES & one.types}
-    signs = frozenset().union(*(one.signs for one in beside.values())) & recording.REGULATING
+    beside = {n: lanelet for n, lanelet in lanelets.items() if recording.NO_LANES & lanelet.types}
+    signs = (
+        frozenset().union(*(lanelet.signs for lanelet in beside.values())) & recording.REGULATING
+    )
     if not signs:
         return lanelets
     content.remarks.append(
@@ -191,6 +193,8 @@ def _with_untold_signs(
         "where on it they hold is not told"
     )
     return {
-        number: one if number in beside else replace(one, untold_signs=signs - one.signs)
-        for number, one in lanelets.items()
+        number: lanelet
+        if number in beside
+        else replace(lanelet, untold_signs=signs - lanelet.signs)
+        for number, lanelet in lanelets.items()
     }

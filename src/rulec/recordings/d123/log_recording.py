@@ -112,9 +112,9 @@ def _form(data_set: str) -> str:
 
 
 def _participants(tracks: list[TrackBoxes], sweeps: _Sweeps) -> Iterator[Participant]:
-    for one in tracks:
-        if len(one.sweeps):
-            yield participant(one, type_of(one.category), sweeps.seconds, sweeps.steps)
+    for boxes in tracks:
+        if len(boxes.sweeps):
+            yield participant(boxes, type_of(boxes.category), sweeps.seconds, sweeps.steps)
 
 
 def _table(path: Path, *nested: Nested) -> ArrowTable:
@@ -123,11 +123,12 @@ def _table(path: Path, *nested: Nested) -> ArrowTable:
         raise LOG.refused(path.with_name(files.SYNC), f"there is no `{path.name}` beside it")
     key = path.name.partition(".")[0]
     named = tuple(
-        Nested(name=f"{key}.{one.name}", listed=one.listed, width=one.width) for one in nested
+        Nested(name=f"{key}.{column.name}", listed=column.listed, width=column.width)
+        for column in nested
     )
-    numbers = tuple(one for one in named if one.width)
-    texts = tuple(one for one in named if one.name.endswith("token"))
-    whole = tuple(one for one in named if one not in (*numbers, *texts))
+    numbers = tuple(column for column in named if column.width)
+    texts = tuple(column for column in named if column.name.endswith("token"))
+    whole = tuple(column for column in named if column not in (*numbers, *texts))
     return read_table(
         path,
         LOG,

@@ -138,13 +138,13 @@ def _layers(path: Path) -> _Layers:
 
 def _lanes(layers: _Layers) -> Iterator[Lanelet]:
     things = {}
-    for one in layers.of(_LANE):
-        if one.id in things:
-            raise layers.wrong(one, f"there are two lanes {one.id}")
-        things[one.id] = one
+    for thing in layers.of(_LANE):
+        if thing.id in things:
+            raise layers.wrong(thing, f"there are two lanes {thing.id}")
+        things[thing.id] = thing
     bounds = {}
-    for name, one in things.items():
-        lines = [_line(layers, one, f"{side}_boundary") for side in ("left", "right")]
+    for name, thing in things.items():
+        lines = [_line(layers, thing, f"{side}_boundary") for side in ("left", "right")]
         # At the edge of a part that has been cut out a lane may be a point
         if min(map(len, lines)) > 1:
             bounds[name] = lines[0], lines[1]
@@ -161,24 +161,24 @@ def _lanes(layers: _Layers) -> Iterator[Lanelet]:
             before[after][name] = None
     paint = _Paint(layers)
     for name, own in bounds.items():
-        one = things[name]
+        thing = things[name]
         left, right = paired(*own)
-        kind = one.said.get("lane_type")
+        kind = thing.said.get("lane_type")
         if not isinstance(kind, int) or kind not in _TYPES:
-            raise layers.wrong(one, f"a lane is of the type {kind!s:.40}")
-        crossing = ("intersection",) * (one.said.get("lane_group_id") in inside)
+            raise layers.wrong(thing, f"a lane is of the type {kind!s:.40}")
+        crossing = ("intersection",) * (thing.said.get("lane_group_id") in inside)
         yield Lanelet(
             id=str(name),
             left=left,
             right=right,
             centre=(left + right) / 2,
-            successors=_known(_ids(layers, one, "successor_ids"), bounds),
+            successors=_known(_ids(layers, thing, "successor_ids"), bounds),
             predecessors=_known(before[name], bounds),
-            left_of=_beside(one, bounds, left=True),
-            right_of=_beside(one, bounds, left=False),
+            left_of=_beside(thing, bounds, left=True),
+            right_of=_beside(thing, bounds, left=False),
             types=frozenset((*_TYPES[kind], *crossing)),
             signs=frozenset(),
-            limit_mps=_limit(layers, one),
+            limit_mps=_limit(layers, thing),
             left_mark=paint.along(own[0]),
             right_mark=paint.along(own[1]),
         )
@@ -247,8 +247,8 @@ class _Paint:
 
     def __init__(self, layers: _Layers) -> None:
         things = layers.of(_ROAD_LINE)
-        self._lines = [_shape(layers, one) for one in things]
-        self._marks = [_mark(one) for one in things]
+        self._lines = [_shape(layers, thing) for thing in things]
+        self._marks = [_mark(thing) for thing in things]
         self._tree = shapely.STRtree(self._lines)
 
     def along(self, bound: Points) -> LaneMark | None:
@@ -287,15 +287,15 @@ def _shape(layers: _Layers, line: _Thing) -> shapely.LineString:
 
 def _stop_zones(layers: _Layers) -> Iterator[StopZone]:
     """The zones of signs."""
-    for one in layers.of(_STOP_ZONE):
-        kind = one.said.get("stop_zone_type")
+    for thing in layers.of(_STOP_ZONE):
+        kind = thing.said.get("stop_zone_type")
         if isinstance(kind, int) and kind in SIGNS:
-            lanes = tuple(map(str, _ids(layers, one, "lane_ids")))
-            yield StopZone(SIGNS[kind], _line(layers, one, "outline"), lanes)
+            lanes = tuple(map(str, _ids(layers, thing, "lane_ids")))
+            yield StopZone(SIGNS[kind], _line(layers, thing, "outline"), lanes)
 
 
 def _crosswalks(layers: _Layers) -> Iterator[Lanelet]:
-    for one in layers.of(_CROSSWALK):
-        outline = _line(layers, one, "outline")
+    for thing in layers.of(_CROSSWALK):
+        outline = _line(layers, thing, "outline")
         if len(outline) > 3:
-            yield crosswalk_with_outline(f"crosswalk {one.id}", outline)
+            yield crosswalk_with_outline(f"crosswalk {thing.id}", outline)

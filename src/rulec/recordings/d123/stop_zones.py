@@ -45,7 +45,7 @@ def with_signs(
     """
     signs: dict[str, set[str]] = defaultdict(set)
     untold: dict[str, set[str]] = defaultdict(set)
-    middles = shapely.STRtree([shapely.LineString(one.centre) for one in lanelets.values()])
+    middles = shapely.STRtree([shapely.LineString(lanelet.centre) for lanelet in lanelets.values()])
     names = list(lanelets)
     left_out = 0
     for zone in zones:

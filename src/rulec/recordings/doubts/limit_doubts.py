@@ -39,10 +39,10 @@ _RAILS = frozenset({"rail", "tram"})
 
 def limit_doubts(recording: Recording, tracks: Sequence[Track]) -> Iterator[str]:
     """What is to be said of a recording's limits; ``tracks`` are those of vehicles that move."""
-    lanes = [one for one in recording.lanelets.values() if _has_limit(one)]
+    lanes = [lanelet for lanelet in recording.lanelets.values() if _has_limit(lanelet)]
     if not lanes:
         return
-    limits = np.array([one.limit_mps for one in lanes], dtype=float)
+    limits = np.array([lanelet.limit_mps for lanelet in lanes], dtype=float)
     highest = float(limits.max()) * 3.6
     if highest > _HIGHEST_KMH:
         yield f"limits are up to {highest:.0f} km/h: they may be in another unit than m/s"
@@ -77,7 +77,9 @@ def _shares(
 
     Where lanes lie above each other by the highest of their limits, and by the lowest.
     """
-    outlines = [shapely.Polygon(np.vstack((one.left, one.right[::-1]))) for one in lanes]
+    outlines = [
+        shapely.Polygon(np.vstack((lanelet.left, lanelet.right[::-1]))) for lanelet in lanes
+    ]
     every = max(1, round(_EVERY_S / step_s))
     shares: tuple[list[float], list[float]] = ([], [])
     for track in tracks:

@@ -46,8 +46,10 @@ def check_near(recording: Recording, path: Path | None) -> None:
     where = None if path is None else SourceLocation(str(path))
     if not recording.lanelets:
         raise OTHER_NET.error(where, "the map has no lanes", help="give another map with --map")
-    places = [found for one in recording.participants if len(found := _some_places(one))]
-    lines = [shapely.LineString(one.centre) for one in recording.lanelets.values()]
+    places = [
+        found for participant in recording.participants if len(found := _some_places(participant))
+    ]
+    lines = [shapely.LineString(lanelet.centre) for lanelet in recording.lanelets.values()]
     tree = shapely.STRtree(lines)
     for own in places:
         near = tree.query(shapely.points(own), predicate="dwithin", distance=NEAR_M)
@@ -56,7 +58,7 @@ def check_near(recording: Recording, path: Path | None) -> None:
     if not places:
         return
     low, high = _box(places)
-    least, most = _box([one.centre for one in recording.lanelets.values()])
+    least, most = _box([lanelet.centre for lanelet in recording.lanelets.values()])
     raise OTHER_NET.error(
         where,
         f"nobody is near the roads: tracks are at x {low[0]:.1f} to {high[0]:.1f}, "
@@ -68,7 +70,7 @@ def check_near(recording: Recording, path: Path | None) -> None:
 
 def road_doubts(lanelets: Mapping[str, Lanelet], tracks: Sequence[Track]) -> Iterator[str]:
     """What is to be said of roads; ``tracks`` are those of vehicles that move."""
-    lanes = [one for one in lanelets.values() if is_lane(one)]
+    lanes = [lanelet for lanelet in lanelets.values() if is_lane(lanelet)]
     if not lanes or not tracks:
         return
     yield from _gaps(lanes)
@@ -77,14 +79,14 @@ def road_doubts(lanelets: Mapping[str, Lanelet], tracks: Sequence[Track]) -> Ite
     on, along = roads.shares(moves)
     if along < _HALF and len(tracks) >= _FEWEST_BODIES:
         for what, change in _AXES.items():
-            better = roads.shares([change(one) for one in moves])[1]
+            better = roads.shares([change(move) for move in moves])[1]
             if better > _MOST:
                 yield (
                     f"{what}: then {better:.0%} of the places of vehicles that move would be on "
                     f"lanes that lead their way, and {along:.0%} are as they are"
                 )
                 return
-        backwards = roads.shares([_turned(one) for one in moves])[1]
+        backwards = roads.shares([_turned(move) for move in moves])[1]
         if backwards > _MOST:
             yield (
                 f"{backwards:.0%} of the places of vehicles that move are on lanes that lead "
@@ -106,18 +108,20 @@ def road_doubts(lanelets: Mapping[str, Lanelet], tracks: Sequence[Track]) -> Ite
 
 def _gaps(lanes: Sequence[Lanelet]) -> Iterator[str]:
     """What is to be said of lanes that end elsewhere than those begin that they lead to."""
-    known = {one.id: one for one in lanes}
-    pairs = [(one, known[name]) for one in lanes for name in one.successors if name in known]
+    known = {lanelet.id: lanelet for lanelet in lanes}
+    pairs = [
+        (lanelet, known[name]) for lanelet in lanes for name in lanelet.successors if name in known
+    ]
     if not pairs:
         return
     ends, begins = (
-        shapely.linestrings([(one.left[at], one.right[at]) for one in own])
+        shapely.linestrings([(lane.left[at], lane.right[at]) for lane in own])
         for at, own in zip((-1, 0), zip(*pairs, strict=True), strict=True)
     )
     gaps = shapely.distance(ends, begins)
     count, widest = int((gaps > _APART_M).sum()), int(gaps.argmax())
     if count:
-        before, behind = (f"`{short(one.id)}`" for one in pairs[widest])
+        before, behind = (f"`{short(lanelet.id)}`" for lanelet in pairs[widest])
         yield (
             f"at {count:,} of {len(pairs):,} places where a lane leads to the next, that one "
             f"begins more than {_APART_M:g} m from its end, {behind} {gaps[widest]:.1f} m from "
@@ -154,9 +158,9 @@ class _Roads:
     """The lanes of a map, to be asked who is on them."""
 
     def __init__(self, lanes: Sequence[Lanelet]) -> None:
-        outlines = [np.vstack((one.left, one.right[::-1])) for one in lanes]
+        outlines = [np.vstack((lanelet.left, lanelet.right[::-1])) for lanelet in lanes]
         self._areas = [shapely.Polygon(line).buffer(0) for line in outlines]
-        self._middles = [one.centre for one in lanes]
+        self._middles = [lanelet.centre for lanelet in lanes]
 
     def shares(self, bodies: Sequence[Moves]) -> tuple[float, float]:
         """Of the places of each body those on a lane, and on one along it, in the mean."""
@@ -207,7 +211,7 @@ def _some_places(body: Participant) -> Points:
         return places
     steps = list(body.states)
     some = [body.states[step] for step in steps[:: max(1, len(steps) // _MOST_PLACES)]]
-    return np.array([(one.x, one.y) for one in some]).reshape(-1, 2)
+    return np.array([(state.x, state.y) for state in some]).reshape(-1, 2)
 
 
 def _box(lines: Sequence[Points]) -> tuple[Points, Points]:

@@ -67,17 +67,17 @@ def linked(lanelets: Mapping[str, Lanelet]) -> dict[str, Lanelet]:
     after: dict[str, list[str]] = defaultdict(list)
     before: dict[str, list[str]] = defaultdict(list)
     left, right = {}, {}
-    for one in lanelets.values():
-        after[one.id] += one.successors
-        before[one.id] += one.predecessors
-        for name in one.successors:
-            before[name].append(one.id)
-        for name in one.predecessors:
-            after[name].append(one.id)
-        if one.left_of is not None:
-            right[one.left_of] = one.id
-        if one.right_of is not None:
-            left[one.right_of] = one.id
+    for lanelet in lanelets.values():
+        after[lanelet.id] += lanelet.successors
+        before[lanelet.id] += lanelet.predecessors
+        for name in lanelet.successors:
+            before[name].append(lanelet.id)
+        for name in lanelet.predecessors:
+            after[name].append(lanelet.id)
+        if lanelet.left_of is not None:
+            right[lanelet.left_of] = lanelet.id
+        if lanelet.right_of is not None:
+            left[lanelet.right_of] = lanelet.id
     return {
         one.id: replace(
             one,
@@ -105,7 +105,10 @@ def with_ends_that_meet(lanelets: Mapping[str, Lanelet]) -> dict[str, Lanelet]:
         if own != other and float(ahead @ onward) >= _LIKE:
             after[names[own]].append(names[other])
     return linked(
-        {name: replace(one, successors=tuple(after[name])) for name, one in lanelets.items()}
+        {
+            name: replace(lanelet, successors=tuple(after[name]))
+            for name, lanelet in lanelets.items()
+        }
     )
 
 

@@ -27,7 +27,10 @@ def without_short_holes(recording: Recording, longest_s: float) -> Recording:
     """
     most = int(longest_s / recording.step_s + 1e-9)
     bodies = tuple([_filled(body, most, recording.step_s) for body in recording.participants])
-    if all(one is other for one, other in zip(bodies, recording.participants, strict=True)):
+    if all(
+        participant is other
+        for participant, other in zip(bodies, recording.participants, strict=True)
+    ):
         return recording
     return replace(recording, participants=bodies)
 

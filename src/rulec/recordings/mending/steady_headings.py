@@ -46,7 +46,10 @@ def with_steady_headings(recording: Recording) -> Recording:
     stands, and that spin, are those of before and after.
     """
     bodies = tuple([_steadied(body, recording.step_s) for body in recording.participants])
-    if all(one is other for one, other in zip(bodies, recording.participants, strict=True)):
+    if all(
+        participant is other
+        for participant, other in zip(bodies, recording.participants, strict=True)
+    ):
         return recording
     return replace(recording, participants=bodies)
 

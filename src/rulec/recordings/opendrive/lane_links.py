@@ -75,8 +75,8 @@ def lane_links(content: OpenDrive, pieces: Mapping[str, Sequence[RoadPiece]]) ->
         for connection in junction.connections:
             _through(links, junction, connection)
     direct: dict[LaneKey, dict[LaneKey, None]] = defaultdict(dict)
-    for one, other in links.joints:
-        for start, end in (*_ways(links, one, other), *_ways(links, other, one)):
+    for lane_end, other in links.joints:
+        for start, end in (*_ways(links, lane_end, other), *_ways(links, other, lane_end)):
             direct[start][end] = None
     after = {key: tuple(_reached(direct, pieces, key)) for key in direct}
     before: dict[LaneKey, dict[LaneKey, None]] = defaultdict(dict)

@@ -266,7 +266,7 @@ def _side(content: OpenDrive, lanelets: Mapping[str, Lanelet]) -> Side | None:
 def _leads_both_ways(content: OpenDrive) -> bool:
     """True if some road has lanes to drive on at both of its sides: those on the right lead on."""
     sections = (section for road in content.roads.values() for section in road.sections)
-    driven = ([x.id for x in one.lanes.values() if x.type == "driving"] for one in sections)
+    driven = ([x.id for x in section.lanes.values() if x.type == "driving"] for section in sections)
     return any(min(ids, default=0) < 0 < max(ids, default=0) for ids in driven)
 
 

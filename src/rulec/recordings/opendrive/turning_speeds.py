@@ -26,8 +26,8 @@ def without_turning_speeds(
         own = lanelets[name]
         if own.limit_mps is None:
             continue
-        before = _limits(lanelets, name, inside, lambda one: one.predecessors)
-        after = _limits(lanelets, name, inside, lambda one: one.successors)
+        before = _limits(lanelets, name, inside, lambda lanelet: lanelet.predecessors)
+        after = _limits(lanelets, name, inside, lambda lanelet: lanelet.successors)
         if not before or not after or None in before | after:
             continue
         lowest = min(limit for limit in before if limit is not None)

@@ -281,7 +281,7 @@ def _mark(
     for other in facing:
         if other not in own and other in boundaries and boundaries[other].mark == "solid":
             line = shapely.LineString(boundaries[other].line)
-            if any(_runs_along(line, one) for one in lines):
+            if any(_runs_along(line, other_line) for other_line in lines):
                 return "double_solid"
     return mark
 

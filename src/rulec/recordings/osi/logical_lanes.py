@@ -46,9 +46,9 @@ def _logical_lane(key: str, fields: Fields, file: WireFile) -> LogicalLane:
     move = fields.get("move_direction")
     is_crossed = bool(fields.get("overlapping_lane"))
     others = [
-        id_of(one, "other_lane_id")
+        id_of(entry, "other_lane_id")
         for name in ("predecessor_lane", "successor_lane")
-        for one in fields.get(name, ())
+        for entry in fields.get(name, ())
     ]
     lane = TraceLane(
         id=key,
@@ -69,7 +69,7 @@ def _logical_lane(key: str, fields: Fields, file: WireFile) -> LogicalLane:
 
 
 def _others(fields: Fields, name: str) -> tuple[str, ...]:
-    found = (id_of(one, "other_lane_id") for one in fields.get(name, ()))
+    found = (id_of(entry, "other_lane_id") for entry in fields.get(name, ()))
     return tuple(filter(None, found))
 
 
@@ -101,9 +101,9 @@ def logical_boundaries(
 def with_logical(lanes: Sequence[TraceLane], logical: Sequence[LogicalLane]) -> list[TraceLane]:
     """Lanes with the limits and types that all logical lanes made of them have."""
     of_lane: dict[str, list[TraceLane]] = {}
-    for one in logical:
-        for name in one.physical:
-            of_lane.setdefault(name, []).append(one.lane)
+    for logical_lane in logical:
+        for name in logical_lane.physical:
+            of_lane.setdefault(name, []).append(logical_lane.lane)
     told = []
     for lane in lanes:
         own = of_lane.get(lane.id, [])
@@ -116,4 +116,4 @@ def with_logical(lanes: Sequence[TraceLane], logical: Sequence[LogicalLane]) -> 
 
 def lanes_by_logical(logical: Sequence[LogicalLane]) -> dict[str, tuple[str, ...]]:
     """Logical lane -> the lanes that it is made of."""
-    return {one.lane.id: one.physical for one in logical}
+    return {lane.lane.id: lane.physical for lane in logical}

@@ -45,12 +45,14 @@ def id_of(fields: Fields, name: str = "id") -> str | None:
 
 def ids_of(fields: Fields, name: str) -> tuple[str, ...]:
     """The ids in a field of which there may be many, each once."""
-    return tuple(dict.fromkeys(str(one.get("value", 0)) for one in fields.get(name, ())))
+    return tuple(dict.fromkeys(str(entry.get("value", 0)) for entry in fields.get(name, ())))
 
 
 def assigned_lanes(said: Fields) -> tuple[str, ...]:
     """The lanes that a classification names, and the logical ones, whose ids are others."""
-    logical = (id_of(one, "assigned_lane_id") for one in said.get("logical_lane_assignment", ()))
+    logical = (
+        id_of(entry, "assigned_lane_id") for entry in said.get("logical_lane_assignment", ())
+    )
     return tuple(dict.fromkeys((*ids_of(said, "assigned_lane_id"), *filter(None, logical))))
 
 
@@ -71,5 +73,5 @@ def number(fields: Fields, name: str, wrong: WireFile) -> float:
 
 def places(vectors: Iterable[Fields], wrong: WireFile) -> Points:
     """Places (m) from vectors. Raises RulecError R0610 for one that is huge or none."""
-    rows = [(number(one, "x", wrong), number(one, "y", wrong)) for one in vectors]
+    rows = [(number(vector, "x", wrong), number(vector, "y", wrong)) for vector in vectors]
     return np.array(rows, dtype=float).reshape(-1, 2)

@@ -78,7 +78,7 @@ def _network(content: TraceContent, file: WireFile) -> LaneNetwork:
     if lanes:
         lanes = with_logical(lanes, logical)
     else:
-        lanes = [one.lane for one in logical]
+        lanes = [lane.lane for lane in logical]
         found = messages["logical_lane_boundary"]
         boundaries = logical_boundaries(found, boundaries, file)
     check_size(lanes, boundaries, file)

@@ -74,7 +74,7 @@ class KeyedValue:
         if not isinstance(value, list | tuple | np.ndarray) or np.ndim(value) == 0:
             raise self.wrong("is no list")
         self._spend(len(value))
-        return [self._below(str(number), one) for number, one in enumerate(value)]
+        return [self._below(str(number), item) for number, item in enumerate(value)]
 
     def text(self) -> str:
         """A text; whole numbers count as such."""

@@ -124,7 +124,7 @@ def _is_area(corners: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> bool
 
 
 def _ids(entry: KeyedValue | None) -> tuple[str, ...]:
-    return () if entry is None else tuple([one.text() for one in entry.elements()])
+    return () if entry is None else tuple([value.text() for value in entry.elements()])
 
 
 def _boundaries(entry: KeyedValue | None, count: int, known: DataSet) -> tuple[BoundaryPart, ...]:
@@ -197,8 +197,8 @@ def _in_line(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:
     return {
         name: replace(
             lane,
-            leads_to=tuple([one for one in lane.leads_to if not aside(name, one)]),
-            follows=tuple([one for one in lane.follows if not aside(one, name)]),
+            leads_to=tuple([follower for follower in lane.leads_to if not aside(name, follower)]),
+            follows=tuple([follow for follow in lane.follows if not aside(follow, name)]),
         )
         for name, lane in lanes.items()
     }

@@ -57,7 +57,7 @@ def read_fcd_table(path: Path) -> FloatingCarData:
         for key, rows in columns.texts[f"{kind}_id"].groups()
         if key
     ]
-    for _, kind, key, rows in sorted(found, key=lambda one: int(one[0])):
+    for _, kind, key, rows in sorted(found, key=lambda entry: int(entry[0])):
         _add(data, columns, (kind, key), rows[np.argsort(at[rows], kind="stable")], at)
     return data
 

@@ -71,7 +71,7 @@ def track_recording(
         name=name,
         step_s=tables[0].times.step_s,
         lanelets=roads.lanelets,
-        participants=tuple(one for part in found for one in part.participants),
+        participants=tuple(participant for part in found for participant in part.participants),
         problems=(),
         form=form,
         side=roads.side,

@@ -103,7 +103,7 @@ class _Reading:
             if twice.any():
                 raise self._twice(name, own, int(np.argmax(twice)))
             found += self._participants(name, own)
-        found.sort(key=lambda one: id_order(one.id))
+        found.sort(key=lambda participant: id_order(participant.id))
         return ReadTracks(tuple(found), self.ego, tuple(self._remarks()))
 
     def _type(self, name: str, own: NDArray[np.intp]) -> str:

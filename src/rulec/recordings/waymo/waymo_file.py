@@ -53,7 +53,7 @@ def read_waymo(path: Path, scenario_id: str | None = None) -> Iterator[Recording
         elif found is not None:
             yield found
     if broken:
-        raise RulecError(one for error in broken for one in error.diagnostics)
+        raise RulecError(diagnostic for error in broken for diagnostic in error.diagnostics)
 
 
 def _read(

@@ -72,7 +72,7 @@ def _window(excerpt: str, place: SourceLocation, columns: int) -> tuple[list[str
     # A hostile line may have millions of characters: look only at what can be shown.
     start = max(0, column - columns)
     shown = excerpt[start : column + columns]
-    cells = [" " * TAB if one == "\t" else visible(one) for one in shown]
+    cells = [" " * TAB if character == "\t" else visible(character) for character in shown]
     widths = [cell_width(cell) for cell in cells]
     whole = start == 0 and len(excerpt) == len(cells)
     if whole and sum(widths) <= columns:
@@ -169,13 +169,13 @@ def _without_others_lines(diagnostic: Diagnostic) -> Diagnostic:
 
     Whoever made the tree may not read that file; who does may print it where they can.
     """
-    places = [one.place for one in diagnostic.labels]
+    places = [label.place for label in diagnostic.labels]
     if diagnostic.place is not None:
         places.append(diagnostic.place)
     # One look at each file; a message may have a label for each line of it.
     if not any(map(_is_behind_link, {place.file for place in places if place.excerpt})):
         return diagnostic
-    labels = tuple([replace(one, place=_unquoted(one.place)) for one in diagnostic.labels])
+    labels = tuple([replace(label, place=_unquoted(label.place)) for label in diagnostic.labels])
     place = None if diagnostic.place is None else _unquoted(diagnostic.place)
     return replace(diagnostic, place=place, labels=labels)
 

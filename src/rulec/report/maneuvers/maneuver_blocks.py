@@ -92,15 +92,15 @@ def listed_block(
     """A maneuver of a list, with what is open of it."""
     verdict = verdicts.get(maneuver.nodes)
     doubtful = () if verdict is None else verdict.open
-    remark = "; open" if any(one.strength == "hard" for one in doubtful) else ""
+    remark = "; open" if any(open_verdict.strength == "hard" for open_verdict in doubtful) else ""
     details = _open_lines(maneuvers, doubtful)
     return maneuver_block(maneuvers.graph, number, maneuver, remark, details)
 
 
 def _open_lines(maneuvers: Maneuvers, doubtful: Sequence[OpenVerdict]) -> list[str]:
     lines = [
-        f"   {visible(f'{_rule_title(maneuvers, one)}: {open_in_words(one)}')}"
-        for one in doubtful[:MOST_VIOLATIONS]
+        f"   {visible(f'{_rule_title(maneuvers, open_verdict)}: {open_in_words(open_verdict)}')}"
+        for open_verdict in doubtful[:MOST_VIOLATIONS]
     ]
     if len(doubtful) > MOST_VIOLATIONS:
         lines.append(f"   and {len(doubtful) - MOST_VIOLATIONS} more open")

@@ -72,9 +72,9 @@ def derived_signals(maneuvers: Maneuvers, account: Account) -> dict[str, tuple[A
 def least_braking(maneuvers: Maneuvers, answers: ManeuverAnswers) -> float | None:
     """How hard every maneuver brakes at least, if one that is shown brakes hard and all do."""
     shown = [*(answers.listed or ())]
-    shown += [one.maneuver for one in (*(answers.best or ()), *(answers.ranked or ()))]
-    driven = [one.trajectory for one in shown if one.trajectory is not None]
-    if all(one.greatest_braking <= COMFORTABLE for one in driven):
+    shown += [maneuver.maneuver for maneuver in (*(answers.best or ()), *(answers.ranked or ()))]
+    driven = [maneuver.trajectory for maneuver in shown if maneuver.trajectory is not None]
+    if all(trajectory.greatest_braking <= COMFORTABLE for trajectory in driven):
         return None
     return maneuvers.least_braking
 

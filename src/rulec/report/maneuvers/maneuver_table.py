@@ -38,10 +38,10 @@ class ManeuverCounts:
 def as_text(counts: Sequence[ManeuverCounts]) -> str:
     """A table with a row for each scenario and rulebook."""
     rows = [("scenario", "by", "maneuvers", "satisfying", "open", "violating")]
-    for one in counts:
-        numbers = (one.satisfying, one.open, one.violating)
-        told = map(shown_count, numbers) if one.is_judged else ["not judged"] * len(numbers)
+    for count in counts:
+        numbers = (count.satisfying, count.open, count.violating)
+        told = map(shown_count, numbers) if count.is_judged else ["not judged"] * len(numbers)
         rows.append(
-            (visible(one.scenario), visible(one.rulebook), shown_count(one.maneuvers), *told)
+            (visible(count.scenario), visible(count.rulebook), shown_count(count.maneuvers), *told)
         )
     return "\n".join(table_lines(rows, right=range(2, 6), ruled=[0]))

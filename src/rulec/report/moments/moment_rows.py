@@ -20,17 +20,17 @@ COLUMNS: Mapping[str, type] = {
 
 def rows(found: DriveMoments) -> Iterator[dict[str, object]]:
     """A row for each moment."""
-    for one in found.moments:
+    for moment in found.moments:
         yield {
             "file": found.file,
             "recording": found.recording,
             "vehicle": found.vehicle,
-            "objects": tuple([f"{name}={item}" for name, item in one.objects.items()]),
-            "holds": one.holds,
-            "from_s": found.time_s(one.first),
-            "to_s": found.time_s(one.last),
-            "first_state": one.first,
-            "last_state": one.last,
+            "objects": tuple([f"{name}={item}" for name, item in moment.objects.items()]),
+            "holds": moment.holds,
+            "from_s": found.time_s(moment.first),
+            "to_s": found.time_s(moment.last),
+            "first_state": moment.first,
+            "last_state": moment.last,
         }
 
 
@@ -39,12 +39,14 @@ def lines(found: DriveMoments) -> Iterator[str]:
     where = found.file
     if found.recording and found.recording not in found.file:
         where = f"{found.file}: {found.recording}"
-    for row, one in zip(rows(found), found.moments, strict=True):
-        objects = "".join(f" {name}={item}" for name, item in one.objects.items())
-        when = f"at {row['from_s']:g} s (state {one.first})"
-        if one.last > one.first:
-            when = f"{row['from_s']:g} to {row['to_s']:g} s (states {one.first} to {one.last})"
-        perhaps = "" if one.holds == "surely" else ", perhaps"
+    for row, moment in zip(rows(found), found.moments, strict=True):
+        objects = "".join(f" {name}={item}" for name, item in moment.objects.items())
+        when = f"at {row['from_s']:g} s (state {moment.first})"
+        if moment.last > moment.first:
+            when = (
+                f"{row['from_s']:g} to {row['to_s']:g} s (states {moment.first} to {moment.last})"
+            )
+        perhaps = "" if moment.holds == "surely" else ", perhaps"
         yield visible(f"{where}: {found.vehicle}{objects}: {when}{perhaps}")
 
 
@@ -59,7 +61,7 @@ class MomentTally:
 
     def add(self, found: DriveMoments) -> None:
         """Count a drive."""
-        surely = sum(one.holds == "surely" for one in found.moments)
+        surely = sum(moment.holds == "surely" for moment in found.moments)
         self.surely += surely
         self.perhaps += len(found.moments) - surely
         self.drives += 1

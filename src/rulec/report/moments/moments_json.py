@@ -33,13 +33,13 @@ def as_json(found: DriveMoments) -> list[str]:
                 file=found.file,
                 recording=found.recording,
                 vehicle=found.vehicle,
-                objects=dict(one.objects),
-                holds=one.holds,
-                from_s=found.time_s(one.first),
-                to_s=found.time_s(one.last),
-                first_state=one.first,
-                last_state=one.last,
+                objects=dict(moment.objects),
+                holds=moment.holds,
+                from_s=found.time_s(moment.first),
+                to_s=found.time_s(moment.last),
+                first_state=moment.first,
+                last_state=moment.last,
             )
         )
-        for one in found.moments
+        for moment in found.moments
     ]

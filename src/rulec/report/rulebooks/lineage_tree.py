@@ -71,7 +71,9 @@ def chosen(
     if not patterns:
         return inherited
     rules = tuple(
-        rule for rule in inherited.rules if any(fnmatchcase(rule.name, one) for one in patterns)
+        rule
+        for rule in inherited.rules
+        if any(fnmatchcase(rule.name, pattern) for pattern in patterns)
     )
     return rule_lineage.BookLineage(inherited.books, rules, ())
 

@@ -32,5 +32,7 @@ def _spoken(rule: Rule, phrases: Mapping[str, str], language: Language) -> Rule:
         formula=said(rule.formula),
         required=None if rule.required is None else said(rule.required),
         condition=None if rule.condition is None else said(rule.condition),
-        exemptions=tuple(replace(one, formula=said(one.formula)) for one in rule.exemptions),
+        exemptions=tuple(
+            replace(exemption, formula=said(exemption.formula)) for exemption in rule.exemptions
+        ),
     )

@@ -147,10 +147,10 @@ def _rule(rulebook: Rulebook, rule: RuleCoverage) -> RuleCoverageData:
         limits=rule.n_limits,
         missing_limits=[
             MissingLimitData(
-                limit=formula_text(one.comparison),
-                value=one.value,
-                example=missing_example(one.example, rulebook.vocabulary),
+                limit=formula_text(limit.comparison),
+                value=limit.value,
+                example=missing_example(limit.example, rulebook.vocabulary),
             )
-            for one in rule.missing_limits
+            for limit in rule.missing_limits
         ],
     )

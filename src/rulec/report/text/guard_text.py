@@ -60,7 +60,10 @@ class GuardWording:
                 for read, allowed in zip(self._reads, cube, strict=True)
                 if len(allowed) < read.size
             ]
-            simple = [f"({one})" if loose and len(literals) > 1 else one for one, loose in literals]
+            simple = [
+                f"({literal})" if loose and len(literals) > 1 else literal
+                for literal, loose in literals
+            ]
             text = " and ".join(simple) or "true"
             loose = len(literals) > 1 or any(one for _, one in literals)
             texts.append(f"({text})" if loose and len(cubes) > 1 else text)

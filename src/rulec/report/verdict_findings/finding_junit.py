@@ -66,12 +66,14 @@ def _case(
     found: FoundInRecording,
 ) -> None:
     case = element(suite, "testcase", classname=rulebook, name=rule.name, file=found.file)
-    violated = [one for one in findings if one.outcome == "violated"]
-    others = [one for one in findings if one.outcome == "open"]
-    nowhere = [one for one in findings if one.outcome == "not_judged" and not one.vehicle]
-    lines = [one.says for one in violated]
+    violated = [finding for finding in findings if finding.outcome == "violated"]
+    others = [finding for finding in findings if finding.outcome == "open"]
+    nowhere = [
+        finding for finding in findings if finding.outcome == "not_judged" and not finding.vehicle
+    ]
+    lines = [finding.says for finding in violated]
     if violated and rule.strength == "hard":
-        drives = len({one.vehicle for one in violated})
+        drives = len({finding.vehicle for finding in violated})
         what = f"violated in {drives:,} of {found.drives:,} drives"
         failure = element(case, "failure", type="hard rule", message=f"{what}: {lines[0]}")
         failure.text = xml_text("\n".join(lines))
@@ -80,9 +82,9 @@ def _case(
         words = ", ".join(nowhere[0].open_on)
         element(case, "skipped", message=nowhere[0].because or f"not told: {words}")
     elif others and not violated:
-        drives = len({one.vehicle for one in others})
+        drives = len({finding.vehicle for finding in others})
         what = f"open in {drives:,} of {found.drives:,} drives"
         element(case, "skipped", message=f"{what}: {others[0].says}")
-    lines += [one.says for one in others]
+    lines += [finding.says for finding in others]
     if lines:
         element(case, "system-out").text = xml_text("\n".join(lines))

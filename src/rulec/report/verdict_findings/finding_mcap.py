@@ -59,7 +59,9 @@ class McapWriter:
     def close(self) -> None:
         """Write the file."""
         found = self._found or FoundInRecording("", "", 0, ())
-        not_judged = sorted({one.rule for one in found.findings if one.outcome == "not_judged"})
+        not_judged = sorted(
+            {finding.rule for finding in found.findings if finding.outcome == "not_judged"}
+        )
         about = {
             "file": found.file,
             "recording": found.recording,
@@ -67,7 +69,7 @@ class McapWriter:
             "drives": str(found.drives),
             "not_judged": ", ".join(name for name in not_judged if name),
         }
-        messages = (one for finding in found.findings for one in _messages(finding))
+        messages = (message for finding in found.findings for message in _messages(finding))
         write_mcap(
             self._stream, f"rulec {self._about.version}", _channels(), messages, {"rulec": about}
         )

@@ -87,7 +87,7 @@ class RowWriter:
 def _rows(found: FoundInRecording, columns: Columns | None) -> Iterator[list[Any]]:
     """The values of findings, or those of rows if there are columns."""
     if columns is None:
-        yield from ([getattr(one, name) for name in COLUMNS] for one in found.findings)
+        yield from ([getattr(finding, name) for name in COLUMNS] for finding in found.findings)
     else:
         empty = [(name, EMPTY_CELLS.get(kind)) for name, kind in columns.items()]
         yield from ([row.get(name, nothing) for name, nothing in empty] for row in found.rows)

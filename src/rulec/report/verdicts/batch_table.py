@@ -59,9 +59,9 @@ class BatchTally:
         if verdict.violations:
             self.drives.update({violation.rule for violation in verdict.violations})
         if verdict.open or verdict.not_judged:
-            is_open = {one.rule for one in verdict.open}
+            is_open = {open_verdict.rule for open_verdict in verdict.open}
             self.open_in.update(is_open)
-            rules = set(rules) - is_open - {one.rule for one in verdict.not_judged}
+            rules = set(rules) - is_open - {rule.rule for rule in verdict.not_judged}
         self.judged_in.update(rules)
 
     def include(self, other: BatchTally) -> None:

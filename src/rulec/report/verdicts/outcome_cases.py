@@ -17,8 +17,8 @@ Case = frozenset[tuple[str, bool | str]]
 def fewest_cases(outcomes: Sequence[ConditionalOutcome]) -> list[ConditionalOutcome]:
     """Cases that cover the given ones with their outcomes; what breaks the rule comes first."""
     by_outcome: dict[OutcomeName, list[Case]] = {}
-    for one in outcomes:
-        by_outcome.setdefault(one.outcome, []).append(frozenset(one.when.items()))
+    for outcome in outcomes:
+        by_outcome.setdefault(outcome.outcome, []).append(frozenset(outcome.when.items()))
     order = sorted(by_outcome, key=lambda name: name != "violated")
     names = {name: place for place, name in enumerate(outcomes[0].when)} if outcomes else {}
     values = {name: {one.when[name] for one in outcomes} for name in names}

@@ -76,7 +76,9 @@ def _rule_counts(verdicts: RecordingVerdicts, tally: ViolationTally, width: int)
 def _unjudged(rules: Sequence[CompiledRule], tally: ViolationTally, width: int) -> Iterator[str]:
     """The rules that cannot be judged, hard ones first, by the words that they lack."""
     by_words: dict[tuple[str, tuple[str, ...]], list[str]] = {}
-    for rule in sorted(rules, key=lambda one: one.strength != "hard")[:MOST_UNJUDGED]:
+    for rule in sorted(rules, key=lambda compiled_rule: compiled_rule.strength != "hard")[
+        :MOST_UNJUDGED
+    ]:
         reasons = [tally.reasons[rule.name]] if rule.name in tally.reasons else []
         words = tuple(tally.untold.get(rule.name) or reasons)
         by_words.setdefault((rule.strength, words), []).append(rule.name)

@@ -18,7 +18,7 @@ def as_text(tallies: Sequence[tuple[CompiledRulebook, BatchTally]]) -> str:
         rule.name for rules, total in tallies for rule in rules.rules if total.drives[rule.name]
     )
     rows = [("by", *(rules.name for rules, _ in tallies))]
-    rows += [(name, *(_cell(name, *one) for one in tallies)) for name in sorted(names)]
+    rows += [(name, *(_cell(name, *tally) for tally in tallies)) for name in sorted(names)]
     for verdict, word in ((True, "satisfied"), (False, "violated"), (None, "open")):
         rows.append((word, *(f"{total.counts[verdict]:,}" for _, total in tallies)))
     rows.append(("not judged", *(f"{total.not_judged:,}" for _, total in tallies)))

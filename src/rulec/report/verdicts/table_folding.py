@@ -89,14 +89,14 @@ def fitting(
         return places
     places = _merged(columns, states, decisive)
     at = next(n for n, place in enumerate(places) if decisive in place)
-    needed = [one for one in (0, at, at - 1) if one >= 0]
+    needed = [state for state in (0, at, at - 1) if state >= 0]
     chosen: list[int] = []
-    for one in dict.fromkeys([*needed, at - 2, at + 1, *range(at - 3, 0, -1)]):
-        if 0 <= one < len(places):
-            columns_left -= width(columns, states, places[one])
-            if columns_left < 0 and one not in needed:
+    for state in dict.fromkeys([*needed, at - 2, at + 1, *range(at - 3, 0, -1)]):
+        if 0 <= state < len(places):
+            columns_left -= width(columns, states, places[state])
+            if columns_left < 0 and state not in needed:
                 break
-            chosen.append(one)
+            chosen.append(state)
     return [places[one] for one in sorted(chosen)]
 
 

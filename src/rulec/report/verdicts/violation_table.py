@@ -177,7 +177,7 @@ def _rows(explanation: Explanation, decisive: int, every_part: bool, widest: int
     facts = [fact for fact in explanation.facts if whole or fact.decides]
     parts = (titled if whole else folded)(explanation.parts, widest)
     cells = [_cells(fact, decisive) for fact in facts]
-    cells += [_with_margins(map(shown, one.values), one.margins) for _, one in parts]
+    cells += [_with_margins(map(shown, part.values), part.margins) for _, part in parts]
     return _Table(
         [*(_title(fact, widest) for fact in facts), *(visible(title) for title, _ in parts)],
         len(facts),

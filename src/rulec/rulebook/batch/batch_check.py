@@ -187,7 +187,11 @@ def _identity(diagnostic: Diagnostic) -> tuple[object, ...]:
     if diagnostic.code == EXTENDS_CIRCLE.code:
         # Each rulebook of a circle finds it, and another line that closes it.
         places = [place, *[label.place for label in diagnostic.labels]]
-        lines = {(os.path.realpath(one.file), one.line) for one in places if one is not None}
+        lines = {
+            (os.path.realpath(location.file), location.line)
+            for location in places
+            if location is not None
+        }
         return diagnostic.code, frozenset(lines)
     where = () if place is None else (os.path.realpath(place.file), place.start, place.end_column)
     return diagnostic.code, diagnostic.message, where

@@ -276,8 +276,8 @@ def _speed_help(
         and (unit := symbols.unit(item.unit)) is not None
         and unit.dimension == DIMENSIONS["speed"]
     ]
-    for (_, one), (node, other) in ((left, right), (right, left)):
-        if speeds and (one.dimension, other.dimension) == _LENGTH_AND_TIME:
+    for (_, cases), (node, other) in ((left, right), (right, left)):
+        if speeds and (cases.dimension, other.dimension) == _LENGTH_AND_TIME:
             return f"a speed makes a length of a time: `{short(node)} * {speeds[0]}`"
     return ""
 

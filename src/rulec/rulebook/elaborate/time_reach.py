@@ -34,7 +34,7 @@ def operator_warnings(node: tree.Formula, overlay: Overlay) -> Iterator[Diagnost
     narrow = [*_narrow(node, (), overlay.definitions)]
     yield from narrow
     for warning in until_warnings(node):
-        if not any(covers(one, warning) for one in narrow):
+        if not any(covers(diagnostic, warning) for diagnostic in narrow):
             yield warning
 
 

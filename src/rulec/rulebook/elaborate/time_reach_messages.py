@@ -96,7 +96,7 @@ def two_readings(
     if behind is not None:
         end, rest = behind.span.end, f"{_sign(behind)} {_operand_text(behind.right)}"
         now, other_end = f"{now} {rest}", f"({right} {rest})"
-    (join, *_) = [one.operator for one in (behind, before) if one is not None]
+    (join, *_) = [infix.operator for infix in (behind, before) if infix is not None]
     return TWO_READINGS.at(
         Span(node.span.source, start, end),
         f"`{join}` beside `{node.operator}` can be read in two ways",

@@ -125,10 +125,10 @@ def _expression(part: str) -> re.Pattern[str]:
         return _NOTHING
     first, *others = _between_stars(signs)
     # What a look ahead has found stays as it is: the nearest place is as good as any later one.
-    middle = [f"(?=(?P<g{n}>.*?{one}))(?P=g{n})" for n, one in enumerate(others[:-1])]
+    middle = [f"(?=(?P<g{n}>.*?{pattern}))(?P=g{n})" for n, pattern in enumerate(others[:-1])]
     try:
         return re.compile(
-            "".join([first, *middle, *(f".*{one}" for one in others[-1:])]), re.DOTALL
+            "".join([first, *middle, *(f".*{pattern}" for pattern in others[-1:])]), re.DOTALL
         )
     except re.error:  # a class of signs that is none
         return _NOTHING

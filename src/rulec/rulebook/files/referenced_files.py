@@ -71,7 +71,7 @@ class ReferencedFiles:
         path = search.find_base(name.text, name.span, user, self.search_path)
         for place, book in enumerate(chain):
             if book.path is not None and search.is_same_file(book.path, path):
-                raise RulecError(say.extends_circle(line, [one.file for one in chain[place:]]))
+                raise RulecError(say.extends_circle(line, [link.file for link in chain[place:]]))
         if len(chain) > MOST_BASES:
             raise FORMULA_TOO_LARGE.error(
                 line.span,

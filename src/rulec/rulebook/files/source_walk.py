@@ -142,9 +142,9 @@ def is_other_file(path: Path) -> bool:
 
 def in_words(left_alone: Sequence[LeftAlone], most: int = 3) -> str:
     """How much was left alone, and why, with the first names of each kind; empty for nothing."""
-    kinds = Counter(one.why for one in left_alone)
+    kinds = Counter(file.why for file in left_alone)
     return "; ".join(
-        f"{count:,} {why} ({_first([one.path for one in left_alone if one.why == why], most)})"
+        f"{count:,} {why} ({_first([file.path for file in left_alone if file.why == why], most)})"
         for why, count in kinds.items()
     )
 

@@ -56,7 +56,11 @@ class DescribedWord:
 def described(names: Iterable[str], vocabularies: Iterable[str]) -> tuple[DescribedWord, ...]:
     """Words with their phrases in vocabularies that ship; those without one have their names."""
     in_english, *others = (
-        {word: text for one in vocabularies for word, text in phrases_in(one, language).items()}
+        {
+            word: text
+            for vocabulary in vocabularies
+            for word, text in phrases_in(vocabulary, language).items()
+        }
         for language in ("en", "de", "fr")
     )
     return tuple(
@@ -134,7 +138,7 @@ def _stems(text: str) -> Iterator[str]:
     at = 0
     while at < len(parts):
         for size in range(min(longest, len(parts) - at), 0, -1):
-            form, stem = ("_".join(one[at : at + size]) for one in (parts, stems))
+            form, stem = ("_".join(words[at : at + size]) for words in (parts, stems))
             main = main_of.get(form) or main_of.get(stem)
             if main is not None:
                 yield main

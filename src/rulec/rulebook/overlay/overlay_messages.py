@@ -296,14 +296,14 @@ def lost_exceptions(item: tree.RuleItem, gone: Sequence[tree.Unless]) -> Diagnos
     """An override whose ``unless`` replaces inherited exceptions."""
     plain = [exception for exception in item.unless if not exception.also]
     first = plain[0].span
-    texts = named([" ".join(one.span.text.removeprefix("also").split()) for one in gone])
+    texts = named([" ".join(unless.span.text.removeprefix("also").split()) for unless in gone])
     what = "the inherited exception" if len(gone) == 1 else "the inherited exceptions"
     return LOST_EXCEPTION.at(
         Span(first.source, first.start, first.start + len("unless")),
         f"`{item.name.text}` loses {what} {texts}",
         expected="this replaces what is inherited",
         help="write `also unless` to add to it, or repeat what stays; or say what the rule is now",
-        labels=tuple(Label(one.span.place, "lost here") for one in gone),
+        labels=tuple(Label(unless.span.place, "lost here") for unless in gone),
         severity="warning",
         fix=_added(plain),
     )

@@ -66,9 +66,9 @@ def lost_exceptions(base: tree.RuleItem, over: tree.RuleItem) -> tuple[tree.Unle
         for formula in (exception.formula, *_alternatives(exception.formula))
     ]
     return tuple(
-        one
-        for one in base.unless
-        if not all((formula, one.scope) in kept for formula in _alternatives(one.formula))
+        unless
+        for unless in base.unless
+        if not all((formula, unless.scope) in kept for formula in _alternatives(unless.formula))
     )
 
 

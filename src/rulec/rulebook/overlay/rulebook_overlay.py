@@ -90,7 +90,7 @@ class Overlay:
                 self._override(item, file)
             case tree.RuleItem(name=name):
                 self.mistakes += map(
-                    say.nothing_to_add_to, (one for one in item.unless if one.also)
+                    say.nothing_to_add_to, (unless for unless in item.unless if unless.also)
                 )
                 known = self.rules.get(name.text)
                 if known is None:
@@ -193,10 +193,10 @@ class Overlay:
         """
         if not rule.topics:
             named = [
-                (len(one.text), topic)
+                (len(name.text), topic)
                 for topic, entry in self.topics.items()
-                for one in entry.rules
-                if f"{rule.name.text}_".startswith(f"{one.text}_")
+                for name in entry.rules
+                if f"{rule.name.text}_".startswith(f"{name.text}_")
             ]
             longest = max((length for length, _ in named), default=0)
             return tuple(topic for length, topic in named if length == longest)
@@ -282,7 +282,7 @@ class Overlay:
             self.mistakes.append(say.changed_twice(name, "rule", before))
         elif known is None:
             entries = self.rules.items()
-            inherited = [one for one, by in entries if by.changed or by.book is not file]
+            inherited = [value for value, by in entries if by.changed or by.book is not file]
             self._nothing(name, "rule", verb, inherited, file)
         elif known.book is file:
             self.mistakes.append(say.own(name, "rule", verb, known.item.name))

@@ -48,8 +48,8 @@ def all_contradictions(axioms: Sequence[Axiom], vocabulary: Vocabulary) -> list[
     scenes = dict.fromkeys(axiom.variables for axiom in axioms)
     found: dict[object, Diagnostic] = {}
     for variables in sorted(scenes, key=len):
-        for one in contradictions(variables, axioms, vocabulary):
-            found.setdefault((one.place, one.message), one)
+        for diagnostic in contradictions(variables, axioms, vocabulary):
+            found.setdefault((diagnostic.place, diagnostic.message), diagnostic)
     return list(found.values())
 
 
@@ -64,7 +64,7 @@ def impossible_triggers(
     groups = [*_groups(rule.variables, lasting, vocabulary)]
     for what, trigger in _triggers(rule):
         about = {ltl.subject_of(atom) for atom in ltl.atoms_of(trigger)}
-        related = [one for group in groups if subjects_of(group) & about for one in group]
+        related = [instance for group in groups if subjects_of(group) & about for instance in group]
         if may_hold([trigger, *(instance.formula for instance in related)], vocabulary):
             continue
         needed = _needed(related, (trigger,), vocabulary)
@@ -96,7 +96,7 @@ def _needed(
     """Instances that cannot hold together with other formulas, none of them needlessly."""
     needed = [*instances]
     for instance in instances:
-        fewer = [one for one in needed if one is not instance]
-        if not may_hold([*others, *(one.formula for one in fewer)], vocabulary):
+        fewer = [axiom for axiom in needed if axiom is not instance]
+        if not may_hold([*others, *(axiom.formula for axiom in fewer)], vocabulary):
             needed = fewer
     return tuple(needed)

@@ -118,7 +118,9 @@ def _border(
         _ends(
             first,
             all_of([before, *now]),
-            all_of([second.formula, behind, *(one for one in throughout if one not in now)]),
+            all_of(
+                [second.formula, behind, *(formula for formula in throughout if formula not in now)]
+            ),
         )
         for n in range(len(throughout) + 1)
         for now in combinations(throughout, n)
@@ -176,7 +178,7 @@ class _Inner:
         ways: list[Formula] = []
         for n in range(len(rest) + 1):
             for now in combinations(rest, n):
-                left = tuple([one for one in rest if one not in now])
+                left = tuple([formula for formula in rest if formula not in now])
                 onward = []
                 if not (is_last and left):
                     step = Unary(UnaryOperator.NEXT, self._enter(index + 1, left))

@@ -29,7 +29,7 @@ def with_implied(vocabulary: Vocabulary, facts: Iterable[Formula]) -> Vocabulary
 def with_what_follows(said: ExampleState, vocabulary: Vocabulary) -> ExampleState:
     """What an example's state says, and what follows from it that it does not mention."""
     known = dict(said)
-    ahead = [one for one, value in said.items() if value is True]
+    ahead = [name for name, value in said.items() if value is True]
     while ahead:
         cause, items = ahead.pop()
         for effect in vocabulary.implied.get(cause, ()):

@@ -114,12 +114,17 @@ def translate_rule(
 def _time_warnings(item: tree.RuleItem, scope: Scope) -> Iterator[Diagnostic]:
     overlay = scope.constants.overlay
     parts = (item.require, item.when, *(exception.formula for exception in item.unless))
-    narrow = [one for part in parts if part is not None for one in operator_warnings(part, overlay)]
+    narrow = [
+        diagnostic
+        for part in parts
+        if part is not None
+        for diagnostic in operator_warnings(part, overlay)
+    ]
     yield from narrow
     if item.require is not None:
         for warning in requirement_warnings(item.require, scope.symbols, overlay):
             # What an operator was meant to speak of is not blamed a second time.
-            if not any(covers(one, warning) for one in narrow):
+            if not any(covers(diagnostic, warning) for diagnostic in narrow):
                 yield warning
 
 

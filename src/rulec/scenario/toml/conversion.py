@@ -71,7 +71,7 @@ def to_scenario(raw: Mapping[str, object], name: str, file: TomlFile) -> Scenari
         about=top.about,
         places={
             **{(name, ""): TomlTable(file, "", "signals").place(name) for name in signals},
-            **{at: place for one in obstacles for at, place in places_of(*one).items()},
+            **{at: place for obstacle in obstacles for at, place in places_of(*obstacle).items()},
         },
     )
 

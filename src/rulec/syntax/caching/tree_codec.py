@@ -21,7 +21,7 @@ _KINDS: tuple[type[Any], ...] = tuple(
     for _, kind in sorted(vars(tree).items())
     if isinstance(kind, type) and is_dataclass(kind) and kind.__module__ == tree.__name__
 )
-_FIELDS = [[one.name for one in fields(kind) if one.name != "span"] for kind in _KINDS]
+_FIELDS = [[field.name for field in fields(kind) if field.name != "span"] for kind in _KINDS]
 _FIRST = _SPAN + 1
 _NUMBERS = {kind: number for number, kind in enumerate(_KINDS, _FIRST)}
 _PLAIN = (str, int, float, type(None))
@@ -69,13 +69,13 @@ def decoded(data: Any, source: Source) -> tree.File:
             return data
         number = data[0]
         if number == _TUPLE:
-            return tuple([value_of(one) for one in data[1:]])
+            return tuple([value_of(item) for item in data[1:]])
         if number == _SPAN:
             return span_of(data[1], data[2])
         _, start, end, *own = data
         kind: Callable[..., Any] = _KINDS[number - _FIRST]
         names = _FIELDS[number - _FIRST]
-        values = {name: value_of(one) for name, one in zip(names, own, strict=True)}
+        values = {name: value_of(item) for name, item in zip(names, own, strict=True)}
         return kind(**values, span=span_of(start, end))
 
     file = value_of(data)

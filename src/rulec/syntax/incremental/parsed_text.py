@@ -150,8 +150,16 @@ def _assembled(source: GrowingSource, segments: Sequence[Segment], text: str) ->
         by_start=tuple(order),
     )
     mistakes = [
-        *(parsed._moved(one, n) for n, segment in enumerate(segments) for one in segment.split),
-        *(parsed._moved(one, n) for n, segment in enumerate(segments) for one in segment.read),
+        *(
+            parsed._moved(diagnostic, n)
+            for n, segment in enumerate(segments)
+            for diagnostic in segment.split
+        ),
+        *(
+            parsed._moved(diagnostic, n)
+            for n, segment in enumerate(segments)
+            for diagnostic in segment.read
+        ),
         *map(parsed.in_text, wrong_order),
     ]
     if HIDES.search(text.replace("\r\n", "\n")) or any(segment.foreign for segment in segments):
@@ -166,7 +174,7 @@ def _edited(before: ParsedText, source: GrowingSource, text: str) -> ParsedText 
         return None
     old = before.segments
     above = _alike(old, text)
-    below = _alike_at_end(old[above:], text, sum(len(one.text) for one in old[:above]))
+    below = _alike_at_end(old[above:], text, sum(len(segment.text) for segment in old[:above]))
     first, last = _first(old, above), _last(old, len(old) - below)
     while True:
         lengths = [len(segment.text) for segment in old]

@@ -104,7 +104,9 @@ def segments_of(window: Window) -> list[Segment]:
     ]
     groups = _groups(FileSplitter(source, tokens), window)
     kept: dict[int, Segment] = dict(enumerate(window.above))
-    kept.update((len(groups) - number, one) for number, one in enumerate(reversed(window.below), 1))
+    kept.update(
+        (len(groups) - number, segment) for number, segment in enumerate(reversed(window.below), 1)
+    )
     reader = PieceReader(source, tokens)
     segments: list[Segment] = []
     line = window.line

@@ -341,8 +341,8 @@ def _joined(scene: ParseContext) -> str:
     if scene.operator and scene.text_before == ")" and is_word:
         return "between two formulas stands an operator, such as `and`, `or` or `implies`"
     if scene.operator and all(
-        one is not None and one.kind == "word" and one.text not in keywords.RESERVED
-        for one in words
+        token is not None and token.kind == "word" and token.text not in keywords.RESERVED
+        for token in words
     ):
         joined = "between two words stands an operator, such as `and`"
         if len(scene.text) == 1:

@@ -74,7 +74,7 @@ def placed_among(places: Mapping[int, int], found: AlikeLines, first: int) -> Al
         heading if heading.id else replace(heading, id=f"line {first + index}")
         for index, heading in zip(indices, found.headings, strict=True)
     ]
-    return replace(found, lines=np.array([places[one] for one in indices]), headings=headings)
+    return replace(found, lines=np.array([places[index] for index in indices]), headings=headings)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -118,7 +118,7 @@ class _Form:
 
     def between(self, names: Sequence[bytes]) -> tuple[bytes, ...]:
         """What stands between values for objects of these names, and before the next state."""
-        return tuple((self.text % tuple([names[one] for one in self.named])).split(_END))
+        return tuple((self.text % tuple([names[place] for place in self.named])).split(_END))
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,7 +159,7 @@ def _outlined(
     """A line, whose first state is probably of the ``usual`` form; None if it is unusual."""
     styles = _STYLES if usual is None or usual.comma == _STYLES[0][0] else _STYLES[::-1]
     places = ((line.find(b'"states"' + colon + b"["), comma, colon) for comma, colon in styles)
-    begin, comma, colon = next((one for one in places if one[0] >= 0), (-1, b"", b""))
+    begin, comma, colon = next((place for place in places if place[0] >= 0), (-1, b"", b""))
     if begin < 0:
         return None
     begin = line.index(b"[", begin) + 1
@@ -179,7 +179,7 @@ def _outlined(
     form = usual
     if form is None or form.comma != comma or form.n_quotes != first.count(b'"'):
         form = _form_of(first, comma, colon, heading.objects)
-    if form is None or any(one >= len(names) for one in form.named):
+    if form is None or any(place >= len(names) for place in form.named):
         return None
     # A view, for states are most of a line, and copied once they are joined.
     states = memoryview(line)[begin:end]
@@ -287,7 +287,7 @@ def _together(outlines: Sequence[_Outline]) -> AlikeLines | None:
         words = column_words(text, starts, np.maximum(stops, starts + 1), n_between)
         fits[1:] &= end_as_before(words[:, :n_between], width) | is_first[1:]
         parts = bytes_from(text, before[first], width)
-        fits[first] &= parts == np.array([one.between[place] for one in outlines])
+        fits[first] &= parts == np.array([outline.between[place] for outline in outlines])
         if path is not None:
             fits &= stops > starts
             found = read_values(text, starts, np.maximum(stops, starts + 1), words[:, n_between:])
@@ -315,8 +315,8 @@ _FIRST_IN_JSON = 32
 def _joined(outlines: Sequence[_Outline], comma: bytes) -> tuple[Bytes, Places, Places]:
     """All states, each with a comma behind it; where colons stand, and where lines end."""
     parts: list[bytes | memoryview] = [b" " * PADDING]
-    for one in outlines:
-        parts += one.states, comma
+    for outline in outlines:
+        parts += outline.states, comma
     whole = b"".join([*parts, b" " * PADDING])
     text = np.frombuffer(whole, np.uint8)
     ends = PADDING + np.cumsum([len(one.states) + len(comma) for one in outlines])

@@ -108,7 +108,7 @@ def check_writable(trace: Trace) -> None:
             raise NOT_A_TRACE.error(trace.place, message)
     for number, state in enumerate(trace.states):
         for name, value in state.items():
-            odd = [one for one in _leaves(value) if not isinstance(one, _WRITABLE)]
+            odd = [leave for leave in _leaves(value) if not isinstance(leave, _WRITABLE)]
             if odd or not isinstance(name, str):
                 what = (
                     f"`{name}` is {brief(odd[0])}" if odd else f"the name {brief(name)} is no str"

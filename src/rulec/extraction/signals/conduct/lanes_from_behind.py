@@ -84,7 +84,7 @@ def _ways(context: DriveContext, first: int, last: int, lane: int) -> tuple[_Way
         found = [
             onward[piece].get(one, _Ways(frozenset({one}), leaves=False)) for one in ways.lanes
         ]
-        lanes = frozenset().union(*(one.lanes for one in found))
+        lanes = frozenset().union(*(place.lanes for place in found))
         was, ways = ways, _Ways(lanes, ways.leaves or any(one.leaves for one in found))
         if ways.forks and not was.forks:
             fork = piece + 1

@@ -224,8 +224,8 @@ def _reserved_from(context: DriveContext) -> Sequence[tuple[int, float]]:
     return [
         (number, float(road.borders[piece + 1]))
         for piece, rows in enumerate(pairwise(road.rows))
-        for number, (one, beyond) in enumerate(zip(*rows, strict=True))
-        if one and beyond and _RESERVED & beyond.types and not _RESERVED & one.types
+        for number, (lanelet, beyond) in enumerate(zip(*rows, strict=True))
+        if lanelet and beyond and _RESERVED & beyond.types and not _RESERVED & lanelet.types
     ]
 
 

@@ -60,7 +60,7 @@ def _way_to_next(context: DriveContext, places: Floats) -> Floats:
 
 
 def _least(ways: Mapping[str, float], ids: Iterable[str]) -> float:
-    return min((ways.get(one, np.inf) for one in ids), default=np.inf)
+    return min((ways.get(name, np.inf) for name in ids), default=np.inf)
 
 
 @once_a_map

@@ -186,9 +186,9 @@ def _between_lights(context: DriveContext, colours: SignalColumn, crosses: Flags
     for piece, row in enumerate(context.road.rows):
         lit = {
             k
-            for k, one in enumerate(row)
-            if one is not None
-            and one.lights
+            for k, lanelet in enumerate(row)
+            if lanelet is not None
+            and lanelet.lights
             and lights_of(context.recording, context.road, piece, k)
         }
         for k in sorted(lit) if len(row) > row.count(None) + 1 else ():

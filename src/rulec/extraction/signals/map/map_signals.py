@@ -247,7 +247,9 @@ def _below_middle(context: DriveContext, middle: Floats, lane: NDArray[intp]) ->
         own = lanelets_at(context, middle, lane)
         cycles = context.spans.spread(context.ego.of_type("cyclist"))
         may = cycles & own.flags(_is_of(CYCLES_TOO))
-        taxis = context.spans.spread([one.type == "taxi" for one in context.ego.participants])
+        taxis = context.spans.spread(
+            [participant.type == "taxi" for participant in context.ego.participants]
+        )
         may |= taxis & own.flags(_is_of(TAXIS_TOO))
         for kind in kinds:
             surfaces[own.flags(_is_of(kind)) & ~may] = _SURFACES[kind]

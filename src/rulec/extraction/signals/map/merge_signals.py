@@ -114,16 +114,16 @@ def _merges(context: DriveContext) -> Iterator[tuple[float, int, bool]]:
     whole = "lanes" in context.recording.complete
     for piece, (row, after) in enumerate(pairwise(rows)):
         onward = {lanelet.id for lanelet in after if lanelet is not None}
-        for right, (one, other) in enumerate(pairwise(row)):
-            if one is None or other is None or (one.types | other.types) & RAMPS:
+        for right, (lanelet, other) in enumerate(pairwise(row)):
+            if lanelet is None or other is None or (lanelet.types | other.types) & RAMPS:
                 continue
-            ways = [set(lanelet.successors) & onward for lanelet in (one, other)]
+            ways = [set(lanelet.successors) & onward for lanelet in (lanelet, other)]
             if ways[0] == ways[1] and len(ways[0]) == 1:
-                if any(_is_one_of_several(context.recording, x) for x in (one, other)):
+                if any(_is_one_of_several(context.recording, x) for x in (lanelet, other)):
                     continue
                 yield float(borders[piece + 1]), right, True
             elif sum(bool(way) for way in ways) == 1:
-                ends = one if not ways[0] else other
+                ends = lanelet if not ways[0] else other
                 if not ends.successors:
                     yield float(borders[piece + 1]), right, whole or _tapers(ends)
 

@@ -55,8 +55,8 @@ def side_by_side(traces: Sequence[TraceArrays]) -> list[int]:
 def joined_traces(traces: Sequence[TraceArrays]) -> Iterator[JoinedTraces]:
     """What the traces say, those together that are in the same arrays."""
     begin = 0
-    for place, (one, other) in enumerate(pairwise(traces), 1):
-        if not _stands_before(one, other):
+    for place, (trace, other) in enumerate(pairwise(traces), 1):
+        if not _stands_before(trace, other):
             yield JoinedTraces.of(traces[begin:place])
             begin = place
     yield JoinedTraces.of(traces[begin:])

@@ -130,8 +130,8 @@ def supposed_rows(
         of_rows = np.full(len(traces), NOT_SUPPOSED, dtype=np.intp)
         for pattern, own in enumerate(suppositions):
             chosen = [
-                values.setdefault(one[subject], len(values)) if subject in one else NOT_SUPPOSED
-                for one in own
+                values.setdefault(row[subject], len(values)) if subject in row else NOT_SUPPOSED
+                for row in own
             ]
             firsts = begins[patterns == pattern]
             of_rows[firsts[:, None] + np.arange(len(own))] = chosen

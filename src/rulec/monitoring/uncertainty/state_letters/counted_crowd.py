@@ -204,7 +204,7 @@ class CountsApart:
                 found |= self._found(tuple([part.found(supposed, strict) for part in self._parts]))
         if not found:
             raise LookupError
-        return tuple([tuple([1 << digit for digit in one]) for one in sorted(found)])
+        return tuple([tuple([1 << digit for digit in digits]) for digits in sorted(found)])
 
     def _found(self, key: tuple[frozenset[Digits], ...]) -> frozenset[Digits]:
         """The digits of all reads, by what the parts may come to."""

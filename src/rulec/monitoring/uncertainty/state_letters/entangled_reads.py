@@ -118,7 +118,7 @@ class EntangledReads:
         self._ready = [read_digits(read) for read in self._reads]
         read = set[Subject]().union(*[about[n] for n in self.numbers])
         self.subjects = tuple(sorted(read | facts if read & facts else read))
-        often = Counter(one for own in self._reads for one in deciding(own, binding, everybody))
+        often = Counter(name for own in self._reads for name in deciding(own, binding, everybody))
         self.shared = facts.union(subject for subject, n in often.items() if n > 1)
         for n in self.numbers:
             if _is_coarse(reads[n]):

@@ -234,7 +234,7 @@ def alike_values(
         for _, term in read.terms
         if isinstance(term, ltl.Count)
     ]
-    asked = {(one.name, one.value) for part in (*facts, *bodies) for one in _atoms_in(part)}
+    asked = {(atom.name, atom.value) for part in (*facts, *bodies) for atom in _atoms_in(part)}
     found: dict[str, Alike] = {}
     for name in names:
         declaration = vocabulary.declarations[name]

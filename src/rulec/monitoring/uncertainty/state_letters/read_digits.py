@@ -200,7 +200,7 @@ def possible_digits(read: Read | NumberRead, value: PartialValue | Fraction | No
         return (1 << read.size) - 1
     if isinstance(value, OneOf):
         assert isinstance(read, Read)
-        return sum({1 << read.digit(one) for one in value.values})
+        return sum({1 << read.digit(digit) for digit in value.values})
     if isinstance(value, Interval):
         assert isinstance(read, NumberRead)
         known = scale(read)

@@ -88,7 +88,7 @@ class Wanted:
     @property
     def names(self) -> tuple[str, ...]:
         """All of them."""
-        return (*self.numbers, *self.whole, *self.texts, *(one.name for one in self.nested))
+        return (*self.numbers, *self.whole, *self.texts, *(column.name for column in self.nested))
 
     @property
     def nested(self) -> tuple[Nested, ...]:
@@ -225,10 +225,10 @@ def _nested(wanted: Wanted, found: Mapping[str, Any], arrow: Any) -> dict[str, N
         (wanted.nested_bytes, _bytes),
     )
     return {
-        one.name: nested_column(one, found[one.name], arrow, read)
+        column.name: nested_column(column, found[column.name], arrow, read)
         for nested, read in kinds
-        for one in nested
-        if one.name in found
+        for column in nested
+        if column.name in found
     }
 
 

@@ -277,4 +277,4 @@ def chosen_moment(scene: DriveScene, at_s: float | None) -> tuple[int, SceneViol
     if at_s is None:
         return (ordered[0].state, ordered[0]) if ordered else (scene.states // 2, None)
     state = scene.nearest_state(at_s)
-    return state, min(ordered, key=lambda one: abs(one.state - state), default=None)
+    return state, min(ordered, key=lambda violation: abs(violation.state - state), default=None)

@@ -48,12 +48,18 @@ def drive_scene(
 
     A recording that was mirrored to be judged is drawn as it was recorded.
     """
-    chosen = [one for one in verdict.violations if kept is None or one.rule in kept]
+    chosen = [
+        violation for violation in verdict.violations if kept is None or violation.rule in kept
+    ]
     verdict = replace(
         verdict,
         violations=tuple(chosen),
-        open=tuple(one for one in verdict.open if kept is None or one.rule in kept),
-        not_judged=tuple(one for one in verdict.not_judged if kept is None or one.rule in kept),
+        open=tuple(
+            open_verdict
+            for open_verdict in verdict.open
+            if kept is None or open_verdict.rule in kept
+        ),
+        not_judged=tuple(rule for rule in verdict.not_judged if kept is None or rule.rule in kept),
     )
     recording = verdicts.recording
     if verdicts.mirrored:
@@ -110,7 +116,9 @@ def _notes(verdicts: RecordingVerdicts, verdict: Verdict) -> Iterator[str]:
 
 
 def _in_time(violations: Sequence[Violation]) -> list[Violation]:
-    return sorted(violations, key=lambda one: float("inf") if one.step is None else one.step)
+    return sorted(
+        violations, key=lambda violation: float("inf") if violation.step is None else violation.step
+    )
 
 
 def _bodies(tracks: Tracks, ego: int, origin: Points) -> tuple[Body, ...]:

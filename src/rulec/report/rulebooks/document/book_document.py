@@ -146,7 +146,9 @@ def _articles_section(rulebook: Rulebook, words: DocumentLanguage) -> Iterator[B
     provisions = provisions_of(rulebook)
     if provisions:
         yield Heading(2, words.say("Articles of the law"))
-        pages = dict.fromkeys((one.link, one.as_of, one.certainty) for one in provisions)
+        pages = dict.fromkeys(
+            (provision.link, provision.as_of, provision.certainty) for provision in provisions
+        )
         for link, as_of, certainty in pages:
             yield linked(words.say("{} , as of {}", link, as_of) if as_of else link)
             # Nobody may have opened the link: what rules rest on, their sources say.
@@ -220,7 +222,7 @@ def _definitions_section(inherited: BookLineage, words: DocumentLanguage) -> Ite
         yield Heading(2, words.say("Definitions"))
     for definition in definitions:
         *earlier, last = definition.settings
-        before = [words.say("in {} {}", code(one.book), code(one.text)) for one in earlier]
+        before = [words.say("in {} {}", code(value.book), code(value.text)) for value in earlier]
         said = words.say("{} is defined by {}.", code(definition.name), code(last.book))
         was = words.say(" It was {}.", listed(before, words.language)) if before else ""
         note = f" {escaped(last.note)}" if last.note else ""

@@ -86,7 +86,7 @@ def codes_in(array: Any) -> tuple[NDArray[Any], Sequence[Any]]:
     if is_dictionary:  # whose values need not be distinct
         places = {value: place for place, value in enumerate(dict.fromkeys(values))}
         if len(places) < len(values) or None in places:
-            own = np.array([-1 if one is None else places[one] for one in values] or [-1])
+            own = np.array([-1 if value is None else places[value] for value in values] or [-1])
             codes = np.where(codes < 0, -1, own.take(codes))
             values = list(places)
     return codes, values

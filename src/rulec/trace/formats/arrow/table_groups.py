@@ -152,8 +152,8 @@ def without_rows(table: Any, outlines: Sequence[TraceOutline]) -> Any:
     if not outlines:
         return table
     kept: NDArray[np.bool_] = np.ones(len(table), dtype=bool)
-    for one in outlines:
-        kept[one.first : one.first + one.rows] = False
+    for outline in outlines:
+        kept[outline.first : outline.first + outline.rows] = False
     return table.filter(array_of_truths(kept))
 
 

@@ -60,7 +60,7 @@ def _mean(numbers: Sequence[Fraction]) -> Fraction:
 def _faces(first: Range, second: Range) -> Iterator[_Face]:
     for across, up in product(_faces_of_range(first), _faces_of_range(second)):
         below, *above = [tuple([(x, y) for x in across]) for y in up]
-        yield below + tuple(one for row in above for one in reversed(row))
+        yield below + tuple(point for row in above for point in reversed(row))
 
 
 def _faces_of_range(ends: Range) -> list[tuple[Fraction, ...]]:
