@@ -78,8 +78,8 @@ def note_read(path: str | Path) -> FileState | None:
 
 def file_state(path: str | Path) -> FileState:
     """What a file is like. Raises OSError."""
-    found = Path(path).stat()
-    return found.st_size, found.st_mtime_ns
+    result = Path(path).stat()
+    return result.st_size, result.st_mtime_ns
 
 
 OF_OTHERS: Final = stat.S_IWGRP | stat.S_IWOTH

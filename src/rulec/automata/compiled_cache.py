@@ -132,9 +132,9 @@ class _File:
 
     def read(self) -> Compilation | None:
         with suppress(OSError, ValueError, TypeError, LookupError):
-            found = compilation_in(mapped(self.path), self.given)
+            compilation = compilation_in(mapped(self.path), self.given)
             os.utime(self.path)
-            return found
+            return compilation
         return None
 
     def write(self, text: Compilation, compiled: CompiledRulebook | None) -> None:

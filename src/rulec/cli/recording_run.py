@@ -66,11 +66,11 @@ class RecordingRun:
                 # Findings, 20 ms: only where they are wanted.
                 from rulec.report.verdict_findings.found_in_drives import not_judged_file
 
-                found = not_judged_file(file, error, self.settings.rules.name)
+                recording = not_judged_file(file, error, self.settings.rules.name)
                 if self.to.to_rows is not None:
-                    row = self.to.to_rows.of_nothing({"file": file}, found.failure)
-                    found = replace(found, rows=(row,))
-                self.to.found(found)
+                    row = self.to.to_rows.of_nothing({"file": file}, recording.failure)
+                    recording = replace(recording, rows=(row,))
+                self.to.found(recording)
 
     def _aloud(self, files: Sequence[str], jobs: Jobs) -> Iterator[tuple[str, Piece]]:
         """The pieces of all files, and how far it is."""

@@ -194,8 +194,8 @@ def _kinds(annotation: str) -> tuple[_Kind, ...]:
     """The alternatives of an annotation; none if anything goes."""
     if not annotation:
         return ()
-    found = list(_alternatives(ast.parse(annotation, mode="eval").body))
-    return () if any(kind.name in _ANYTHING for kind in found) else tuple(found)
+    kinds = list(_alternatives(ast.parse(annotation, mode="eval").body))
+    return () if any(kind.name in _ANYTHING for kind in kinds) else tuple(kinds)
 
 
 def _alternatives(node: ast.expr) -> Iterator[_Kind]:

@@ -307,16 +307,16 @@ class Drives:
             for ego, _, own in self._plans.get(road, [])
             if begin <= own.start and own.stop <= end and (ego, own) != (row, columns)
         ]
-        found = self._places_during(road, [(row, columns), *soon])
+        places = self._places_during(road, [(row, columns), *soon])
         self._parts.pop(road, None)
         if soon:
             awaited = {(ego, own.start) for ego, own in soon}
-            self._parts[road] = _PlacesInPart(found, awaited)
+            self._parts[road] = _PlacesInPart(places, awaited)
         # The latest goes: drives take turns on their roads, and who drops the road that was asked
         # about longest ago drops the one that is asked about next.
         if len(self._parts) > 1 and self._n_kept() > MOST_KEPT:
             self._parts.pop(road, None)
-        return found
+        return places
 
     def _n_kept(self) -> int:
         return sum(part.places.tracks.present.size for part in self._parts.values())

@@ -89,8 +89,8 @@ class TraceTableJudge:
                         yield to_rows.of_nothing(named, row)
                         continue
                     verdict, facts = row
-                    found = self._found(traces, place, verdict, own)
-                    yield from to_rows.of_trace(facts, verdict, named, found)
+                    findings = self._found(traces, place, verdict, own)
+                    yield from to_rows.of_trace(facts, verdict, named, findings)
 
     def _with_facts(
         self, traces: Items, answers: Iterable[Answer]

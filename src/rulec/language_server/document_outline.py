@@ -94,12 +94,12 @@ def folds(names: DocumentNames, positions: TextPositions) -> list[lsp.FoldingRan
         spans.append(item.span)
         if isinstance(item, tree.RuleItem):
             spans += (example.span for example in item.examples)
-    found = [
+    ranges = [
         lsp.FoldingRange(start_line=whole.start.line, end_line=whole.end.line)
         for whole in (positions.range(*names.bounds(span)) for span in spans)
         if whole.end.line > whole.start.line
     ]
-    return [*found, *_comment_folds(positions.text)]
+    return [*ranges, *_comment_folds(positions.text)]
 
 
 def _comment_folds(text: str) -> Iterator[lsp.FoldingRange]:

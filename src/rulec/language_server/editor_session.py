@@ -69,11 +69,13 @@ class EditorSession(LanguageServer):
     def publish(self, uri: str) -> None:
         """Send everything that has been found in a file."""
         document = self.editor.document(uri)
-        found = published.union(self.found, uri)
+        diagnostics = published.union(self.found, uri)
         self.text_document_publish_diagnostics(
             lsp.PublishDiagnosticsParams(
                 uri,
-                published.diagnostics_of(found, document.text if document else "", self.editor),
+                published.diagnostics_of(
+                    diagnostics, document.text if document else "", self.editor
+                ),
                 self.editor.documents[uri].version if uri in self.editor.documents else None,
             )
         )

@@ -55,8 +55,8 @@ def trigger_of(
     if guards_one_state(required):
         parts += apart
     parts += map(_at_first_once, initially)
-    found = fold_constants(_all(parts)) if parts else None
-    return None if found == _TRUE else found
+    formula = fold_constants(_all(parts)) if parts else None
+    return None if formula == _TRUE else formula
 
 
 def trigger_of_parts(

@@ -190,8 +190,8 @@ def agreed(verdicts: Sequence[Verdict]) -> Verdict:
             because = tuple(dict.fromkeys((*known_open.because, *_STEP)))
             doubtful[key] = replace(known_open, because=because, outcomes=())
         violations = {
-            key: replace(found, step=_later(found.step, further[key].step))
-            for key, found in violations.items()
+            key: replace(violation, step=_later(violation.step, further[key].step))
+            for key, violation in violations.items()
             if key in further
         }
     return replace(first, violations=tuple(violations.values()), open=tuple(doubtful.values()))

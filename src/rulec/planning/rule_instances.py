@@ -208,12 +208,12 @@ def _check_said(scenario: Scenario, objects: Mapping[str, str], vocabulary: Voca
             state = {name: {about: obstacles[about].signals[name]}} if name else {}
         else:
             state = {name: scenario.signals[name]}
-        found = _wrong_in(state, own, vocabulary, place)
-        if found and not name:
+        diagnostics = _wrong_in(state, own, vocabulary, place)
+        if diagnostics and not name:
             odd.add(about)
         # Of an obstacle of a type that there is not, only that.
         if not (name and about in odd):
-            wrong += found
+            wrong += diagnostics
     if wrong:
         raise RulecError(wrong)
 

@@ -23,7 +23,9 @@ class AskedParts:
         """The diagnostic, with no place where it is about what nobody has written."""
         place = problem.place and self._place(problem.place)
         moved = ((label, self._place(label.place)) for label in problem.labels)
-        labels = tuple(replace(label, place=found) for label, found in moved if found is not None)
+        labels = tuple(
+            replace(label, place=location) for label, location in moved if location is not None
+        )
         expected = problem.expected if place is not None else ""
         return replace(problem, place=place, labels=labels, expected=expected)
 

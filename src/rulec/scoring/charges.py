@@ -104,10 +104,10 @@ class CandidateScores(Sequence[CandidateScore]):
     def __getitem__(self, number: int | slice) -> CandidateScore | tuple[CandidateScore, ...]:
         if isinstance(number, slice):
             return tuple([self[k] for k in range(*number.indices(len(self)))])
-        found = self.charges[number]
-        if isinstance(found, CandidateCharges):
-            found = self.charges[number] = found.score()
-        return found
+        candidate = self.charges[number]
+        if isinstance(candidate, CandidateCharges):
+            candidate = self.charges[number] = candidate.score()
+        return candidate
 
     def __eq__(self, other: object) -> bool:
         """Whether they are the same scores."""
@@ -189,8 +189,8 @@ def _rows(
             if isinstance(own, JudgedTrace):
                 judged[own.findings][own.number] = number
             elif isinstance(own, Verdict | CandidateScore):
-                told += [(number, places[found.rule], True) for found in own.violations]
-                told += [(number, places[found.rule], False) for found in own.open]
+                told += [(number, places[violation.rule], True) for violation in own.violations]
+                told += [(number, places[open_verdict.rule], False) for open_verdict in own.open]
     whose, which, are_violated = np.array(told, dtype=intp).reshape(-1, 3).T
     yield whose, which, are_violated.astype(bool)
     for findings, numbers in judged.items():

@@ -81,7 +81,7 @@ def _scored(
     beside, back = world.beside_lanes(paths), world.drives_back(paths, past)
     again = partial(_by_itself, paths, past, world, rules)
     half = first + n_states // 2
-    found: dict[int, CandidateCharges | CandidateScore] = {}
+    candidates: dict[int, CandidateCharges | CandidateScore] = {}
     is_awaited = is_asked
     for block in _judged(bodies, world, roundings, steps):
         # What is among many is mostly looked at no more
@@ -104,17 +104,17 @@ def _scored(
                     )
                     for candidate in scores
                 ]
-            found.update({candidate.number: candidate for candidate in scores})
+            candidates.update({candidate.number: candidate for candidate in scores})
             del scores
         else:
-            found.update({x.number: x if is_kept else x.later(again) for x in charges})
+            candidates.update({x.number: x if is_kept else x.later(again) for x in charges})
         if not is_kept:
             forget_reasons(charges)
         # Before the next ones are made
         del block, charges
     # The next candidates are mostly asked about after the same past.
     known[world] = about, before
-    ordered = CandidateScores([found[number] for number in range(len(paths))])
+    ordered = CandidateScores([candidates[number] for number in range(len(paths))])
     return Scores(roundings[0], ordered, before, paths, first)
 
 

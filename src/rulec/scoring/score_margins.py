@@ -51,13 +51,13 @@ def margins_of(
         for violation in drive.answer.violations:
             violated.add(_key(violation))
             if _key(violation) in keys:
-                found = explain(
+                explanation = explain(
                     violation, drive.drive.trace, rules, drive.drive.decided_by, repaired=False
                 )
-                for margin in found.margins():
-                    at = found.decisive + begins
+                for margin in explanation.margins():
+                    at = explanation.decisive + begins
                     yield RuleMargin(violation.rule, True, violation.binding, at, margin)
-        untold = {found.rule for found in drive.answer.not_judged}
+        untold = {not_judged.rule for not_judged in drive.answer.not_judged}
         for rule in rules.rules:
             if len(rule.variables) <= 1 and rule.name not in untold:
                 yield from _nearest(rule, drive.drive, rules, violated, begins)

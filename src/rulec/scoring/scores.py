@@ -147,9 +147,9 @@ class Scores(Rows):
 
         Raises IndexError for a number that there is not.
         """
-        found = self.candidates[self._known(number)]
-        drives = [drive for drive in found.drives if isinstance(drive, DriveVerdict)]
-        return tuple(margins_of(drives, found.violations, self.rules, self._first))
+        score = self.candidates[self._known(number)]
+        drives = [drive for drive in score.drives if isinstance(drive, DriveVerdict)]
+        return tuple(margins_of(drives, score.violations, self.rules, self._first))
 
     def _known(self, number: int) -> int:
         """The number of a candidate; one from the end would be a slip in a planner's loop."""
@@ -161,15 +161,15 @@ class Scores(Rows):
         """One row a candidate."""
         return [
             {
-                "candidate": found.number,
+                "candidate": score.number,
                 "place": place,
-                "satisfied": found.satisfied,
-                "violated": [violation.rule for violation in found.violations],
-                "open": [result.rule for result in found.open],
-                "off_road": found.off_road,
-                "why": found.why,
+                "satisfied": score.satisfied,
+                "violated": [violation.rule for violation in score.violations],
+                "open": [result.rule for result in score.open],
+                "off_road": score.off_road,
+                "why": score.why,
             }
-            for found, place in zip(self.candidates, self.places.tolist(), strict=True)
+            for score, place in zip(self.candidates, self.places.tolist(), strict=True)
         ]
 
     def outcomes(self, rule: str) -> list[str]:
@@ -181,7 +181,7 @@ class Scores(Rows):
         if expected("rule", "str", rule) not in known:
             hint = did_you_mean(rule, known)
             raise ValueError(f"{self.rules.name} has no rule `{rule:.40}`" + (hint and f"; {hint}"))
-        return [_outcome(found, rule) for found in self.candidates]
+        return [_outcome(score, rule) for score in self.candidates]
 
     @cached_property
     def _columns(self) -> ScoreColumns:

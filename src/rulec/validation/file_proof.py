@@ -134,5 +134,5 @@ def table_digest(letters: Any, following: Any, accepting: Any) -> str:
 
 def _comparisons(tree: Any) -> list[Mapping[str, Any]]:
     if isinstance(tree, list):
-        return [found for part in tree[1:] for found in _comparisons(part)]
+        return [comparison for part in tree[1:] for comparison in _comparisons(part)]
     return [tree] if isinstance(tree, dict) and "terms" in tree else []

@@ -79,15 +79,15 @@ def references_in(cite: str) -> tuple[tuple[Reference, ...], tuple[str, ...]]:
     A number without a word before it is an article of the kind before; behind `s. 3`, `no. 2` or
     `II` another of these: `§ 5(4) s. 3, 4` is two sentences, `§ 46(6), 47` two articles.
     """
-    found: list[Reference] = []
+    references: list[Reference] = []
     unread: list[str] = []
     kind: ReferenceKind | None = None
     label = ""
     for piece in filter(None, _BETWEEN.split(cite.strip())):
         text = _YEAR.sub("", piece).strip()
-        further = _further(text, found)
+        further = _further(text, references)
         if further is not None:
-            found.append(further)
+            references.append(further)
             continue
         match = _HEAD.match(text)
         if match is None:
@@ -103,8 +103,8 @@ def references_in(cite: str) -> tuple[tuple[Reference, ...], tuple[str, ...]]:
             unread.append(piece)
             continue
         of = kind or "article"
-        found.append(Reference(of, match["number"], parts, label))
-    return tuple(found), tuple(unread)
+        references.append(Reference(of, match["number"], parts, label))
+    return tuple(references), tuple(unread)
 
 
 def _further(text: str, found: list[Reference]) -> Reference | None:
@@ -153,8 +153,8 @@ def _parts(text: str, start: int) -> tuple[tuple[tuple[PartKind, str], ...], int
 
 def article_listed(number: str) -> Reference | None:
     """The place that an entry of `provisions` names, None if its text is a name of its own."""
-    found, unread = references_in(number)
-    return found[0] if len(found) == 1 and not unread else None
+    references, unread = references_in(number)
+    return references[0] if len(references) == 1 and not unread else None
 
 
 def covers(listed: Reference, cited: Reference) -> bool:

@@ -147,8 +147,8 @@ def _named(head: str) -> tuple[str, str] | None:
     )
     if begins is None or _CONTINUED.match(plain[begins.end() :]):
         return None
-    found, _ = references_in(begins[0].rstrip(".:"))
-    reference = found[0] if len(found) == 1 and not found[0].parts else None
+    references, _ = references_in(begins[0].rstrip(".:"))
+    reference = references[0] if len(references) == 1 and not references[0].parts else None
     return (
         None
         if reference is None or reference.kind == "sign"

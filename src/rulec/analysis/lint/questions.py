@@ -103,8 +103,8 @@ class RuleAnswers:
 
     def compared(self, name: str, base: int) -> RuleComparison:
         """The rule compared with that of a base, given by its number."""
-        found: RuleComparison = self._to(Question("compared", (name,), base))
-        return found
+        comparison: RuleComparison = self._to(Question("compared", (name,), base))
+        return comparison
 
     def _to(self, question: Question) -> Any:
         if question not in self._known:

@@ -83,10 +83,10 @@ class ForbiddenTraces:
         return self._search(others)
 
     def _search(self, others: Sequence[AnalyzedRule]) -> bool:
-        found = counterexample(self._analyzed, others)
-        if found is not None:
-            self._found.append(found)
-        return found is not None
+        trace = counterexample(self._analyzed, others)
+        if trace is not None:
+            self._found.append(trace)
+        return trace is not None
 
     def _allows(self, other: AnalyzedRule, number: int) -> bool:
         key = id(other), number

@@ -41,10 +41,10 @@ class StoredPrefixes:
         # numpy, a tenth of a second, is loaded only where a trace is cut.
         from rulec.automata.outcome_machine import OutcomeMachine
 
-        found: dict[str, OutcomeMachine | None] = {}
+        machines: dict[str, OutcomeMachine | None] = {}
         for rule in rulebook.rules:
             entry = self.entries.get(rule.name)
-            found[rule.name] = None
+            machines[rule.name] = None
             if entry is not None:
                 # Rules that read different things may have the same tables.
                 key = id(entry), id(rule.machine)
@@ -61,8 +61,8 @@ class StoredPrefixes:
                         order=self.orders.get(rule.name),
                     )
                     known = _MADE[key] = entry, rule.machine, machine
-                found[rule.name] = known[2]
-        return found
+                machines[rule.name] = known[2]
+        return machines
 
 
 def stored(rulebook: CompiledRulebook) -> StoredPrefixes | None:

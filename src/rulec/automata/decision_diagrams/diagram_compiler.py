@@ -8,14 +8,14 @@ from rulec.automata.decision_diagrams.rule_automaton import automaton_of, contra
 
 
 def _translated(job: Job) -> Translated:
-    found = automaton_of(
+    rule_automaton = automaton_of(
         job.formula, job.reads, job.semantics, [group.known for group in job.groups]
     )
-    automaton, possible = over_letters(found, job.reads)
+    automaton, possible = over_letters(rule_automaton, job.reads)
     return Translated(
         automaton,
         possible,
-        in_hoa(found, job.name, job.remarks_on(found.alive)),
+        in_hoa(rule_automaton, job.name, job.remarks_on(rule_automaton.alive)),
     )
 
 

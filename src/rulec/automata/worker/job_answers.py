@@ -39,16 +39,20 @@ def answer_to(job: Job, compiler: Compiler) -> Done | Failed:
         if compiler.contradicts(group.known):
             return Failed("facts", contradiction=_contradiction(group, compiler))
     try:
-        found = compiler.translate(job)
+        translated = compiler.translate(job)
     except CheckError:
         return Failed("check")
     except BeyondReachError:
         return Failed("reach")
     except AcceptanceError:
         return Failed("sets")
-    machine = build_machine(found.automaton, job.reads, found.possible)
+    machine = build_machine(translated.automaton, job.reads, translated.possible)
     try:
-        return Done(machine, found.hoa) if _is_right(machine, job, found) else Failed("check")
+        return (
+            Done(machine, translated.hoa)
+            if _is_right(machine, job, translated)
+            else Failed("check")
+        )
     except CheckError:
         return Failed("check")
 

@@ -108,14 +108,14 @@ def as_bytes(answer: Done, spot: str, *, with_text: bool = True) -> bytes:
 
 def _installed() -> str:
     """Which Spot there is; another release is another file, or of another time."""
-    found = find_spec(compiler_choice.SPOT)
-    if found is None or found.origin is None:
+    spec = find_spec(compiler_choice.SPOT)
+    if spec is None or spec.origin is None:
         return ""
     try:
-        status = Path(found.origin).stat()
+        status = Path(spec.origin).stat()
     except OSError:
-        return found.origin
-    return f"{found.origin} {status.st_mtime_ns} {status.st_size}"
+        return spec.origin
+    return f"{spec.origin} {status.st_mtime_ns} {status.st_size}"
 
 
 def _kept(answer: Done, spot: str) -> KeptMachine:

@@ -48,14 +48,14 @@ def _outlined(
 
     Such a part is evaluated once for all letters, not in every word.
     """
-    found: dict[Formula, Atom] = {}
+    atoms: dict[Formula, Atom] = {}
     true_in: dict[int, set[Atom]] = {number: set() for number in letters}
 
     def outlined(part: Formula) -> Formula:
         is_timed = any(operation.operator not in BOOLEAN for operation in operations_of(part))
         if is_timed and isinstance(part, Unary | Binary):
             return with_operands(part, outlined)
-        atom = found.setdefault(part, Atom(f"part {len(found)}"))
+        atom = atoms.setdefault(part, Atom(f"part {len(atoms)}"))
         values = truth_values(part, list(letters.values()))
         for true, value in zip(true_in.values(), values, strict=True):
             true.update([atom] if value else [])

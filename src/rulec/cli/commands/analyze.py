@@ -75,10 +75,10 @@ def command(
             with progress(f"analyzing {rulebook}", None) as tell:
                 spread = spreading(jobs, rulebook, partial(print_lost, "analyzed", rulebook))
                 said = _patience(rulebook, tell)
-                found = open_session(at).analyze(rulebook, on_progress=said, spread=spread)
-            findings += found
+                diagnostics = open_session(at).analyze(rulebook, on_progress=said, spread=spread)
+            findings += diagnostics
             read = read_rulebook(rulebook, search_path(), at)
-            question.remember([asdict(finding) for finding in found], read.paths)
+            question.remember([asdict(finding) for finding in diagnostics], read.paths)
     status = print_findings(
         list(dict.fromkeys(findings)),
         unread,

@@ -43,10 +43,10 @@ def command(names: tuple[str, ...], every: bool, to: Output) -> None:
     words = {name: _words(name) for name, code in codes.items() if code is None}
     asked = [code for code in codes.values() if code is not None]
     asked = list(dict.fromkeys(asked)) if names else [*code_registry.all_codes().values()]
-    found = [word for words_of_name in words.values() for word in words_of_name]
+    found_words = [word for words_of_name in words.values() for word in words_of_name]
     match to.form:
         case "json":
-            text = _as_json(asked, found)
+            text = _as_json(asked, found_words)
         case "markdown" if every:
             text = code_registry.as_page()
         case "markdown":
@@ -54,9 +54,9 @@ def command(names: tuple[str, ...], every: bool, to: Output) -> None:
                 f"# {code.code}: {code.title}\n\n{code_registry.as_markdown(code)}"
                 for code in asked
             ]
-            text = "\n\n".join([*pages, *_texts(found, "markdown")])
+            text = "\n\n".join([*pages, *_texts(found_words, "markdown")])
         case _:
-            text = "\n\n\n".join([*map(code_registry.as_text, asked), *_texts(found, "text")])
+            text = "\n\n\n".join([*map(code_registry.as_text, asked), *_texts(found_words, "text")])
     put_answer(text, to)
 
 
@@ -64,10 +64,10 @@ def _words(name: str) -> Sequence[FoundWord]:
     # Parsing vocabularies, 60 ms: only for what is no code.
     from rulec.rulebook.word_search import find_word
 
-    found = find_word(name, search_path())
-    if not found:
+    words = find_word(name, search_path())
+    if not words:
         raise click.UsageError(f"there is no code and no word `{name}`; {_way_out(name)}")
-    return found
+    return words
 
 
 def _texts(words: Sequence[FoundWord], form: str) -> list[str]:

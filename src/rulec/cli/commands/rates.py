@@ -81,9 +81,9 @@ def command(
     from rulec.report.rates import rates_json, rates_table
     from rulec.report.rates.rates_picture import rates_drawing
 
-    found = rates_of_findings(files, by, confidence=confidence, seed=seed)
+    rates = rates_of_findings(files, by, confidence=confidence, seed=seed)
     if to.form in PICTURES:
-        data = as_bytes(rates_drawing(found, f"per_{per}"), to.form, to.path)
+        data = as_bytes(rates_drawing(rates, f"per_{per}"), to.form, to.path)
         with output_stream(to) as (stream, _):
             stream.write(data)
         print_written(to.path, to)
@@ -94,4 +94,4 @@ def command(
         "markdown": rates_table.as_markdown,
         "text": rates_table.as_text,
     }
-    put_answer(renderers[to.form](found), to)
+    put_answer(renderers[to.form](rates), to)

@@ -96,7 +96,7 @@ class CEngine:
         run = _Run(library, reader.states, cast)
         if not run.is_whole:
             return None
-        found: list[Violation] = []
+        violations: list[Violation] = []
         for own in library.layout.rules:
             for binding in cast.bindings(own.rule):
                 word = run.verdicts(own, binding)
@@ -106,8 +106,8 @@ class CEngine:
                     lost = np.flatnonzero(word == LOST)
                     step = binding.first + int(lost[0]) if lost.size else None
                     rule = own.rule
-                    found.append(Violation(rule.name, rule.strength, binding.objects, step))
-        return found
+                    violations.append(Violation(rule.name, rule.strength, binding.objects, step))
+        return violations
 
     def _library(self, rulebook: CompiledRulebook, cast: Cast) -> CLibrary:
         """The monitor with as many seats as there are objects, in powers of two."""

@@ -105,14 +105,14 @@ def _lateral(context: DriveContext) -> SignalColumns:
 
     There only the moment is in doubt, as it is for stations.
     """
-    found = relations.laterals(context)
+    laterals = relations.laterals(context)
     there = context.relevant & ~np.isnan(context.extents.s_min)
     longest = round(context.thresholds.passed_s / context.recording.step_s)
-    codes = with_one_change(found.codes, found.doubtful, there, context.spans)
-    over = only_when(codes, found.doubtful, there, longest, context.spans)
+    codes = with_one_change(laterals.codes, laterals.doubtful, there, context.spans)
+    over = only_when(codes, laterals.doubtful, there, longest, context.spans)
     return SignalColumns(
         about={"lateral": codes},
-        unknown={"lateral": found.doubtful & ~over},
+        unknown={"lateral": laterals.doubtful & ~over},
         texts={"lateral": LATERALS},
     )
 

@@ -271,10 +271,10 @@ def junction_passages(
                         of_row[row].append(passage)
                         through[number].append(passage)
     ordered = {
-        row: tuple(sorted(found, key=lambda passage: passage.first))
-        for row, found in of_row.items()
+        row: tuple(sorted(passages, key=lambda passage: passage.first))
+        for row, passages in of_row.items()
     }
-    by_junction = {number: tuple(found) for number, found in through.items()}
+    by_junction = {number: tuple(passages) for number, passages in through.items()}
     strays = {number: tuple(found) for number, found in astray.items()}
     return JunctionPassages(tracks, junctions, ordered, by_junction, strays)
 

@@ -45,10 +45,10 @@ def fleet_inputs(arguments: Sequence[str]) -> FleetInputs:
     for argument in arguments:
         below = list(_tables_below(argument))
         tables |= dict.fromkeys(below)
-        found = input_files([argument])
+        files = input_files([argument])
         # A folder of tables alone has no recordings, and need not.
-        problems += (problem for problem in found.problems if not below or _is_link_out(problem))
-        for path in found.paths:
+        problems += (problem for problem in files.problems if not below or _is_link_out(problem))
+        for path in files.paths:
             try:
                 # Each file is read by whichever process is free, perhaps on another machine.
                 refuse_no_file(Path(path))

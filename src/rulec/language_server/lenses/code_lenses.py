@@ -93,12 +93,12 @@ def _of_rule(
 
 def _beside_parent(rule: Rule, names: DocumentNames, known: KnownAnswers) -> str:
     parent = names.chain.books[-2].name
-    found = known.parents.get(parent_key(rule, names))
-    if found is not None:
-        with_what = "" if found.relation in ("equal", "undecided") else ": see a trace"
-        told = "as strict as" if found.relation == "equal" else f"{found.relation} than"
-        told = "neither stricter nor laxer than" if found.relation == "incomparable" else told
-        return f"{told} `{found.parent}`{with_what}"
+    answer = known.parents.get(parent_key(rule, names))
+    if answer is not None:
+        with_what = "" if answer.relation in ("equal", "undecided") else ": see a trace"
+        told = "as strict as" if answer.relation == "equal" else f"{answer.relation} than"
+        told = "neither stricter nor laxer than" if answer.relation == "incomparable" else told
+        return f"{told} `{answer.parent}`{with_what}"
     return f"stricter or laxer than `{parent.text if parent else 'its parent'}`?"
 
 

@@ -97,14 +97,14 @@ class NamesOfChain:
 
     def rule(self, name: str, until: tree.File | None = None) -> NamedThing | None:
         """The rule of a name, where it was first written; not in books below ``until``."""
-        found: NamedThing | None = None
+        named_thing: NamedThing | None = None
         for book in self.books:
             for item in book.items:
                 if isinstance(item, tree.RuleItem) and not item.override and item.name.text == name:
-                    found = NamedThing("rule", name, item.name.span)
+                    named_thing = NamedThing("rule", name, item.name.span)
             if book is until:
                 break
-        return found
+        return named_thing
 
     def level(self, name: str) -> NamedThing | None:
         """The priority level of a name, where it is first placed."""

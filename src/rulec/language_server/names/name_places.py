@@ -39,13 +39,13 @@ def references_to(
     thing: NamedThing, names: DocumentNames, editor: EditorWorkspace
 ) -> list[NamePlace]:
     """All places of a thing's name."""
-    found: dict[tuple[str, int], NamePlace] = {}
+    places: dict[tuple[str, int], NamePlace] = {}
     for book in books_with(thing, names, editor):
         for place in _in_document(thing, names, book, editor):
-            found.setdefault((place.uri, place.start), place)
+            places.setdefault((place.uri, place.start), place)
     declared = uri_of(thing.span.source.name)
     return sorted(
-        found.values(),
+        places.values(),
         key=lambda name_place: (name_place.uri != declared, name_place.uri, name_place.start),
     )
 

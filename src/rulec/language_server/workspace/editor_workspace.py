@@ -156,8 +156,8 @@ class EditorWorkspace:
             except RulecError as error:
                 return CheckedDocument(name, path, parsed, None, error.diagnostics)
             resolved = document.memory.resolved(trees)
-        found = [*parsed.mistakes, *map(parsed.in_text, resolved.findings)]
-        findings = said(trees, found, source, parsed.placed)
+        diagnostics = [*parsed.mistakes, *map(parsed.in_text, resolved.findings)]
+        findings = said(trees, diagnostics, source, parsed.placed)
         return CheckedDocument(name, path, parsed, resolved, findings)
 
     def rest(self) -> None:
@@ -203,7 +203,7 @@ class EditorWorkspace:
 def _checked_vocabulary(name: str, path: Path | None, parsed: ParsedText) -> CheckedDocument:
     _, meanings = resolve_vocabulary(parsed.file)
     trees = Trees(name, (parsed.file,), vocabularies=(), sources=(), mistakes=(), dependencies=())
-    found = judged_allowances([*parsed.mistakes, *meanings], Source(name, parsed.text))
-    findings = in_order(name, found)
+    diagnostics = judged_allowances([*parsed.mistakes, *meanings], Source(name, parsed.text))
+    findings = in_order(name, diagnostics)
     names = names_of((parsed.file,), at="")
     return CheckedDocument(name, path, parsed, ResolvedTrees(trees, names, None, ()), findings)

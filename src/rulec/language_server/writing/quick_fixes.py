@@ -77,7 +77,7 @@ def quick_fixes(
 ) -> list[QuickFix]:
     """The edits for the findings in a range of a document."""
     positions = editor.positions(checked.text)
-    found: list[QuickFix] = []
+    fixes: list[QuickFix] = []
     trial = _Trial(document, editor, len(_errors(checked.findings)), len(checked.findings))
     for finding in checked.findings:
         place = finding.place
@@ -86,8 +86,8 @@ def quick_fixes(
         shown = positions.place(place)
         if shown.end < where.start or where.end < shown.start:
             continue
-        found += _for(finding, place, positions, trial)
-    return found
+        fixes += _for(finding, place, positions, trial)
+    return fixes
 
 
 def _for(
@@ -248,14 +248,14 @@ class _Trial:
         text = changed_text(self.document.text, changes)
         tried = Document(self.document.uri, text, parsed=self.document.parsed)
         try:
-            found = self.editor.check(tried).findings
+            diagnostics = self.editor.check(tried).findings
         except RulecError:
             return False
         if finding.code in _HIDING:
-            is_gone = all(diagnostic.code != finding.code for diagnostic in found)
-            return is_gone and not any(diagnostic.code in _UNREADABLE for diagnostic in found)
-        errors = len(_errors(found))
-        return errors < self.errors or (errors == self.errors and len(found) < self.findings)
+            is_gone = all(diagnostic.code != finding.code for diagnostic in diagnostics)
+            return is_gone and not any(diagnostic.code in _UNREADABLE for diagnostic in diagnostics)
+        errors = len(_errors(diagnostics))
+        return errors < self.errors or (errors == self.errors and len(diagnostics) < self.findings)
 
 
 def _errors(findings: Sequence[Diagnostic]) -> list[Diagnostic]:

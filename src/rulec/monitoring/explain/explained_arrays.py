@@ -124,20 +124,20 @@ class _Vocabularies:
     ) -> _Vocabularies:
         """Those of traces from sources that tell the same."""
         key = _Vocabularies, rule.name, told
-        found: _Vocabularies | None = rulebook.prepared.get(key)
-        if found is None:
+        vocabularies: _Vocabularies | None = rulebook.prepared.get(key)
+        if vocabularies is None:
             declared, untold = rulebook.vocabulary, untold_names(rulebook.vocabulary, told)
             facts = [axiom.formula for axiom in rulebook.axioms]
             supposed = favourable(rule.formula, declared, facts)
-            found = _Vocabularies(
+            vocabularies = _Vocabularies(
                 declared,
                 completed=with_all_defaults(declared, supposed, untold),
                 given=with_untold(declared, untold),
                 supposed=supposed,
                 untold=untold,
             )
-            rulebook.prepared[key] = found
-        return found
+            rulebook.prepared[key] = vocabularies
+        return vocabularies
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

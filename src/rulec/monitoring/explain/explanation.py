@@ -211,9 +211,9 @@ def explain(
     if whole and repaired:
         repair = nearest_satisfying(rule.machine, observed.word(rule.machine))
     subject = Explained(violation, rule, rulebook.vocabulary, rulebook.semantics, trace.step_s)
-    found = explanation_of(subject, observed, numbers, decided_by)
+    explanation = explanation_of(subject, observed, numbers, decided_by)
     return replace(
-        found,
+        explanation,
         repair=repair
         and tuple([replace(change, place=binding.first + change.place) for change in repair]),
         looked_at=None if whole else _window(numbers, place),

@@ -34,8 +34,8 @@ def facts_of(
     """The facts of one checked trace."""
     tables = tables_of(trace, rulebook.vocabulary)
     truth = TraceTruth(tables, rulebook.semantics, trace.ends)
-    (found,) = _facts(truth, trace.step_s, rulebook, [verdict], [tuple(trace.objects)])
-    return found
+    (facts,) = _facts(truth, trace.step_s, rulebook, [verdict], [tuple(trace.objects)])
+    return facts
 
 
 def facts_of_many(

@@ -132,17 +132,17 @@ class UncertainMachine:
         """Why the answer is open; ``order`` is that of names in the vocabulary."""
         alternatives, unknown = _possible_alternatives(words, constants)
         key = tuple([(x.stretches, tuple(x.constants.items())) for x in alternatives]), unknown
-        found = self._reasons.get(key)
-        if found is None:
+        open_reasons = self._reasons.get(key)
+        if open_reasons is None:
             n_own = 1 + sum([len(x.stretches) for x in alternatives])
             if self._n_stretches + n_own > MOST_STRETCHES:
                 self._reasons.clear()
                 self._n_stretches = 0
             self._n_stretches += n_own
             best, worst, _ = self.answer(words)
-            found = self._reasons_of(alternatives, unknown, order, {best, worst})
-            self._reasons[key] = found
-        return found
+            open_reasons = self._reasons_of(alternatives, unknown, order, {best, worst})
+            self._reasons[key] = open_reasons
+        return open_reasons
 
     def depends_beyond(
         self,

@@ -189,6 +189,6 @@ def _reasons(
     about: tuple[Vocabulary, Sequence[State], bool],
 ) -> OpenReasons:
     declared, states, is_exact = about
-    found = machine.reasons(words, constants, tuple(declared.declarations))
-    found = found._replace(exact=found.exact and is_exact)
-    return told_within_bounds(found, lambda name: is_within_bounds(name, states, declared))
+    reasons = machine.reasons(words, constants, tuple(declared.declarations))
+    reasons = reasons._replace(exact=reasons.exact and is_exact)
+    return told_within_bounds(reasons, lambda name: is_within_bounds(name, states, declared))

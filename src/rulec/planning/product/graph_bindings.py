@@ -33,10 +33,10 @@ def graph_bindings(
 
     nodes = NodesInTurn(graph)
     in_nodes = Cast(graph.objects, vocabulary, len(nodes.states), nodes.present)
-    found = doubtful_bindings(
+    bindings = doubtful_bindings(
         rule, in_nodes, read, uncertain_machine(rule, None).idle, past.begun(rule.name)
     )
-    return (binding_of(own.objects, graph.present, len(graph.states)) for own in found)
+    return (binding_of(own.objects, graph.present, len(graph.states)) for own in bindings)
 
 
 def layer_by_layer(graph: TraceGraph, readers: Sequence[ReadBits]) -> ReadBits:

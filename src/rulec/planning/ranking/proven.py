@@ -38,23 +38,23 @@ def proven(
     Where bounds do not lead to so many, a beam search does; where that does not either, those are
     looked at that cost least by their cells.
     """
-    found: list[Maneuver] = []
+    maneuvers: list[Maneuver] = []
     looked_at: set[tuple[int, ...]] = set()
     ways = guided_ways(product, graph, search.bounds, MOST_BOUNDS + MORE_BOUNDS * n)
     for way in islice(ways, MOST_TRIED * n):
-        if len(found) >= n and way.promises >= found[n - 1].cost:
+        if len(maneuvers) >= n and way.promises >= maneuvers[n - 1].cost:
             break
         looked_at.add(way.maneuver.nodes)
-        _add(found, way.maneuver, graph, search)
-    if len(found) < n:
+        _add(maneuvers, way.maneuver, graph, search)
+    if len(maneuvers) < n:
         beam = beam_ways(product, graph, search.bounds, max(BEAM, n))
         by_cells = islice(cheapest(product), MOST_TRIED * n)
         for candidates in ((way.maneuver for way in beam), by_cells):
-            for candidate in candidates if len(found) < n else ():
+            for candidate in candidates if len(maneuvers) < n else ():
                 if candidate.nodes not in looked_at:
                     looked_at.add(candidate.nodes)
-                    _add(found, candidate, graph, search)
-    return found[:n]
+                    _add(maneuvers, candidate, graph, search)
+    return maneuvers[:n]
 
 
 def _add(

@@ -41,9 +41,9 @@ def read_commonroad(path: Path) -> Recording:
     opened.
     """
     with no_garbage_collection(), suppress(RulecError):
-        found = _read_whole(path)
-        if found is not None:
-            return found
+        recording = _read_whole(path)
+        if recording is not None:
+            return recording
     # What is wrong is found again, and said with its line.
     content = Content()
     scan_trees(path, COMMONROAD, lambda tree: begin(content, tree), lambda tree: add(content, tree))

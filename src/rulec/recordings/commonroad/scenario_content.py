@@ -166,13 +166,13 @@ def _lanelets(content: Content) -> dict[str, recording.Lanelet]:
         )
     inside = junctions(content.intersections.values(), plain)
     lights = {number: light for number, light in content.lights.items() if light is not None}
-    found = {
+    lanelets = {
         number: complete(
             entry._replace(lanelet=plain[number]), content.signs, lights, inside.get(number, "")
         )
         for number, entry in content.lanelets.items()
     }
-    return _with_untold_signs(content, found)
+    return _with_untold_signs(content, lanelets)
 
 
 def _with_untold_signs(

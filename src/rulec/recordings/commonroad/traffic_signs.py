@@ -174,10 +174,10 @@ def read_sign(tree: Tree, country: str) -> tuple[SignElement, ...]:
 
     Of those above a plate that says for whom or when they hold nothing is known.
     """
-    found = tuple([_element(child, country) for child in tree.all("trafficSignElement")])
-    if not any(sign.name in _PLATES.values() for sign in found):
-        return found
-    return tuple([SignElement(UNKNOWN, None) for _ in found])
+    signs = tuple([_element(child, country) for child in tree.all("trafficSignElement")])
+    if not any(sign.name in _PLATES.values() for sign in signs):
+        return signs
+    return tuple([SignElement(UNKNOWN, None) for _ in signs])
 
 
 def _element(tree: Tree, country: str) -> SignElement:

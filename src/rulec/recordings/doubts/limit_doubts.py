@@ -92,6 +92,6 @@ def _shares(
         np.maximum.at(highest, rows, limits[lane])
         np.minimum.at(lowest, rows, limits[lane])
         on = highest > 0
-        for found, limit in zip(shares, (highest, lowest), strict=True):
-            found.append(quantile(speeds[on] / limit[on], _FAST))
+        for share, limit in zip(shares, (highest, lowest), strict=True):
+            share.append(quantile(speeds[on] / limit[on], _FAST))
     return shares

@@ -59,15 +59,15 @@ def with_doubts(recording: Recording, refused: Callable[[str], RulecError]) -> R
 
 def _tracks(recording: Recording) -> list[Track]:
     """The first tracks of vehicles that move some way."""
-    found: list[Track] = []
+    tracks: list[Track] = []
     for body in recording.participants:
         if "vehicle" in body.object_types and isinstance(body.states, TrackStates):
             rows = body.states.track.rows
             if len(rows) > 1 and np.hypot(*np.ptp(rows[:, :2], axis=0)) > _LEAST_M:
-                found.append(body.states.track)
-                if len(found) == _MOST_BODIES:
+                tracks.append(body.states.track)
+                if len(tracks) == _MOST_BODIES:
                     break
-    return found
+    return tracks
 
 
 def _doubts(tracks: list[Track], recording: Recording, angle: float) -> Iterator[str]:

@@ -64,10 +64,10 @@ class Tree:
 
     def child(self, name: str) -> Tree:
         """The first child of a name, which must be there."""
-        found = self.first(name)
-        if found is None:
+        tree = self.first(name)
+        if tree is None:
             raise self.wrong(f"the element `{self.name}` has no `{name}`")
-        return found
+        return tree
 
     def all(self, name: str) -> list[Tree]:
         """All children of a name."""

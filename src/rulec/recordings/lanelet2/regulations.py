@@ -135,14 +135,14 @@ def _signs(file: OsmFile, element: OsmRelation) -> tuple[Sign, ...]:
     kinds = [element.tags["sign_type"]] if "sign_type" in element.tags else []
     ways = [file.ways[name] for name in element.refs("refers", "way") if name in file.ways]
     kinds += [way.tags.get("subtype", "") for way in ways if way.tags.get("type") == "traffic_sign"]
-    found = [sign_of(kind) for kind in dict.fromkeys(kinds) if kind]
+    signs = [sign_of(kind) for kind in dict.fromkeys(kinds) if kind]
     if element.tags.get("subtype") == "speed_limit":
         # Velocities of signs that are called so, as Lanelet2 reads them, too
-        found = [
+        signs = [
             Sign(sign.name, velocity(kind)) if sign.limit_mps is None else sign
-            for sign, kind in zip(found, dict.fromkeys(filter(None, kinds)), strict=True)
+            for sign, kind in zip(signs, dict.fromkeys(filter(None, kinds)), strict=True)
         ]
-    return tuple(found)
+    return tuple(signs)
 
 
 def _draw(entry: MapLanelet, rules: LaneRules, line: Points | None) -> None:

@@ -49,7 +49,7 @@ class RoadPiece:
 
 def pieces_of(road: MapRoad, signs: Iterable[float]) -> list[RoadPiece]:
     """The pieces of a road; ``signs`` are places where something that signs say begins."""
-    found: list[RoadPiece] = []
+    pieces: list[RoadPiece] = []
     wanted = [x for ends in road.tunnels for x in (ends.start, ends.end)]
     wanted += [kind.start for kind in road.types] + list(signs)
     for section in road.sections:
@@ -62,8 +62,8 @@ def pieces_of(road: MapRoad, signs: Iterable[float]) -> list[RoadPiece]:
         for start, end in pairwise(places):
             count = max(1, int(np.ceil((end - start) / LONGEST_PIECE_M)))
             for low, high in pairwise(np.linspace(start, end, count + 1).tolist()):
-                found.append(RoadPiece(road, len(found), section, low, high))
-    return found
+                pieces.append(RoadPiece(road, len(pieces), section, low, high))
+    return pieces
 
 
 def _changes(section: LaneSection) -> Iterator[float]:

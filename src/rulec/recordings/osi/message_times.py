@@ -51,8 +51,8 @@ def time_grid(path: Path, times: Sequence[int]) -> TimeGrid:
         why = f"its {len(times):,} moments are spread over {since[-1] / _NS:,.0f} s"
         raise OSI.refused(path, why, help_text="look for a time that is wrong, or take a part")
     rounded = [round(usual / unit) * unit for unit in _UNITS]
-    found = [_on_grid(since, float(step)) for step in (*rounded, usual) if step > 0]
-    grid = next((x for x in found if x.is_even), min(found, key=lambda x: x.off_s))
+    grids = [_on_grid(since, float(step)) for step in (*rounded, usual) if step > 0]
+    grid = next((x for x in grids if x.is_even), min(grids, key=lambda x: x.off_s))
     taken = np.diff(grid.steps) == 0
     if taken.any() or grid.off_s > UNEVEN * grid.step_s:
         off = np.abs(since - grid.steps * grid.step_s * _NS)

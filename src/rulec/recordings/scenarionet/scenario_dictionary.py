@@ -56,10 +56,10 @@ class KeyedValue:
 
     def child(self, key: str) -> KeyedValue:
         """What a key of a dictionary leads to."""
-        found = self.get(key)
-        if found is None:
+        keyed_value = self.get(key)
+        if keyed_value is None:
             raise self.wrong(f"has no `{key}`")
-        return found
+        return keyed_value
 
     def items(self) -> list[tuple[str, KeyedValue]]:
         """The keys, as texts, and what they lead to."""

@@ -102,8 +102,8 @@ class _Remarks:
 
 
 def _text(entry: KeyedValue, key: str) -> str:
-    found = entry.get(key)
-    return "" if found is None else found.text()
+    value = entry.get(key)
+    return "" if value is None else value.text()
 
 
 def _participants(

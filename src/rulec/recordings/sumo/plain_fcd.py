@@ -144,14 +144,14 @@ class _Lines:
                 raise NotPlainError
             # Lines without elements have few quotation marks: leave these out, too
             own = np.repeat(counts > _MOST_OF_STEPS, counts)
-            found = read_elements(
+            elements = read_elements(
                 lines.part(others),
                 quotes[own],
                 np.append(0, np.cumsum(counts[others])),
                 self._kinds,
             )
-            _add(self.data, found, np.take(n_moments, behind) - 1)
-            for place, (kind, number) in found.on.items():
+            _add(self.data, elements, np.take(n_moments, behind) - 1)
+            for place, (kind, number) in elements.on.items():
                 if place not in self.data.on:
                     self.data.on[place] = kind, self._n_lines + int(others[number]) + 1
         self._n_lines += len(ends)

@@ -95,16 +95,16 @@ class _Reading:
         order = np.lexsort((rows.times.steps, rows.track.codes))
         codes, steps = rows.track.codes[order], rows.times.steps[order]
         starts = np.flatnonzero(np.diff(codes, prepend=-1))
-        found: list[Participant] = []
+        participants: list[Participant] = []
         for start, end in zip(starts, [*starts[1:].tolist(), len(order)], strict=True):
             name = rows.track.names[int(codes[start])]
             own = order[start:end]
             twice = np.diff(steps[start:end]) == 0
             if twice.any():
                 raise self._twice(name, own, int(np.argmax(twice)))
-            found += self._participants(name, own)
-        found.sort(key=lambda participant: id_order(participant.id))
-        return ReadTracks(tuple(found), self.ego, tuple(self._remarks()))
+            participants += self._participants(name, own)
+        participants.sort(key=lambda participant: id_order(participant.id))
+        return ReadTracks(tuple(participants), self.ego, tuple(self._remarks()))
 
     def _type(self, name: str, own: NDArray[np.intp]) -> str:
         """The type of a track: that of most of its rows which tell one."""

@@ -44,7 +44,7 @@ def as_junit(
             output.text = xml_text("\n".join(lines))
     for name, problems in besides.unread.items():
         suite = element(root, "testsuite", name=name, **_counts([], errors=1))
-        place = next((found for diagnostic in problems if (found := diagnostic.place)), None)
+        place = next((location for diagnostic in problems if (location := diagnostic.place)), None)
         where = (
             {"file": name} if place is None else {"file": from_here(place.file), "line": place.line}
         )

@@ -58,18 +58,18 @@ class McapWriter:
 
     def close(self) -> None:
         """Write the file."""
-        found = self._found or FoundInRecording("", "", 0, ())
+        recording = self._found or FoundInRecording("", "", 0, ())
         not_judged = sorted(
-            {finding.rule for finding in found.findings if finding.outcome == "not_judged"}
+            {finding.rule for finding in recording.findings if finding.outcome == "not_judged"}
         )
         about = {
-            "file": found.file,
-            "recording": found.recording,
+            "file": recording.file,
+            "recording": recording.recording,
             "rulebook": self._about.rulebook.name,
-            "drives": str(found.drives),
+            "drives": str(recording.drives),
             "not_judged": ", ".join(name for name in not_judged if name),
         }
-        messages = (message for finding in found.findings for message in _messages(finding))
+        messages = (message for finding in recording.findings for message in _messages(finding))
         write_mcap(
             self._stream, f"rulec {self._about.version}", _channels(), messages, {"rulec": about}
         )

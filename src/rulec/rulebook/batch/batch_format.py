@@ -61,13 +61,13 @@ def format_files(
     left_alone: list[LeftAlone] = []
     for reference in references:
         try:
-            found = _at(reference, search_path, excluded)
+            sources = _at(reference, search_path, excluded)
         except RulecError as error:
             refused += error.diagnostics
             continue
-        refused += found.refused
-        left_alone += found.left_alone
-        for path in found.paths:
+        refused += sources.refused
+        left_alone += sources.left_alone
+        for path in sources.paths:
             identity = os.path.realpath(path)
             if identity in done:
                 continue

@@ -72,10 +72,10 @@ def is_ignored(path: Path, files: Sequence[IgnoreFile], *, is_folder: bool) -> b
 def ignore_files(folder: Path, tree: Path) -> list[IgnoreFile]:
     """The patterns of a folder and of all above it up to the top of its work tree."""
     above = [place for place in folder.parents if place == tree or tree in place.parents]
-    found = _patterns_of(tree / ".git" / "info" / "exclude", tree, tree)
+    files = _patterns_of(tree / ".git" / "info" / "exclude", tree, tree)
     for place in (*reversed(above), folder):
-        found += patterns_in(place, tree)
-    return found
+        files += patterns_in(place, tree)
+    return files
 
 
 def patterns_in(folder: Path, tree: Path) -> list[IgnoreFile]:

@@ -59,14 +59,14 @@ def sources_below(folder: str, excluded: Exclusion | None = None) -> FoundSource
     ignores or is ``excluded``, and what begins neither with `rulebook` nor with `vocabulary`, is
     left alone. Links out of the tree, pipes and devices are refused.
     """
-    found = FoundSources()
+    sources = FoundSources()
     top = Path(os.path.abspath(folder))  # noqa: PTH100 - Path.absolute() keeps `..`
     tree = tree_of(top)
     ignored: dict[Path, list[IgnoreFile]] = {top: ignore_files(top, tree)}
     own = _patterns(excluded)
 
     def unreadable(problem: OSError) -> None:
-        found.refused.append(_locked(problem))
+        sources.refused.append(_locked(problem))
 
     for here, folders, names in os.walk(folder, onerror=unreadable):
         place = Path(os.path.normpath(top / os.path.relpath(here, folder)))
@@ -77,7 +77,7 @@ def sources_below(folder: str, excluded: Exclusion | None = None) -> FoundSource
             by_hand = _is_excluded(place / name, own, is_folder=True)
             if why := _why_not_entered(place / name, files) or by_hand or deep:
                 if not name.startswith("."):
-                    found.left_alone.append(LeftAlone(str(Path(here, name)), why))
+                    sources.left_alone.append(LeftAlone(str(Path(here, name)), why))
                 continue
             entered.append(name)
             ignored[place / name] = [*files, *patterns_in(place / name, tree)]
@@ -85,10 +85,10 @@ def sources_below(folder: str, excluded: Exclusion | None = None) -> FoundSource
         for name in sorted(name for name in names if name.endswith(SUFFIX)):
             is_left = is_ignored(place / name, files, is_folder=False)
             why = "ignored by git" if is_left else _is_excluded(place / name, own)
-            _sort(Path(here, name), why, tree, found)
-    if not found.paths and not found.refused:
-        found.refused.append(_nothing_left(folder, found.left_alone))
-    return found
+            _sort(Path(here, name), why, tree, sources)
+    if not sources.paths and not sources.refused:
+        sources.refused.append(_nothing_left(folder, sources.left_alone))
+    return sources
 
 
 def _why_not_entered(folder: Path, files: Sequence[IgnoreFile]) -> str:

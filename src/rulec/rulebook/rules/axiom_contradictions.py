@@ -46,11 +46,11 @@ def contradictions(
 def all_contradictions(axioms: Sequence[Axiom], vocabulary: Vocabulary) -> list[Diagnostic]:
     """The same of the objects that each of the axioms speaks of, each set of facts once."""
     scenes = dict.fromkeys(axiom.variables for axiom in axioms)
-    found: dict[object, Diagnostic] = {}
+    diagnostics: dict[object, Diagnostic] = {}
     for variables in sorted(scenes, key=len):
         for diagnostic in contradictions(variables, axioms, vocabulary):
-            found.setdefault((diagnostic.place, diagnostic.message), diagnostic)
-    return list(found.values())
+            diagnostics.setdefault((diagnostic.place, diagnostic.message), diagnostic)
+    return list(diagnostics.values())
 
 
 def impossible_triggers(

@@ -23,9 +23,9 @@ def with_provisions(
     that cites nothing is the rule of what is overridden. ``placed`` leads from where their trees
     say that something is to where findings do.
     """
-    found = tuple(findings)
-    if not found:
-        return found
+    diagnostics = tuple(findings)
+    if not diagnostics:
+        return diagnostics
     cited: dict[str, str] = {}
     rules: dict[str, list[tuple[int, int, str]]] = {}
     for book in books:
@@ -39,7 +39,7 @@ def with_provisions(
                 lines = (place.line or 0, place.end_line or 0)
                 note = provision_note(item.name.text, provision)
                 rules.setdefault(place.file, []).append((*lines, note))
-    return tuple(_noted(finding, rules) for finding in found)
+    return tuple(_noted(finding, rules) for finding in diagnostics)
 
 
 def _noted(finding: Diagnostic, rules: dict[str, list[tuple[int, int, str]]]) -> Diagnostic:

@@ -83,12 +83,12 @@ def read_obstacles(raw: object, file: TomlFile) -> list[LocatedObstacle]:
 def places_of(obstacle: model.Obstacle, table: TomlTable) -> dict[tuple[str, str], SourceLocation]:
     """Where the file says what type an obstacle is of, and its signals."""
     own = TomlTable(table.file, "", "obstacle.signals", table.number)
-    found = {("", obstacle.id): table.place("type")}
+    locations = {("", obstacle.id): table.place("type")}
     for name in obstacle.signals:
         place = own.place(name)
         # A table in braces has no heading.
-        found[name, obstacle.id] = table.place("signals") if place.line is None else place
-    return found
+        locations[name, obstacle.id] = table.place("signals") if place.line is None else place
+    return locations
 
 
 def read_signals(raw: Mapping[str, object], table: TomlTable) -> dict[str, model.SignalValue]:

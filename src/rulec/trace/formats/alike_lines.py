@@ -290,9 +290,9 @@ def _together(outlines: Sequence[_Outline]) -> AlikeLines | None:
         fits[first] &= parts == np.array([outline.between[place] for outline in outlines])
         if path is not None:
             fits &= stops > starts
-            found = read_values(text, starts, np.maximum(stops, starts + 1), words[:, n_between:])
-            fits &= found.read
-            columns[path] = found.column
+            column = read_values(text, starts, np.maximum(stops, starts + 1), words[:, n_between:])
+            fits &= column.read
+            columns[path] = column.column
     is_whole = np.ones(len(outlines), dtype=bool)
     is_whole[line_of[~fits]] = False
     if lengths[is_whole].sum() < FEWEST_STATES:

@@ -83,7 +83,7 @@ def read_chunks(
         chunk: list[Trace | RulecError | None] = []
         large = {index for index, line in enumerate(lines) if _objects_in(line, most) > most}
         alike = _alike([b"" if n in large else one for n, one in enumerate(lines)], together)
-        known = set(chain.from_iterable(found.lines.tolist() for found in alike))
+        known = set(chain.from_iterable(alike_lines.lines.tolist() for alike_lines in alike))
         places: dict[int, int] = {}
         with no_garbage_collection():
             for index, line in enumerate(lines):
@@ -151,7 +151,9 @@ def _block(
         index = line_at[place]
         return _trace(lines[index], replace(before, line=first + index), _StateReader())
 
-    return LineBlock(items, decode, [placed_among(places, found, first) for found in alike])
+    return LineBlock(
+        items, decode, [placed_among(places, alike_lines, first) for alike_lines in alike]
+    )
 
 
 def _heading(line: bytes) -> tuple[str, float, Mapping[str, str]] | None:

@@ -117,8 +117,8 @@ def _conflicts(context: DriveContext) -> SignalColumns:
 def own_passages(context: DriveContext) -> tuple[Passage, ...]:
     """Ego's passages of junctions during the drive; of several, those of the first with any."""
     for number in range(context.spans.n_drives):
-        if found := passages_of(context, number):
-            return found
+        if passages := passages_of(context, number):
+            return passages
     return ()
 
 

@@ -107,13 +107,13 @@ class LaneletGraph:
                 yield lanelets[number]
 
     def _ways_from(self, start: str) -> Mapping[str, Way]:
-        found = {start: Way((), 0.0, 0)}
+        ways = {start: Way((), 0.0, 0)}
         ring = [start]
         for hop in range(MOST_HOPS + 1):
-            ring = [*ring, *self._sideways(ring, found)]
+            ring = [*ring, *self._sideways(ring, ways)]
             if hop < MOST_HOPS:
-                ring = self._forwards(ring, found)
-        return found
+                ring = self._forwards(ring, ways)
+        return ways
 
     def _sideways(self, ring: list[str], found: dict[str, Way]) -> list[str]:
         added = []

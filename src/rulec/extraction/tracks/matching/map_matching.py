@@ -73,13 +73,15 @@ class MapMatching:
     @cached_property
     def _paths(self) -> tuple[NDArray[intp], NDArray[bool_]]:
         """The lane of each state, and where a stretch begins."""
-        found = self._candidates
-        at = found.rows, found.columns
+        lane_candidates = self._candidates
+        at = lane_candidates.rows, lane_candidates.columns
         places = np.array((self._tracks.x[at], self._tracks.y[at])).T
         absent = (~self._tracks.present).cumsum(axis=1)[at]
-        begins = np.ones(len(found.rows), dtype=bool)
-        begins[1:] = (found.rows[1:] != found.rows[:-1]) | (absent[1:] != absent[:-1])
-        return likeliest_paths(found, places, begins, self._graph)
+        begins = np.ones(len(lane_candidates.rows), dtype=bool)
+        begins[1:] = (lane_candidates.rows[1:] != lane_candidates.rows[:-1]) | (
+            absent[1:] != absent[:-1]
+        )
+        return likeliest_paths(lane_candidates, places, begins, self._graph)
 
     def of(self, row: int) -> tuple[MatchedStretch, ...]:
         """The stretches of a participant, parted at gaps in its recording."""

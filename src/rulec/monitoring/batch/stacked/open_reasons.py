@@ -37,11 +37,11 @@ class StackedReasons:
     def of(self, words: StackedWords, place: int) -> OpenReasons:
         """Why the verdict on one of these words is open."""
         possible, constants, is_exact = self._possible_words(words, place)
-        found = words.rule.machine.reasons(possible, constants, self._order)
-        found = found._replace(exact=found.exact and is_exact)
+        reasons = words.rule.machine.reasons(possible, constants, self._order)
+        reasons = reasons._replace(exact=reasons.exact and is_exact)
         first, last = words.instances.firsts[place], words.instances.lasts[place]
         stretch = slice(int(first), int(last) + 1)
-        return told_within_bounds(found, lambda name: self._is_within_bounds(name, stretch))
+        return told_within_bounds(reasons, lambda name: self._is_within_bounds(name, stretch))
 
     def beyond(self, words: StackedWords, place: int, names: Set[str]) -> frozenset[str]:
         """On what it depends but for these names, told without finding all reasons."""

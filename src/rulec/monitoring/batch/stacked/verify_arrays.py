@@ -153,8 +153,8 @@ class _StackedRun:
                 self._add_closely(number, rule)
             elif number in busy:
                 rule.forget_many()
-                for found in outcomes(rule, self._reader, self._rulebook):
-                    self._add(number, found)
+                for stacked_outcomes in outcomes(rule, self._reader, self._rulebook):
+                    self._add(number, stacked_outcomes)
         self._odd |= self._stack.odd_traces()
         return [
             _by_its_states(trace, self._whole_rulebook)
@@ -208,8 +208,8 @@ class _StackedRun:
             except RulecError:
                 self._odd.add(number)
                 continue
-            for place, found in enumerate(answers):
-                self._findings.add_single(number, (rule_number, place), found)
+            for place, answer in enumerate(answers):
+                self._findings.add_single(number, (rule_number, place), answer)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -52,8 +52,8 @@ def uncertain_verdicts(
         unread.update(outcomes.unread.tolist())
         lost = zip(outcomes.violated.tolist(), outcomes.lost_at.tolist(), strict=True)
         for number, step in lost:
-            found = Violation(rule.name, rule.strength, own(number), None if step < 0 else step)
-            violations.setdefault(number, []).append(found)
+            violation = Violation(rule.name, rule.strength, own(number), None if step < 0 else step)
+            violations.setdefault(number, []).append(violation)
         for number in outcomes.open.tolist():
             binding = own(number)
             reasons = partial(later[number].of, rule.name, binding)

@@ -98,9 +98,9 @@ def _cubics(tree: Tree, kind: str, key: str) -> tuple[Cubic, ...]:
 
 
 def _geometries(tree: Tree) -> tuple[Geometry, ...]:
-    found = sorted(map(_geometry, tree.all("geometry")), key=lambda piece: piece.s)
+    geometries = sorted(map(_geometry, tree.all("geometry")), key=lambda piece: piece.s)
     # Of two that begin at one place the first has no length
-    kept = [a for a, b in pairwise(found) if b.s > a.s] + found[-1:]
+    kept = [a for a, b in pairwise(geometries) if b.s > a.s] + geometries[-1:]
     if not kept:
         raise tree.wrong("a road has no `geometry`")
     return tuple(kept)
@@ -159,17 +159,17 @@ def _sections(lanes: Tree, road_length: float) -> Iterator[LaneSection]:
 
 
 def _lanes(section: Tree) -> dict[int, Lane]:
-    found: dict[int, Lane] = {}
+    lanes: dict[int, Lane] = {}
     for side in ("left", "center", "right"):
         for tree in [lane for part in section.all(side) for lane in part.all("lane")]:
             lane = _lane(tree)
             # SUMO's netconvert writes lanes -1 among those of `left` where traffic keeps left
             if (lane.id == 0) != (side == "center"):
                 raise tree.wrong(f"a lane {lane.id} is among those of `{side}`")
-            if lane.id in found:
+            if lane.id in lanes:
                 raise tree.wrong(f"there are two lanes {lane.id} in a lane section")
-            found[lane.id] = lane
-    return found
+            lanes[lane.id] = lane
+    return lanes
 
 
 def _carry_over(before: dict[int, Lane], row: dict[int, Lane], way: float) -> None:
