@@ -148,7 +148,7 @@ def own_light(context: DriveContext) -> tuple[SignalColumn, Flags, Flags]:
             continue
         for lane in lanes:
             lights = lights_of(context.recording, context.road, piece, lane)
-            if not lights:
+            if not lights or not ends_at_line(context, piece, lane):
                 continue
             first, last = stop_line(context, piece, lane)
             unsure = may_pass(context, last) & (context.ego_lane == lane)
@@ -190,6 +190,7 @@ def _between_lights(context: DriveContext, colours: SignalColumn, crosses: Flags
             if lanelet is not None
             and lanelet.lights
             and lights_of(context.recording, context.road, piece, k)
+            and ends_at_line(context, piece, k)
         }
         for k in sorted(lit) if len(row) > row.count(None) + 1 else ():
             inside = (own.left_of_max[0, :, k] > reach) & (own.left_of_min[0, :, k + 1] < -reach)
