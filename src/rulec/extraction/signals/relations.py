@@ -404,6 +404,6 @@ def _who_stays(context: DriveContext) -> Flags:
     for row in in_doubt.nonzero()[0].tolist():
         own = tracks.present[row]
         places = shapely.multipoints(np.column_stack((tracks.x[row, own], tracks.y[row, own])))
-        x, y = shapely.get_coordinates(shapely.convex_hull(places)).T
-        still[row] = np.hypot(x[:, None] - x, y[:, None] - y).max() <= _DRIFT_M
+        corners = shapely.get_coordinates(shapely.convex_hull(places))
+        still[row] = max(np.hypot(*(corners - corner).T).max() for corner in corners) <= _DRIFT_M
     return still
