@@ -129,16 +129,22 @@ def test_of_recordings_other_rules_are_judged_where_one_is_too_large(step_s, tmp
     with pytest.raises(RulecError) as caught:
         every.rounded_to(step_s)
     assert {problem.code for problem in caught.value.diagnostics} == {"R0401"}
-    for judging in every.judging(step_s):
-        assert [one.name for one in judging.rules] == ["plain"]
-        assert [own[:2] for own in judging.too_large] == [("large", "hard")]
+    for judgeable in every.judgeable_at(step_s):
+        assert [one.name for one in judgeable.rules] == ["plain"]
+        assert [own[:2] for own in judgeable.too_large] == [("large", "hard")]
         cut = replace(trace("p.", float(step_s)), ends="cut")
-        verdict = verify(cut, judging)
+        verdict = verify(cut, judgeable)
         assert violated(verdict) == ["plain"]
         (left_out,) = verdict.not_judged
         assert left_out.rule == "large"
         assert "too large for steps of 0.00" in left_out.why
-    assert every.judging(ONE)[0].too_large == ()
+    assert every.judgeable_at(ONE)[0].too_large == ()
+    again = zip(every.judgeable_at(step_s), every.judgeable_at(step_s), strict=True)
+    assert all(first is second for first, second in again)
+    plain = replace(every, rules=every.rules[1:])
+    for judgeable in plain.judgeable_at(step_s):
+        assert [one.name for one in judgeable.rules] == ["plain"]
+        assert judgeable.too_large == ()
 
 
 def test_what_is_wrong_otherwise_is_refused_of_recordings_too(monkeypatch):
@@ -146,7 +152,7 @@ def test_what_is_wrong_otherwise_is_refused_of_recordings_too(monkeypatch):
         compiler, "answers_to", lambda jobs, **_: ([Failed("check")] * len(jobs), "")
     )
     with pytest.raises(RulecError) as caught:
-        StepCompiler(BOOK).judging(ONE)
+        StepCompiler(BOOK).judgeable_at(ONE)
     assert {problem.code for problem in caught.value.diagnostics} == {"R0402"}
 
 

@@ -185,9 +185,9 @@ class CachedSteps:
         down = self._answer(f"{name}-down", lambda: self._compiler().rounded(step_s)[0])
         return down, self._answer(f"{name}-up", lambda: self._compiler().rounded(step_s)[1])
 
-    def judging(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
+    def judgeable_at(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
         """The rulebook without rules that are too large; which are is asked anew each time."""
-        return self._compiler().judging(step_s)
+        return self._compiler().judgeable_at(step_s)
 
     def _answer(self, step: str, compile_it: Callable[[], CompiledRulebook]) -> CompiledRulebook:
         if step not in self._answers:

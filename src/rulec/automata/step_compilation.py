@@ -42,7 +42,7 @@ class StepCompiler:
         self._answers: dict[Fraction, CompiledRulebook | RulecError] = {}
         self._header: CompiledRulebook | None = None
         self._roundings: dict[tuple[Formula, ...], StepCompiler] = {}
-        self._judging: dict[Fraction, tuple[CompiledRulebook, ...]] = {}
+        self._judgeable: dict[Fraction, tuple[CompiledRulebook, ...]] = {}
         self._built = 0
         self._time = time or CompilerTime()
 
@@ -88,16 +88,16 @@ class StepCompiler:
             )
         return self._roundings[formulas](step_s)
 
-    def judging(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
+    def judgeable_at(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
         """The rulebook for a step (s), or rounded to it, without rules that are too large for it.
 
         Raises RulecError as ``rounded`` for anything else.
         """
-        if step_s not in self._judging:
-            self._judging[step_s] = self._judged_at(step_s)
-        return self._judging[step_s]
+        if step_s not in self._judgeable:
+            self._judgeable[step_s] = self._without_too_large(step_s)
+        return self._judgeable[step_s]
 
-    def _judged_at(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
+    def _without_too_large(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
         try:
             return _fitted(self, step_s)
         except RulecError as error:
@@ -113,7 +113,7 @@ class StepCompiler:
             # Rounded up others may be too large than rounded down
             return tuple(
                 replace(book, too_large=(*left_out, *book.too_large))
-                for book in smaller.judging(step_s)
+                for book in smaller.judgeable_at(step_s)
             )
 
     def at_own_steps(self, rules: Sequence[Rule] | None = None) -> CompiledRulebook:

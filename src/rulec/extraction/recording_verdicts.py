@@ -38,7 +38,7 @@ def rounded_rulebooks(rulebook: CompiledRulebook, step_s: float) -> tuple[Compil
     Rules whose automata are too large for so short a step are left out: others can be judged.
     """
     try:
-        return rulebook.judging(step_s)
+        return rulebook.judgeable_at(step_s)
     except RulecError as error:
         if any(problem.code != OTHER_STEP.code for problem in error.diagnostics):
             raise

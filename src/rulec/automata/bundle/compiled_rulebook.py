@@ -82,7 +82,7 @@ class Recompiler(Protocol):
     def rounded(self, step_s: Fraction) -> tuple[CompiledRulebook, CompiledRulebook]:
         """The rulebook with bounds rounded down to multiples of a step, and rounded up."""
 
-    def judging(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
+    def judgeable_at(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
         """As ``CompiledRulebook.rounded_to``, without rules that are too large for the step."""
 
 
@@ -180,17 +180,24 @@ class CompiledRulebook(Rows):
                 raise
             return self.recompile.rounded(exact_step(step_s))
 
-    def judging(self, step_s: Fraction | float) -> tuple[CompiledRulebook, ...]:
+    def judgeable_at(self, step_s: Fraction | float) -> tuple[CompiledRulebook, ...]:
         """As ``rounded_to``, without the rules that are ``too_large`` for the step."""
         try:
             return self.rounded_to(step_s)
         except RulecError as error:
             if self.recompile is None or not is_too_large(error):
                 raise
+            books = self.recompile.judgeable_at(exact_step(step_s))
+            if len(books[0].rules) + len(books[0].too_large) == len(self.rules):
+                return books  # With what engines have prepared of them
             kept = {rule.name for rule in self.rules}
             return tuple(
-                replace(book, rules=tuple(rule for rule in book.rules if rule.name in kept))
-                for book in self.recompile.judging(exact_step(step_s))
+                replace(
+                    book,
+                    rules=tuple(rule for rule in book.rules if rule.name in kept),
+                    too_large=tuple(rule for rule in book.too_large if rule.name in kept),
+                )
+                for book in books
             )
 
     def rows(self) -> list[dict[str, Any]]:

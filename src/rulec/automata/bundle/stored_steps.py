@@ -36,7 +36,7 @@ class StoredSteps:
         """Bounds are not rounded for a step that is not known. Raises RulecError R0507."""
         return self(step_s), self(step_s)
 
-    def judging(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
+    def judgeable_at(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
         """The rulebook for one of the steps, whose rules all have automata. Raises RulecError."""
         return (self(step_s),)
 

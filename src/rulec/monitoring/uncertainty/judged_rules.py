@@ -59,7 +59,9 @@ def _judged_rules(
     unknown = untold_names(rulebook.vocabulary, told)
     types = untold_types(rulebook.vocabulary, told)
     machines = []
-    not_judged = [RuleNotJudged(*rule[:2], (), rule.why) for rule in rulebook.too_large]
+    not_judged = [
+        RuleNotJudged(rule.name, rule.strength, (), rule.why) for rule in rulebook.too_large
+    ]
     for rule in rulebook.rules:
         outcomes = None if prefixes is None else prefixes.get(rule.name)
         if prefixes is not None and outcomes is None:
