@@ -58,9 +58,8 @@ from rulec.extraction.signals.signal_passes import SignalPasses
 from rulec.extraction.tracks.tracks import Floats
 from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.logic.formula import Relation
+from rulec.monitoring.assumptions import check_assumed
 from rulec.monitoring.explain.margins import Margin
-from rulec.monitoring.monitoring_messages import UNFITTING_VALUE
-from rulec.monitoring.state_validation import check_state
 from rulec.trace import Trace, Value
 from rulec.trace.cells import Cells
 from rulec.trace.trace_arrays import TraceArrays
@@ -270,14 +269,8 @@ class TraceWriter:
     bare: bool = False
 
     def __post_init__(self) -> None:
-        if self.vocabulary is None:
-            return
-        for name in self.assumed:
-            declaration = self.vocabulary.declarations.get(name)
-            if declaration is not None and declaration.parameters:
-                why = f"`assumed` has `{name}`, which is about objects"
-                raise UNFITTING_VALUE.error(None, why, help="assume only what is about none")
-        check_state(self.assumed, {}, self.vocabulary, "`assumed`")
+        if self.vocabulary is not None:
+            check_assumed(self.assumed, self.vocabulary)
 
 
 ALL_SIGNALS = TraceWriter()

@@ -8,10 +8,12 @@ from typing import Any
 
 from rulec.diagnostics import RulecError
 from rulec.diagnostics.argument_kinds import expected_fields
-from rulec.monitoring.monitoring_messages import STEP_TOO_FAR_OFF
+from rulec.monitoring.monitoring_messages import STEP_TOO_FAR_OFF, UNFITTING_VALUE
+from rulec.monitoring.state_validation import check_state
 from rulec.trace import Trace, Value
 from rulec.trace.trace_model import Ending
 from rulec.value_display import brief
+from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
 
 _NOT_TOLD = UNKNOWN_TYPES - {Interval}
@@ -96,6 +98,16 @@ class Assumptions:
             for name, value in state.items()
         }
         return _without_unknown(known) if self.defaults else known
+
+
+def check_assumed(values: Mapping[str, Value], vocabulary: Vocabulary) -> None:
+    """Refuse values that no state of no object has. Raises RulecError R0502 or R0503."""
+    for name in values:
+        declaration = vocabulary.declarations.get(name)
+        if declaration is not None and declaration.parameters:
+            why = f"`assumed` has `{name}`, which is about objects"
+            raise UNFITTING_VALUE.error(None, why, help="assume only what is about none")
+    check_state(values, {}, vocabulary, "`assumed`")
 
 
 def _without_unknown(values: Mapping[str, Any]) -> dict[str, Any]:
