@@ -44,6 +44,20 @@ def test_right_hand_traffic(tmp_path):
     }
 
 
+def test_a_lane_that_narrows_within_a_micrometre(tmp_path):
+    """Such a piece, as tools write it, has huge coefficients, though its widths are none."""
+    step, width = 1e-6, 3.5
+    narrows = cubic("width", "sOffset", 0, width, 0, -3 * width / step**2, 2 * width / step**3)
+    parts = (
+        section(lane(-1), lane(-2)),
+        section(lane(-1), lane(-2, width=narrows), start=60),
+        section(lane(-1), start=60 + step),
+    )
+    there = lanelets(tmp_path, road(1, *parts))
+    assert there["1.0.-2"].centre[[0, -1]] == pytest.approx(np.array([(0, -5.25), (60, -5.25)]))
+    assert there["1.2.-1"].centre[[0, -1]] == pytest.approx(np.array([(60, -1.75), (100, -1.75)]))
+
+
 def test_left_hand_traffic(tmp_path):
     """Lanes left of the line lead along it; the outer lane is on the left."""
     lanes = section(lane(2), lane(1, mark="broken"), lane(-1))

@@ -14,6 +14,7 @@ _UNITS = {**SPEED_UNITS, "": 1.0}
 """The unit of a speed is m/s where none is given."""
 
 _MOST_LANES = 1_000
+_STEEPEST = 1e30
 
 
 def name(tree: Tree, key: str = "id") -> str:
@@ -54,9 +55,22 @@ def lane_number(tree: Tree, key: str = "id") -> int:
 
 
 def cubic(tree: Tree, key: str) -> Cubic:
-    """The polynomial in an element, which holds from an attribute on."""
-    a, b, c, d = (number(tree, name_, 0.0) for name_ in "abcd")
-    return Cubic(length(tree, key), a, b, c, d)
+    """The polynomial in an element, which holds from an attribute on.
+
+    Where it holds for a micrometre, as tools write it, its coefficients are huge and its values not.
+    """
+    b, c, d = (_coefficient(tree, name_) for name_ in "bcd")
+    return Cubic(length(tree, key), number(tree, "a", 0.0), b, c, d)
+
+
+def _coefficient(tree: Tree, key: str) -> float:
+    """A number that is finite, or 0 if it is missing or empty."""
+    written = text(tree, key)
+    try:
+        value = float(written or 0.0)
+    except ValueError:
+        value = inf
+    return value if abs(value) < _STEEPEST else tree.number(key)
 
 
 def contact_point(tree: Tree) -> ContactPoint | None:
