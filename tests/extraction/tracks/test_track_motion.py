@@ -70,7 +70,22 @@ def test_stated_speeds_that_make_another_way_are_not():
     x, v = braking()
     assert motion(x, v * 1.1).speed[0, 15] == pytest.approx(v[15])
     assert motion(x, 0.0).speed[0, 15] == pytest.approx(v[15])
-    assert motion(x, v * 1.1).speed_error[0, 15] == pytest.approx(0.01)
+    assert motion(x, 0.0).speed_error[0, 15] == pytest.approx(0.01)
+
+
+def test_where_a_lane_is_drawn_longer_than_it_is_said_to_be_both_speeds_may_be_meant():
+    """At 10 m/s, as stated, but for 3 s by its places at 14: the drawn lane is 1.4 times as long.
+
+    The whole way is 9 % longer then, so nobody knows; of a way that is 3 % longer the stated
+    speeds count, but distances on that lane are as little known.
+    """
+    for driven, error in ((13.0, 4.0), (40.0, EXACT.stated_mps)):
+        drawn = np.full(round(driven * 10), 10.0)
+        drawn[40:70] = 14.0
+        found = motion(np.concatenate(([0.0], drawn.cumsum() * 0.1)), 10.0)
+        assert found.speed_error[0, 55] == pytest.approx(error, abs=0.02)
+        assert found.speed_error[0, 20] <= 0.02
+        assert found.scale_error[0, [20, 55]] == pytest.approx([0.0, 4 / 14])
 
 
 def test_who_does_not_steer_has_the_speed_of_its_places():

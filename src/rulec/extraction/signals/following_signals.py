@@ -279,7 +279,10 @@ def _stood_before(context: DriveContext, cells: Cells) -> Flags:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SafeGaps:
-    """The distances (m) that ``safe_gap`` compares, by cell of those whom ego may follow."""
+    """The distances (m) that ``safe_gap`` compares, by cell of those whom ego may follow.
+
+    The error is that of both, but for the places' own.
+    """
 
     cells: Cells
     gap: Floats
@@ -291,7 +294,9 @@ class SafeGaps:
 def safe_gaps(context: DriveContext) -> SafeGaps:
     """The distances that ``safe_gap`` compares."""
     cells = relations.perhaps_ahead(context)
-    return SafeGaps(cells, cells.of(relations.gap(context)), *safe_distances(context, cells))
+    gap, (safe, error) = cells.of(relations.gap(context)), safe_distances(context, cells)
+    scale = np.maximum(cells.of(context.ego.scale_error[0]), cells.of(context.tracks.scale_error))
+    return SafeGaps(cells, gap, safe, error + scale * np.abs(gap))
 
 
 following_signals = SignalPasses({("ahead_for",): _ahead_for})

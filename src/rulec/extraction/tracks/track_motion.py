@@ -19,6 +19,9 @@ _AGREES, _STANDS_MPS = 0.05, 0.1
 """Stated speeds count if they make the way that places do, to a twentieth, or so much in the mean.
 """
 
+_MEANS_ELSE = 0.5
+"""Stated speeds that make so much another way, as a part of the longer one, mean something else."""
+
 _TURNS = 0.1
 """By how much a heading turns (rad) over a window that what turns does."""
 
@@ -42,6 +45,8 @@ class Motion:
     """Velocity (m/s), its length or part along the heading, and acceleration (m/s²).
 
     A row for each participant, a column for each step; the errors are how far they may be wrong.
+    ``scale_error`` is that of distances nearby, as a part of them: a net may draw a lane shorter
+    than it says, and than is driven there.
     """
 
     vx: NDArray[float64]
@@ -50,6 +55,7 @@ class Motion:
     speed_error: NDArray[float64]
     acceleration: NDArray[float64]
     acceleration_error: NDArray[float64]
+    scale_error: NDArray[float64]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -71,8 +77,9 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
 
     Where that is no whole number of steps, its ends are between two places, along a straight line.
     The speed of what steers is the part along its heading, or what the file states if its stated
-    speeds are ``known`` better and agree with its places. Where single ones of these cannot be, as
-    of who is moved by hand in a simulator, nobody knows which of both is meant.
+    speeds are ``known`` better and agree with its places. Where they do not quite, as on lanes that
+    a net draws longer than it says, or where single ones cannot be, as of who is moved by hand in a
+    simulator, nobody knows which of both is meant.
     """
     present = ~np.isnan(poses.x)
     window = _Window.around(present, max(1.0, smoothing_s / 2 / step_s))
@@ -95,6 +102,7 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     own = np.zeros(len(present), dtype=bool)
     differ, told = _differ(speed, stated)
     contradicts, (just_then, denied) = np.zeros(len(present)), np.zeros((2, *present.shape))
+    scale_error = just_then
     if known.stated_mps is None:
         alike = poses.steers & (differ <= _CONTRADICTS * told)
         contradicts = np.where(alike, differ, 0.0)
@@ -110,6 +118,11 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
         vx, vy = np.where(own[:, None], (way * cos, way * sin), (vx, vy))
         apart = np.where(_denied(poses, step_s), np.abs(stated - speed), 0.0)
         denied = np.where(apart > _GRIP_MPS2 * zero_if_nan(seconds) / 2, apart, 0.0)
+        differ_then = np.where(poses.steers[:, None], np.abs(stated - speed), 0.0)
+        unlike = differ > _MEANS_ELSE * (told + differ)
+        just_then = np.where((own | unlike)[:, None], 0.0, differ_then)
+        is_scaled = (differ_then > _AGREES * stated) & (differ_then > _STANDS_MPS) & (speed > 0)
+        scale_error = np.where(is_scaled, differ_then / np.where(is_scaled, speed, 1.0), 0.0)
         speed = np.where(own[:, None], stated, speed)
     # At a track's ends the mean is of the time beside the state
     begin, end = window.of(columns)
@@ -140,6 +153,7 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
         speed_error=error,
         acceleration=np.where(present, zero_if_nan(gained), np.nan),
         acceleration_error=zero_if_nan(gained_error),
+        scale_error=scale_error,
     )
 
 

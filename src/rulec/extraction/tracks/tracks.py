@@ -80,6 +80,7 @@ class Tracks:
     speed_error: Floats
     acceleration: Floats
     acceleration_error: Floats
+    scale_error: Floats
     on_lane: Flags
     on_crosswalk: Flags
 
