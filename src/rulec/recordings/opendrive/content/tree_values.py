@@ -57,7 +57,7 @@ def lane_number(tree: Tree, key: str = "id") -> int:
 def cubic(tree: Tree, key: str) -> Cubic:
     """The polynomial in an element, which holds from an attribute on.
 
-    Where it holds for a micrometre, as tools write it, its coefficients are huge and its values not.
+    Where it holds for a micrometre, as tools write it, coefficients are huge and its values not.
     """
     b, c, d = (_coefficient(tree, name_) for name_ in "bcd")
     return Cubic(length(tree, key), number(tree, "a", 0.0), b, c, d)
