@@ -73,6 +73,15 @@ def test_stated_speeds_that_make_another_way_are_not():
     assert motion(x, 0.0).speed_error[0, 15] == pytest.approx(0.01)
 
 
+def test_stated_means_since_the_step_before_are_taken():
+    """As SUMO moves who brakes from 20 m/s within 5 s: in half a second by its new speed."""
+    stated = np.arange(20.0, -1.0, -2.0)
+    places = np.concatenate(([0.0], stated[1:].cumsum() * 0.5))
+    found = motion(places, stated, step_s=0.5)
+    assert found.speed[0] == pytest.approx(stated)
+    assert found.speed_error[0] == pytest.approx([EXACT.stated_mps] * 11)
+
+
 def test_where_a_lane_is_drawn_longer_than_it_is_said_to_be_both_speeds_may_be_meant():
     """At 10 m/s, as stated, but for 3 s by its places at 14: the drawn lane is 1.4 times as long.
 

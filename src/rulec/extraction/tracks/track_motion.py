@@ -110,15 +110,18 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
     else:
         # A middle cuts corners: it is slower there than the front, of which files state speeds
         turns = np.hypot(window.gained(cos), window.gained(sin)) > _TURNS
-        straight = np.where(turns & ~turns.all(axis=1, keepdims=True), np.nan, (speed, stated))
-        differ, told = _differ(*straight)
+        straight = np.where(turns & ~turns.all(axis=1, keepdims=True), np.nan, stated)
+        since = _since_before(poses, speed, step_s)
+        (differ, told), (differ_since, _) = (_differ(x, straight) for x in (speed, since))
+        differ = np.minimum(differ, differ_since)
         own = poses.steers & (differ <= np.maximum(_AGREES * told, _STANDS_MPS))
         # Stated speeds do not say which way
         way = np.where(forward < 0, -stated, stated)
         vx, vy = np.where(own[:, None], (way * cos, way * sin), (vx, vy))
         apart = np.where(_denied(poses, step_s), np.abs(stated - speed), 0.0)
         denied = np.where(apart > _GRIP_MPS2 * zero_if_nan(seconds) / 2, apart, 0.0)
-        differ_then = np.where(poses.steers[:, None], np.abs(stated - speed), 0.0)
+        differ_then = np.minimum(np.abs(stated - speed), np.abs(stated - since))
+        differ_then = np.where(poses.steers[:, None], differ_then, 0.0)
         unlike = differ > _MEANS_ELSE * (told + differ)
         just_then = np.where((own | unlike)[:, None], 0.0, differ_then)
         is_scaled = (differ_then > _AGREES * stated) & (differ_then > _STANDS_MPS) & (speed > 0)
@@ -155,6 +158,14 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
         acceleration_error=zero_if_nan(gained_error),
         scale_error=scale_error,
     )
+
+
+def _since_before(poses: Poses, otherwise: NDArray[float64], step_s: float) -> NDArray[float64]:
+    """Mean speeds since the step before, which a simulator may state; otherwise where it begins."""
+    ways = np.hypot(np.diff(poses.x, axis=1), np.diff(poses.y, axis=1)) / step_s
+    since = otherwise.copy()
+    since[:, 1:] = np.where(np.isnan(ways), since[:, 1:], ways)
+    return since
 
 
 def _denied(poses: Poses, step_s: float) -> NDArray[bool_]:
@@ -228,10 +239,14 @@ def _most_around(values: NDArray[float64], reach: int) -> NDArray[float64]:
 def _differ(
     speed: NDArray[float64], stated: NDArray[float64]
 ) -> tuple[NDArray[float64], NDArray[float64]]:
-    """By how much participants' mean speeds from places and stated ones differ; the latter."""
-    count = np.maximum((~np.isnan(stated)).sum(axis=1), 1)
+    """By how much participants' mean speeds from places and stated ones differ; the latter.
+
+    Where there are stated ones.
+    """
+    is_stated = ~np.isnan(stated)
+    count = np.maximum(is_stated.sum(axis=1), 1)
     told = zero_if_nan(stated).sum(axis=1) / count
-    return np.abs(zero_if_nan(speed).sum(axis=1) / count - told), told
+    return np.abs(zero_if_nan(np.where(is_stated, speed, 0.0)).sum(axis=1) / count - told), told
 
 
 @dataclass(frozen=True, eq=False, slots=True)
