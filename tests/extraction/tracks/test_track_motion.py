@@ -82,6 +82,14 @@ def test_stated_means_since_the_step_before_are_taken():
     assert found.speed_error[0] == pytest.approx([EXACT.stated_mps] * 11)
 
 
+def test_a_speed_that_is_not_taken_as_stated_may_be_the_stated_one():
+    """Braking by 4 m/s² on a lane that is drawn 1.3 times as long, in steps of 0.2 s."""
+    stated = np.concatenate((np.full(20, 12.0), np.arange(12.0, 0.0, -0.8), np.full(20, 0.8)))
+    found = motion((1.3 * stated).cumsum() * 0.2, stated, step_s=0.2)
+    assert (found.speed[0] > stated * 1.1).any()
+    assert (np.abs(found.speed[0] - stated) <= found.speed_error[0] + 1e-9).all()
+
+
 def test_where_a_lane_is_drawn_longer_than_it_is_said_to_be_both_speeds_may_be_meant():
     """At 10 m/s, as stated, but for 3 s by its places at 14: the drawn lane is 1.4 times as long.
 

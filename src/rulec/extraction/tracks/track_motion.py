@@ -120,12 +120,12 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
         vx, vy = np.where(own[:, None], (way * cos, way * sin), (vx, vy))
         apart = np.where(_denied(poses, step_s), np.abs(stated - speed), 0.0)
         denied = np.where(apart > _GRIP_MPS2 * zero_if_nan(seconds) / 2, apart, 0.0)
-        differ_then = np.minimum(np.abs(stated - speed), np.abs(stated - since))
-        differ_then = np.where(poses.steers[:, None], differ_then, 0.0)
-        unlike = differ > _MEANS_ELSE * (told + differ)
-        just_then = np.where((own | unlike)[:, None], 0.0, differ_then)
-        is_scaled = (differ_then > _AGREES * stated) & (differ_then > _STANDS_MPS) & (speed > 0)
-        scale_error = np.where(is_scaled, differ_then / np.where(is_scaled, speed, 1.0), 0.0)
+        is_sure = own | ~poses.steers | (differ > _MEANS_ELSE * (told + differ))
+        just_then = np.where(is_sure[:, None], 0.0, np.abs(stated - speed))
+        drawn = np.minimum(np.abs(stated - speed), np.abs(stated - since))
+        is_scaled = poses.steers[:, None] & (speed > 0)
+        is_scaled &= drawn > np.maximum(_AGREES * stated, _STANDS_MPS)
+        scale_error = np.where(is_scaled, drawn / np.where(is_scaled, speed, 1.0), 0.0)
         speed = np.where(own[:, None], stated, speed)
     # At a track's ends the mean is of the time beside the state
     begin, end = window.of(columns)
@@ -163,7 +163,7 @@ def motion_of(poses: Poses, smoothing_s: float, step_s: float, known: Tolerances
 def _since_before(poses: Poses, otherwise: NDArray[float64], step_s: float) -> NDArray[float64]:
     """Mean speeds since the step before, which a simulator may state; otherwise where it begins."""
     ways = np.hypot(np.diff(poses.x, axis=1), np.diff(poses.y, axis=1)) / step_s
-    since = otherwise.copy()
+    since: NDArray[float64] = otherwise.copy()
     since[:, 1:] = np.where(np.isnan(ways), since[:, 1:], ways)
     return since
 
