@@ -13,10 +13,12 @@ from rulec.syntax.keywords import (
     ITEM_WORDS,
     OPERATOR_LETTERS,
     OPERATOR_WORDS,
+    PREFIX_LETTERS,
     RESERVED,
     UNARY_OPERATORS,
 )
 from rulec.syntax.messages.in_formulas import (
+    AGGREGATES,
     IN_DIGITS,
     RELATIONS,
     advise_on_aggregate,
@@ -186,6 +188,31 @@ def _name_of_two_words(scene: ParseContext) -> str:
     return ""
 
 
+def _misspelt_prefix(scene: ParseContext) -> str:
+    """At an operand behind a name that is much like a prefix: `alway not p`, `evry x: vehicle`."""
+    token, before = scene.unexpected, scene.before
+    if token is None or not scene.operator:
+        return ""
+    if scene.text_behind in _AFTER_STRENGTH and token.text not in RESERVED:
+        return did_you_mean(token.text, ("weak", "strong"), _MUCH_ALIKE)
+    if before is None or before.kind != "word" or before.text in RESERVED:
+        return ""
+    words: tuple[str, ...] = ()
+    if scene.text_behind == ":":
+        words = AGGREGATES
+    elif token.kind == "number" or token.text in _OPERAND_WORDS:
+        words = (*UNARY_OPERATORS, *(("weak",) if token.text in _AFTER_STRENGTH else ()))
+    return did_you_mean(before.text, words, _MUCH_ALIKE)
+
+
+_MUCH_ALIKE: Final = 0.75
+"""Less, and a name such as `now` would count as `not`."""
+_AFTER_STRENGTH: Final = ("next", "previously", "until", "release")
+_OPERAND_WORDS: Final = frozenset(
+    (*UNARY_OPERATORS, *AGGREGATES, *PREFIX_LETTERS, "!", "weak", "true", "false")
+)
+
+
 def _misspelt(scene: ParseContext) -> str:
     token, before = scene.unexpected, scene.before
     if token is None or token.kind != "word" or token.text.casefold() in RESERVED:
@@ -304,6 +331,7 @@ _IN_ORDER: tuple[Callable[[ParseContext], str], ...] = (
     _comment,
     _ending,
     advise_on_bound,
+    _misspelt_prefix,
     advise_on_aggregate,
     _name_of_two_words,
     _misspelt,

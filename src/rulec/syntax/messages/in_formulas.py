@@ -58,7 +58,7 @@ IN_DIGITS: Final = {
     )
 }
 RELATIONS: Final = ("<", "<=", "=", "!=", ">=", ">")
-_AGGREGATES: Final = ("some", "every", "count")
+AGGREGATES: Final = ("some", "every", "count")
 
 
 def advise_on_formula(scene: ParseContext) -> str:
@@ -102,7 +102,7 @@ def advise_on_aggregate(scene: ParseContext) -> str:
         own = scene.text_at(at + 1) == ":" and scene.text_at(at + 2).isidentifier()
         variable = f"{scene.text_at(at)}: {scene.text_at(at + 2)}" if own else "x: vehicle"
         return f"write `{word} {variable} (…)`"
-    if before in _AGGREGATES and scene.accepted == {"NAME"}:
+    if before in AGGREGATES and scene.accepted == {"NAME"}:
         return f"it is written `{before} x: vehicle (…)`"
     is_head = scene.text_at(scene.at - 2) == "(" and scene.text_at(scene.at - 3) != "fact"
     if text == ":" and scene.operator and is_head:
@@ -118,7 +118,7 @@ def advise_on_aggregate(scene: ParseContext) -> str:
         if scene.text_behind in ("", "}"):
             return f"it stands before what it is about: `{text} p`"
         return f"it stands before what it is about, such as `{text} (speed > 50 km/h)`"
-    heads = [index for index in range(scene.at) if scene.text_at(index) in _AGGREGATES]
+    heads = [index for index in range(scene.at) if scene.text_at(index) in AGGREGATES]
     if not heads or scene.at - heads[-1] > 4:
         return ""
     word = scene.text_at(heads[-1])
