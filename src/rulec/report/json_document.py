@@ -45,7 +45,7 @@ def _required(kind: type[msgspec.Struct]) -> list[str]:
     return [field.name for field in msgspec.structs.fields(kind) if field.required]
 
 
-def as_line(document: JsonDocument) -> str:
+def as_line(document: msgspec.Struct) -> str:
     """Write a document on one line."""
     return _ENCODER.encode(as_builtins(document))
 

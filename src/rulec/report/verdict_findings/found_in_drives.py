@@ -17,7 +17,10 @@ from rulec.monitoring.verdict import NotJudged, RuleNotJudged, Violation
 from rulec.report.verdict_findings.verdict_finding import (
     FoundInRecording,
     VerdictFinding,
+    left_open,
+    measured,
     named_rule,
+    not_judged,
 )
 
 
@@ -73,19 +76,14 @@ class DriveFindings:
             self.gathered.findings.append(self._violated(violation, drive, explanation))
         rules = {rule.name: rule for rule in self.verdicts.rules.rules}
         for result_ in answer.open:
-            own = self._about(rules[result_.rule])
-            self.gathered.findings.append(
-                VerdictFinding(
-                    outcome="open",
-                    vehicle=drive.arrays.id,
-                    other=tuple(result_.binding.values()),
-                    from_s=drive.time_s(0),
-                    to_s=drive.time_s(None),
-                    open_on=tuple(result_.depends_on),
-                    because=", ".join(result_.because),
-                    **own,
-                )
+            finding = VerdictFinding(
+                vehicle=drive.arrays.id,
+                from_s=drive.time_s(0),
+                to_s=drive.time_s(None),
+                **left_open(result_),
+                **self._about(rules[result_.rule]),
             )
+            self.gathered.findings.append(finding)
         for rule in answer.not_judged:
             self.gathered.not_judged.setdefault(rule.rule, {})[drive.arrays.id] = rule
 
@@ -105,10 +103,8 @@ class DriveFindings:
             everywhere = len(by_drive) == drives
             for vehicle, rule in [*by_drive.items()][: 1 if everywhere else None]:
                 yield VerdictFinding(
-                    outcome="not_judged",
                     vehicle="" if everywhere else vehicle,
-                    open_on=tuple(rule.untold),
-                    because=rule.why,
+                    **not_judged(rule),
                     **self._about(rules[name]),
                 )
 
@@ -126,7 +122,7 @@ class DriveFindings:
         evidence = evidence_of(
             violation, drive, verdicts.rules, verdicts.request.assumed, explanation
         )
-        margin = min(evidence.margins, key=lambda one: one.by, default=None)
+        place = {} if evidence.place is None else evidence.place._asdict()
         rules = {rule.name: rule for rule in verdicts.rules.rules}
         return VerdictFinding(
             outcome="violated",
@@ -135,12 +131,8 @@ class DriveFindings:
             from_s=evidence.from_s,
             to_s=evidence.to_s,
             at_s=evidence.at_s,
-            by=None if margin is None else margin.rounded().by,
-            unit="" if margin is None else margin.unit,
-            measure="" if margin is None else str(margin),
-            x=None if evidence.place is None else evidence.place.x,
-            y=None if evidence.place is None else evidence.place.y,
-            lanelet="" if evidence.place is None else evidence.place.lanelet,
+            **measured(evidence.margins),
+            **place,
             **self._about(rules[violation.rule]),
         )
 

@@ -8,7 +8,13 @@ from typing import Any
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.verdict import NotJudged, Verdict
-from rulec.report.verdict_findings.verdict_finding import VerdictFinding, named_rule
+from rulec.report.verdict_findings.verdict_finding import (
+    VerdictFinding,
+    left_open,
+    measured,
+    named_rule,
+    not_judged,
+)
 from rulec.trace import Trace
 
 
@@ -33,35 +39,24 @@ def trace_findings(
             else explain(violation, trace, rulebook, repaired=False)
         )
         first, last = explanation.lasts
-        margin = min(explanation.margins(), key=lambda one: one.by, default=None)
         yield VerdictFinding(
             outcome="violated",
             other=tuple(violation.binding.values()),
             from_s=_time_s(trace, first),
             to_s=_time_s(trace, last),
             at_s=_time_s(trace, explanation.decisive),
-            by=None if margin is None else margin.rounded().by,
-            unit="" if margin is None else margin.unit,
-            measure="" if margin is None else str(margin),
+            **measured(explanation.margins()),
             **about(rules[violation.rule]),
         )
     for result in answer.open:
         yield VerdictFinding(
-            outcome="open",
-            other=tuple(result.binding.values()),
             from_s=_time_s(trace, 0),
             to_s=_time_s(trace, len(trace.states) - 1),
-            open_on=tuple(result.depends_on),
-            because=", ".join(result.because),
+            **left_open(result),
             **about(rules[result.rule]),
         )
     for rule in answer.not_judged:
-        yield VerdictFinding(
-            outcome="not_judged",
-            open_on=tuple(rule.untold),
-            because=rule.why,
-            **about(rules[rule.rule]),
-        )
+        yield VerdictFinding(**not_judged(rule), **about(rules[rule.rule]))
 
 
 def not_judged_trace(file: str, answer: NotJudged, rulebook: str) -> VerdictFinding:

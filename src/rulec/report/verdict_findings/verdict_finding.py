@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Literal
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields
+from typing import Any, Literal, get_type_hints
+
+import msgspec
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.monitoring.explain.margins import Margin
+from rulec.monitoring.verdict import OpenVerdict, RuleNotJudged
 from rulec.report.json_document import JsonDocument, as_line, filled
 from rulec.rulebook.rulebook_model import cited_law
 from rulec.value_display import short_repr
@@ -73,7 +77,7 @@ class VerdictFinding:
         return f"{title} is not judged for {who}{on}{why}"
 
 
-def named_rule(rule: CompiledRule) -> dict[str, str]:
+def named_rule(rule: CompiledRule) -> dict[str, Any]:
     """The columns of a finding that say which rule it is about, and whose law that is."""
     return {
         "rule": rule.name,
@@ -81,6 +85,29 @@ def named_rule(rule: CompiledRule) -> dict[str, str]:
         "inherited_from": rule.inherited_from,
         "strength": rule.strength,
     }
+
+
+def measured(margins: Iterable[Margin]) -> dict[str, Any]:
+    """The columns on the comparison that decides most narrowly, if there is one."""
+    margin = min(margins, key=lambda margin: margin.by, default=None)
+    if margin is None:
+        return {}
+    return {"by": margin.rounded().by, "unit": margin.unit, "measure": str(margin)}
+
+
+def left_open(result: OpenVerdict) -> dict[str, Any]:
+    """The columns of an open verdict."""
+    return {
+        "outcome": "open",
+        "other": tuple(result.binding.values()),
+        "open_on": tuple(result.depends_on),
+        "because": ", ".join(result.because),
+    }
+
+
+def not_judged(rule: RuleNotJudged) -> dict[str, Any]:
+    """The columns of a rule that could not be judged."""
+    return {"outcome": "not_judged", "open_on": tuple(rule.untold), "because": rule.why}
 
 
 def when(finding: VerdictFinding) -> str:
@@ -93,49 +120,25 @@ def when(finding: VerdictFinding) -> str:
     return f" at {at:g} s (from {finding.from_s:g} s to {finding.to_s:g} s)"
 
 
-class FindingLine(JsonDocument, frozen=True, kw_only=True):
-    """A finding: a rule that is ``violated``, ``open`` or ``not_judged``.
+_DOC = """A finding: a rule that is ``violated``, ``open`` or ``not_judged``.
 
-    See docs/commands.md, Findings; null is what does not apply, an empty ``inherited_from`` means
-    that the rule is the rulebook's own law.
-    """
-
-    file: str
-    recording: str
-    rulebook: str
-    rule: str
-    provision: str
-    inherited_from: str
-    strength: Literal["hard", "soft", ""]
-    outcome: Outcome
-    vehicle: str
-    other: tuple[str, ...]
-    from_s: float | None
-    to_s: float | None
-    at_s: float | None
-    by: float | None
-    unit: str
-    measure: str
-    open_on: tuple[str, ...]
-    because: str
-    x: float | None
-    y: float | None
-    lanelet: str
-
-
+See docs/commands.md, Findings; null is what does not apply, an empty ``inherited_from`` means
+that the rule is the rulebook's own law.
+"""
+FindingLine = msgspec.defstruct(
+    "FindingLine",
+    list(get_type_hints(VerdictFinding).items()),
+    bases=(JsonDocument,),
+    namespace={"__doc__": _DOC},
+    frozen=True,
+    kw_only=True,
+)
+"""A finding in JSON."""
+_COLUMN_TYPES = {"tuple[str, ...]": list, "float | None": float}
 COLUMNS: Mapping[str, type] = {
-    **dict.fromkeys(("file", "recording", "rulebook", "rule", "provision", "inherited_from"), str),
-    **dict.fromkeys(("strength", "outcome", "vehicle"), str),
-    "other": list,
-    **dict.fromkeys(("from_s", "to_s", "at_s", "by"), float),
-    **dict.fromkeys(("unit", "measure"), str),
-    "open_on": list,
-    "because": str,
-    **dict.fromkeys(("x", "y"), float),
-    "lanelet": str,
+    field.name: _COLUMN_TYPES.get(str(field.type), str) for field in fields(VerdictFinding)
 }
 """The columns of tables of findings, with the types of their values."""
-
 EMPTY_CELLS: Mapping[type, str | tuple[str, ...]] = {str: "", list: ()}
 """What a column of this type holds where it does not apply; a column of numbers holds None."""
 
