@@ -15,7 +15,7 @@ from rulec.monitoring.online.snapshot import SavedMonitor
 from rulec.report.findings.diagnostics_json import CodeData, FindingData
 from rulec.report.maneuvers.envelope_table import EnvelopeLine
 from rulec.report.maneuvers.maneuver_document import ManeuversDocument
-from rulec.report.moments.moments_json import MomentLine
+from rulec.report.moments.moment_rows import MomentLine
 from rulec.report.rates.rates_json import RatesDocument
 from rulec.report.recordings.format_listing import FormatsDocument
 from rulec.report.rulebooks.audit_report import AuditDocument

@@ -198,11 +198,6 @@ def told_apart(references: Sequence[str]) -> dict[str, str]:
     return named
 
 
-def counted(number: int, noun: str, several: str = "") -> str:
-    """A number of things, such as ``1 file`` and ``1,000 files``."""
-    return f"{number:,} {noun if number == 1 else several or f'{noun}s'}"
-
-
 def print_findings(
     findings: Sequence[Diagnostic],
     unread: Sequence[Diagnostic],

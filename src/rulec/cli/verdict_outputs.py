@@ -7,8 +7,9 @@ from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING
 
 from rulec.cli.options.output_options import Endings, Output, endings_of
-from rulec.cli.output import answer_lines, counted, output_stream
+from rulec.cli.output import answer_lines, output_stream
 from rulec.report.text.console import print_line, print_result
+from rulec.report.text.terminal_text import counted
 from rulec.report.verdict_findings.finding_writers import ENDINGS, finding_writer
 
 if TYPE_CHECKING:

@@ -11,9 +11,10 @@ from typing import NoReturn
 
 import click
 
-from rulec.cli.output import counted, errors_told
+from rulec.cli.output import errors_told
 from rulec.diagnostics import RulecError
 from rulec.report.text.console import print_remark
+from rulec.report.text.terminal_text import counted
 from rulec.settings import FILE_NAME, exclusion, search_path
 
 _LOOK_EVERY_S = 0.5

@@ -17,7 +17,6 @@ from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import (
-    counted,
     errors_told,
     open_session,
     print_findings,
@@ -26,6 +25,7 @@ from rulec.cli.output import (
 )
 from rulec.diagnostics import Diagnostic
 from rulec.report.text.console import print_remark, progress
+from rulec.report.text.terminal_text import counted
 from rulec.settings import search_path
 
 _LONG_S = 20

@@ -15,13 +15,14 @@ from rulec.cli.options.shared_options import (
 )
 from rulec.cli.options.shell_completion import complete_sources
 from rulec.cli.options.verb_class import Verb
-from rulec.cli.output import counted, print_findings, print_left_alone
+from rulec.cli.output import print_findings, print_left_alone
 from rulec.cli.standard_input import standard_input
 from rulec.cli.watching import watch as watch_sources
 from rulec.cli.watching import watch_option
 from rulec.diagnostics import named
 from rulec.files import MAX_SOURCE_BYTES
 from rulec.report.text.console import print_remark
+from rulec.report.text.terminal_text import counted
 from rulec.settings import exclusion, search_path
 
 if TYPE_CHECKING:

@@ -17,7 +17,6 @@ from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, endings_of, output_options
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import (
-    counted,
     errors_told,
     output_stream,
     put_answer,
@@ -27,7 +26,7 @@ from rulec.cli.output import (
 from rulec.diagnostics import Diagnostic, did_you_mean
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_remark, progress
-from rulec.report.text.terminal_text import wants_color
+from rulec.report.text.terminal_text import counted, wants_color
 from rulec.settings import search_path
 
 if TYPE_CHECKING:

@@ -90,7 +90,7 @@ def command(
     """
     # Formats of recordings, the language and what shows moments, 300 ms: not for --help.
     from rulec.recordings.recording_inputs import input_files
-    from rulec.report.moments import moment_rows, moments_json
+    from rulec.report.moments import moment_rows
     from rulec.report.verdict_findings.finding_tables import RowWriter
     from rulec.rulebook.formula_query import read_query
 
@@ -128,7 +128,7 @@ def command(
             yield one
 
     if to.form in ("text", "json", "jsonl"):
-        as_lines = moment_rows.lines if to.form == "text" else moments_json.as_json
+        as_lines = moment_rows.lines if to.form == "text" else moment_rows.json_lines
         with answer_lines(to) as write:
             for drive in found():
                 for line in as_lines(drive):

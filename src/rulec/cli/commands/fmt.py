@@ -11,13 +11,13 @@ import click
 from rulec.cli.exit_status import ExitStatus
 from rulec.cli.options.shared_options import verbose_option
 from rulec.cli.options.verb_class import Verb
-from rulec.cli.output import counted, print_left_alone
+from rulec.cli.output import print_left_alone
 from rulec.cli.standard_input import standard_input
 from rulec.files import MAX_SOURCE_BYTES
 from rulec.report.findings.diagnostics_text import print_diagnostics
 from rulec.report.text.console import print_line, print_remark, print_result
 from rulec.report.text.outgoing import outgoing
-from rulec.report.text.terminal_text import visible
+from rulec.report.text.terminal_text import counted, visible
 from rulec.report.text.text_diff import as_diff, for_terminal
 from rulec.settings import exclusion, search_path
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from textwrap import wrap
 
 from rulec.report.automata.automaton_model import Automaton, Fate, Transition
-from rulec.report.text.terminal_text import styled, table_lines, visible
+from rulec.report.text.terminal_text import counted, styled, table_lines, visible
 
 WORDS = {True: "accepted", False: "rejected"}
 
@@ -20,8 +20,7 @@ _FINAL = {
 
 def as_text(automaton: Automaton, width: int) -> str:
     """A paragraph per state; the last column is the verdict at end."""
-    number = len(automaton.fates)
-    head = f"{number:,} {'state' if number == 1 else 'states'}; a trace starts in state 0"
+    head = f"{counted(len(automaton.fates), 'state')}; a trace starts in state 0"
     if automaton.transitions:
         head += ", and is accepted or rejected as it says behind its last step"
     lines = wrap(head, width)

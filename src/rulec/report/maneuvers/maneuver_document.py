@@ -8,8 +8,6 @@ from msgspec import UNSET, UnsetType
 
 from rulec.partition import AdjacencyName, ExtentName, PartitionName
 from rulec.report.json_document import JsonDocument, JsonPart, Number
-from rulec.report.maneuvers.dead_end_json import DeadEndData
-from rulec.report.maneuvers.trajectory_json import TrajectoryData
 from rulec.report.verdicts.verdict_json import NotJudgedRule, OpenData
 from rulec.rulebook.rulebook_model import Strength
 from rulec.scenario.scenario_model import Surface
@@ -31,6 +29,27 @@ class SceneData(JsonPart, frozen=True, kw_only=True):
     recorded_until_s: float
     remarks: Sequence[str]
     derived: Mapping[str, DerivedSignal]
+
+
+class DeadEndData(JsonPart, frozen=True, kw_only=True):
+    """When the last layer begins that a way reaches, who closes it, which options open one."""
+
+    last_s: float
+    closed_by: Sequence[str]
+    opened_by: Sequence[str]
+
+
+class TrajectoryData(JsonPart, frozen=True, kw_only=True):
+    """A trajectory that proves a maneuver drivable: in m, m/s and m/s², and what it costs.
+
+    ``states`` are at the ends of pieces: time, s, speed along, d, speed across. In between
+    accelerations are constant.
+    """
+
+    greatest_acceleration: float
+    greatest_braking: float
+    costs: Mapping[str, float]
+    states: Sequence[tuple[float, float, float, float, float]]
 
 
 class LevelPenalty(JsonPart, frozen=True, kw_only=True):

@@ -20,12 +20,12 @@ from rulec.planning.ranking.homotopy import HomotopyClasses, Variant
 from rulec.planning.ranking.penalties import PenaltyRank
 from rulec.report.json_document import JsonPart, as_line, filled
 from rulec.report.maneuvers import maneuver_report
-from rulec.report.maneuvers.dead_end_json import dead_end_data
 from rulec.report.maneuvers.maneuver_document import (
     BindingProbability,
     CellData,
     ChancesData,
     ClassesData,
+    DeadEndData,
     DerivedSignal,
     EnvelopeData,
     LevelPenalty,
@@ -36,10 +36,10 @@ from rulec.report.maneuvers.maneuver_document import (
     PruningData,
     RuleProbabilityData,
     SceneData,
+    TrajectoryData,
     WorldData,
 )
 from rulec.report.maneuvers.maneuver_report import ManeuverAnswers
-from rulec.report.maneuvers.trajectory_json import trajectory_data
 from rulec.report.verdicts.verdict_json import (
     OpenData,
     not_judged_data,
@@ -74,7 +74,7 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
             unknown=maneuvers.unknown,
             not_judged=not_judged_data(maneuvers.not_judged, maneuvers.rules),
             by_default=maneuvers.by_default,
-            dead_end=dead_end_data(maneuvers),
+            dead_end=_dead_end(maneuvers),
             seconds=round(seconds, 6),
             scene=UNSET if scenario.account is None else _scene(maneuvers, scenario.account),
             violated_before=_each(maneuvers.violated_before, partial(filled, PastViolation)),
@@ -97,6 +97,15 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
             in_way=maneuvers.in_way if maneuver_report.lists_none(maneuvers, answers) else UNSET,
         )
     )
+
+
+def _dead_end(maneuvers: Maneuvers) -> DeadEndData | None:
+    """The dead end, if there is no maneuver."""
+    end = maneuvers.dead_end
+    if end is None:
+        return None
+    last_s = maneuvers.graph.layers[end.layer].start_s
+    return DeadEndData(last_s=last_s, closed_by=end.closed_by, opened_by=end.opened_by)
 
 
 def _judged(maneuvers: Maneuvers) -> list[str] | None:
@@ -159,10 +168,19 @@ def _maneuver(graph: NavigationGraph, maneuver: Maneuver, **details: Any) -> Man
         for layer, index in zip(graph.layers, maneuver.nodes, strict=True)
     ]
     bounds = [filled(EnvelopeData, bounds) for bounds in envelope(graph, maneuver.nodes)]
-    driven = trajectory_data(maneuver)
+    driven = _trajectory(maneuver)
     return filled(
         ManeuverData, maneuver, cells=cells, envelope=bounds, trajectory=driven, **details
     )
+
+
+def _trajectory(maneuver: Maneuver) -> TrajectoryData | UnsetType:
+    """The trajectory of a maneuver, if it has one, with all that it costs."""
+    driven = maneuver.trajectory
+    if driven is None:
+        return UNSET
+    costs = {"changes": maneuver.changes or 0.0, **asdict(driven.cost)}
+    return filled(TrajectoryData, driven, costs=costs)
 
 
 def _violations(maneuvers: Maneuvers, violations: Iterable[Violation]) -> list[ManeuverViolation]:

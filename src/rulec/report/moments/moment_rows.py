@@ -1,12 +1,14 @@
-"""Moments as lines of text and as rows of tables."""
+"""Moments as lines of text and of JSON, and as rows of tables."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any, Literal
 
 from rulec.extraction.moment_search import DriveMoments
-from rulec.report.text.terminal_text import visible
+from rulec.report.json_document import JsonDocument, as_line
+from rulec.report.text.terminal_text import counted, visible
 
 COLUMNS: Mapping[str, type] = {
     **dict.fromkeys(("file", "recording", "vehicle"), str),
@@ -18,7 +20,7 @@ COLUMNS: Mapping[str, type] = {
 """The columns of tables of moments, with the types of their values; ``objects`` as ``v=car 1``."""
 
 
-def rows(found: DriveMoments) -> Iterator[dict[str, object]]:
+def rows(found: DriveMoments) -> Iterator[dict[str, Any]]:
     """A row for each moment."""
     for moment in found.moments:
         yield {
@@ -50,6 +52,29 @@ def lines(found: DriveMoments) -> Iterator[str]:
         yield visible(f"{where}: {found.vehicle}{objects}: {when}{perhaps}")
 
 
+class MomentLine(JsonDocument, frozen=True, kw_only=True):
+    """A moment at which a formula holds, ``surely`` or ``perhaps``, for some ``objects``.
+
+    Times are those of the recording, states counted from 0.
+    """
+
+    file: str
+    recording: str
+    vehicle: str
+    objects: dict[str, str]
+    holds: Literal["surely", "perhaps"]
+    from_s: float
+    to_s: float
+    first_state: int
+    last_state: int
+
+
+def json_lines(found: DriveMoments) -> Iterator[str]:
+    """A line of JSON for each moment."""
+    for row, moment in zip(rows(found), found.moments, strict=True):
+        yield as_line(MomentLine(**{**row, "objects": dict(moment.objects)}))
+
+
 @dataclass(slots=True)
 class MomentTally:
     """How many moments were found, in how many drives of how many."""
@@ -69,9 +94,6 @@ class MomentTally:
 
     def as_text(self) -> str:
         """The line that ends the list."""
-        moments = "moment" if self.surely == 1 else "moments"
         perhaps = f", {self.perhaps:,} more perhaps" if self.perhaps else ""
-        drives = "drive" if self.drives == 1 else "drives"
-        return (
-            f"{self.surely:,} {moments}{perhaps}, in {self.with_some:,} of {self.drives:,} {drives}"
-        )
+        drives = f"{self.with_some:,} of {counted(self.drives, 'drive')}"
+        return f"{counted(self.surely, 'moment')}{perhaps}, in {drives}"

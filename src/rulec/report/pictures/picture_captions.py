@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from rulec.report.pictures.drawing import canvas
 from rulec.report.pictures.drawing.canvas import LabelText, Mark, Picture, Polyline
 from rulec.report.pictures.drawing.styles import STYLES
-from rulec.report.text.terminal_text import shown_count
+from rulec.report.text.terminal_text import counted, shown_count
 
 if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
@@ -102,7 +102,7 @@ def graph_title(graph: NavigationGraph, found: Maneuvers | None, maneuvers: int)
 def trace_title(verdict: Verdict, rules: CompiledRulebook, only: Sequence[str] = ()) -> str:
     """The trace and its verdict, ``only`` of some rules and objects."""
     number = len(verdict.violations)
-    count = f"{number:,} violation{'s' * (number != 1)}" if number else "no violation"
+    count = counted(number, "violation") if number else "no violation"
     doubtful = f", {len(verdict.open):,} open" if verdict.open else ""
     chosen = f", only {', '.join(only)}" if only else ""
     return f"{verdict.trace}: {count}{doubtful} by {rules.name}{chosen}"

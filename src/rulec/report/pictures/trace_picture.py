@@ -19,6 +19,7 @@ from rulec.report.pictures.trace_ribbon import (
     in_words,
     value_style,
 )
+from rulec.report.text.terminal_text import counted
 from rulec.report.verdicts.verdict_report import MOST_VIOLATIONS, in_a_line
 from rulec.trace.trace_model import plain_step_s
 
@@ -85,9 +86,8 @@ def _explanations(
     if len(ribbon.violations) > MOST_VIOLATIONS:
         notes.append(f"and {len(ribbon.violations) - MOST_VIOLATIONS:,} more")
     if ribbon.left_out:
-        rows = f"{ribbon.left_out:,} row{'s' * (ribbon.left_out != 1)}"
         asked = "no violated rule reads" if ribbon.violations else "are all default"
-        notes.append(f"without {rows} that {asked}")
+        notes.append(f"without {counted(ribbon.left_out, 'row')} that {asked}")
     for note in notes:
         labels.append(LabelText(note, (canvas.MARGIN, y), style="faint"))
         y += canvas.LINE_HEIGHT

@@ -11,7 +11,7 @@ from rulec.rates.exact_intervals import Interval
 from rulec.rates.rule_rates import Rate, RuleRates, ViolationRates
 from rulec.report.text import markdown
 from rulec.report.text.outgoing import spreadsheet_text
-from rulec.report.text.terminal_text import broken, table_lines, visible
+from rulec.report.text.terminal_text import broken, counted, table_lines, visible
 
 _WIDTH = 100
 _HEAD = ("rule", "opportunities", "violated", "per hour", "per 1000 km", "per opportunity")
@@ -86,7 +86,7 @@ def _about(rates: ViolationRates) -> Iterator[str]:
         chosen = [f"rulec {by.rulec}", *filter(None, (by.thresholds, by.assumptions))]
         yield f"rulebook {by.rulebook} ({by.rulebook_hash[:8]}), {', '.join(chosen)}"
     left_out = f"; {rates.not_judged:,} without a verdict" if rates.not_judged else ""
-    yield f"{_number(rates.drives, 'drive')}{left_out}"
+    yield f"{counted(rates.drives, 'drive')}{left_out}"
     yield (
         f"In parentheses {percent} intervals for independent opportunities, in braces over drives "
         f"({rates.replicates:,} times drawn again, seed {rates.seed}), in brackets for independent "
@@ -112,7 +112,7 @@ def group_title(group: Sequence[str], by: Sequence[str]) -> str:
 def _size(rules: Sequence[RuleRates]) -> str:
     most = max(rules, key=lambda rule: rule.drives)
     far = "" if most.km is None else f", {number(most.km)} km"
-    return f"{_number(most.drives, 'drive')}, {number(most.hours)} h{far}"
+    return f"{counted(most.drives, 'drive')}, {number(most.hours)} h{far}"
 
 
 def _is_tested(rule: RuleRates) -> bool:
@@ -177,7 +177,3 @@ def number(value: float) -> str:
     if value >= 1000:
         return f"{value:,.0f}"
     return f"{value:.3g}" if value >= 0.001 or value == 0 else f"{value:.1e}"
-
-
-def _number(count: int, noun: str) -> str:
-    return f"{count:,} {noun}{'' if count == 1 else 's'}"

@@ -19,7 +19,7 @@ from rulec.logic.fold import fold_constants
 from rulec.logic.formula import Atom, Constant
 from rulec.logic.printing import formula_text, number_in_words
 from rulec.report.findings.diagnostics_text import excerpt_width, render_diagnostics
-from rulec.report.text.terminal_text import styled, visible, wants_color
+from rulec.report.text.terminal_text import counted, styled, visible, wants_color
 from rulec.rulebook.rulebook_model import ExampleState
 from rulec.vocabulary import Quantity, Vocabulary
 
@@ -62,9 +62,8 @@ def as_text(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]
         lines.append(coverage_in_words(runs, covered))
     outcomes = [outcome for run in runs for outcome in run.outcomes]
     passed = sum(outcome.passed for outcome in outcomes)
-    word = "example" if len(outcomes) == 1 else "examples"
     counts = f"{passed:,} passed, {len(outcomes) - passed:,} failed"
-    return "\n".join([*lines, f"{len(outcomes):,} {word}: {counts}"])
+    return "\n".join([*lines, f"{counted(len(outcomes), 'example')}: {counts}"])
 
 
 def asked_rules(

@@ -26,22 +26,18 @@ def as_junit(
     is a failure in a suite of its own.
     """
     counts = _counts(runs, errors=len(besides.unread), short=len(besides.short))
-    root = ElementTree.Element("testsuites", {"name": "rulec", **counts})
+    root = element(None, "testsuites", name="rulec", **counts)
     for number, run in enumerate(runs):
-        suite = ElementTree.SubElement(
-            root, "testsuite", {"name": xml_text(run.rulebook.name), **_counts([run])}
-        )
+        suite = element(root, "testsuite", name=run.rulebook.name, **_counts([run]))
         if covered is not None:
-            properties = ElementTree.SubElement(suite, "properties")
             part = f"{percent(asked_of(covered[number], run.patterns)):.3f}"
-            ElementTree.SubElement(properties, "property", {"name": "coverage", "value": part})
+            element(element(suite, "properties"), "property", name="coverage", value=part)
         failing = failures(run)
         for index, outcome in enumerate(run.outcomes):
             _case(suite, run.rulebook.name, outcome, failing.get(index))
         if covered is not None:
             lines = coverage_lines(covered[number], run.rulebook.vocabulary)
-            output = ElementTree.SubElement(suite, "system-out")
-            output.text = xml_text("\n".join(lines))
+            element(suite, "system-out").text = xml_text("\n".join(lines))
     for name, problems in besides.unread.items():
         suite = element(root, "testsuite", name=name, **_counts([], errors=1))
         place = next((location for diagnostic in problems if (location := diagnostic.place)), None)
@@ -62,14 +58,14 @@ def as_junit(
     return f"{HEAD}{written}"
 
 
-def _counts(runs: Sequence[ExampleRun], *, errors: int = 0, short: int = 0) -> dict[str, str]:
+def _counts(runs: Sequence[ExampleRun], *, errors: int = 0, short: int = 0) -> dict[str, int]:
     outcomes = [outcome for run in runs for outcome in run.outcomes]
     failures = sum(not outcome.passed for outcome in outcomes) + short
     return {
-        "tests": str(len(outcomes) + errors + short),
-        "failures": str(failures),
-        "errors": str(errors),
-        "skipped": "0",
+        "tests": len(outcomes) + errors + short,
+        "failures": failures,
+        "errors": errors,
+        "skipped": 0,
     }
 
 
@@ -79,17 +75,15 @@ def _case(
     example_outcome: ExampleOutcome,
     problem: Diagnostic | None,
 ) -> None:
-    attributes = {
-        "classname": f"{rulebook}.{example_outcome.rule.name}",
-        "name": example_outcome.name,
-    }
     place = at(example_outcome.example.span)
-    if place is not None:
-        attributes |= {"file": from_here(place.file), "line": str(place.line)}
-    case = ElementTree.SubElement(
-        suite, "testcase", {name: xml_text(value) for name, value in attributes.items()}
+    case = element(
+        suite,
+        "testcase",
+        classname=f"{rulebook}.{example_outcome.rule.name}",
+        name=example_outcome.name,
+        file=None if place is None else from_here(place.file),
+        line=None if place is None else place.line,
     )
     if problem is not None:
-        attributes = {"type": problem.code, "message": xml_text(problem.message)}
-        element = ElementTree.SubElement(case, "failure", attributes)
-        element.text = xml_text(render_diagnostics([problem], summary=False))
+        failure = element(case, "failure", type=problem.code, message=problem.message)
+        failure.text = xml_text(render_diagnostics([problem], summary=False))

@@ -163,6 +163,11 @@ def shown_count(count: int) -> str:
     return f"about {digits[0]}.{digits[1:3]}e{len(digits) - 1}"
 
 
+def counted(number: int, noun: str, several: str = "") -> str:
+    """A number of things, such as ``1 file`` and ``1,000 files``."""
+    return f"{number:,} {noun if number == 1 else several or f'{noun}s'}"
+
+
 def first_of(names: Sequence[str], most: int) -> str:
     """So many names, and how many more there are."""
     more = f" and {len(names) - most} more" if len(names) > most else ""

@@ -30,9 +30,7 @@ class JUnitWriter:
 
     def add(self, found: FoundInRecording) -> None:
         """Write the suite of a recording."""
-        by_rule: dict[str, list[VerdictFinding]] = {}
-        for finding in found.findings:
-            by_rule.setdefault(finding.rule, []).append(finding)
+        by_rule = found.by_rule
         suite = element(None, "testsuite", name=found.title)
         name = self._about.rulebook.name
         if found.failure:

@@ -41,9 +41,7 @@ class QualityCheckerWriter:
 
     def add(self, found: FoundInRecording) -> None:
         """Write the bundle of a recording."""
-        by_rule: dict[str, list[VerdictFinding]] = {}
-        for finding in found.findings:
-            by_rule.setdefault(finding.rule, []).append(finding)
+        by_rule = found.by_rule
         rulebook = self._about.rulebook
         issues = sum(one.outcome != "not_judged" for one in found.findings)
         bundle = element(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Literal, get_type_hints
 
@@ -168,6 +168,14 @@ class FoundInRecording:
     def title(self) -> str:
         """The file, and the recording's name where that says more."""
         return f"{self.file}: {self.recording}" if self.recording else self.file
+
+    @property
+    def by_rule(self) -> Mapping[str, Sequence[VerdictFinding]]:
+        """The findings about each rule; those without one are at ``""``."""
+        found: dict[str, list[VerdictFinding]] = {}
+        for finding in self.findings:
+            found.setdefault(finding.rule, []).append(finding)
+        return found
 
     @property
     def failure(self) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
 from rulec.monitoring.verdict import Verdict
-from rulec.report.text.terminal_text import table_lines, visible
+from rulec.report.text.terminal_text import counted, table_lines, visible
 from rulec.report.verdicts import verdict_report
 
 if TYPE_CHECKING:
@@ -86,10 +86,10 @@ class BatchTally:
 
 def as_text(total: BatchTally, rules: CompiledRulebook, unread: Sequence[str]) -> str:
     """A table of what was violated in all recordings, and the line that ends a run."""
-    recordings = _number(total.judged_recordings, "recording")
-    lines = [f"altogether  {recordings} with {_number(total.judged, 'drive')}"]
+    recordings = counted(total.judged_recordings, "recording")
+    lines = [f"altogether  {recordings} with {counted(total.judged, 'drive')}"]
     if unread:
-        lines.append(f"not read    {_number(len(unread), 'file')}, as said above")
+        lines.append(f"not read    {counted(len(unread), 'file')}, as said above")
     lines.append(f"rules       {_rules(total, rules)}")
     rows = [
         (
@@ -105,8 +105,7 @@ def as_text(total: BatchTally, rules: CompiledRulebook, unread: Sequence[str]) -
     if rows:
         head = ("violated", "", " drives", " recordings", "first")
         lines += ["", *table_lines([head, *rows], right=(2, 3))]
-    end = verdict_report.summary(total.counts, total.not_judged)
-    lines.append(end.replace("traces", "drives").replace("trace", "drive"))
+    lines.append(verdict_report.summary(total.counts, total.not_judged, "drive"))
     return "\n".join(visible(line) for line in lines)
 
 
@@ -117,13 +116,9 @@ def _rules(total: BatchTally, rules: CompiledRulebook) -> str:
     parts = [f"{len(names) - len(never) - len(some_open):,} judged"]
     parts += [f"{len(some_open):,} open in some drive"] if some_open else []
     parts += [f"{len(never):,} cannot be judged from these recordings"] if never else []
-    return f"{_number(len(names), 'rule')}: {', '.join(parts)}"
+    return f"{counted(len(names), 'rule')}: {', '.join(parts)}"
 
 
 def _first(first: tuple[str, str, float]) -> str:
     file, ego, at = first
     return f"{ego} at {at:g} s in {file}"
-
-
-def _number(count: int, noun: str) -> str:
-    return f"{count:,} {noun}{'' if count == 1 else 's'}"

@@ -8,7 +8,7 @@ from textwrap import shorten, wrap
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTally
-from rulec.report.text.terminal_text import first_of, table_lines, visible
+from rulec.report.text.terminal_text import counted, first_of, table_lines, visible
 from rulec.report.verdicts import verdict_report
 
 MOST_DEFAULTS = 4
@@ -28,7 +28,7 @@ LABEL = 12
 def as_text(verdicts: RecordingVerdicts, tally: ViolationTally, width: int) -> str:
     """The recording in a few lines, and the table of violations."""
     recording = verdicts.recording
-    drives = f"{tally.judged:,} {'drive' if tally.judged == 1 else 'drives'}"
+    drives = counted(tally.judged, "drive")
     lines = [
         f"recording   {recording.name}: {drives} in steps of {recording.step_s:g} s",
         *_not_judged(tally.not_judged),
@@ -153,5 +153,4 @@ def _findings(causes: Mapping[tuple[str, ...], Sequence[str]]) -> Iterator[str]:
 def summary(tally: ViolationTally) -> str:
     """The line that ends a run."""
     counts = {True: len(tally.satisfied), False: len(tally.violated), None: len(tally.doubtful)}
-    line = verdict_report.summary(counts, len(tally.not_judged))
-    return line.replace("traces", "drives").replace("trace", "drive")
+    return verdict_report.summary(counts, len(tally.not_judged), "drive")

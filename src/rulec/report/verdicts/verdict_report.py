@@ -9,7 +9,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebo
 from rulec.logic.printing import number_in_words
 from rulec.monitoring.verdict import OpenVerdict, Verdict, Violation
 from rulec.report.text.console import PAGE_WIDTH
-from rulec.report.text.terminal_text import styled, visible
+from rulec.report.text.terminal_text import counted, styled, visible
 from rulec.report.verdicts.outcome_cases import fewest_cases
 from rulec.report.verdicts.state_times import NUMBERS_ALONE, StateTimes
 from rulec.rulebook.rulebook_model import cited_law
@@ -179,8 +179,8 @@ def judged_by(judged: Mapping[str, int], compiled_by: str) -> str:
     return ", ".join(parts)
 
 
-def summary(counts: Mapping[bool | None, int], not_judged: int) -> str:
-    """The line that ends a run: counts of traces by whether they are satisfied."""
+def summary(counts: Mapping[bool | None, int], not_judged: int, noun: str = "trace") -> str:
+    """The line that ends a run: counts of traces, or drives, by whether they are satisfied."""
     total = sum(counts.values()) + not_judged
     satisfied, violated, doubtful = (counts.get(key, 0) for key in (True, False, None))
     parts = [f"{satisfied:,} satisfied", f"{violated:,} violated"]
@@ -188,4 +188,4 @@ def summary(counts: Mapping[bool | None, int], not_judged: int) -> str:
         parts.append(f"{doubtful:,} open")
     if not_judged:
         parts.append(f"{not_judged:,} not judged")
-    return f"{total:,} {'trace' if total == 1 else 'traces'}: {', '.join(parts)}"
+    return f"{counted(total, noun)}: {', '.join(parts)}"
