@@ -6,7 +6,6 @@ about one, and the question is answered anew.
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Iterable
 from contextlib import suppress
@@ -16,9 +15,9 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from rulec.cache.cache_folder import program_digest, tidy, usable_folder, write_own
+from rulec.cache.cache_folder import program_digest, usable_folder
+from rulec.cache.kept_json import keep_json, recall_json
 from rulec.diagnostics import RulecError
-from rulec.files import is_own
 from rulec.rulebook.files.search_path import read_bytes
 from rulec.rulebook.files.source_walk import rules_files
 from rulec.version import __version__
@@ -39,16 +38,9 @@ class AnswerQuestion:
     def recall(self) -> Any:
         """The answer; None if it is not known."""
         path = self._path()
-        if path is None:
-            return None
+        kept: Any = None if path is None else recall_json(path)
         with suppress(OSError, ValueError, TypeError, LookupError, AttributeError):
-            with path.open("rb") as stream:
-                if not is_own(os.fstat(stream.fileno())):
-                    return None
-                digest, _, text = stream.read().partition(b"\n")
-            kept = json.loads(text) if digest == _digest(text) else {}
             if kept["stamp"] == self._stamp(kept["sources"]):
-                os.utime(path)
                 return kept["answer"]
         return None
 
@@ -57,13 +49,9 @@ class AnswerQuestion:
         path = self._path()
         paths = sorted(set(sources))
         stamp = self._stamp(paths)
-        if path is None or stamp is None:
-            return
-        with suppress(OSError, ValueError):
+        if path is not None and stamp is not None:
             kept = {"sources": paths, "stamp": stamp, "answer": answer}
-            text = json.dumps(kept).encode()
-            write_own(path, _digest(text) + b"\n" + text)
-            tidy(path.parent, _ENDING, MOST_ANSWERS)
+            keep_json(path, kept, MOST_ANSWERS)
 
     def _path(self) -> Path | None:
         folder = usable_folder()
@@ -91,7 +79,3 @@ class AnswerQuestion:
             names = sorted(map(str, rules_files(folder)))
             seen.update("\0".join(names).encode("utf-8", "surrogatepass"))
         return seen.hexdigest()
-
-
-def _digest(text: bytes) -> bytes:
-    return sha256(text).hexdigest().encode()

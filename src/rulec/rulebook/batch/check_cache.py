@@ -8,8 +8,6 @@ which a bit is not as it was written, or one that somebody else has written or c
 
 from __future__ import annotations
 
-import json
-import os
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass
@@ -17,9 +15,9 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from rulec.cache.cache_folder import program_digest, tidy, usable_folder, write_own
+from rulec.cache.cache_folder import program_digest, usable_folder
+from rulec.cache.kept_json import keep_json, recall_json
 from rulec.diagnostics import Diagnostic, Fix, Label, RulecError, SourceLocation
-from rulec.files import is_own
 from rulec.rulebook.files.search_path import Dependency, locate_base, locate_vocabulary, read_bytes
 from rulec.version import __version__
 
@@ -62,27 +60,15 @@ def recall(question: CheckQuestion) -> tuple[Diagnostic, ...] | None:
     folder = usable_folder()
     if folder is None:
         return None
-    kept = folder / f"{question.place()}.json"
-    try:
-        with kept.open("rb") as stream:
-            if not is_own(os.fstat(stream.fileno())):
-                return None
-            digest, _, text = stream.read().partition(b"\n")
-        if digest != _digest(text):
-            return None
-        data = json.loads(text)
+    data = recall_json(folder / f"{question.place()}.json")
+    with suppress(OSError, ValueError, TypeError, LookupError):
         if data["stamp"] != question.stamp():
             return None
         dependencies = [Dependency(**dependency) for dependency in data["dependencies"]]
         folders = [Path(folder) for folder in question.search_path]
-        if not all(is_as_it_was(dependency, folders) for dependency in dependencies):
-            return None
-        diagnostics = tuple(map(diagnostic_of, data["findings"]))
-    except (OSError, ValueError, TypeError, LookupError):
-        return None
-    with suppress(OSError):
-        os.utime(kept)
-    return diagnostics
+        if all(is_as_it_was(dependency, folders) for dependency in dependencies):
+            return tuple(map(diagnostic_of, data["findings"]))
+    return None
 
 
 def remember(
@@ -97,14 +83,7 @@ def remember(
         "dependencies": [asdict(dependency) for dependency in dependencies],
         "findings": [asdict(finding) for finding in findings],
     }
-    with suppress(OSError, ValueError):
-        text = json.dumps(data).encode()
-        write_own(folder / f"{question.place()}.json", _digest(text) + b"\n" + text)
-        tidy(folder, ".json", MOST_FILES)
-
-
-def _digest(text: bytes) -> bytes:
-    return sha256(text).hexdigest().encode()
+    keep_json(folder / f"{question.place()}.json", data, MOST_FILES)
 
 
 def _size(findings: Sequence[Diagnostic]) -> int:

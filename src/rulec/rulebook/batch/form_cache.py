@@ -6,14 +6,13 @@ file, and all is formatted anew.
 
 from __future__ import annotations
 
-import json
-import os
 from contextlib import suppress
 from dataclasses import dataclass, field
 from hashlib import sha256
+from typing import Any
 
-from rulec.cache.cache_folder import program_digest, usable_folder, write_own
-from rulec.files import is_own
+from rulec.cache.cache_folder import program_digest, usable_folder
+from rulec.cache.kept_json import keep_json, recall_json
 from rulec.version import __version__
 
 MOST_TEXTS = 10_000
@@ -33,13 +32,8 @@ class KnownForms:
     def read(cls) -> KnownForms:
         """What the cache knows."""
         folder = usable_folder()
-        if folder is None:
-            return cls()
-        with suppress(OSError, ValueError, TypeError, LookupError):
-            with (folder / _FILE).open("rb") as stream:
-                if not is_own(os.fstat(stream.fileno())):
-                    return cls()
-                kept = json.loads(stream.read())
+        kept: Any = None if folder is None else recall_json(folder / _FILE)
+        with suppress(TypeError, LookupError):
             if kept["program"] == _program():
                 return cls(dict.fromkeys(map(str, kept["digests"])))
         return cls()
@@ -56,11 +50,9 @@ class KnownForms:
     def write(self) -> None:
         """Keep what is known, if that is possible and something is new."""
         folder = usable_folder()
-        if folder is None or not self.is_changed:
-            return
-        kept = {"program": _program(), "digests": list(self.digests)[-MOST_TEXTS:]}
-        with suppress(OSError):
-            write_own(folder / _FILE, json.dumps(kept).encode())
+        if folder is not None and self.is_changed:
+            kept = {"program": _program(), "digests": list(self.digests)[-MOST_TEXTS:]}
+            keep_json(folder / _FILE, kept)
 
 
 def _program() -> str:

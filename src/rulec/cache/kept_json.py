@@ -1,0 +1,42 @@
+"""Files of the cache with a value in JSON, behind a digest of it.
+
+What is not as it was written, or may have been written by somebody else, is not there.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from contextlib import suppress
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from rulec.cache.cache_folder import tidy, write_own
+from rulec.files import is_own
+
+
+def recall_json(path: Path) -> Any:
+    """The value in a file, which counts as used now; None if there is none."""
+    with suppress(OSError, ValueError):
+        with path.open("rb") as stream:
+            if not is_own(os.fstat(stream.fileno())):
+                return None
+            digest, _, text = stream.read().partition(b"\n")
+        if digest == _digest(text):
+            os.utime(path)
+            return json.loads(text)
+    return None
+
+
+def keep_json(path: Path, value: Any, most: int = 0) -> None:
+    """Write a value, if that is possible, and keep at ``most`` so many files with that ending."""
+    with suppress(OSError, ValueError):
+        text = json.dumps(value).encode()
+        write_own(path, _digest(text) + b"\n" + text)
+        if most:
+            tidy(path.parent, path.suffix, most)
+
+
+def _digest(text: bytes) -> bytes:
+    return sha256(text).hexdigest().encode()
