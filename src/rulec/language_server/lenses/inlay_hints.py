@@ -9,7 +9,7 @@ from lsprotocol import types as lsp
 from rulec.language_server.names.document_names import DocumentNames
 from rulec.language_server.names.hover_texts import value_text
 from rulec.language_server.workspace.text_positions import TextPositions
-from rulec.rulebook.names.referenced_names import atoms_in, parts_of
+from rulec.rulebook.names.referenced_names import atoms_in, formulas_of, parts_of
 from rulec.syntax import tree
 from rulec.syntax.keywords import BINDS_NARROWLY, JOINS_ALIKE
 from rulec.vocabulary import Quantity
@@ -36,16 +36,10 @@ Hint = tuple[int, str, str]
 
 
 def _in_item(item: tree.Item, names: DocumentNames) -> Iterator[Hint]:
-    match item:
-        case tree.RuleItem():
-            yield from _inherited(item, names)
-            for formula in (item.require, item.when, *(unless.formula for unless in item.unless)):
-                if formula is not None:
-                    yield from _in_formula(formula, names)
-        case tree.DefineItem(body=formula) | tree.FactItem(formula) | tree.ParamItem(value=formula):
-            yield from _in_formula(formula, names)
-        case tree.SetItem(value=value) if not isinstance(value, bool):
-            yield from _in_formula(value, names)
+    if isinstance(item, tree.RuleItem):
+        yield from _inherited(item, names)
+    for formula in formulas_of(item):
+        yield from _in_formula(formula, names)
 
 
 def _inherited(rule: tree.RuleItem, names: DocumentNames) -> Iterator[Hint]:

@@ -16,7 +16,7 @@ from rulec.report.rulebooks.word_texts import (
     word_text,
 )
 from rulec.rulebook.arithmetic.linear_arithmetic import NumberByCases
-from rulec.rulebook.names.referenced_names import parts_of
+from rulec.rulebook.names.referenced_names import formulas_of, parts_of
 from rulec.rulebook.overlay.rulebook_overlay import Value, in_force
 from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_formula
@@ -206,14 +206,10 @@ def _parameters_in(item: tree.Item) -> Iterator[tree.Parameter]:
             yield from variables
             for example in examples:
                 yield from example.objects
-            for part in (item.require, item.when, *(unless.formula for unless in item.unless)):
-                if part is not None:
-                    yield from _counted(part)
-        case tree.DefineItem(parameters=parameters, body=body):
+        case tree.DefineItem(parameters=parameters):
             yield from parameters
-            yield from _counted(body)
-        case tree.FactItem(formula):
-            yield from _counted(formula)
+    for formula in formulas_of(item):
+        yield from _counted(formula)
 
 
 def _counted(formula: tree.Formula) -> Iterator[tree.Parameter]:

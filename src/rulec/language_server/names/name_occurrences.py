@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from rulec.diagnostics import Span
-from rulec.rulebook.names.referenced_names import parts_of
+from rulec.rulebook.names.referenced_names import formulas_of, parts_of
 from rulec.rulebook.resolve import BookNames
 from rulec.syntax import tree
 from rulec.vocabulary import Quantity, Signal
@@ -207,9 +207,8 @@ def _in_rule(rule: tree.RuleItem, chain: NamesOfChain) -> Iterator[Occurrence]:
         yield from _at(rule.level, chain.level(rule.level.text))
     for topic in rule.topics:
         yield from _at(topic, chain.topic(topic.text))
-    for formula in (rule.require, rule.when, *(unless.formula for unless in rule.unless)):
-        if formula is not None:
-            yield from in_formula(formula, scope, chain)
+    for formula in formulas_of(rule):
+        yield from in_formula(formula, scope, chain)
     for example in rule.examples:
         yield from _types(example.objects, chain)
         yield from _variables(example.objects)

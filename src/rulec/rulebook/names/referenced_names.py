@@ -9,15 +9,21 @@ from rulec.syntax import tree
 
 def names_used(item: tree.Item) -> Iterator[str]:
     """Every name in an item's formulas, with repetitions, without its examples."""
+    for formula in formulas_of(item):
+        yield from names_in(formula)
+
+
+def formulas_of(item: tree.Item) -> Iterator[tree.Formula]:
+    """An item's formulas, as they stand there, without its examples."""
     match item:
         case tree.RuleItem(require=require, when=when, unless=unless):
             for formula in (require, when, *(exception.formula for exception in unless)):
                 if formula is not None:
-                    yield from names_in(formula)
+                    yield formula
         case tree.DefineItem(body=formula) | tree.FactItem(formula) | tree.ParamItem(value=formula):
-            yield from names_in(formula)
+            yield formula
         case tree.SetItem(value=value) if not isinstance(value, bool):
-            yield from names_in(value)
+            yield value
 
 
 def names_in_examples(rule: tree.RuleItem) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
 from rulec.diagnostics import Diagnostic, Label
@@ -20,10 +20,11 @@ from rulec.rulebook.elaborate.time_reach import (
     operator_warnings,
     requirement_warnings,
 )
+from rulec.rulebook.names.referenced_names import formulas_of
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
 from rulec.rulebook.overlay.rulebook_overlay import RuleEntry
-from rulec.rulebook.rulebook_model import Exemption, Rule, Variable
+from rulec.rulebook.rulebook_model import Exemption, Rule, RuleParts, Variable
 from rulec.rulebook.rules.example_elaboration import example_of
 from rulec.rulebook.rules.exemptions import ExemptionError, exempted
 from rulec.syntax import tree
@@ -113,12 +114,8 @@ def translate_rule(
 
 def _time_warnings(item: tree.RuleItem, scope: Scope) -> Iterator[Diagnostic]:
     overlay = scope.constants.overlay
-    parts = (item.require, item.when, *(exception.formula for exception in item.unless))
     narrow = [
-        diagnostic
-        for part in parts
-        if part is not None
-        for diagnostic in operator_warnings(part, overlay)
+        diagnostic for part in formulas_of(item) for diagnostic in operator_warnings(part, overlay)
     ]
     yield from narrow
     if item.require is not None:
@@ -150,16 +147,7 @@ def _with_change(mistake: Diagnostic, entry: RuleEntry) -> Diagnostic:
     return replace(mistake, labels=(*mistake.labels, Label(changed, "the rule is changed here")))
 
 
-@dataclass(frozen=True, slots=True)
-class _Parts:
-    """The parts of a rule: requirement, exemptions, condition."""
-
-    required: ltl.Formula
-    exemptions: tuple[Exemption, ...]
-    condition: ltl.Formula | None
-
-
-def _parts_of(item: tree.RuleItem, scope: Scope) -> _Parts | None:
+def _parts_of(item: tree.RuleItem, scope: Scope) -> RuleParts | None:
     """Parts of a rule's formula; None after a reported mistake. Raises OverLimitError."""
     required = None if item.require is None else truth(item.require, scope)
     exempt = [(truth(part.formula, scope), part.scope or "throughout") for part in item.unless]
@@ -170,14 +158,14 @@ def _parts_of(item: tree.RuleItem, scope: Scope) -> _Parts | None:
     if len(exemptions) < len(exempt):
         return None
     # What depends on an option alone says nothing once that is known.
-    return _Parts(
+    return RuleParts(
         required,
         tuple(exemption for exemption in exemptions if exemption.formula != ltl.Constant(False)),
         None if condition == ltl.Constant(True) else condition,
     )
 
 
-def _formula(item: tree.RuleItem, parts: _Parts, scope: Scope) -> ltl.Formula | None:
+def _formula(item: tree.RuleItem, parts: RuleParts, scope: Scope) -> ltl.Formula | None:
     formula, exemptions = parts.required, list(parts.exemptions)
     if parts.condition is not None:
         guarding = (ltl.UnaryOperator.ALWAYS, ltl.UnaryOperator.NEVER)
