@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
-from pathlib import Path
 
 from rulec.batch.jobs import Jobs
 from rulec.batch.recording_judge import (
@@ -19,7 +18,7 @@ from rulec.batch.recording_judge import (
     judge_aloud,
 )
 from rulec.cli.output import print_lost
-from rulec.cli.standard_input import standard_input
+from rulec.cli.standard_input import copied
 from rulec.cli.verdict_outputs import VerdictOutputs
 from rulec.diagnostics import RulecError
 from rulec.recordings.recording_inputs import STANDARD_INPUT
@@ -125,14 +124,6 @@ def _without_standard_input(
     if STANDARD_INPUT not in paths:
         yield list(paths), {}
         return
-    # Archives and random names, 4 ms: not for files.
-    import shutil
-    from tempfile import TemporaryDirectory
-
-    # Recordings are read more than once, and from the middle.
-    with TemporaryDirectory(prefix="rulec-") as folder:
-        file = Path(folder, "standard input")
-        with file.open("wb") as copy:
-            shutil.copyfileobj(standard_input(), copy)
-        names = [str(file) if path == STANDARD_INPUT else path for path in paths]
-        yield names, {str(file): "standard input"}
+    with copied() as copy:
+        names = [str(copy) if path == STANDARD_INPUT else path for path in paths]
+        yield names, {str(copy): copy.name}

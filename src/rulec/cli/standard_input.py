@@ -55,7 +55,7 @@ def file_named(argument: str) -> str:
     """The path that an argument is; for ``-`` that of a copy, kept as long as the command runs."""
     if argument != STANDARD_INPUT:
         return argument
-    return str(click.get_current_context().with_resource(_copied("standard input")))
+    return str(click.get_current_context().with_resource(copied()))
 
 
 def read_as_file(
@@ -108,7 +108,7 @@ def refuse_twice(context: click.Context) -> None:
 @contextmanager
 def _in_place_of_a_file(usual: str) -> Iterator[str]:
     """The name of a file of the working folder that stands for a copy of standard input."""
-    with _copied("standard input") as copy:
+    with copied() as copy:
         with opened(copy) as stream:
             ending = ".json" if stream.read(1 << 10).lstrip().startswith(b"{") else usual
         number = 1
@@ -124,13 +124,14 @@ def _in_place_of_a_file(usual: str) -> Iterator[str]:
 
 
 @contextmanager
-def _copied(name: str) -> Iterator[Path]:
+def copied() -> Iterator[Path]:
+    """A copy of standard input, which may be read more than once, and from its middle."""
     # Archives and random names, 4 ms: not for files.
     import shutil
     from tempfile import TemporaryDirectory
 
     with TemporaryDirectory(prefix="rulec-") as folder:
-        copy = Path(folder, name)
+        copy = Path(folder, "standard input")
         with copy.open("wb") as stream:
             shutil.copyfileobj(standard_input(), stream)
         yield copy

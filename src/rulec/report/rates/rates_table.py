@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
 from rulec.rates.exact_intervals import Interval
 from rulec.rates.rule_rates import Rate, RuleRates, ViolationRates
 from rulec.report.text import markdown
-from rulec.report.text.outgoing import spreadsheet_text
+from rulec.report.text.csv_text import csv_text
 from rulec.report.text.terminal_text import broken, counted, table_lines, visible
 
 _WIDTH = 100
@@ -60,24 +58,9 @@ def as_markdown(rates: ViolationRates) -> str:
 
 
 def as_csv(rates: ViolationRates) -> str:
-    """A row for each rule and group (RFC 4180), with a line of names."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\r\n")
+    """A row for each rule and group, with a line of names."""
     rows = rates.rows()
-    if rows:
-        writer.writerow(rows[0])
-    for row in rows:
-        writer.writerow([_csv_cell(value) for value in row.values()])
-    return text.getvalue().rstrip("\r\n")
-
-
-def _csv_cell(value: object) -> str:
-    """A cell."""
-    if value is None:
-        return ""
-    if not isinstance(value, str):
-        return repr(value)
-    return spreadsheet_text(visible(value))
+    return csv_text([*rows[:1], *(row.values() for row in rows)]).rstrip("\r\n")
 
 
 def _about(rates: ViolationRates) -> Iterator[str]:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator
 
 from rulec.analysis.diff.rulebook_comparison import RulebookDiff, RulePair
 from rulec.report.rulebooks import diff_text
 from rulec.report.rulebooks.diff_json import as_json
+from rulec.report.text.csv_text import csv_text
 from rulec.report.text.markdown import code, escaped, table
-from rulec.report.text.outgoing import spreadsheet_text
-from rulec.report.text.terminal_text import visible
 
 CSV_COLUMNS = ("rule", "relation", "strength 1", "strength 2", "cite 1", "cite 2")
 
@@ -30,17 +27,10 @@ def render(diff: RulebookDiff, output_format: str) -> str:
         case "markdown":
             return _as_markdown(diff)
         case "csv":
-            return as_csv([CSV_COLUMNS, *([*row.values()] for row in diff.rows())])
+            rows = (row.values() for row in diff.rows())
+            return csv_text([CSV_COLUMNS, *rows], "\n").rstrip("\n")
         case _:
             return diff_text.as_text(diff)
-
-
-def as_csv(rows: Iterable[Sequence[str]]) -> str:
-    """Comma-separated values (RFC 4180), without the last line's end."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerows([spreadsheet_text(visible(cell)) for cell in row] for row in rows)
-    return text.getvalue().rstrip("\n")
 
 
 def _as_markdown(rulebook_diff: RulebookDiff) -> str:

@@ -8,9 +8,9 @@ from textwrap import fill
 
 from rulec.analysis.diff.comparison_matrix import ComparisonMatrix, SharedRule, pairs
 from rulec.report.json_document import JsonDocument, JsonPart, as_indented, filled
-from rulec.report.rulebooks.diff_formats import as_csv
 from rulec.report.rulebooks.diff_json import BookData
 from rulec.report.rulebooks.diff_text import WIDTH
+from rulec.report.text.csv_text import csv_text
 from rulec.report.text.markdown import anchors, code, escaped
 from rulec.report.text.markdown import table as markdown_table
 from rulec.report.text.terminal_text import styled, table_lines, visible
@@ -209,7 +209,8 @@ def _as_csv(matrix: ComparisonMatrix) -> str:
         for first, second in pairs(matrix.books)
         if (relation := rule.relation(first, second)) is not None
     ]
-    return as_csv([("rule", "first", "second", "relation"), *rows])
+    head = ("rule", "first", "second", "relation")
+    return csv_text([head, *rows], "\n").rstrip("\n")
 
 
 def _as_json(matrix: ComparisonMatrix) -> str:

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections.abc import Iterable, Iterator, Mapping
 from typing import IO, Any, TypeAlias
 
-from rulec.report.text.outgoing import spreadsheet_text
-from rulec.report.text.terminal_text import visible
+from rulec.report.text.csv_text import csv_text
 from rulec.report.verdict_findings.verdict_finding import (
     COLUMNS,
     EMPTY_CELLS,
@@ -52,19 +49,14 @@ class CsvWriter:
     def __init__(self, stream: IO[bytes], columns: Columns | None = None) -> None:
         self._stream = stream
         self._columns = columns
-        self._write([list(columns or COLUMNS)])
+        stream.write(csv_text([columns or COLUMNS]).encode())
 
     def add(self, found: FoundInRecording) -> None:
         """Write a row for each."""
-        self._write([[_cell(value) for value in row] for row in _rows(found, self._columns)])
+        self._stream.write(csv_text(_rows(found, self._columns)).encode())
 
     def close(self) -> None:
         """Nothing comes at the end."""
-
-    def _write(self, rows: list[list[str]]) -> None:
-        text = io.StringIO()
-        csv.writer(text, lineterminator="\r\n").writerows(rows)
-        self._stream.write(text.getvalue().encode())
 
 
 class RowWriter:
@@ -91,16 +83,6 @@ def _rows(found: FoundInRecording, columns: Columns | None) -> Iterator[list[Any
     else:
         empty = [(name, EMPTY_CELLS.get(kind)) for name, kind in columns.items()]
         yield from ([row.get(name, nothing) for name, nothing in empty] for row in found.rows)
-
-
-def _cell(value: str | float | tuple[str, ...] | None) -> str:
-    """A cell."""
-    if value is None:
-        return ""
-    if isinstance(value, float | int):
-        return repr(value)
-    text = visible("; ".join(value) if isinstance(value, tuple) else value)
-    return spreadsheet_text(text)
 
 
 class ParquetWriter:

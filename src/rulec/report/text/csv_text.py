@@ -1,0 +1,25 @@
+"""Rows as CSV (RFC 4180), of which a spreadsheet computes nothing."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable
+
+from rulec.report.text.outgoing import spreadsheet_text
+from rulec.report.text.terminal_text import visible
+
+
+def csv_text(rows: Iterable[Iterable[object]], line_end: str = "\r\n") -> str:
+    """Lines of texts and numbers; several texts are parted by semicolons, None is empty."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator=line_end).writerows(map(_cell, row) for row in rows)
+    return text.getvalue()
+
+
+def _cell(value: object) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, tuple):
+        value = "; ".join(value)
+    return spreadsheet_text(visible(value)) if isinstance(value, str) else repr(value)
