@@ -21,8 +21,6 @@ from rulec.report.verdicts.table_folding import MOST_PARTS, cut, fitting, folded
 from rulec.trace import Value
 from rulec.vocabulary.partial_values import Interval
 
-"""A wider table is folded, a longer sentence broken, where no terminal says how wide it is."""
-
 WIDEST = 0.6
 """A part of the formula is cut at this share of the width; what it is made of stands below it."""
 

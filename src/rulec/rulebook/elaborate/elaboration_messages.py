@@ -376,15 +376,19 @@ def temporal_in_count(node: tree.Prefix | tree.Infix) -> Diagnostic:
 
 def endless_phase(phase: tree.Prefix, sequence: tree.Infix) -> Diagnostic:
     """``never p then q``, where ``never (p then q)`` is probably meant."""
-    span, bound = phase.span, phase.bound
-    behind = span.start + len(phase.sign) if bound is None else bound.span.end
-    head = Span(span.source, span.start, behind).text
-    inside = Span(span.source, behind, sequence.span.end).text.strip()
     return OPERATOR_BEFORE_THEN.at(
-        span,
+        phase.span,
         f"`{phase.operator}` speaks of this phase alone, not of the whole sequence",
         expected=f"`{phase.operator}` binds tighter than `then`",
         help=f"write `{phase.operator} (… then …)` to speak of the sequence",
         severity="warning",
-        fix=Fix(Span(span.source, span.start, sequence.span.end).place, f"{head} ({inside})"),
+        fix=parentheses_behind(phase, sequence.span.end),
     )
+
+
+def parentheses_behind(prefix: tree.Prefix, until: int) -> Fix:
+    """What an operator is to speak of, up to a position, in parentheses."""
+    source, start = prefix.span.source, prefix.span.start
+    behind = start + len(prefix.sign) if prefix.bound is None else prefix.bound.span.end
+    head, inside = source.text[start:behind], source.text[behind:until].strip()
+    return Fix(Span(source, start, until).place, f"{head} ({inside})")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rulec.diagnostics import Diagnostic, Fix, Span
 from rulec.diagnostics.code import Code
-from rulec.rulebook.elaborate.elaboration_messages import short
+from rulec.rulebook.elaborate.elaboration_messages import parentheses_behind, short
 from rulec.syntax import tree
 
 FIRST_STATE_ONLY = Code(
@@ -67,18 +67,13 @@ def first_state_only(node: tree.Formula, reads: str, *, alone: bool) -> Diagnost
 
 def narrow_operator(prefix: tree.Prefix, follows: str, until: int) -> Diagnostic:
     """``never a and b``, where ``never (a and b)`` is probably meant, up to a position."""
-    span = prefix.span
-    behind = span.start + len(prefix.sign) if prefix.bound is None else prefix.bound.span.end
-    whole = Span(span.source, span.start, until)
-    head = Span(span.source, span.start, behind).text
-    inside = Span(span.source, behind, until).text.strip()
     return NARROW_OPERATOR.at(
-        span,
+        prefix.span,
         f"`{prefix.operator}` speaks of this alone, not of what `{follows}` joins to it",
         expected=f"`{prefix.operator}` binds tighter than `{follows}`",
         help=f"write `{prefix.operator} (… {follows} …)`, or put parentheses around this",
         severity="warning",
-        fix=Fix(whole.place, f"{head} ({inside})"),
+        fix=parentheses_behind(prefix, until),
     )
 
 
