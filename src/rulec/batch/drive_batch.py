@@ -83,38 +83,19 @@ class WrittenDrives:
         return stream.getvalue()
 
 
-def drives_in_order(
-    drives: WrittenDrives,
-    jobs: Jobs,
-    tell: Callable[[int], object],
-    lost: Callable[[str, int | None], object],
-) -> Generator[bytes, None, None]:
-    """Each drive as it is written behind the head, in the order of the vehicles.
-
-    Not for Parquet, whose rows have to be together. ``tell`` is told how many vehicles are done,
-    ``lost`` whose process was killed, and by which signal, so that another one does it again.
-    Raises RulecError R0708 if that was killed, too.
-    """
-    yield from _in_order(drives.written, drives, jobs, tell, lost)
-
-
-def traces_in_order(
-    drives: WrittenDrives,
-    jobs: Jobs,
-    tell: Callable[[int], object],
-    lost: Callable[[str, int | None], object],
-) -> Generator[Trace, None, None]:
-    """Each drive as a trace, as ``drives_in_order``."""
-    yield from _in_order(drives.traces, drives, jobs, tell, lost)
-
-
-def _in_order(
+def in_vehicle_order(
     work: Callable[[str], Iterator[Piece]],
     drives: WrittenDrives,
     jobs: Jobs,
     tell: Callable[[int], object],
     lost: Callable[[str, int | None], object],
-) -> Iterator[Piece]:
+) -> Generator[Piece, None, None]:
+    """What ``drives.traces`` or ``drives.written`` have of each vehicle, in their order.
+
+    Bytes are not for Parquet, whose rows have to be together. ``tell`` is told how many vehicles
+    are done, ``lost`` whose process was killed, and by which signal, so that another one does it
+    again. Raises RulecError R0708 if that was killed, too.
+    """
     for _, piece in in_order(work, drives.selected.egos, jobs, tell, lost):
         if isinstance(piece, LostTask):
             raise process_lost(str(drives.source.path), piece.signal_number, "read")

@@ -127,7 +127,7 @@ def _write_drives(
     options: dict[str, Any],
 ) -> None:
     # numpy and shapely, 200 ms: only for recordings.
-    from rulec.batch.drive_batch import WrittenDrives, drives_in_order, traces_in_order
+    from rulec.batch.drive_batch import WrittenDrives, in_vehicle_order
     from rulec.trace.formats.trace_files import write_traces
 
     if (option := _given_maneuvers_option(options)) is not None:
@@ -158,11 +158,11 @@ def _write_drives(
     ):
         if to.form == "parquet":
             # Its rows have to be together.
-            with closing(traces_in_order(drives, jobs, tell, lost)) as traces:
+            with closing(in_vehicle_order(drives.traces, drives, jobs, tell, lost)) as traces:
                 write_traces(counted(traces), stream, name, "parquet", kinds, partial=True)
         else:
             stream.write(drives.head)
-            with closing(drives_in_order(drives, jobs, tell, lost)) as pieces:
+            with closing(in_vehicle_order(drives.written, drives, jobs, tell, lost)) as pieces:
                 for piece in counted(pieces):
                     stream.write(piece)
     print_written(f"{count:,} drives to {to.path}", to)
