@@ -12,12 +12,13 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from rulec.automata.mealy_monitor import NumberRead, Threshold
-from rulec.automata.thresholds import exact
+from rulec.automata.thresholds import exact, scale
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.logic.formula import Comparison, Count, QuantityTerm, Same
 from rulec.monitoring.batch import batch_verify, joint_codes
 from rulec.monitoring.batch.batch_verify import verify_chunk, verify_many
-from rulec.monitoring.batch.columns.column_reader import NotGivenError, digits_of_sum
+from rulec.monitoring.batch.columns.column_numbers import digits_of
+from rulec.monitoring.batch.columns.column_reader import NotGivenError
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.batch.trace_groups import group_traces
@@ -285,7 +286,7 @@ floats = st.floats(allow_nan=False, allow_infinity=False) | st.sampled_from(
 def test_sums_are_exact(pairs):
     """0.1 and a third of 0.6 are 0.3, whatever floats make of it."""
     ones, others = (np.array(column) for column in zip(*pairs, strict=True))
-    found = digits_of_sum(SUM, [(Fraction(1), ones), (Fraction(1, 3), others)], len(pairs))
+    found = digits_of(scale(SUM), [(Fraction(1), ones), (Fraction(1, 3), others)], len(pairs))
     assert found.tolist() == [SUM.digit(exact(one) + exact(other) / 3) for one, other in pairs]
 
 

@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 
 from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
 from rulec.logic.formula import Atom, Count, QuantityTerm
+from rulec.vocabulary.vocabulary_model import default_value
 from rulec.witnesses.state_synthesis import (
     are_consistent,
     default_digit,
-    default_value,
     numbers_near_thresholds,
     required_counts,
     solve_numbers,

@@ -57,6 +57,15 @@ def names_of(formula: ltl.Formula) -> frozenset[str]:
     return frozenset(names_in(formula))
 
 
+def reads_in(formula: ltl.Formula) -> Iterator[ltl.Atom | ltl.Term]:
+    """The atoms and what comparisons add up, from left to right, with repetitions."""
+    for proposition in ltl.atoms_of(formula):
+        if isinstance(proposition, ltl.Atom):
+            yield proposition
+        else:
+            yield from (term for _, term in proposition.terms)
+
+
 def rename_variables(formula: ltl.Formula, names: Mapping[str, str]) -> ltl.Formula:
     """Rename all free variables of a formula at once.
 
@@ -123,24 +132,11 @@ def _inputs(
     names: Mapping[str, str],
 ) -> Iterator[ltl.Atom | ltl.QuantityTerm]:
     """The inputs of a formula in which variables stand for these names."""
-    for atom in ltl.atoms_of(formula):
-        if isinstance(atom, ltl.Comparison):
-            for _, term in atom.terms:
-                yield from _of_term(term, objects, fits, names)
-        else:
-            yield replace(atom, arguments=_renamed(atom.arguments, names)) if names else atom
-
-
-def _of_term(
-    term: ltl.Term,
-    objects: Mapping[str, str],
-    fits: Callable[[str, str], bool],
-    names: Mapping[str, str],
-) -> Iterator[ltl.Atom | ltl.QuantityTerm]:
-    if isinstance(term, ltl.QuantityTerm):
-        yield replace(term, arguments=_renamed(term.arguments, names)) if names else term
-        return
-    for name, kind in objects.items():
-        if fits(kind, term.type):
-            # What is asked of the object that stands in the count's place.
-            yield from _inputs(term.body, objects, fits, {**names, term.variable: name})
+    for read in reads_in(formula):
+        if not isinstance(read, ltl.Count):
+            yield replace(read, arguments=_renamed(read.arguments, names)) if names else read
+            continue
+        for name, kind in objects.items():
+            if fits(kind, read.type):
+                # What is asked of the object that stands in the count's place.
+                yield from _inputs(read.body, objects, fits, {**names, read.variable: name})

@@ -9,15 +9,14 @@ from typing import Any, NamedTuple
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
-from rulec.logic.formula import Atom, Count, atoms_of
-from rulec.logic.free_names import names_in, rename_variables
+from rulec.logic.formula import Atom, Count
+from rulec.logic.free_names import names_in, reads_in, rename_variables
 from rulec.logic.kleene import Unknown, holds, number_of
 from rulec.logic.printing import formula_text, term_text
 from rulec.monitoring.monitoring_messages import VIOLATED_AXIOM
 from rulec.monitoring.state_view import StateView
-from rulec.rulebook.rules.axiom_instances import counts
+from rulec.rulebook.rules.axiom_instances import bound_to, counts
 from rulec.trace import Value
-from rulec.vocabulary.vocabulary_model import choices
 
 
 class ImpossibleStateError(RulecError):
@@ -98,10 +97,8 @@ def _instances(
     axioms: Sequence[CompiledAxiom], types: Mapping[str, str], view: StateView
 ) -> Iterator[_AxiomInstance]:
     for axiom in axioms:
-        parameters = [variable.type for variable in axiom.variables]
-        for chosen in choices(parameters, types, view.vocabulary):
-            names = [variable.name for variable in axiom.variables]
-            yield _AxiomInstance(axiom, dict(zip(names, chosen, strict=True)))
+        for bound in bound_to(axiom.variables, types, view.vocabulary):
+            yield _AxiomInstance(axiom, bound)
 
 
 def _error(
@@ -130,13 +127,12 @@ def _error(
 
 
 def _values(instance: _AxiomInstance, view: StateView) -> Iterator[str]:
-    for part in atoms_of(instance.axiom.formula):
-        for read in (part,) if isinstance(part, Atom) else [term for _, term in part.terms]:
-            value: Value | Unknown | Fraction
-            if isinstance(read, Count):
-                text, value = term_text(read), number_of(read, instance.bound, view)
-            else:
-                items = tuple(instance.bound[variable] for variable in read.arguments)
-                text, value = str(Atom(read.name, items)), view.value(read.name, items)
-            if not isinstance(value, Unknown):
-                yield f"`{text}` is {str(value).lower() if isinstance(value, bool) else value}"
+    for read in reads_in(instance.axiom.formula):
+        value: Value | Unknown | Fraction
+        if isinstance(read, Count):
+            text, value = term_text(read), number_of(read, instance.bound, view)
+        else:
+            items = tuple(instance.bound[variable] for variable in read.arguments)
+            text, value = str(Atom(read.name, items)), view.value(read.name, items)
+        if not isinstance(value, Unknown):
+            yield f"`{text}` is {str(value).lower() if isinstance(value, bool) else value}"

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.diagnostics import SourceLocation
 from rulec.resource_limits import CHOICES
+from rulec.rulebook.rules.axiom_instances import bound_to
 from rulec.vocabulary import Vocabulary
-from rulec.vocabulary.vocabulary_model import choices, number_of_choices
+from rulec.vocabulary.vocabulary_model import number_of_choices
 
 MANY = 1 << 13
 """From so many choices of objects for three variables and more on, only those are made that may
@@ -50,9 +51,8 @@ class Cast:
         if len(types) > 1:
             number = number_of_choices(types, self.objects, self.vocabulary)
             CHOICES.within(number, self.place, f"rule `{rule.name}`")
-        names = [variable.name for variable in rule.variables]
-        for chosen in choices(types, self.objects, self.vocabulary):
-            binding = binding_of(dict(zip(names, chosen, strict=True)), self.present, self.n_states)
+        for chosen in bound_to(rule.variables, self.objects, self.vocabulary):
+            binding = binding_of(chosen, self.present, self.n_states)
             if binding.first <= binding.last:
                 yield binding
 

@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.monitoring.monitoring_messages import UNFITTING_VALUE
+from rulec.monitoring.state_view import put
 from rulec.trace import State, Trace
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
@@ -116,12 +117,3 @@ def _filled(
             if all(begins <= number <= ends for begins, ends in stretches):
                 filled = put(filled, subject, value)
         yield state if filled == state.get(name) else {**state, name: filled}
-
-
-def put(given: Any, subject: _Subject, value: object) -> Any:
-    """What a name says, and ``value`` of these objects."""
-    if not subject:
-        return value
-    first, *others = subject
-    known = given if isinstance(given, Mapping) else {}
-    return {**known, first: put(known.get(first), tuple(others), value)}

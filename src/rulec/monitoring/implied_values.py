@@ -7,7 +7,8 @@ from dataclasses import replace
 from operator import is_
 from typing import Any
 
-from rulec.monitoring.constant_values import put, values_in, with_constants
+from rulec.monitoring.constant_values import values_in, with_constants
+from rulec.monitoring.state_view import put
 from rulec.trace import State, Trace, TraceGraph
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN

@@ -64,14 +64,17 @@ def with_values(
         return state
     changed: dict[str, Any] = dict(state)
     for (name, items), value in values.items():
-        changed[name] = _nested(changed.get(name) or {}, items, value) if items else value
+        changed[name] = put(changed.get(name), items, value)
     return changed
 
 
-def _nested(given: Mapping[str, Any], items: tuple[str, ...], value: object) -> Mapping[str, Any]:
+def put(given: Any, items: tuple[str, ...], value: object) -> Any:
+    """What a name says, and ``value`` of these objects."""
+    if not items:
+        return value
     first, *others = items
-    inner = _nested(given.get(first) or {}, tuple(others), value) if others else value
-    return {**given, first: inner}
+    known = given if isinstance(given, Mapping) else {}
+    return {**known, first: put(known.get(first), tuple(others), value)}
 
 
 def value_in(

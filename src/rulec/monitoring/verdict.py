@@ -171,17 +171,26 @@ class Verdict(Rows):
         ]
 
 
+RuleFor: TypeAlias = tuple[str, tuple[str, ...]]
+"""A rule's name, and the objects that its variables stand for."""
+
+
+def rule_for(result: Violation | OpenVerdict) -> RuleFor:
+    """The rule that is violated or open, and for which objects."""
+    return result.rule, tuple(result.binding.values())
+
+
 def agreed(verdicts: Sequence[Verdict]) -> Verdict:
     """What verdicts on one trace by rules with differently rounded bounds have in common.
 
     Where they differ the verdict is open, on the step.
     """
     first, *others = verdicts
-    violations = {_key(violation): violation for violation in first.violations}
-    doubtful = {_key(result): result for result in first.open}
+    violations = {rule_for(violation): violation for violation in first.violations}
+    doubtful = {rule_for(result): result for result in first.open}
     for verdict in others:
-        further = {_key(violation): violation for violation in verdict.violations}
-        further_open = {_key(result): result for result in verdict.open}
+        further = {rule_for(violation): violation for violation in verdict.violations}
+        further_open = {rule_for(result): result for result in verdict.open}
         for key in violations.keys() ^ further.keys():
             known = violations.get(key) or further[key]
             doubtful[key] = OpenVerdict(known.rule, known.strength, known.binding, ("step",))
@@ -200,10 +209,6 @@ def agreed(verdicts: Sequence[Verdict]) -> Verdict:
 _STEP: tuple[Reason, ...] = ("step",)
 
 
-def _key(result: Violation | OpenVerdict) -> tuple[str, tuple[str, ...]]:
-    return result.rule, tuple(result.binding.values())
-
-
 def _later(first: int | None, second: int | None) -> int | None:
     return None if first is None or second is None else max(first, second)
 
@@ -216,10 +221,6 @@ class NotJudged:
 
     trace: str | None
     error: RulecError
-
-
-RuleFor: TypeAlias = tuple[str, tuple[str, ...]]
-"""A rule's name, and the objects that its variables stand for."""
 
 
 @dataclass(frozen=True, slots=True)

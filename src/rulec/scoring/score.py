@@ -25,7 +25,7 @@ from rulec.extraction.recording_verdicts import (
 from rulec.extraction.to_trace import Drive, TraceWriter
 from rulec.extraction.tracks.mirror import mirrored_participant
 from rulec.files import no_garbage_collection
-from rulec.monitoring.verdict import NotJudged, OpenVerdict, Verdict, Violation
+from rulec.monitoring.verdict import NotJudged, OpenVerdict, RuleFor, Verdict, Violation, rule_for
 from rulec.recordings.recording import Participant
 from rulec.scoring.candidate_score import CandidateScore
 from rulec.scoring.charges import CandidateCharges, CandidateScores, at, forget_reasons
@@ -33,9 +33,6 @@ from rulec.scoring.scored_again import without_drives
 from rulec.scoring.scores import Scores
 from rulec.scoring.traffic_world import TrafficWorld
 from rulec.trace.trace_arrays import TraceArrays
-
-_Key = tuple[str, tuple[str, ...]]
-"""A rule, and the objects of its variables."""
 
 _Pasts: TypeAlias = "WeakKeyDictionary[TrafficWorld, tuple[Any, tuple[Violation, ...]]]"
 """By worlds the last past that was asked about, and what it violates by itself."""
@@ -221,7 +218,7 @@ def _anew(
     their time is left to mend what goes on.
     """
     first, begin = steps
-    known = {_key(violation) for violation in before}
+    known = {rule_for(violation) for violation in before}
     if not known:
         return scores
     books, names = some_rules(frozenset(rule for rule, _ in known), roundings)
@@ -239,19 +236,21 @@ def _anew(
         if isinstance(answer, Verdict):
             number, begins = future.number, max(begin, future.first_step) - first
             own = [
-                at(violation, begins) for violation in answer.violations if _key(violation) in known
+                at(violation, begins)
+                for violation in answer.violations
+                if rule_for(violation) in known
             ]
             violations.setdefault(number, []).extend(own)
-            doubtful.setdefault(number, []).extend(x for x in answer.open if _key(x) in known)
+            doubtful.setdefault(number, []).extend(x for x in answer.open if rule_for(x) in known)
     return [
         replace(
             found,
             violations=(
-                *(violation for violation in found.violations if _key(violation) not in known),
+                *(violation for violation in found.violations if rule_for(violation) not in known),
                 *violations.get(number, ()),
             ),
             open=(
-                *(open_verdict for open_verdict in found.open if _key(open_verdict) not in known),
+                *(verdict for verdict in found.open if rule_for(verdict) not in known),
                 *doubtful.get(number, ()),
             ),
             late=late.get(number, 0),
@@ -277,7 +276,7 @@ class _Future(NamedTuple):
 
 def _mended_after(
     futures: Sequence[_Future],
-    known: Collection[_Key],
+    known: Collection[RuleFor],
     books: Sequence[CompiledRulebook],
     steps: tuple[int, int],
 ) -> dict[int, int]:
@@ -302,12 +301,8 @@ def _mended_after(
     return late
 
 
-def _keeps(answer: Verdict | NotJudged, known: Collection[_Key]) -> bool:
+def _keeps(answer: Verdict | NotJudged, known: Collection[RuleFor]) -> bool:
     if not isinstance(answer, Verdict):
         return True
-    is_open = any(_key(open_verdict) in known for open_verdict in answer.open)
-    return not is_open and not any(_key(violation) in known for violation in answer.violations)
-
-
-def _key(found: Violation | OpenVerdict) -> _Key:
-    return found.rule, tuple(found.binding.values())
+    is_open = any(rule_for(open_verdict) in known for open_verdict in answer.open)
+    return not is_open and not any(rule_for(violation) in known for violation in answer.violations)

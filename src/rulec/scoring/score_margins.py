@@ -14,7 +14,7 @@ from rulec.monitoring.bindings import Cast
 from rulec.monitoring.explain.explanation import explain
 from rulec.monitoring.explain.margins import Margin, margin_in
 from rulec.monitoring.state_view import StateView
-from rulec.monitoring.verdict import Verdict, Violation
+from rulec.monitoring.verdict import RuleFor, Verdict, Violation, rule_for
 from rulec.value_display import short_repr
 
 
@@ -42,15 +42,15 @@ def margins_of(
     first: int,
 ) -> Iterator[RuleMargin]:
     """The margins of a candidate, whose first state is that step of the recording."""
-    keys = {_key(violation) for violation in charged}
+    keys = {rule_for(violation) for violation in charged}
     for drive in drives:
         if not isinstance(drive.answer, Verdict):
             continue
         begins = drive.drive.first_step - first
         violated = set()
         for violation in drive.answer.violations:
-            violated.add(_key(violation))
-            if _key(violation) in keys:
+            violated.add(rule_for(violation))
+            if rule_for(violation) in keys:
                 explanation = explain(
                     violation, drive.drive.trace, rules, drive.drive.decided_by, repaired=False
                 )
@@ -63,15 +63,11 @@ def margins_of(
                 yield from _nearest(rule, drive.drive, rules, violated, begins)
 
 
-def _key(violation: Violation) -> tuple[str, tuple[str, ...]]:
-    return violation.rule, tuple(violation.binding.values())
-
-
 def _nearest(
     rule: CompiledRule,
     drive: Drive,
     rules: CompiledRulebook,
-    violated: Collection[tuple[str, tuple[str, ...]]],
+    violated: Collection[RuleFor],
     begins: int,
 ) -> Iterator[RuleMargin]:
     """For each choice of objects the state in which a number comes nearest to deciding."""

@@ -67,6 +67,21 @@ Declaration = Enumeration | Signal | Quantity
 ``presumed``: where no source tells it, its default holds, and verdicts name it."""
 
 
+def values_of(declaration: Declaration) -> tuple[str, ...] | tuple[bool, ...]:
+    """The values of an enumeration, in their order, or of a signal."""
+    return declaration.values if isinstance(declaration, Enumeration) else (False, True)
+
+
+def least_value(declaration: Declaration) -> bool | float | str:
+    """The first value, or zero."""
+    return 0.0 if isinstance(declaration, Quantity) else values_of(declaration)[0]
+
+
+def default_value(declaration: Declaration) -> bool | float | str:
+    """The default, or else the least value."""
+    return least_value(declaration) if declaration.default is None else declaration.default
+
+
 @dataclass(frozen=True)
 class Vocabulary:
     """Types and declarations by name, in order of declaration."""

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
 from rulec.logic import formula as ltl
-from rulec.logic.free_names import rename_variables
+from rulec.logic.free_names import reads_in, rename_variables
 from rulec.rulebook.rulebook_model import Axiom, Variable
+from rulec.rulebook.rules.axiom_instances import bound_to
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.vocabulary_model import choices
 
@@ -49,10 +50,7 @@ class ObjectUniverse:
 
     def bindings(self, variables: Sequence[Variable]) -> list[dict[str, str]]:
         """Every way to bind variables to distinct objects of their types."""
-        names = [variable.name for variable in variables]
-        types = [variable.type for variable in variables]
-        bound_objects = choices(types, self.objects, self.vocabulary)
-        return [dict(zip(names, chosen, strict=True)) for chosen in bound_objects]
+        return list(bound_to(variables, self.objects, self.vocabulary))
 
     def axiom_bindings(self) -> Iterator[tuple[Axiom, dict[str, str]]]:
         """Each axiom with each way to bind its variables."""
@@ -92,6 +90,4 @@ def canonical_term(term: ltl.Term) -> ltl.Term:
 
 def counts_in(formula: ltl.Formula) -> Iterator[ltl.Count]:
     """The counts that a formula compares, not those inside of others."""
-    for proposition in ltl.atoms_of(formula):
-        if isinstance(proposition, ltl.Comparison):
-            yield from (term for _, term in proposition.terms if isinstance(term, ltl.Count))
+    yield from (read for read in reads_in(formula) if isinstance(read, ltl.Count))

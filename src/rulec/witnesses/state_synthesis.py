@@ -16,7 +16,7 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact
 from rulec.logic.formula import Count, QuantityTerm, Term
 from rulec.vocabulary import Declaration, Enumeration, Vocabulary
-from rulec.vocabulary import Quantity as DeclaredQuantity
+from rulec.vocabulary.vocabulary_model import default_value
 from rulec.witnesses.fourier_motzkin import LinearBound, solve
 
 Subject = tuple[str, tuple[str, ...]]
@@ -295,15 +295,6 @@ def value_of(read: Read, digit: int, vocabulary: Vocabulary) -> bool | str:
     if declaration.default is not None and declaration.default not in read.values:
         return declaration.default
     return next(value for value in declaration.values if value not in read.values)
-
-
-def default_value(declaration: Declaration) -> Value:
-    """The value of a declaration that nobody asks about."""
-    if declaration.default is not None:
-        return declaration.default
-    if isinstance(declaration, Enumeration):
-        return declaration.values[0]
-    return 0.0 if isinstance(declaration, DeclaredQuantity) else False
 
 
 def default_digit(read: Read | NumberRead, vocabulary: Vocabulary) -> int | None:

@@ -10,13 +10,14 @@ from typing import Any
 
 from rulec.diagnostics import RulecError
 from rulec.trace import Trace
+from rulec.vocabulary.vocabulary_model import default_value
 from rulec.witnesses.counted_objects import (
     CountedObjectKinds,
     counted_objects_of_types,
     fewest_counted_objects,
 )
 from rulec.witnesses.object_universe import EXTRA, ObjectUniverse
-from rulec.witnesses.state_synthesis import JointState, Subject, Value, default_value, subjects_of
+from rulec.witnesses.state_synthesis import JointState, Subject, Value, subjects_of
 from rulec.witnesses.undecided import ChangingConstantsError, UndecidedError
 
 

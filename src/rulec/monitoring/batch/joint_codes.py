@@ -13,7 +13,8 @@ from rulec.automata.thresholds import scale
 from rulec.monitoring.batch.columns.column_reader import ColumnReader
 from rulec.monitoring.batch.verdict_columns import JointCells, RuleBinding
 from rulec.trace.trace_columns import Array, Layout, smallest_unsigned
-from rulec.vocabulary import Enumeration, Vocabulary
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.vocabulary_model import values_of
 
 MOST_CELLS = 1 << 16
 """More combinations of what is read than these are not told apart by one number."""
@@ -96,10 +97,7 @@ def _meanings(machine: MealyMonitor, vocabulary: Vocabulary) -> list[Array]:
         if isinstance(read, NumberRead):
             meanings.append(np.arange(read.size))
         else:
-            declaration = vocabulary.declarations[read.name]
-            values: Sequence[bool | str] = (
-                declaration.values if isinstance(declaration, Enumeration) else (False, True)
-            )
+            values = values_of(vocabulary.declarations[read.name])
             meanings.append(np.array([read.digit(value) for value in values]))
     return meanings
 

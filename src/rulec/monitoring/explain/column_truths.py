@@ -20,12 +20,12 @@ from rulec.monitoring.bindings import Binding
 from rulec.monitoring.uncertainty.one_completion import (
     NOTHING_SUPPOSED,
     Supposed,
-    any_value,
     number_at,
 )
 from rulec.trace.trace_arrays import Flags, TraceArrays
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import Interval
+from rulec.vocabulary.vocabulary_model import default_value
 
 _HAIR = 1e-8
 """Sums of floats closer to a limit than this share of what is summed are formed exactly."""
@@ -74,7 +74,7 @@ class ColumnTruths:
         if isinstance(proposition, ltl.Comparison):
             return self._compared(proposition)
         name, wanted = proposition.name, proposition.value or True
-        declared = any_value(self.vocabulary.declarations[name])
+        declared = default_value(self.vocabulary.declarations[name])
         supposed = self.supposed.values.get(name, declared)
         unsaid = supposed if name in self.untold else declared
         column = self._column(name, proposition.arguments)
@@ -222,7 +222,7 @@ class _Numbers:
     def __init__(self, truths: ColumnTruths, term: ltl.QuantityTerm) -> None:
         self._column = truths._column(term.name, term.arguments)
         self._end = truths.supposed.ends.get(term.name)
-        declared = any_value(truths.vocabulary.declarations[term.name])
+        declared = default_value(truths.vocabulary.declarations[term.name])
         assert not isinstance(declared, str), "it is a quantity"
         self._default = declared
         self._n_states = truths.n_states

@@ -8,7 +8,7 @@ from typing import overload
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.logic import formula as ltl
-from rulec.logic.free_names import names_in
+from rulec.logic.free_names import names_in, reads_in
 from rulec.monitoring.bindings import Binding, binding_of
 from rulec.monitoring.explain.column_truths import ColumnTruths
 from rulec.monitoring.explain.explanation import (
@@ -92,16 +92,12 @@ def _read_by(
     formula: ltl.Formula, truths: ColumnTruths
 ) -> Iterator[tuple[ColumnTruths, str, tuple[str, ...]]]:
     """The names that a formula reads, of which variables, and of what these stand for."""
-    for atom in ltl.atoms_of(formula):
-        if isinstance(atom, ltl.Atom):
-            yield truths, atom.name, atom.arguments
-            continue
-        for _, term in atom.terms:
-            if isinstance(term, ltl.Count):
-                for _, own in truths.of_counted(term):
-                    yield from _read_by(term.body, own)
-            else:
-                yield truths, term.name, term.arguments
+    for read in reads_in(formula):
+        if isinstance(read, ltl.Count):
+            for _, own in truths.of_counted(read):
+                yield from _read_by(read.body, own)
+        else:
+            yield truths, read.name, read.arguments
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rulec.automata.thresholds import EXACT_IN_FLOATS
-from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize, one_value
+from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.trace_groups import group_traces
 from rulec.monitoring.implied_values import with_all_said
 from rulec.monitoring.state_view import value_in, with_values
@@ -22,6 +22,7 @@ from rulec.trace import Trace
 from rulec.trace.trace_columns import Array, TraceColumns
 from rulec.vocabulary import Declaration, Enumeration, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
+from rulec.vocabulary.vocabulary_model import least_value
 from rulec.vocabulary.written_numbers import WrittenNumber
 
 Flags = NDArray[np.bool_]
@@ -195,7 +196,7 @@ def default_of(declaration: Declaration | None) -> tuple[bool | float | int, boo
         return False, False
     default: Any = declaration.default
     is_known = default is not None and default is not UNKNOWN
-    value = default if is_known else one_value(declaration)
+    value = default if is_known else least_value(declaration)
     if isinstance(declaration, Enumeration):
         return declaration.values.index(str(value)), is_known
     return value if isinstance(value, bool) else float(value), is_known

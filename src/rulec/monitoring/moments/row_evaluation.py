@@ -9,11 +9,14 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.automata.mealy_monitor import NumberRead, Threshold
-from rulec.automata.thresholds import scale
+from rulec.automata.thresholds import ThresholdScale
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import BOOLEAN
-from rulec.monitoring.batch.columns.column_reader import digits_of_sum
+from rulec.monitoring.batch.columns.column_numbers import (
+    ComparisonSides,
+    comparison_sides,
+    digits_of,
+)
 from rulec.monitoring.moments import truth_rows as rows_of
 from rulec.monitoring.moments.name_tables import NameTables, ValueRows
 from rulec.monitoring.moments.truth_rows import RowStretches, TruthRows, known
@@ -22,35 +25,6 @@ from rulec.vocabulary import Enumeration
 
 Places = NDArray[np.intp]
 """Numbers of objects in the tables' order, one a row, or one for all rows."""
-
-_SIDES: Mapping[ltl.Relation, tuple[int, ...]] = {
-    "<": (0,),
-    "<=": (0, 1),
-    "=": (1,),
-    "!=": (0, 2),
-    ">=": (1, 2),
-    ">": (2,),
-}
-"""The sides of a limit, below, at and above it, on which a number stands in a relation to it."""
-
-
-class ReadyComparison:
-    """A comparison with its limit as thresholds, and what each pair of sides comes to.
-
-    ``every`` and ``some`` (3 x 3) say for the lowest and the highest side that a number may be on
-    whether it stands in the relation on all sides between them, and on some.
-    """
-
-    def __init__(self, comparison: ltl.Comparison) -> None:
-        self.comparison = comparison
-        at = Threshold(comparison.limit, inclusive=True)
-        above = Threshold(comparison.limit, inclusive=False)
-        self.read = NumberRead(comparison.terms, (at, above))
-        self.scale = scale(self.read)
-        stands = np.array([side in _SIDES[comparison.relation] for side in range(3)])
-        pairs = [[stands[low : high + 1] for high in range(3)] for low in range(3)]
-        self.every = np.array([[sides.all() for sides in row] for row in pairs])
-        self.some = np.array([[sides.any() for sides in row] for row in pairs])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,7 +41,7 @@ class RowEvaluation:
     spans: Places
     stretches: RowStretches
     states: Places
-    comparisons: dict[int, ReadyComparison]
+    comparisons: dict[int, ComparisonSides]
     trace: Places | None = None
 
     @property
@@ -162,16 +136,17 @@ class RowEvaluation:
     def _comparison(self, comparison: ltl.Comparison, bound: Mapping[str, Places]) -> TruthRows:
         ready = self.comparisons.get(id(comparison))
         if ready is None:
-            ready = self.comparisons[id(comparison)] = ReadyComparison(comparison)
+            ready = comparison_sides(comparison.terms, comparison.relation, comparison.limit)
+            self.comparisons[id(comparison)] = ready
         parts = [(factor, self._term(term, bound)) for factor, term in comparison.terms]
         unknown = parts[0][1].unknown
         for _, part in parts[1:]:
             unknown = unknown | part.unknown
         lows = [(f, part.values if f > 0 else part.upper) for f, part in parts]
         highs = [(f, part.upper if f > 0 else part.values) for f, part in parts]
-        low = _digits(ready, lows, unknown)
+        low = _digits(ready.scale, lows, unknown)
         same = all(one is other for (_, one), (_, other) in zip(lows, highs, strict=True))
-        high = low if same else _digits(ready, highs, unknown)
+        high = low if same else _digits(ready.scale, highs, unknown)
         return TruthRows(ready.every[low, high] & ~unknown, ready.some[low, high] | unknown)
 
     def _term(self, term: ltl.Term, bound: Mapping[str, Places]) -> ValueRows:
@@ -194,17 +169,13 @@ class RowEvaluation:
 
 
 def _digits(
-    ready: ReadyComparison, summands: list[tuple[Fraction, Array]], ignored: NDArray[np.bool_]
-) -> NDArray[np.intp]:
+    ready: ThresholdScale, summands: list[tuple[Fraction, Array]], ignored: NDArray[np.bool_]
+) -> Array:
     """For each row and state the side of the limit that a sum is on; any if it is ignored."""
-    if ready.scale.quantity is not None:
-        ((_, numbers),) = summands
-        digits = np.zeros(numbers.shape, dtype=np.intp)
-        for floor in ready.scale.floors:
-            digits += numbers >= floor
-        return digits
+    if ready.quantity is not None:
+        return digits_of(ready, summands, 0)
     spread = np.broadcast_arrays(ignored, *[numbers for _, numbers in summands])
     shape = spread[0].shape
     flat = [column.ravel() for column in spread]
     parts = [(factor, one) for (factor, _), one in zip(summands, flat[1:], strict=True)]
-    return digits_of_sum(ready.read, parts, flat[0].size, flat[0]).astype(np.intp).reshape(shape)
+    return digits_of(ready, parts, flat[0].size, flat[0]).reshape(shape)

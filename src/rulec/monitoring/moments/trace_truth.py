@@ -13,9 +13,10 @@ from rulec.logic.formula import Formula
 from rulec.logic.free_names import variables_of
 from rulec.logic.opportunities import conjuncts, looks_elsewhere
 from rulec.logic.semantics import Semantics, steps_to_settle
+from rulec.monitoring.batch.columns.column_numbers import ComparisonSides
 from rulec.monitoring.moments.array_tables import ArrayTables
 from rulec.monitoring.moments.name_tables import NameTables, tables_of_trace
-from rulec.monitoring.moments.row_evaluation import Places, ReadyComparison, RowEvaluation
+from rulec.monitoring.moments.row_evaluation import Places, RowEvaluation
 from rulec.monitoring.moments.truth_rows import RowEnding, RowStretches
 from rulec.resource_limits import LOOKBACK
 from rulec.rulebook.rulebook_model import Variable
@@ -93,7 +94,7 @@ class ReadyFormula:
             for part in conjuncts(formula)
             if next(variables_of(part), None) is None and not looks_elsewhere(part)
         ]
-        self.comparisons: dict[int, ReadyComparison] = {}
+        self.comparisons: dict[int, ComparisonSides] = {}
 
 
 class TraceTruth:

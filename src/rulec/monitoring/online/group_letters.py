@@ -15,6 +15,7 @@ from rulec.monitoring.online.encoding.encoded_values import Encoded, MonitorInpu
 from rulec.monitoring.online.encoding.state_shape import Items, StateShape
 from rulec.monitoring.online.rule_group import RuleGroup, RulesRead
 from rulec.monitoring.state_view import StateView
+from rulec.monitoring.uncertainty.state_letters.joint_values import values_at
 from rulec.monitoring.uncertainty.state_letters.read_digits import read_digits
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingValueError
 from rulec.trace import State
@@ -214,7 +215,7 @@ def _part_column(part: int) -> _ReadColumn:
 
 
 def _values_column(places: Sequence[tuple[int, int]]) -> _ReadColumn:
-    part, pick = places[0][0], encoded_values.values_at([place for _, place in places])
+    part, pick = places[0][0], values_at([place for _, place in places])
     return lambda _, parts: pick(parts[part])
 
 

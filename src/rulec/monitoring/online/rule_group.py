@@ -15,7 +15,6 @@ from rulec.monitoring.online.encoding.encoded_values import (
     Breakpoints,
     MonitorInput,
     breakpoints_of,
-    values_at,
 )
 from rulec.monitoring.online.encoding.state_shape import Items
 from rulec.monitoring.online.four_valued import (
@@ -23,6 +22,7 @@ from rulec.monitoring.online.four_valued import (
     RunningVerdict,
 )
 from rulec.monitoring.online.prepared_rule import BY_STATE, ClassTable, PreparedRule, prepared_rule
+from rulec.monitoring.uncertainty.state_letters.joint_values import values_at
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES
 
 if TYPE_CHECKING:

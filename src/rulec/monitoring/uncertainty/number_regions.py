@@ -64,23 +64,20 @@ def _comparisons(
     reads: Iterable[Read | NumberRead], facts: Iterable[ltl.Formula]
 ) -> Iterator[_Comparison]:
     """Sums with what they are compared with, those within counts, too."""
+    formulas = list(facts)
     for read in reads:
         if isinstance(read, NumberRead):
-            for threshold in read.thresholds:
-                yield read.terms, threshold.limit
-            yield from _in_counts(read.terms)
-    for fact in facts:
-        yield from _in_formula(fact)
+            yield from ((read.terms, threshold.limit) for threshold in read.thresholds)
+            formulas += [term.body for _, term in read.terms if isinstance(term, ltl.Count)]
+    for formula in formulas:
+        yield from ((own.terms, own.limit) for own in comparisons_in(formula))
 
 
-def _in_formula(formula: ltl.Formula) -> Iterator[_Comparison]:
+def comparisons_in(formula: ltl.Formula) -> Iterator[ltl.Comparison]:
+    """The comparisons of a formula, those within counts, too."""
     for atom in ltl.atoms_of(formula):
         if isinstance(atom, ltl.Comparison):
-            yield atom.terms, atom.limit
-            yield from _in_counts(atom.terms)
-
-
-def _in_counts(terms: Iterable[tuple[Fraction, ltl.Term]]) -> Iterator[_Comparison]:
-    for _, term in terms:
-        if isinstance(term, ltl.Count):
-            yield from _in_formula(term.body)
+            yield atom
+            for _, term in atom.terms:
+                if isinstance(term, ltl.Count):
+                    yield from comparisons_in(term.body)

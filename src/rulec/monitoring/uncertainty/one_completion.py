@@ -10,8 +10,9 @@ from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
 from rulec.monitoring.state_validation import has_partial_values
 from rulec.trace import Trace, Value
-from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
+from rulec.vocabulary import Declaration, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval, OneOf
+from rulec.vocabulary.vocabulary_model import default_value, values_of
 
 End: TypeAlias = Literal["low", "high"]
 
@@ -84,10 +85,9 @@ def favourable(
     values: dict[str, Value] = {}
     for name in signs.keys() - excluded:
         declaration = vocabulary.declarations[name]
-        known = declaration.values if isinstance(declaration, Enumeration) else (False, True)
-        best = [value for value in known if _is_favourable(value, signs[name])]
+        best = [value for value in values_of(declaration) if _is_favourable(value, signs[name])]
         if best:
-            default = any_value(declaration)
+            default = default_value(declaration)
             values[name] = default if default in best else best[0]
     agreed = {name: own.pop() for name, own in ends.items() if len(own) == 1}
     return Supposed(
@@ -126,7 +126,7 @@ def with_all_defaults(
     """The vocabulary in which each name has a default: of ``untold`` ones what is supposed."""
     values = {name: supposed.values[name] for name in supposed.values.keys() & untold}
     declarations = {
-        name: replace(item, default=values.get(name, any_value(item)))  # type: ignore[arg-type]
+        name: replace(item, default=values.get(name, default_value(item)))  # type: ignore[arg-type]
         for name, item in vocabulary.declarations.items()
     }
     return replace(vocabulary, declarations=declarations)
@@ -150,7 +150,7 @@ def _known(value: Any, declaration: Declaration, depth: int, supposed: Supposed)
         return min(value.values)
     if value is not UNKNOWN:
         return value
-    return supposed.values.get(declaration.name, any_value(declaration))
+    return supposed.values.get(declaration.name, default_value(declaration))
 
 
 def number_at(bounds: Interval, end: End | None) -> float:
@@ -158,15 +158,3 @@ def number_at(bounds: Interval, end: End | None) -> float:
     if end is None:
         return bounds.middle
     return bounds.low if end == "low" else bounds.high
-
-
-def any_value(declaration: Declaration) -> Value:
-    """The default, or else the least value."""
-    if declaration.default is not None:
-        return declaration.default
-    match declaration:
-        case Enumeration():
-            return declaration.values[0]
-        case Signal():
-            return False
-    return 0.0

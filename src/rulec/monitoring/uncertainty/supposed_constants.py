@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import product
 from math import prod
@@ -14,12 +14,13 @@ from rulec.automata.thresholds import exact
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in
 from rulec.monitoring.state_view import StateView
+from rulec.monitoring.uncertainty.number_regions import comparisons_in
 from rulec.monitoring.uncertainty.state_letters.read_digits import names_of_read
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject, subjects_of_read
 from rulec.trace import Value
-from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
+from rulec.vocabulary import Declaration, Quantity, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval, PartialValue
-from rulec.vocabulary.vocabulary_model import choices
+from rulec.vocabulary.vocabulary_model import choices, values_of
 
 MOST_ALTERNATIVES = 1 << 6
 """Values of what does not change are gone through as long as there are no more combinations."""
@@ -87,21 +88,27 @@ class ConstantsReader:
         ], is_exact
 
 
+def by_name(supposed: Mapping[Subject, Value]) -> dict[str, object]:
+    """What is supposed of constants, by their names, to be compared."""
+    found: dict[str, object] = {}
+    for (name, items), value in supposed.items():
+        found[name] = (found.get(name), items, value) if items else value
+    return found
+
+
 def _values_of(
     declaration: Declaration, bounds: object, formulas: Sequence[ltl.Formula]
 ) -> Sequence[Any]:
     """Values that stand for all that formulas can tell apart; none if the name is in sums."""
     name = declaration.name
-    match declaration:
-        case Enumeration(values=values):
-            return list(values)
-        case Signal():
-            return [False, True]
+    if not isinstance(declaration, Quantity):
+        return values_of(declaration)
     limits: set[Fraction] = set()
-    for terms, limit in (x for formula in formulas for x in _comparisons_with(name, formula)):
-        if len(terms) > 1:
-            return []
-        limits.add(limit / terms[0][0])
+    for own in (x for formula in formulas for x in comparisons_in(formula)):
+        if any(isinstance(term, ltl.QuantityTerm) and term.name == name for _, term in own.terms):
+            if len(own.terms) > 1:
+                return []
+            limits.add(own.limit / own.terms[0][0])
     within = None
     if isinstance(bounds, Interval):
         within = exact(bounds.low), exact(bounds.high)
@@ -115,16 +122,3 @@ def _values_of(
     planes = [LinearPlane({number: Fraction(1)}, limit) for limit in limits]
     points = sample_points({number: within}, planes)
     return [] if points is None else [point[number] for point in points]
-
-
-def _comparisons_with(
-    name: str, formula: ltl.Formula
-) -> Iterator[tuple[Sequence[tuple[Fraction, ltl.Term]], Fraction]]:
-    """The sums in which a quantity takes part, with their limits, within counts too."""
-    for atom in ltl.atoms_of(formula):
-        if isinstance(atom, ltl.Comparison):
-            for _, term in atom.terms:
-                if isinstance(term, ltl.Count):
-                    yield from _comparisons_with(name, term.body)
-                elif term.name == name:
-                    yield atom.terms, atom.limit

@@ -82,10 +82,6 @@ class UncertainMachine:
         """The letters that do nothing to it, found when they are first asked for."""
         return idle_letters(self.monitor, self.classes.diagram)
 
-    def impossible_at(self, word: PossibleWord) -> int | None:
-        """The index of a state that has no possible letter."""
-        return word.classes.index(0) if 0 in word.classes else None
-
     def answer(self, words: Sequence[PossibleWord]) -> Answer:
         """What the completions come to; ``words`` are by the values of what does not change."""
         runs = [self.monitor.run(word.classes) for word in words]

@@ -18,6 +18,7 @@ from rulec.monitoring.uncertainty.judged_rules import judged_rules
 from rulec.monitoring.uncertainty.lazy_bindings import ReadBits, doubtful_bindings
 from rulec.monitoring.uncertainty.state_letters.letter_classes import PossibleWord
 from rulec.monitoring.uncertainty.state_letters.possible_letters import PossibleLetters
+from rulec.monitoring.uncertainty.supposed_constants import by_name
 from rulec.monitoring.uncertainty.suppositions import Suppositions
 from rulec.monitoring.uncertainty.uncertain_machine import (
     Answer,
@@ -164,11 +165,9 @@ class UncertainRun:
         words, constants = [], []
         for values in supposed:
             words.append(self._letters.word(rule, machine.classes, binding, values))
-            by_name: dict[str, object] = {}
-            for (name, items), value in values.items():
-                by_name[name] = (by_name.get(name), items, value) if items else value
-            constants.append(by_name)
-        broken = [machine.impossible_at(word) for word in words]
+            constants.append(by_name(values))
+        # The first state that has no possible letter, if any
+        broken = [word.classes.index(0) if 0 in word.classes else None for word in words]
         if None not in broken:
             number = binding.first + (broken[0] or 0)
             raise self._letters.impossible(rule, binding.objects, number)

@@ -7,11 +7,11 @@ another matter in every state, so traces alone can tell (``rulec.monitoring.axio
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from rulec.logic import formula as ltl
-from rulec.logic.free_names import rename_variables
+from rulec.logic.free_names import reads_in, rename_variables
 from rulec.rulebook.rulebook_model import Axiom, Variable
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.vocabulary_model import choices
@@ -38,22 +38,24 @@ def axiom_instances(
     for fact in axioms:
         if counts(fact.formula):
             continue
-        own = [variable.name for variable in fact.variables]
-        for chosen in choices([variable.type for variable in fact.variables], types, vocabulary):
-            renaming = dict(zip(own, chosen, strict=True))
+        for renaming in bound_to(fact.variables, types, vocabulary):
             formula = rename_variables(fact.formula, renaming)
-            instances.append(AxiomInstance(fact, chosen, formula))
+            instances.append(AxiomInstance(fact, tuple(renaming.values()), formula))
     return tuple(instances)
+
+
+def bound_to(
+    variables: Sequence[Variable], objects: Mapping[str, str], vocabulary: Vocabulary
+) -> Iterator[dict[str, str]]:
+    """Each way to bind variables to distinct objects of their types, as ``choices``."""
+    names = [variable.name for variable in variables]
+    for chosen in choices([variable.type for variable in variables], objects, vocabulary):
+        yield dict(zip(names, chosen, strict=True))
 
 
 def counts(formula: ltl.Formula) -> bool:
     """Tell whether a formula contains a count of objects."""
-    return any(
-        isinstance(term, ltl.Count)
-        for atom in ltl.atoms_of(formula)
-        if isinstance(atom, ltl.Comparison)
-        for _, term in atom.terms
-    )
+    return any(isinstance(read, ltl.Count) for read in reads_in(formula))
 
 
 def linked(instances: Iterable[AxiomInstance]) -> Iterator[tuple[AxiomInstance, ...]]:

@@ -21,11 +21,11 @@ from rulec.rulebook.names.referenced_names import parts_of
 from rulec.rulebook.names.symbol_table import SymbolTable
 from rulec.rulebook.overlay.constants_and_macros import ConstantsAndMacros
 from rulec.rulebook.rulebook_model import Axiom, ExampleState, Rule, Variable
+from rulec.rulebook.rules.axiom_instances import bound_to
 from rulec.rulebook.rules.example_messages import CONTRADICTORY_STATE
 from rulec.rulebook.rules.implied_signals import with_what_follows
 from rulec.syntax import tree
 from rulec.vocabulary import Vocabulary
-from rulec.vocabulary.vocabulary_model import choices
 
 
 def axioms_of(
@@ -172,10 +172,7 @@ def _violated(state: ExampleValues, axioms: Sequence[Axiom]) -> tuple[Axiom, str
         names_decide = _deciding_names(axiom.formula)
         if names_decide is not None and known.isdisjoint(names_decide):
             continue
-        types = [variable.type for variable in axiom.variables]
-        for chosen in choices(types, state.objects, state.vocabulary):
-            names = (variable.name for variable in axiom.variables)
-            binding = dict(zip(names, chosen, strict=True))
+        for binding in bound_to(axiom.variables, state.objects, state.vocabulary):
             if holds(axiom.formula, binding, state) is False:
                 return axiom, formula_text(rename_variables(axiom.formula, binding))
     return None

@@ -5,96 +5,19 @@ Truth is that of Kleene's strong three-valued logic, as ``StateView`` has it for
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rulec.automata.mealy_monitor import NumberRead, Threshold
-from rulec.automata.thresholds import exact, scale
+from rulec.automata.mealy_monitor import NumberRead
+from rulec.automata.thresholds import ThresholdScale, scale
 from rulec.logic import formula as ltl
 from rulec.logic.fold import Algebra, fold
-from rulec.logic.free_names import names_in
+from rulec.logic.free_names import names_in, reads_in
 from rulec.logic.kleene import ObjectBinding
+from rulec.monitoring.batch.columns.column_numbers import Mask, comparison_sides, digits_of
 from rulec.trace.trace_columns import Array, TraceColumns
 from rulec.vocabulary import Enumeration, Vocabulary
-
-Summand = tuple[Fraction, Array | float]
-"""A coefficient, and a column of numbers (floats or whole numbers) or one number for all states."""
-
-_UNIT = 2.0**-52
-"""Twice the relative error of one rounding."""
-
-_TINY = 1e-300
-"""Far more than what is lost where results are too small to be normal floats."""
-
-
-def digits_of_sum(
-    read: NumberRead,
-    summands: Sequence[Summand],
-    n_states: int,
-    ignored: NDArray[np.bool_] | np.bool_ = np.False_,
-) -> NDArray[np.uint8]:
-    """For each state how many of the read's thresholds the sum passes; any if it is ignored."""
-    total = np.zeros(n_states)
-    size = np.zeros(n_states)
-    with np.errstate(all="ignore"):
-        for coefficient, numbers in summands:
-            part = _nearest(coefficient) * np.asarray(numbers, dtype=np.float64)
-            total += part
-            size += np.abs(part)
-        # Each part: its decimal, its coefficient, the product; then the sums, and the limit.
-        error = size * ((len(summands) + 4) * _UNIT) + _TINY
-        digits = np.zeros(n_states, dtype=np.uint8)
-        unclear = ~np.isfinite(total + error)
-        for threshold in read.thresholds:
-            limit = _nearest(threshold.limit)
-            away = total - limit
-            digits += away > 0
-            unclear |= ~(np.abs(away) > error + abs(limit) * _UNIT)
-    # The same few numbers are at a limit again and again
-    known: dict[tuple[float, ...], int] = {}
-    for state in (unclear & ~ignored).nonzero()[0].tolist():
-        own = _numbers_in(summands, state)
-        if own not in known:
-            known[own] = read.digit(_exactly(summands, own))
-        digits[state] = known[own]
-    return digits
-
-
-def digits_of_count(read: NumberRead, counted: Array) -> NDArray[np.uint8]:
-    """For each state how many of the read's thresholds the number of objects passes."""
-    numbers = range(int(counted.max(initial=0)) + 1)
-    return np.array([read.digit(Fraction(n)) for n in numbers], dtype=np.uint8).take(counted)
-
-
-def _numbers_in(summands: Sequence[Summand], state: int) -> tuple[float, ...]:
-    return tuple(
-        numbers[state].item() if isinstance(numbers, np.ndarray) else numbers
-        for _, numbers in summands
-    )
-
-
-def _exactly(summands: Sequence[Summand], numbers: Sequence[float]) -> Fraction:
-    pairs = zip(summands, numbers, strict=True)
-    return sum((coefficient * exact(own) for (coefficient, _), own in pairs), Fraction(0))
-
-
-def _nearest(number: Fraction) -> float:
-    """Float nearest to a number; infinity, which decides nothing, on overflow."""
-    try:
-        return float(number)
-    except OverflowError:
-        return float("inf")
-
-
-SIDES = {"<": (0,), "<=": (0, 1), "=": (1,), "!=": (0, 2), ">=": (1, 2), ">": (2,)}
-"""The sides of a limit on which comparisons hold: 0 below it, 1 at it, 2 above it."""
-
-
-Mask = NDArray[np.bool_] | np.bool_
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -172,29 +95,15 @@ class ColumnReader:
 
     def digits(self, read: NumberRead, bound: ObjectBinding) -> Array:
         """Number of thresholds passed in each state. Raises NotGivenError."""
-        chosen = {name: bound[name] for name in scale(read).variables}
+        return self._digits(scale(read), bound)
+
+    def _digits(self, ready: ThresholdScale, bound: ObjectBinding) -> Array:
+        read, chosen = ready.read, {name: bound[name] for name in ready.variables}
         key = (read.terms, read.thresholds, *sorted(chosen.items()))
         if key not in self._known:
-            self._known[key] = self._digits(read, chosen)
+            summands = [(factor, self._summand(term, chosen)) for factor, term in read.terms]
+            self._known[key] = digits_of(ready, summands, self.columns.layout.n_states)
         return self._known[key]
-
-    def _digits(self, read: NumberRead, bound: ObjectBinding) -> Array:
-        n_states = self.columns.layout.n_states
-        ready = scale(read)
-        match read.terms:
-            case ((_, ltl.Count() as count),):
-                return digits_of_count(read, self._counted(count, bound))
-        if ready.quantity is None:
-            summands = [(factor, self._summand(term, bound)) for factor, term in read.terms]
-            return digits_of_sum(read, summands, n_states)
-        items = tuple([bound[argument] for argument in ready.quantity.arguments])
-        numbers = self.given(ready.quantity.name, items)
-        if not isinstance(numbers, np.ndarray):
-            return np.full(n_states, ready.digit(numbers), dtype=np.uint8)
-        digits = np.zeros(n_states, dtype=np.uint8)
-        for floor in ready.floors:
-            digits += numbers >= floor
-        return digits
 
     def _summand(self, term: ltl.Term, bound: ObjectBinding) -> Array | float:
         """Value of a sum's term. Raises NotGivenError."""
@@ -226,12 +135,11 @@ class ColumnReader:
         return total, undecided
 
     def _missing(self, count: ltl.Count, bound: ObjectBinding) -> NotGivenError:
-        for part in ltl.atoms_of(count.body):
-            for read in (part,) if isinstance(part, ltl.Atom) else [term for _, term in part.terms]:
-                if not isinstance(read, ltl.Count):
-                    items = tuple([bound[variable] for variable in read.arguments])
-                    if self.values(read.name, items) is None:
-                        return NotGivenError(read.name, items)
+        for read in reads_in(count.body):
+            if not isinstance(read, ltl.Count):
+                items = tuple([bound[variable] for variable in read.arguments])
+                if self.values(read.name, items) is None:
+                    return NotGivenError(read.name, items)
         return NotGivenError(next(names_in(count)), ())
 
     def _there(self, name: str) -> Mask:
@@ -265,10 +173,8 @@ class ColumnReader:
 
     def compared(self, comparison: ltl.Comparison, bound: ObjectBinding) -> Mask:
         """Truth of a comparison in each state. Raises NotGivenError."""
-        at = Threshold(comparison.limit, inclusive=True)
-        above = Threshold(comparison.limit, inclusive=False)
-        side = self.digits(NumberRead(comparison.terms, (at, above)), bound)
-        return np.isin(side, SIDES[comparison.relation])
+        sides = comparison_sides(comparison.terms, comparison.relation, comparison.limit)
+        return sides.every.diagonal().take(self._digits(sides.scale, bound))
 
     def atom(self, name: str, items: tuple[str, ...], expected: str | None) -> Truth:
         """Three-valued truth of an atom in each state."""

@@ -16,6 +16,7 @@ from rulec.monitoring.state_validation import NUMBERS, TRUTHS
 from rulec.trace.trace_columns import Array, Key, TraceCells, TraceColumns, smallest_unsigned
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, UnknownValue
+from rulec.vocabulary.vocabulary_model import least_value, values_of
 
 if TYPE_CHECKING:
     from rulec.monitoring.batch.trace_groups import Names
@@ -147,7 +148,7 @@ class _Columnizer:
                 self.columns[key], self.unknown[key] = column.take(cells), unknown.take(cells)
                 return
             self.unknown[key] = np.array([value is UNKNOWN for value in values]).take(cells)
-            anything = one_value(declaration)
+            anything = least_value(declaration)
             values = [anything if value is UNKNOWN else value for value in values]
         if Interval in kinds:
             highest = [value.high if type(value) is Interval else value for value in values]
@@ -173,13 +174,6 @@ def _under(about: Mapping[str, Any], names: Mapping[str, str]) -> Mapping[str, A
         raise UnencodableError from None
 
 
-def one_value(declaration: Declaration) -> bool | float | str:
-    """Any value that a declaration allows."""
-    if isinstance(declaration, Enumeration):
-        return declaration.values[0]
-    return False if isinstance(declaration, Signal) else 0.0
-
-
 def column_dtype(declaration: Declaration) -> np.dtype[Any]:
     """The numbers that the column of a name holds: see ``TraceColumns``."""
     if isinstance(declaration, Enumeration):
@@ -195,9 +189,7 @@ def _with_unknown(
         unknown = np.array([value is UNKNOWN for value in values])
         known = [0.0 if value is UNKNOWN else value for value in values]
         return encode_values(known, declaration), unknown
-    own: Sequence[bool | str] = (False, True)
-    if isinstance(declaration, Enumeration):
-        own = declaration.values
+    own = values_of(declaration)
     if not kinds <= {type(own[0]), UnknownValue}:
         raise UnencodableError
     places: dict[Any, int] = {value: place for place, value in enumerate(own)}

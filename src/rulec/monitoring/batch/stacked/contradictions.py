@@ -10,7 +10,7 @@ import numpy as np
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.logic.formula import Atom, atoms_of
 from rulec.logic.free_names import names_of
-from rulec.monitoring.batch.columns.column_reader import Mask
+from rulec.monitoring.batch.columns.column_numbers import Mask, alike_places
 from rulec.monitoring.batch.stacked.stack import Places, Stack
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.state_view import StateView, with_values
@@ -135,15 +135,7 @@ def _contradicted_states(
 
 def _alike(names: Sequence[str], stack: Stack, spots: Spots) -> Places:
     """Numbers from 0 for spots, equal for those of which the same is said."""
-    kinds = np.zeros(len(spots.states), dtype=np.intp)
     where = spots.cells.get(_OBJECT, spots.states)
-    for name in names:
-        column = stack.column(name)
-        parts = [] if column is None else [column.values, column.upper, column.unknown]
-        for part in parts:
-            if part is not None:
-                own = part[where]
-                values = distinct(own)
-                kinds = kinds * len(values) + values.searchsorted(own)
-                kinds = distinct(kinds).searchsorted(kinds)
-    return kinds
+    columns = (column for name in names if (column := stack.column(name)) is not None)
+    parts = (part for own in columns for part in (own.values, own.upper, own.unknown))
+    return alike_places((part[where] for part in parts if part is not None), len(where))

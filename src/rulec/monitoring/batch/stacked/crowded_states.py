@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.monitoring.batch.columns.column_numbers import alike_places
 from rulec.monitoring.batch.stacked.stack import Places, StackColumn
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader, is_partial
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule
@@ -122,9 +123,7 @@ class CrowdedStates:
         often = np.bincount(owners * n_kinds + kinds, minlength=len(states) * n_kinds)
         often = np.minimum(often, self._enough).reshape(len(states), n_kinds)
         said = [codes for name in self._world for codes in _codes(stack.column(name), states)]
-        groups = np.zeros(len(states), dtype=np.intp)
-        for codes in (*often.T, *said):
-            groups = places_among(groups * (int(codes.max(initial=0)) + 1) + codes)
+        groups = alike_places((*often.T, *said), len(states))
         firsts = np.empty(int(groups.max(initial=-1)) + 1, dtype=np.intp)
         firsts[groups[::-1]] = np.arange(len(states))[::-1]
         examples = np.empty(n_kinds, dtype=np.intp)
@@ -142,11 +141,8 @@ class CrowdedStates:
     def _kinds(self, cells: Places) -> Places:
         """A number for each cell, the same where the same is said of objects of one type."""
         stack = self._stack
-        kinds = stack.kind_of[stack.object_of[cells]]
-        for name in self._about:
-            for codes in _codes(stack.column(name), cells):
-                kinds = places_among(kinds * (int(codes.max(initial=0)) + 1) + codes)
-        return kinds
+        said = (codes for name in self._about for codes in _codes(stack.column(name), cells))
+        return alike_places((stack.kind_of[stack.object_of[cells]], *said), len(cells))
 
     def _found(
         self,

@@ -14,7 +14,7 @@ from typing import overload
 import numpy as np
 from numpy.typing import NDArray
 
-from rulec.monitoring.batch.columns.column_reader import Mask
+from rulec.monitoring.batch.columns.column_numbers import Mask
 from rulec.monitoring.batch.stacked.stack import FEW, Places, Stack
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRule

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Mapping, Sequence, Set
 from functools import partial
 from typing import TypeVar
 
@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 
 from rulec.automata.mealy_monitor import NumberRead
 from rulec.logic import formula as ltl
+from rulec.logic.free_names import reads_in
 from rulec.monitoring.batch.stacked.entangled_letters import digits_at
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader, is_partial
 from rulec.monitoring.batch.stacked.stacked_outcomes import StackedWords
 from rulec.monitoring.uncertainty.state_letters.letter_classes import PossibleWord
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
+from rulec.monitoring.uncertainty.supposed_constants import by_name
 from rulec.monitoring.uncertainty.within_tolerance import told_within_bounds
 from rulec.monitoring.verdict import OpenReasons
 from rulec.trace.trace_arrays import Flags
@@ -86,7 +88,7 @@ class StackedReasons:
                 find_unknown=partial(tuple, unknown),
             )
             possible.append(word)
-            constants.append(_by_name(supposed))
+            constants.append(by_name(supposed))
         return possible, constants, is_exact
 
     def _unknown_names(
@@ -120,7 +122,9 @@ class StackedReasons:
         """The names of which something is unknown of, or beside, those who may count."""
         stack, unknown = self._reader.stack, set()
         there = self._are_there(count.type)[spots.states]
-        for name, arguments in _asked_in(count.body):
+        for read in reads_in(count.body):
+            assert not isinstance(read, ltl.Count), "it counts nothing"
+            name, arguments = read.name, read.arguments
             column = stack.column(name)
             flags = None if column is None else is_partial(column)
             if column is None:
@@ -194,17 +198,6 @@ def _are_more_unknown(words: StackedWords, place: int, names: Set[str]) -> bool:
     return any(rule.letters.are_partial({n: part}, (n,)).any() for n, part in parts)
 
 
-def _asked_in(body: ltl.Formula) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """The names that a counted formula reads, which counts nothing itself, and of what."""
-    for part in ltl.atoms_of(body):
-        if isinstance(part, ltl.Atom):
-            yield part.name, part.arguments
-        elif isinstance(part, ltl.Comparison):
-            for _, term in part.terms:
-                assert isinstance(term, ltl.QuantityTerm), "it counts nothing"
-                yield term.name, term.arguments
-
-
 def _part(column: Numbers, own: slice) -> NDArray[np.intp]:
     if isinstance(column, np.ndarray):
         return column[own]
@@ -227,10 +220,3 @@ def _repeated(values: Sequence[_Value], lengths: Sequence[int]) -> list[_Value]:
     for value, length in zip(values, lengths, strict=True):
         found += [value] * length
     return found
-
-
-def _by_name(supposed: Mapping[tuple[str, tuple[str, ...]], object]) -> dict[str, object]:
-    by_name: dict[str, object] = {}
-    for (name, items), value in supposed.items():
-        by_name[name] = (by_name.get(name), items, value) if items else value
-    return by_name

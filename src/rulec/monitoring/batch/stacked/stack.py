@@ -19,7 +19,6 @@ from rulec.monitoring.batch.columns.columnize import (
     UnencodableError,
     column_dtype,
     encode_values,
-    one_value,
 )
 from rulec.monitoring.batch.stacked.joined_traces import joined_traces
 from rulec.trace.plain_arrays import distinct
@@ -27,6 +26,7 @@ from rulec.trace.trace_arrays import Flags, TraceArrays, starts_of
 from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
+from rulec.vocabulary.vocabulary_model import least_value
 
 Places = NDArray[np.intp]
 
@@ -244,7 +244,7 @@ class Stack:
         parts = [piece.about[name] if is_about else piece.world[name] for piece in self._pieces]
         unknown, unsaid = self._unknown_and_unsaid(name, parts)
         if is_about:
-            unsaid = _either(unsaid, self._not_about(name, declaration))
+            unsaid = either(unsaid, self._not_about(name, declaration))
         upper = None
         if isinstance(declaration, Enumeration):
             values = self._places(name, declaration, parts)
@@ -266,7 +266,7 @@ class Stack:
             elif unsaid is None and len(values):
                 self._ends[name] = ends
         if unfit is not _NOWHERE and unfit.any():
-            nowhere = _either(unknown, unsaid)
+            nowhere = either(unknown, unsaid)
             if nowhere is None or (unfit & ~nowhere).any():
                 raise UnencodableError
             values = np.where(unfit, _anything(declaration), values)
@@ -389,11 +389,12 @@ def _ends(low: Array, high: Array | None) -> tuple[float, float]:
     return (low.min().item(), most.max().item()) if len(low) else (0.0, 0.0)
 
 
-def _either(one: Flags | None, other: Flags | None) -> Flags | None:
+def either(one: Flags | None, other: Flags | None) -> Flags | None:
+    """Where one of both flags is set; None is for nowhere."""
     if one is None or other is None:
         return other if one is None else one
     return one | other
 
 
 def _anything(declaration: Declaration) -> Any:
-    return encode_values([one_value(declaration)], declaration)[0]
+    return encode_values([least_value(declaration)], declaration)[0]

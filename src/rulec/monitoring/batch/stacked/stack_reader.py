@@ -5,34 +5,32 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from rulec.automata.mealy_monitor import NumberRead, Read, Threshold
-from rulec.automata.thresholds import ThresholdScale, scale
+from rulec.automata.mealy_monitor import NumberRead, Read
+from rulec.automata.thresholds import ThresholdScale
 from rulec.logic import formula as ltl
 from rulec.logic.fold import fold
-from rulec.monitoring.batch.columns.column_reader import (
-    KLEENE_COLUMNS,
-    SIDES,
-    UNKNOWN,
+from rulec.monitoring.batch.columns.column_numbers import (
     Mask,
-    Summand,
-    Truth,
-    digits_of_sum,
-    known,
+    comparison_sides,
+    numbers_between,
+    said_by,
 )
+from rulec.monitoring.batch.columns.column_reader import KLEENE_COLUMNS, UNKNOWN, Truth, known
 from rulec.monitoring.batch.stacked.met_values import MetValues
-from rulec.monitoring.batch.stacked.stack import Places, Stack, StackColumn
+from rulec.monitoring.batch.stacked.stack import Places, Stack, StackColumn, either
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRead
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.trace.trace_arrays import Flags
 from rulec.trace.trace_columns import Array, smallest_unsigned
-from rulec.vocabulary import Enumeration, Signal
+from rulec.vocabulary import Enumeration
 from rulec.vocabulary.partial_values import UNKNOWN as UNKNOWN_VALUE
-from rulec.vocabulary.partial_values import Interval, PartialValue
+from rulec.vocabulary.partial_values import PartialValue
+from rulec.vocabulary.vocabulary_model import values_of
 
 
 class Spots(NamedTuple):
@@ -194,8 +192,7 @@ class StackReader:
         return self._between(read.ready, spots)
 
     def _values(self, read: Read, spots: Spots) -> Numbers:
-        declaration = self.stack.vocabulary.declarations[read.name]
-        n_values = len(declaration.values) if isinstance(declaration, Enumeration) else 2
+        n_values = len(values_of(self.stack.vocabulary.declarations[read.name]))
         column = self.stack.column(read.name)
         if column is None:
             default = self.stack.default(read.name)
@@ -212,37 +209,14 @@ class StackReader:
         return values.take(spots.cells[variables[0]] if variables else spots.states)
 
     def _between(self, ready: ThresholdScale, spots: Spots) -> Numbers:
-        n_spots, read = len(spots.states), ready.read
-        lows: list[Summand] = []
-        highs: list[Summand] = []
-        unknown: Mask | None = None
-        same = True
-        for factor, term in read.terms:
-            assert isinstance(term, ltl.QuantityTerm), "it counts nothing"
-            low, high, dark = self._bounds(term, spots)
-            same &= low is high
-            if factor.numerator < 0:
-                low, high = high, low
-            lows.append((factor, low))
-            highs.append((factor, high))
-            if dark is not None:
-                unknown = dark if unknown is None else unknown | dark
-        if unknown is not None and unknown.all():
-            return read.size - 1
-        ignored = np.False_ if unknown is None else unknown
-        low_digits = _digits(ready, lows, n_spots, ignored)
-        high_digits = low_digits if same else _digits(ready, highs, n_spots, ignored)
-        dtype = smallest_unsigned(read.size**2)
-        numbers: Array = low_digits.astype(dtype) * dtype.type(read.size)
-        numbers += high_digits.astype(dtype)
-        if unknown is not None:
-            numbers[unknown] = read.size - 1
-        return numbers
+        bounds = [(factor, *self._bounds(term, spots)) for factor, term in ready.read.terms]
+        return numbers_between(ready, bounds, len(spots.states))
 
     def _bounds(
-        self, term: ltl.QuantityTerm, spots: Spots
+        self, term: ltl.Term, spots: Spots
     ) -> tuple[Array | float, Array | float, Mask | None]:
         """The least and the most that a term may be, and where it is unknown, None for nowhere."""
+        assert isinstance(term, ltl.QuantityTerm), "it counts nothing"
         column = self.stack.column(term.name)
         if column is None:
             default = self.stack.default(term.name)
@@ -306,9 +280,9 @@ class StackReader:
             assert isinstance(term, ltl.QuantityTerm), "it counts nothing"
             own = (about,) * len(term.arguments)
             terms.append((factor, ltl.QuantityTerm(term.name, own)))
-        ready, true, false = _sides(tuple(terms), comparison.relation, comparison.limit)
-        numbers = self._between(ready, spots)
-        return Truth(true.take(numbers), false.take(numbers))
+        sides = comparison_sides(tuple(terms), comparison.relation, comparison.limit)
+        numbers = self._between(sides.scale, spots)
+        return Truth(sides.every.take(numbers), ~sides.some.take(numbers))
 
     def _atom(self, atom: ltl.Atom, spots: Spots, arguments: tuple[str, ...]) -> Truth:
         declaration = self.stack.vocabulary.declarations[atom.name]
@@ -341,54 +315,16 @@ class StackReader:
         declaration = self.stack.vocabulary.declarations[name]
         column = self.stack.column(name)
         if column is None:
-            default: Any = declaration.default
-            return [default] * len(spots.states)
+            return [declaration.default] * len(spots.states)
         where = spots.cells[variables[0]] if variables else spots.states
-        values: list[Any] = column.values[where].tolist()
-        if isinstance(declaration, Enumeration):
-            values = [declaration.values[place] for place in values]
-        elif not isinstance(declaration, Signal) and column.upper is not None:
-            ends = zip(values, column.upper[where].tolist(), strict=True)
-            values = [low if low == high else Interval(low, high) for low, high in ends]
-        if column.unknown is not None:
-            for place in column.unknown[where].nonzero()[0].tolist():
-                values[place] = UNKNOWN_VALUE
-        return values
+        return said_by(
+            column.values[where],
+            None if column.upper is None else column.upper[where],
+            None if column.unknown is None else column.unknown[where],
+            declaration,
+        )
 
 
 def is_partial(column: StackColumn) -> Flags | None:
     """Where no single value is known."""
-    apart = column.apart
-    if apart is None or column.unknown is None:
-        return column.unknown if apart is None else apart
-    return apart | column.unknown
-
-
-@lru_cache(maxsize=1 << 8)
-def _sides(
-    terms: tuple[tuple[Fraction, ltl.QuantityTerm], ...], relation: ltl.Relation, limit: Fraction
-) -> tuple[ThresholdScale, Flags, Flags]:
-    """What reads a comparison, and for its numbers whether it is surely true, or surely false."""
-    at, above = (Threshold(limit, inclusive) for inclusive in (True, False))
-    read, sides = NumberRead(terms, (at, above)), SIDES[relation]
-    every = [
-        {side in sides for side in range(low, high + 1)}
-        for low in range(read.size)
-        for high in range(read.size)
-    ]
-    true, false = (np.array([own == {value} for own in every]) for value in (True, False))
-    return scale(read), true, false
-
-
-def _digits(
-    ready: ThresholdScale, summands: Sequence[Summand], n_spots: int, ignored: Mask
-) -> Array:
-    if ready.quantity is None:
-        return digits_of_sum(ready.read, summands, n_spots, ignored)
-    ((_, numbers),) = summands
-    if not isinstance(numbers, np.ndarray):
-        return np.full(n_spots, ready.digit(numbers), dtype=np.uint8)
-    digits = np.zeros(n_spots, dtype=smallest_unsigned(ready.read.size))
-    for floor in ready.floors:
-        digits += (numbers >= floor).view(np.uint8)
-    return digits
+    return either(column.apart, column.unknown)

@@ -17,7 +17,6 @@ from rulec.logic.free_names import names_of
 from rulec.logic.kleene import holds
 from rulec.monitoring.batch.stacked.words_together import WordsTogether
 from rulec.monitoring.batch.uncertain.partial_reader import meanings_of
-from rulec.monitoring.uncertainty.state_letters.counted_crowd import counts
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     EntangledReads,
     NothingKnown,
@@ -31,10 +30,12 @@ from rulec.monitoring.uncertainty.state_letters.related_facts import (
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.monitoring.uncertainty.supposed_constants import ConstantsReader
 from rulec.monitoring.uncertainty.uncertain_machine import Answer, UncertainMachine
+from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import Value
 from rulec.trace.plain_arrays import distinct
-from rulec.vocabulary import Enumeration, Vocabulary
+from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
+from rulec.vocabulary.vocabulary_model import values_of
 
 NOBODY = NothingKnown({}, Vocabulary("", {}, {}))
 """Nothing is known of anybody."""
@@ -330,8 +331,7 @@ def _stacked(read: Read | NumberRead, vocabulary: Vocabulary, keys: ReadKeys) ->
     key: object
     names: tuple[str, ...]
     if isinstance(read, Read):
-        declaration = vocabulary.declarations[read.name]
-        unknown = len(declaration.values) if isinstance(declaration, Enumeration) else 2
+        unknown = len(values_of(vocabulary.declarations[read.name]))
         ready, variables, names = None, read.variables, (read.name,)
         key = read.name, len(read.variables)
     else:
@@ -386,7 +386,7 @@ def _is_simple_read(read: StackedRead, rule: StackedRule) -> bool:
         return True
     if read.count is None:
         return not any(isinstance(term, ltl.Count) for _, term in read.read.terms)
-    if any(map(counts, ltl.atoms_of(read.count.body))):
+    if counts(read.count.body):
         return False
     return not read.variables or (
         len(rule.variables) == 1 and _counts_no_stranger(read.count, rule.variables[0])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,25 +10,18 @@ from numpy.typing import NDArray
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import exact, scale
 from rulec.logic import formula as ltl
+from rulec.logic.free_names import reads_in
 from rulec.logic.kleene import ObjectBinding
-from rulec.monitoring.batch.columns.column_reader import (
-    UNKNOWN as UNKNOWN_TRUTH,
-)
-from rulec.monitoring.batch.columns.column_reader import (
-    ColumnReader,
-    Mask,
-    NotGivenError,
-    Summand,
-    Truth,
-    digits_of_count,
-    digits_of_sum,
-)
+from rulec.monitoring.batch.columns.column_numbers import Mask, numbers_between, said_by
+from rulec.monitoring.batch.columns.column_reader import UNKNOWN as UNKNOWN_TRUTH
+from rulec.monitoring.batch.columns.column_reader import ColumnReader, NotGivenError, Truth
 from rulec.monitoring.uncertainty.number_regions import NumberRegions
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.trace import Value
 from rulec.trace.trace_columns import Array, Key, TraceColumns
-from rulec.vocabulary import Enumeration, Quantity, Signal, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
+from rulec.vocabulary import Declaration, Quantity, Vocabulary
+from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
+from rulec.vocabulary.vocabulary_model import values_of
 
 
 def meanings_of(read: Read | NumberRead, vocabulary: Vocabulary) -> Sequence[int]:
@@ -40,10 +32,7 @@ def meanings_of(read: Read | NumberRead, vocabulary: Vocabulary) -> Sequence[int
     """
     every = (1 << read.size) - 1
     if isinstance(read, Read):
-        declaration = vocabulary.declarations[read.name]
-        values: Sequence[bool | str] = (
-            declaration.values if isinstance(declaration, Enumeration) else (False, True)
-        )
+        values = values_of(vocabulary.declarations[read.name])
         return [*(1 << read.digit(value) for value in values), every]
     return [
         every >> low << low & (1 << high + 1) - 1
@@ -65,10 +54,12 @@ def number_of_value(
     if isinstance(read, NumberRead):
         digit = read.digit(exact(value))  # type: ignore[arg-type]
         return read.size - 1, digit * (read.size + 1)
-    declaration = vocabulary.declarations[read.name]
-    if isinstance(declaration, Enumeration):
-        return len(declaration.values), declaration.values.index(str(value))
-    return 2, int(value)
+    return _number_of_word(vocabulary.declarations[read.name], value)
+
+
+def _number_of_word(declaration: Declaration, value: Value) -> tuple[int, int]:
+    values: Sequence[Value] = values_of(declaration)
+    return len(values), values.index(value)
 
 
 class PartialReader(ColumnReader):
@@ -92,8 +83,7 @@ class PartialReader(ColumnReader):
         return self._numbers[key]
 
     def _values(self, name: str, items: tuple[str, ...]) -> Numbers:
-        declaration = self._vocabulary.declarations[name]
-        n_values = len(declaration.values) if isinstance(declaration, Enumeration) else 2
+        n_values = len(values_of(self._vocabulary.declarations[name]))
         if self.is_dark((name, items)):
             return n_values
         values = self.given(name, items)
@@ -112,8 +102,7 @@ class PartialReader(ColumnReader):
         if key not in self.columns.values:
             return int(self.is_dark(key)), 2
         if not isinstance(declaration, Quantity):
-            n_values = len(declaration.values) if isinstance(declaration, Enumeration) else 2
-            return self._values(*key), n_values + 1
+            return self._values(*key), len(values_of(declaration)) + 1
         if name not in regions:
             return None
         own = regions[name]
@@ -129,20 +118,13 @@ class PartialReader(ColumnReader):
         if isinstance(declaration, Quantity):
             own = regions[key[0]]
             return own.size - 1, own.region(exact(value)) * (own.size + 1)  # type: ignore[arg-type]
-        if isinstance(declaration, Enumeration):
-            return len(declaration.values), declaration.values.index(str(value))
-        return 2, int(value)
+        return _number_of_word(declaration, value)
 
     def _regions(self, key: Key, regions: NumberRegions) -> Numbers:
         low, unknown = self.columns.values[key], self.columns.unknown.get(key)
-        first = np.zeros(len(low), dtype=np.intp)
-        for floor in regions.floors:
-            first += low >= floor
-        last = first
-        if key in self.columns.upper:
-            last = np.zeros(len(low), dtype=np.intp)
-            for floor in regions.floors:
-                last += self.columns.upper[key] >= floor
+        floors, upper = np.array(regions.floors), self.columns.upper.get(key)
+        first = floors.searchsorted(low, side="right")
+        last = first if upper is None else floors.searchsorted(upper, side="right")
         codes = first * regions.size + last
         return codes if unknown is None else np.where(unknown, regions.size - 1, codes)
 
@@ -150,20 +132,14 @@ class PartialReader(ColumnReader):
         """What states at some places say of a name."""
         declaration, columns = self._vocabulary.declarations[key[0]], self.columns
         if key not in columns.values:
-            values: list[Any] = [declaration.default] * len(places)
-        else:
-            values = columns.values[key][places].tolist()
-            if isinstance(declaration, Enumeration):
-                values = [declaration.values[number] for number in values]
-            elif isinstance(declaration, Signal):
-                values = list(map(bool, values))
-            elif key in columns.upper:
-                bounds = zip(values, columns.upper[key][places].tolist(), strict=True)
-                values = [low if low == high else Interval(low, high) for low, high in bounds]
-            if key in columns.unknown:
-                dark = columns.unknown[key][places].tolist()
-                values = [UNKNOWN if x else value for x, value in zip(dark, values, strict=True)]
-        return values
+            return [declaration.default] * len(places)
+        upper, unknown = columns.upper.get(key), columns.unknown.get(key)
+        return said_by(
+            columns.values[key][places],
+            None if upper is None else upper[places],
+            None if unknown is None else unknown[places],
+            declaration,
+        )
 
     def is_dark(self, key: Key) -> bool:
         """Whether no state says a name, and its default is unknown."""
@@ -171,37 +147,12 @@ class PartialReader(ColumnReader):
         return key not in self.columns.values and default is UNKNOWN
 
     def _between(self, read: NumberRead, bound: ObjectBinding) -> Numbers:
-        lows: list[Summand] = []
-        highs: list[Summand] = []
-        unknown: Mask = np.False_
-        for factor, term in read.terms:
-            low, high, dark = self._bounds(term, bound)
-            lows.append((factor, low if factor > 0 else high))
-            highs.append((factor, high if factor > 0 else low))
-            unknown = unknown | dark
-        low_digits = self._digits_of(read, lows, unknown)
-        same = all(low is high for (_, low), (_, high) in zip(lows, highs, strict=True))
-        high_digits = low_digits if same else self._digits_of(read, highs, unknown)
-        numbers = low_digits * read.size + high_digits
-        return np.where(unknown, read.size - 1, numbers) if np.any(unknown) else numbers
-
-    def _digits_of(self, read: NumberRead, summands: Sequence[Summand], ignored: Mask) -> Array:
-        n_states = self.columns.layout.n_states
-        if isinstance(read.terms[0][1], ltl.Count) and len(read.terms) == 1:
-            return digits_of_count(read, np.asarray(summands[0][1])).astype(np.intp)
-        if scale(read).quantity is None:
-            return digits_of_sum(read, summands, n_states, ignored).astype(np.intp)
-        ((_, numbers),) = summands
-        if not isinstance(numbers, np.ndarray):
-            return np.full(n_states, scale(read).digit(numbers))
-        digits = np.zeros(n_states, dtype=np.intp)
-        for floor in scale(read).floors:
-            digits += numbers >= floor
-        return digits
+        bounds = [(factor, *self._bounds(term, bound)) for factor, term in read.terms]
+        return numbers_between(scale(read), bounds, self.columns.layout.n_states)
 
     def _bounds(
         self, term: ltl.Term, bound: ObjectBinding
-    ) -> tuple[Array | float, Array | float, Mask]:
+    ) -> tuple[Array | float, Array | float, Mask | None]:
         """The least and the most that a term may be, and where it is unknown."""
         if isinstance(term, ltl.Count):
             total, undecided = self.count(term, bound)
@@ -210,23 +161,21 @@ class PartialReader(ColumnReader):
                 if np.any(where):
                     self._check_given(term.body, inner)
                     high = high + where
-            return total, high, np.False_
+            return total, high, None
         key = term.name, tuple([bound[variable] for variable in term.arguments])
         if self.is_dark(key):
             return 0.0, 0.0, np.True_
         low = self.given(*key)
-        return low, self.columns.upper.get(key, low), self.columns.unknown.get(key, np.False_)
+        return low, self.columns.upper.get(key, low), self.columns.unknown.get(key)
 
     def _check_given(self, body: ltl.Formula, bound: ObjectBinding) -> None:
         """Raises NotGivenError if it might be because a value is missing that it is not known."""
-        for part in ltl.atoms_of(body):
-            terms = [part] if isinstance(part, ltl.Atom) else [term for _, term in part.terms]
-            for term in terms:
-                if isinstance(term, ltl.Count):
-                    raise NotGivenError("", ())
-                key = term.name, tuple([bound[variable] for variable in term.arguments])
-                if not self.is_dark(key):
-                    self.given(*key)
+        for read in reads_in(body):
+            if isinstance(read, ltl.Count):
+                raise NotGivenError("", ())
+            key = read.name, tuple([bound[variable] for variable in read.arguments])
+            if not self.is_dark(key):
+                self.given(*key)
 
     def atom(self, name: str, items: tuple[str, ...], expected: str | None) -> Truth:
         """Three-valued truth of an atom in each state."""

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rulec.monitoring.batch.columns.column_numbers import alike_places
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
 from rulec.trace import Value
-from rulec.trace.plain_arrays import distinct, places_among
+from rulec.trace.plain_arrays import distinct
 from rulec.trace.trace_columns import Layout, layout_of
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, PartialValue
 
@@ -108,9 +109,7 @@ def supposed_rows(
     suppose: Callable[[Sequence[Subject]], Sequence[Mapping[Subject, Value]]],
 ) -> SupposedRows:
     """The rows of traces in which some constants are unknown, of which something is supposed."""
-    patterns = np.zeros(layout.n_traces, dtype=np.intp)
-    for flags in unknown.values():
-        patterns = places_among(2 * patterns + flags)
+    patterns = alike_places(unknown.values(), layout.n_traces)
     _, examples = np.unique(patterns, return_index=True)
     subjects = [
         [subject for subject, flags in unknown.items() if flags[trace]]

@@ -9,7 +9,6 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
-from operator import itemgetter
 from typing import Any, Final, TypeAlias
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
@@ -17,8 +16,9 @@ from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.automata.thresholds import EXACT_IN_FLOATS, scale
 from rulec.logic.free_names import names_in
 from rulec.monitoring.state_validation import NUMBERS
-from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
+from rulec.vocabulary import Declaration, Quantity, Signal, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval
+from rulec.vocabulary.vocabulary_model import values_of
 
 Breakpoints: TypeAlias = Mapping[str, tuple[float, ...] | None]
 """By quantity the ``floor_of`` each threshold of any rule, ascending; None if all values matter.
@@ -101,19 +101,6 @@ def encoded_default(declaration: Declaration, breakpoints: Breakpoints) -> Any:
     if declaration.default is None:
         return MISSING
     return encoder_of(declaration, breakpoints)((declaration.default,))[0]
-
-
-def values_at(names: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:
-    """Getter of the values at these keys; LookupError if one is missing.
-
-    Unlike ``itemgetter`` it always gives a tuple.
-    """
-    if len(names) > 1:
-        return itemgetter(*names)
-    if names:
-        (name,) = names
-        return lambda given: (given[name],)
-    return lambda _: ()
 
 
 def _encode_truths(values: tuple[Any, ...]) -> Encoded:
@@ -229,11 +216,8 @@ def monitor_inputs(
     stride = 1
     for read in rule.machine.reads:
         if isinstance(read, Read):
-            declaration = vocabulary.declarations[read.name]
-            values: Sequence[bool | str] = (
-                declaration.values if isinstance(declaration, Enumeration) else (False, True)
-            )
-            weights = {value: stride * read.digit(value) for value in values}
+            values = values_of(vocabulary.declarations[read.name])
+            weights: dict[Any, int] = {value: stride * read.digit(value) for value in values}
             inputs.append((_input(read.name, places_of(read.variables)), weights.__getitem__))
         else:
             quantity, variables = scale(read).quantity, scale(read).variables

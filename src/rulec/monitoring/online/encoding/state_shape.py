@@ -15,8 +15,8 @@ from rulec.monitoring.online.encoding.encoded_values import (
     Encoded,
     encoded_default,
     encoder_of,
-    values_at,
 )
+from rulec.monitoring.uncertainty.state_letters.joint_values import values_at
 from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal, Vocabulary
 from rulec.vocabulary.vocabulary_model import choices
 

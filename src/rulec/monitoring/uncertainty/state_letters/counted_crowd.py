@@ -28,7 +28,6 @@ from rulec.monitoring.uncertainty.state_letters.joint_values import (
     instances_of,
     joined_sets,
     values_at,
-    values_of,
 )
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters, read_digits
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
@@ -38,8 +37,10 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     subjects_in,
     subjects_of_read,
 )
+from rulec.rulebook.rules.axiom_instances import counts
 from rulec.trace import Value
 from rulec.vocabulary.partial_values import UNKNOWN, OneOf, PartialValue
+from rulec.vocabulary.vocabulary_model import values_of
 
 MOST_SUPPOSED = 1 << 8
 """Ways of the world that are supposed one after the other."""
@@ -120,7 +121,7 @@ def enough_alike(reads: Sequence[Read | NumberRead]) -> int | None:
         if count is None:
             continue
         assert isinstance(read, NumberRead), "it counts"
-        if len(read.terms) > 1 or any(map(counts, ltl.atoms_of(count.body))):
+        if len(read.terms) > 1 or counts(count.body):
             return None
         factor = abs(read.terms[0][0])
         limits = [abs(threshold.limit) / factor for threshold in read.thresholds]
@@ -132,13 +133,6 @@ def count_in(read: Read | NumberRead) -> ltl.Count | None:
     """The count that a read depends on, if it is none of single values."""
     terms = read.terms if isinstance(read, NumberRead) else ()
     return next((term for _, term in terms if isinstance(term, ltl.Count)), None)
-
-
-def counts(part: ltl.Proposition) -> bool:
-    """Whether a proposition compares a number of objects."""
-    return isinstance(part, ltl.Comparison) and any(
-        isinstance(term, ltl.Count) for _, term in part.terms
-    )
 
 
 class CountsApart:
@@ -226,7 +220,7 @@ class CountsApart:
                 yield _Piece(n, None, frozenset(about))
                 continue
             count = count_in(read)
-            if count is None or len(read.terms) > 1 or any(map(counts, ltl.atoms_of(count.body))):
+            if count is None or len(read.terms) > 1 or counts(count.body):
                 raise LookupError
             for item in candidates(count, self._everybody):
                 inner = {**self._binding, count.variable: item}

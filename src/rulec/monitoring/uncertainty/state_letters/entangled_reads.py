@@ -15,7 +15,6 @@ from fractions import Fraction
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import NumberRead, Read
-from rulec.logic import formula as ltl
 from rulec.logic.kleene import Unknown, holds
 from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.number_regions import number_regions
@@ -23,7 +22,6 @@ from rulec.monitoring.uncertainty.state_letters.completions.completions import j
 from rulec.monitoring.uncertainty.state_letters.counted_crowd import (
     CountsApart,
     count_in,
-    counts,
     crowd_of,
 )
 from rulec.monitoring.uncertainty.state_letters.read_digits import (
@@ -48,9 +46,9 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     subjects_in,
     subjects_of_read,
 )
+from rulec.rulebook.rules.axiom_instances import bound_to, counts
 from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import PartialValue
-from rulec.vocabulary.vocabulary_model import choices
 
 MOST_KNOWN = 1 << 14
 """Values whose letters are kept before all are forgotten."""
@@ -216,10 +214,8 @@ class EntangledReads:
 
 def _subjects_of(axioms: Sequence[CompiledAxiom], everybody: NothingKnown) -> Iterator[Subject]:
     for axiom in axioms:
-        types = [variable.type for variable in axiom.variables]
-        for chosen in choices(types, everybody.objects, everybody.vocabulary):
-            names = [variable.name for variable in axiom.variables]
-            yield from subjects_in(axiom.formula, dict(zip(names, chosen, strict=True)), everybody)
+        for environment in bound_to(axiom.variables, everybody.objects, everybody.vocabulary):
+            yield from subjects_in(axiom.formula, environment, everybody)
 
 
 def local_reads(rule: CompiledRule, rulebook: CompiledRulebook) -> EntangledReads | None:
@@ -267,7 +263,7 @@ def _is_coarse(read: Read | NumberRead) -> bool:
     if count is None or not isinstance(read, NumberRead):
         return False
     is_plain = len(read.terms) == 1 and len(read.thresholds) == 1
-    return not is_plain or any(map(counts, ltl.atoms_of(count.body)))
+    return not is_plain or counts(count.body)
 
 
 def _deciding_subjects(
@@ -292,7 +288,7 @@ def _is_local(read: Read | NumberRead, rule: CompiledRule, vocabulary: Vocabular
     count = count_in(read)
     if count is None:
         return True
-    if any(map(counts, ltl.atoms_of(count.body))):
+    if counts(count.body):
         return False
     variables = {variable.name: variable.type for variable in rule.variables}
     for kind in variables.values():

@@ -18,6 +18,7 @@ from typing import Any, NamedTuple, TypeAlias
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.automata.mealy_monitor import NumberRead, Read
 from rulec.logic import formula as ltl
+from rulec.logic.free_names import reads_in
 from rulec.logic.kleene import holds
 from rulec.monitoring.state_view import StateView, with_values
 from rulec.monitoring.uncertainty.state_letters.completions.completions import Digits
@@ -29,10 +30,11 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     subjects_in,
     subjects_of_read,
 )
+from rulec.rulebook.rules.axiom_instances import bound_to
 from rulec.trace import Value
-from rulec.vocabulary import Declaration, Enumeration, Quantity, Vocabulary
+from rulec.vocabulary import Enumeration, Quantity, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, OneOf, PartialValue
-from rulec.vocabulary.vocabulary_model import choices
+from rulec.vocabulary.vocabulary_model import values_of
 
 MOST_KNOWN = 1 << 14
 """Values of which it is kept what they come to before all are forgotten."""
@@ -207,17 +209,9 @@ def read_ways(
 
 def instances_of(axiom: CompiledAxiom, everybody: PartialView) -> Iterator[FactInstance]:
     """A fact about each choice of its objects."""
-    names = [variable.name for variable in axiom.variables]
-    types = [variable.type for variable in axiom.variables]
-    for chosen in choices(types, everybody.objects, everybody.vocabulary):
-        environment = dict(zip(names, chosen, strict=True))
+    for environment in bound_to(axiom.variables, everybody.objects, everybody.vocabulary):
         about = frozenset(subjects_in(axiom.formula, environment, everybody))
         yield FactInstance(axiom.formula, environment, about)
-
-
-def values_of(declaration: Declaration) -> Sequence[Value]:
-    """The values of a word or a truth."""
-    return declaration.values if isinstance(declaration, Enumeration) else (False, True)
 
 
 def alike_values(
@@ -250,13 +244,11 @@ def alike_values(
 
 def _atoms_in(formula: ltl.Formula) -> Iterator[ltl.Atom]:
     """The atoms of a formula, those of what is counted in it, too."""
-    for part in ltl.atoms_of(formula):
-        if isinstance(part, ltl.Atom):
-            yield part
-            continue
-        for _, term in part.terms:
-            if isinstance(term, ltl.Count):
-                yield from _atoms_in(term.body)
+    for read in reads_in(formula):
+        if isinstance(read, ltl.Atom):
+            yield read
+        elif isinstance(read, ltl.Count):
+            yield from _atoms_in(read.body)
 
 
 def joined_sets(sets: Sequence[frozenset[Subject]]) -> list[frozenset[Subject]]:
@@ -270,8 +262,14 @@ def joined_sets(sets: Sequence[frozenset[Subject]]) -> list[frozenset[Subject]]:
     return found
 
 
-def values_at(places: Sequence[int]) -> Callable[[Any], tuple[Any, ...]]:
-    """Getter of what is at these places, always as a tuple."""
-    if len(places) > 1:
-        return itemgetter(*places)
-    return lambda values: tuple([values[place] for place in places])
+def values_at(keys: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:
+    """Getter of the values at these keys or places; LookupError if one is missing.
+
+    Unlike ``itemgetter`` it always gives a tuple.
+    """
+    if len(keys) > 1:
+        return itemgetter(*keys)
+    if keys:
+        (key,) = keys
+        return lambda given: (given[key],)
+    return lambda _: ()

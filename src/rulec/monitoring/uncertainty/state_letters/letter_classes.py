@@ -128,7 +128,7 @@ class RuleLetters:
         self.independent = tuple([n for n in own if n not in entangled.numbers])
         # Which place a read has among the others, and then the entangled ones.
         self._order = sorted(own, key=(*self.independent, *entangled.numbers).__getitem__)
-        self._diagram = classes.diagram
+        self._classes = classes
         self._known: dict[tuple[int, ...], int] = {}
 
     def classes(self, keys: Sequence[tuple[int, ...]]) -> list[int]:
@@ -143,9 +143,7 @@ class RuleLetters:
         """The classes, as bits, of the letters with a key."""
         known = self._known.get(key)
         if known is None:
-            known = 0
-            for cube in self.letters(key):
-                known |= self._diagram.classes(cube)
+            known = self._classes.of(self.letters(key))
             _keep(self._known, key, known)
         return known
 

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom
 from rulec.logic import formula as ltl
-from rulec.logic.free_names import names_of
+from rulec.logic.free_names import names_of, reads_in
 from rulec.rulebook.rulebook_model import Variable
 from rulec.rulebook.rules.axiom_instances import counts
 from rulec.vocabulary import Vocabulary
@@ -60,7 +60,6 @@ def fits_or_not(fact: CompiledAxiom, variables: Sequence[Variable], vocabulary: 
 
 
 def _arguments_in(formula: ltl.Formula) -> Iterator[tuple[str, ...]]:
-    for atom in ltl.atoms_of(formula):
-        for part in (atom,) if isinstance(atom, ltl.Atom) else [term for _, term in atom.terms]:
-            assert not isinstance(part, ltl.Count), "the fact counts nothing"
-            yield part.arguments
+    for read in reads_in(formula):
+        assert not isinstance(read, ltl.Count), "the fact counts nothing"
+        yield read.arguments

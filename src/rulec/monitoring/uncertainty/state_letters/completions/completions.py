@@ -37,10 +37,10 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
     unknown_in_read,
     unknown_subjects,
 )
+from rulec.rulebook.rules.axiom_instances import bound_to
 from rulec.trace import Value
 from rulec.vocabulary import Enumeration, Quantity
 from rulec.vocabulary.partial_values import Interval, OneOf
-from rulec.vocabulary.vocabulary_model import choices
 
 if TYPE_CHECKING:
     from rulec.monitoring.uncertainty.state_letters.completions.linear_arrangement import (
@@ -167,10 +167,7 @@ def _joined_links(links: Iterable[Link]) -> list[_Cluster]:
 
 def _links_of_axioms(axioms: Sequence[CompiledAxiom], view: PartialView) -> Iterator[Link]:
     for axiom in axioms:
-        names = [variable.name for variable in axiom.variables]
-        types = [variable.type for variable in axiom.variables]
-        for chosen in choices(types, view.objects, view.vocabulary):
-            environment = dict(zip(names, chosen, strict=True))
+        for environment in bound_to(axiom.variables, view.objects, view.vocabulary):
             truth = holds(axiom.formula, environment, view)
             if truth is not True:
                 about = unknown_subjects(axiom.formula, environment, view)

@@ -1,0 +1,201 @@
+"""Numbers that rules read, as digits: how many thresholds they pass, in many states at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rulec.automata.mealy_monitor import NumberRead, Threshold
+from rulec.automata.thresholds import ThresholdScale, exact, scale
+from rulec.logic import formula as ltl
+from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
+from rulec.trace.plain_arrays import places_among
+from rulec.trace.trace_columns import Array, smallest_unsigned
+from rulec.vocabulary import Declaration, Enumeration, Quantity
+from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
+
+Mask = NDArray[np.bool_] | np.bool_
+
+Summand = tuple[Fraction, Array | float]
+"""A coefficient, and a column of numbers (floats or whole numbers) or one number for all states."""
+
+_UNIT = 2.0**-52
+"""Twice the relative error of one rounding."""
+
+_TINY = 1e-300
+"""Far more than what is lost where results are too small to be normal floats."""
+
+
+def digits_of(
+    ready: ThresholdScale, summands: Sequence[Summand], n_states: int, ignored: Mask = np.False_
+) -> Array:
+    """For each state how many thresholds a number passes; any if it is ignored."""
+    match ready.read.terms:
+        case ((_, ltl.Count()),):
+            ((_, counted),) = summands
+            return _digits_of_count(ready.read, np.asarray(counted))
+    if ready.quantity is None:
+        return _digits_of_sum(ready.read, summands, n_states, ignored)
+    ((_, numbers),) = summands
+    if not isinstance(numbers, np.ndarray):
+        return np.full(n_states, ready.digit(numbers), dtype=smallest_unsigned(ready.read.size))
+    digits = np.zeros(numbers.shape, dtype=smallest_unsigned(ready.read.size))
+    for floor in ready.floors:
+        digits += (numbers >= floor).view(np.uint8)
+    return digits
+
+
+Bounds = tuple[Fraction, Array | float, Array | float, Mask | None]
+"""A coefficient, the least and the most that its term may be, and where that is unknown, if so."""
+
+
+def numbers_between(ready: ThresholdScale, bounds: Iterable[Bounds], n_states: int) -> Numbers:
+    """The numbers, as of ``meanings_of``, of a sum of whose terms bounds are known."""
+    lows: list[Summand] = []
+    highs: list[Summand] = []
+    unknown: Mask | None = None
+    same = True
+    for factor, low, high, dark in bounds:
+        same &= low is high
+        least, most = (high, low) if factor.numerator < 0 else (low, high)
+        lows.append((factor, least))
+        highs.append((factor, most))
+        if dark is not None:
+            unknown = dark if unknown is None else unknown | dark
+    size = ready.read.size
+    if unknown is not None and unknown.all():
+        return size - 1
+    ignored = np.False_ if unknown is None else unknown
+    low_digits = digits_of(ready, lows, n_states, ignored)
+    high_digits = low_digits if same else digits_of(ready, highs, n_states, ignored)
+    dtype = smallest_unsigned(size**2)
+    numbers: Array = low_digits.astype(dtype) * dtype.type(size)
+    numbers += high_digits.astype(dtype)
+    if unknown is not None:
+        numbers[unknown] = size - 1
+    return numbers
+
+
+def _digits_of_sum(
+    read: NumberRead,
+    summands: Sequence[Summand],
+    n_states: int,
+    ignored: Mask,
+) -> NDArray[np.uint8]:
+    """For each state how many of the read's thresholds the sum passes; any if it is ignored."""
+    total = np.zeros(n_states)
+    size = np.zeros(n_states)
+    with np.errstate(all="ignore"):
+        for coefficient, numbers in summands:
+            part = _nearest(coefficient) * np.asarray(numbers, dtype=np.float64)
+            total += part
+            size += np.abs(part)
+        # Each part: its decimal, its coefficient, the product; then the sums, and the limit.
+        error = size * ((len(summands) + 4) * _UNIT) + _TINY
+        digits = np.zeros(n_states, dtype=np.uint8)
+        unclear = ~np.isfinite(total + error)
+        for threshold in read.thresholds:
+            limit = _nearest(threshold.limit)
+            away = total - limit
+            digits += away > 0
+            unclear |= ~(np.abs(away) > error + abs(limit) * _UNIT)
+    # The same few numbers are at a limit again and again
+    known: dict[tuple[float, ...], int] = {}
+    for state in (unclear & ~ignored).nonzero()[0].tolist():
+        own = _numbers_in(summands, state)
+        if own not in known:
+            known[own] = read.digit(_exactly(summands, own))
+        digits[state] = known[own]
+    return digits
+
+
+def _digits_of_count(read: NumberRead, counted: Array) -> NDArray[np.uint8]:
+    """For each state how many of the read's thresholds the number of objects passes."""
+    numbers = range(int(counted.max(initial=0)) + 1)
+    return np.array([read.digit(Fraction(n)) for n in numbers], dtype=np.uint8).take(counted)
+
+
+def _numbers_in(summands: Sequence[Summand], state: int) -> tuple[float, ...]:
+    return tuple(
+        numbers[state].item() if isinstance(numbers, np.ndarray) else numbers
+        for _, numbers in summands
+    )
+
+
+def _exactly(summands: Sequence[Summand], numbers: Sequence[float]) -> Fraction:
+    pairs = zip(summands, numbers, strict=True)
+    return sum((coefficient * exact(own) for (coefficient, _), own in pairs), Fraction(0))
+
+
+def _nearest(number: Fraction) -> float:
+    """Float nearest to a number; infinity, which decides nothing, on overflow."""
+    try:
+        return float(number)
+    except OverflowError:
+        return float("inf")
+
+
+_SIDES = {"<": (0,), "<=": (0, 1), "=": (1,), "!=": (0, 2), ">=": (1, 2), ">": (2,)}
+"""The sides of a limit on which comparisons hold: 0 below it, 1 at it, 2 above it."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ComparisonSides:
+    """A comparison with its limit as thresholds, and what each pair of sides of it comes to.
+
+    ``every`` and ``some`` (3 x 3) say for the lowest and the highest side that a number may be on
+    whether the comparison holds on all sides between them, and on some.
+    """
+
+    scale: ThresholdScale
+    every: NDArray[np.bool_]
+    some: NDArray[np.bool_]
+
+
+@lru_cache(maxsize=1 << 8)
+def comparison_sides(
+    terms: tuple[tuple[Fraction, ltl.Term], ...], relation: ltl.Relation, limit: Fraction
+) -> ComparisonSides:
+    """The sides of a comparison of these terms with a limit."""
+    thresholds = tuple(Threshold(limit, inclusive) for inclusive in (True, False))
+    holds = np.isin(np.arange(3), _SIDES[relation])
+    pairs = [[holds[low : high + 1] for high in range(3)] for low in range(3)]
+    return ComparisonSides(
+        scale(NumberRead(terms, thresholds)),
+        np.array([[sides.all() for sides in row] for row in pairs]),
+        np.array([[sides.any() for sides in row] for row in pairs]),
+    )
+
+
+def alike_places(columns: Iterable[NDArray[Any]], n_places: int) -> NDArray[np.intp]:
+    """Numbers from 0 for places, equal for those where each column has the same."""
+    found = np.zeros(n_places, dtype=np.intp)
+    for column in columns:
+        codes = places_among(column)
+        found = places_among(found * (int(codes.max(initial=0)) + 1) + codes)
+    return found
+
+
+def said_by(
+    values: Array,
+    upper: Array | None,
+    unknown: NDArray[np.bool_] | None,
+    declaration: Declaration,
+) -> list[PartialValue | None]:
+    """What states say by values, or places of values, the most that numbers may be, and flags."""
+    said: list[Any] = values.tolist()
+    if isinstance(declaration, Enumeration):
+        said = [declaration.values[place] for place in said]
+    elif isinstance(declaration, Quantity) and upper is not None:
+        ends = zip(said, upper.tolist(), strict=True)
+        said = [low if low == high else Interval(low, high) for low, high in ends]
+    if unknown is not None:
+        for place in unknown.nonzero()[0].tolist():
+            said[place] = UNKNOWN
+    return said
