@@ -285,7 +285,6 @@ def build_recording(
         step_s=step_s,
         lanelets=linked(known),
         participants=bodies,
-        problems=(),
         form="recording",
         side=side,
         country=country,

@@ -138,13 +138,13 @@ class Lanelet:
     left: Points
     right: Points
     centre: Points
-    successors: tuple[str, ...]
-    predecessors: tuple[str, ...]
-    left_of: str | None
-    right_of: str | None
-    types: frozenset[str]
-    signs: frozenset[str]
-    limit_mps: float | None
+    successors: tuple[str, ...] = ()
+    predecessors: tuple[str, ...] = ()
+    left_of: str | None = None
+    right_of: str | None = None
+    types: frozenset[str] = frozenset()
+    signs: frozenset[str] = frozenset()
+    limit_mps: float | None = None
     untold_signs: frozenset[str] = frozenset()
     lights: tuple[Light | ObservedLight, ...] = ()
     lights_to: Mapping[str, Light | ObservedLight] = field(default_factory=dict)
@@ -310,7 +310,7 @@ class Recording:
     step_s: float
     lanelets: Mapping[str, Lanelet]
     participants: tuple[Participant, ...]
-    problems: tuple[PlanningProblem, ...]
+    problems: tuple[PlanningProblem, ...] = ()
     form: str = "CommonRoad scenario"
     side: Side | None = None
     remarks: tuple[str, ...] = ()

@@ -36,13 +36,7 @@ def crosswalk(name: str, left: Points, right: Points, *, directed: bool = False)
         left=left,
         right=right,
         centre=(left + right) / 2,
-        successors=(),
-        predecessors=(),
-        left_of=None,
-        right_of=None,
         types=frozenset({"crosswalk", "directed"} if directed else {"crosswalk"}),
-        signs=frozenset(),
-        limit_mps=None,
     )
 
 

@@ -116,8 +116,6 @@ def _lanes(path: Path, archive: _MapArchive) -> Iterator[Lanelet]:
             left_of=_beside(segment.id, segment.left_neighbor_id, bounds, left=True),
             right_of=_beside(segment.id, segment.right_neighbor_id, bounds, left=False),
             types=frozenset(kinds),
-            signs=frozenset(),
-            limit_mps=None,
             left_mark=MARKS.get(segment.left_lane_mark_type),
             right_mark=MARKS.get(segment.right_lane_mark_type),
         )

@@ -70,7 +70,6 @@ def read_motion(path: Path, map_path: Path | None = None) -> Recording:
         step_s=_STEP_S,
         lanelets=road.lanelets,
         participants=participants,
-        problems=(),
         form=FORM,
         side=road.side,
         country=road.country,

@@ -107,7 +107,6 @@ def read_sensor_log(path: Path, map_path: Path | None = None) -> Recording:
             for x in (ego, *others)
             if len(x.sweeps)
         ),
-        problems=(),
         form=FORM,
         side=road.side,
         country=road.country,

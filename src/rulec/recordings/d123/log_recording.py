@@ -93,7 +93,6 @@ def read_d123(path: Path, map_path: Path | None = None) -> Recording:
         step_s=sweeps.step_s,
         lanelets=with_lights(road.lanelets, lights),
         participants=tuple(_participants([own, *others], sweeps)),
-        problems=(),
         form=_form(data_set),
         side=road.side or side,
         country=road.country or country,

@@ -177,7 +177,6 @@ def _lanes(layers: _Layers) -> Iterator[Lanelet]:
             left_of=_beside(thing, bounds, left=True),
             right_of=_beside(thing, bounds, left=False),
             types=frozenset((*_TYPES[kind], *crossing)),
-            signs=frozenset(),
             limit_mps=_limit(layers, thing),
             left_mark=paint.along(own[0]),
             right_mark=paint.along(own[1]),

@@ -68,7 +68,6 @@ def centre_lanelets(features: RoadFeatures, *, has_lights: bool) -> dict[str, La
                 left_of=left_of.get(piece.id),
                 right_of=right_of.get(piece.id),
                 types=lane.types | _junction_type(piece, inside.get(name)),
-                signs=frozenset(),
                 limit_mps=lane.limit_mps,
                 left_mark=mark_of(lane.left, piece),
                 right_mark=mark_of(lane.right, piece),

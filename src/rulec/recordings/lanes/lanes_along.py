@@ -50,16 +50,7 @@ def lanelet_along(
     left, right = (parallel_line(centre, way * np.asarray(width) / 2) for way in (1, -1))
     if stops_at_end:
         more["stop_line"] = np.stack((left[-1], right[-1]))
-    nothing: dict[str, Any] = {
-        "successors": (),
-        "predecessors": (),
-        "left_of": None,
-        "right_of": None,
-        "types": frozenset(),
-        "signs": frozenset(),
-        "limit_mps": None,
-    }
-    return Lanelet(id=name, left=left, right=right, centre=centre, **(nothing | more))
+    return Lanelet(id=name, left=left, right=right, centre=centre, **more)
 
 
 def linked(lanelets: Mapping[str, Lanelet]) -> dict[str, Lanelet]:

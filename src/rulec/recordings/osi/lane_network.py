@@ -123,7 +123,6 @@ def lane_network(lanes: Sequence[TraceLane], boundaries: Mapping[str, Boundary])
             left_of=beside[0],
             right_of=beside[1],
             types=_types(lane),
-            signs=frozenset(),
             limit_mps=lane.limit_mps,
             left_mark=marks[0],
             right_mark=marks[1],

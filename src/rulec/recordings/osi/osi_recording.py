@@ -55,7 +55,6 @@ def read_osi(path: Path, map_path: Path | None = None) -> Recording:
         step_s=grid.step_s,
         lanelets=_lanelets(content, network, grid, file) if road is None else road.lanelets,
         participants=tuple(_participants(content, grid, file)),
-        problems=(),
         form="ASAM OSI trace",
         side=by_country or (network.side or _USUAL_SIDE if road is None else road.side),
         remarks=(

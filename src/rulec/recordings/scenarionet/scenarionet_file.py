@@ -81,7 +81,6 @@ def read_scenarionet(path: Path) -> Recording:
         step_s=step_s,
         lanelets=centre_lanelets(features, has_lights=known.has_lights or bool(features.lights)),
         participants=bodies,
-        problems=(),
         form=f"ScenarioNet scenario{title}",
         side=side or known.side,
         remarks=(*remarks.found, *gaps_remark(remarks.bridged)),

@@ -100,7 +100,6 @@ def read_sumo(path: Path, net_path: Path | None = None) -> Recording:
         step_s=step_s,
         lanelets=lanelets,
         participants=participants,
-        problems=(),
         form="SUMO data",
         side=net.side,
         remarks=(*_remarks(unknown, net), *_left_out(data)),

@@ -72,7 +72,6 @@ def track_recording(
         step_s=tables[0].times.step_s,
         lanelets=roads.lanelets,
         participants=tuple(participant for part in found for participant in part.participants),
-        problems=(),
         form=form,
         side=roads.side,
         remarks=tuple(dict.fromkeys(filter(None, (*remarks, *said, *roads.remarks)))),

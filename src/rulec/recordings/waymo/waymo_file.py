@@ -146,7 +146,6 @@ def _scenario(file: WireFile, record: TfRecord) -> Recording:
         step_s=step_s,
         lanelets=centre_lanelets(content.features, has_lights=True),
         participants=participants,
-        problems=(),
         form="Waymo scenario",
         side="right",
         remarks=gaps_remark(states - sum(len(body.numbers) for body in there)),
