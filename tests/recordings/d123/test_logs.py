@@ -7,7 +7,7 @@ import rulec
 from rulec import RulecError, read_map, read_recording
 from rulec.extraction.selection import RequestedDrives, selected_drives
 from rulec.extraction.tellable_words import TELLABLE_WORDS, told_words
-from rulec.recordings.d123.message_pack import OddPackError, unpacked
+from rulec.recordings.d123.log_files import OddPackError, unpacked
 from rulec.recordings.recording_inputs import input_files
 from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders import d123_files as d123
@@ -296,5 +296,7 @@ def test_what_is_no_message_pack(data):
 
 
 def test_values_within_values_are_bounded():
-    with pytest.raises(OddPackError):
-        unpacked(b"\x91" * 100_000 + b"\x01")
+    unpacked(b"\x91" * 16 + b"\x01")
+    for depth in (17, 100_000):
+        with pytest.raises(OddPackError):
+            unpacked(b"\x91" * depth + b"\x01")

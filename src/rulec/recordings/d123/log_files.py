@@ -8,12 +8,13 @@ MessagePack in the schema's own.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from rulec.diagnostics import SourceLocation
-from rulec.recordings.d123.message_pack import OddPackError, unpacked
 from rulec.recordings.encodings.arrow.arrow_tables import LONGEST_TEXT, ArrowTable
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.recording import Side
@@ -38,6 +39,38 @@ _PLACES: tuple[tuple[str, Side, str], ...] = (
     ("sg-", "left", "SGP"),
 )
 """Beginnings of the names of data sets and of places, with where these are."""
+
+_DEEPEST = 16
+"""Values within values; what is read here has four levels."""
+
+
+class OddPackError(Exception):
+    """The bytes are no MessagePack, or hold what is not read."""
+
+
+def unpacked(data: bytes) -> Any:
+    """The only value in the bytes. Raises OddPackError, also for times and other extensions."""
+    try:
+        value = msgspec.msgpack.decode(data)
+    except (ValueError, RecursionError):  # msgspec's errors are the former, and Unicode's
+        raise OddPackError from None
+    _check_plain(value)
+    return value
+
+
+def _check_plain(value: object, depth: int = 0) -> None:
+    inner: Iterable[object] = ()
+    match value:
+        case list() if depth < _DEEPEST:
+            inner = value
+        case dict() if depth < _DEEPEST and all(isinstance(x, str | bytes | int) for x in value):
+            inner = value.values()
+        case str() | bytes() | int() | float() | None:
+            pass
+        case _:
+            raise OddPackError
+    for part in inner:
+        _check_plain(part, depth + 1)
 
 
 def said_in(table: ArrowTable) -> Mapping[Any, Any]:

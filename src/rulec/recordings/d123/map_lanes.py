@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from rulec.diagnostics import RulecError
 from rulec.recordings.d123 import log_files as files
-from rulec.recordings.d123.message_pack import OddPackError, unpacked
+from rulec.recordings.d123.log_files import OddPackError, unpacked
 from rulec.recordings.d123.stop_zones import SIGNS, StopZone, with_signs
 from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, read_table
 from rulec.recordings.encodings.arrow.nested_columns import Nested
