@@ -15,6 +15,7 @@ from rulec.value_display import short_repr
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
 Flags = NDArray[np.bool_]
+Places = NDArray[np.intp] | Flags | slice
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,70 +65,51 @@ class TraceArrays:
         """The trace from a state on, as if nothing were known of what was before."""
         if not state:
             return self
-        there = self.spans[:, 1] >= state
-        kept: Flags | slice = slice(None)
-        if self.about:
-            starts = self.starts
-            lengths = np.diff(starts)
-            # Of each value the state that it is in, and whether its object is there later
-            numbers = np.arange(int(starts[-1])) - starts[:-1].repeat(lengths)
-            kept = numbers + self.spans[:, 0].repeat(lengths) >= state
-
-        def part(name: str, values: Array) -> Array:
-            return values[kept] if name in self.about else values[state:]
-
-        def parts(values: Mapping[str, Array]) -> dict[str, Array]:
-            return {name: part(name, own) for name, own in values.items()}
-
-        items = zip(self.objects.items(), there.tolist(), strict=True)
-        return replace(
-            self,
-            n_states=self.n_states - state,
-            objects=dict(item for item, stays in items if stays),
-            spans=np.maximum(self.spans[there] - state, 0),
-            world=parts(self.world),
-            about=parts(self.about),
-            unknown=parts(self.unknown),
-            absent=parts(self.absent),
-            bounds={
-                name: (part(name, low), part(name, high))
-                for name, (low, high) in self.bounds.items()
-            },
-            only={name: flags[there] for name, flags in self.only.items()},
-        )
+        return self._of_states(np.arange(state, self.n_states), slice(state, None))
 
     def at(self, states: Sequence[int]) -> TraceArrays:
-        """The trace of some of its states, ascending, and of who is there in any."""
+        """The trace of some of its states, ascending and each once, and of who is there in any."""
         chosen = np.array(states, dtype=np.intp)
+        return self._of_states(chosen, chosen)
+
+    def _of_states(self, chosen: NDArray[np.intp], states: Places) -> TraceArrays:
+        """The trace of the chosen states, whose columns of the world are ``states``."""
         first = chosen.searchsorted(self.spans[:, 0])
         last = chosen.searchsorted(self.spans[:, 1], side="right") - 1
         there = first <= last
-        begins = (self.starts[:-1] - self.spans[:, 0])[there].tolist()
-        own = zip(begins, first[there].tolist(), last[there].tolist(), strict=True)
-        parts = [begin + chosen[low : high + 1] for begin, low, high in own]
-        cells = np.concatenate([np.empty(0, dtype=np.intp), *parts])
+        stays = np.zeros(self.n_states, dtype=bool)
+        stays[chosen] = True
+        # Of each object's value the state that it is in
+        starts = self.starts
+        state_of = np.arange(starts[-1]) + (self.spans[:, 0] - starts[:-1]).repeat(np.diff(starts))
+        part = self._taken(states, stays[state_of], there, self.world.keys() | self.about.keys())
+        spans = np.stack([first[there], last[there]], axis=1)
+        return replace(part, n_states=len(chosen), spans=spans)
+
+    def _taken(self, states: Places, cells: Places, there: Flags, names: Set[str]) -> TraceArrays:
+        """What names say in some states and of some objects, whose values are in these ``cells``."""
 
         def part(name: str, values: Array) -> Array:
-            return values[cells if name in self.about else chosen]
+            return values[states if name in self.world else cells]
 
-        def every(values: Mapping[str, Array]) -> dict[str, Array]:
-            return {name: part(name, column) for name, column in values.items()}
+        def of(values: Mapping[str, Array]) -> dict[str, Array]:
+            return {name: part(name, own) for name, own in values.items() if name in names}
 
         items = zip(self.objects.items(), there.tolist(), strict=True)
         return replace(
             self,
-            n_states=len(states),
             objects=dict(item for item, is_there in items if is_there),
-            spans=np.stack([first[there], last[there]], axis=1),
-            world=every(self.world),
-            about=every(self.about),
-            unknown=every(self.unknown),
-            absent=every(self.absent),
+            spans=self.spans[there],
+            world=of(self.world),
+            about=of(self.about),
+            unknown=of(self.unknown),
+            absent=of(self.absent),
             bounds={
                 name: (part(name, low), part(name, high))
                 for name, (low, high) in self.bounds.items()
+                if name in names
             },
-            only={name: flags[there] for name, flags in self.only.items()},
+            only={name: flags[there] for name, flags in self.only.items() if name in names},
         )
 
     @property
@@ -155,47 +137,13 @@ class TraceArrays:
 
     def said_by(self, names: Set[str]) -> TraceArrays:
         """What is said by these names only."""
-
-        def of(values: Mapping[str, Any]) -> dict[str, Any]:
-            return {name: values[name] for name in values if name in names}
-
-        return replace(
-            self,
-            world=of(self.world),
-            about=of(self.about),
-            unknown=of(self.unknown),
-            absent=of(self.absent),
-            bounds=of(self.bounds),
-            only=of(self.only),
-        )
+        every = np.ones(len(self.objects), dtype=bool)
+        return self._taken(slice(None), slice(None), every, names)
 
     def part(self, names: Set[str], items: Set[str]) -> TraceArrays:
         """What is said by these names, of the world and of these objects."""
         kept = np.array([item in items for item in self.objects], dtype=bool)
-        said = kept.repeat(np.diff(self.starts))
-
-        def of(values: Mapping[str, Array]) -> dict[str, Array]:
-            return {
-                name: values[name] if name in self.world else values[name][said]
-                for name in values
-                if name in names
-            }
-
-        return replace(
-            self,
-            objects={item: kind for item, kind in self.objects.items() if item in items},
-            spans=self.spans[kept],
-            world=of(self.world),
-            about=of(self.about),
-            unknown=of(self.unknown),
-            absent=of(self.absent),
-            bounds={
-                name: (low, high) if name in self.world else (low[said], high[said])
-                for name, (low, high) in self.bounds.items()
-                if name in names
-            },
-            only={name: flags[kept] for name, flags in self.only.items() if name in names},
-        )
+        return self._taken(slice(None), kept.repeat(np.diff(self.starts)), kept, names)
 
     def trace(self) -> Trace:
         """The trace with its states."""
