@@ -87,7 +87,7 @@ class TraceArrays:
         return replace(part, n_states=len(chosen), spans=spans)
 
     def _taken(self, states: Places, cells: Places, there: Flags, names: Set[str]) -> TraceArrays:
-        """What names say in some states and of some objects, whose values are in these ``cells``."""
+        """What names say in some states and, in ``cells``, of some objects."""
 
         def part(name: str, values: Array) -> Array:
             return values[states if name in self.world else cells]
