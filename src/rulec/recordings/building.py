@@ -22,6 +22,7 @@ from rulec.recordings.lanes.lanes_along import (
     lanelet_along,
     linked,
 )
+from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import (
     MOST_STEPS,
     OBSTACLE_TYPES,
@@ -188,7 +189,7 @@ def build_participant(
     if "heading" not in stated:
         derived = motion.headings_of(places)
         stated["heading"] = np.zeros(count) if derived is None else derived
-    turned = motion.wrapped(stated["heading"])
+    turned = wrapped(stated["heading"])
     moved = motion.along(motion.velocities_of(places, step_s), turned)
     speeds = stated.get("speed", moved)
     gained = stated.get("acceleration", motion.accelerations_of(speeds, step_s))

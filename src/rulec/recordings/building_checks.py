@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from rulec.diagnostics import Diagnostic, RulecError, did_you_mean, named
 from rulec.recordings.encodings.xml_element import LARGEST
 from rulec.recordings.lanes.lanes_along import CLOSEST_M
-from rulec.recordings.polylines import without_repeats
+from rulec.recordings.polylines import line_length, without_repeats
 from rulec.recordings.recording import LONGEST_M, Points
 from rulec.recordings.recording_messages import NOT_BUILT
 from rulec.value_display import brief
@@ -72,7 +72,7 @@ class BuildingChecks:
         if len(kept) < 2:
             self.wrong(f"`{name}` has one place only", "expected two different points or more")
             return line
-        length = float(np.hypot(*np.diff(kept, axis=0).T).sum())
+        length = line_length(kept)
         if length > LONGEST_M:
             self.wrong(f"`{name}` is {length:,.0f} m long", f"expected {LONGEST_M:,.0f} m at most")
         return kept

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TypeVar
 
 import numpy as np
 import shapely
@@ -14,6 +15,28 @@ from rulec.trace.plain_arrays import distinct
 
 _SHARPEST = 0.5
 """Where the line turns back on itself its border would run away; so far it may, at most."""
+
+Angle = TypeVar("Angle", float, NDArray[float64])
+
+
+def wrapped(angle: Angle) -> Angle:
+    """An angle, or several (rad), from -π to π."""
+    return (angle + np.pi) % (2 * np.pi) - np.pi
+
+
+def line_length(points: Points) -> float:
+    """How long (m) the line through some points is."""
+    return float(np.hypot(*np.diff(points, axis=0).T).sum())
+
+
+def arc_lengths(points: Points) -> NDArray[float64]:
+    """How far (m) along the line through some points each of them is."""
+    return np.append(0.0, np.hypot(*np.diff(points, axis=0).T).cumsum())
+
+
+def interpolated(at: NDArray[float64], known: NDArray[float64], points: Points) -> Points:
+    """The points at some numbers, on the lines between those that are ``known``."""
+    return np.stack([np.interp(at, known, column) for column in points.T], axis=1)
 
 
 def without_repeats(points: Points, closest_m: float) -> Points:
@@ -66,16 +89,12 @@ def parallel_line(points: Points, offset: float | NDArray[float64]) -> Points:
 
 def paired(line: Points, other: Points) -> tuple[Points, Points]:
     """Two lines side by side with a point for each of both's, at equal parts of their lengths."""
-    parts = [_parts(line), _parts(other)]
+    parts = [shares_along(line), shares_along(other)]
     at = distinct(np.concatenate(parts))
     at = at[np.append(True, np.diff(at) > _ONE)]
     # The ends are both's, however close a point is
     at[0], at[-1] = 0.0, 1.0
-    first, second = (
-        np.stack([np.interp(at, part, points[:, axis]) for axis in (0, 1)], axis=1)
-        for part, points in zip(parts, (line, other), strict=True)
-    )
-    return first, second
+    return interpolated(at, parts[0], line), interpolated(at, parts[1], other)
 
 
 def leads_the_same_way(
@@ -99,8 +118,9 @@ _ONE = 1e-9
 """Points that lie no farther apart, as a part of the length, are one."""
 
 
-def _parts(points: Points) -> NDArray[float64]:
-    ways = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))))
+def shares_along(points: Points) -> NDArray[float64]:
+    """How far along the line through some points each of them is, as a part of its length."""
+    ways = arc_lengths(points)
     parts: NDArray[float64] = ways / ways[-1]
     return parts
 

@@ -20,7 +20,13 @@ from numpy.typing import NDArray
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.typed_json import read_json
 from rulec.recordings.encodings.xml_element import LARGEST, short
-from rulec.recordings.polylines import ends_apart, leads_the_same_way, paired, without_repeats
+from rulec.recordings.polylines import (
+    ends_apart,
+    leads_the_same_way,
+    line_length,
+    paired,
+    without_repeats,
+)
 from rulec.recordings.recording import LONGEST_M, Lanelet, LaneMark, Points
 from rulec.recordings.road_map import RoadMap, crosswalk
 
@@ -177,7 +183,7 @@ def _bounds(path: Path, what: str, lines: tuple[_Line, _Line]) -> tuple[Points, 
             raise MAP_ARCHIVE.refused(path, f"a bound of {what} has fewer than two points")
         if not (np.abs(points) < LARGEST).all():
             raise MAP_ARCHIVE.refused(path, f"a place of {what} is not on earth")
-        if np.hypot(*np.diff(points, axis=0).T).sum() > LONGEST_M:
+        if line_length(points) > LONGEST_M:
             raise MAP_ARCHIVE.refused(path, f"{what} is longer than {LONGEST_M / 1000:g} km")
         found.append(without_repeats(points, _CLOSEST_M))
     first, second = found

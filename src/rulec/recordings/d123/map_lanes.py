@@ -26,7 +26,7 @@ from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, re
 from rulec.recordings.encodings.arrow.nested_columns import Nested
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.xml_element import LARGEST
-from rulec.recordings.polylines import leads_the_same_way, paired, without_repeats
+from rulec.recordings.polylines import leads_the_same_way, line_length, paired, without_repeats
 from rulec.recordings.recording import LONGEST_M, Lanelet, LaneMark, ObservedLight, Points
 from rulec.recordings.road_map import RoadMap, crosswalk_with_outline
 
@@ -221,7 +221,7 @@ def _line(layers: _Layers, thing: _Thing, name: str) -> Points:
     if not (np.abs(points[:, :2]) < LARGEST).all():
         raise layers.wrong(thing, f"a place of `{name}` is not on earth")
     flat = points[:, :2].astype(float)
-    if np.hypot(*np.diff(flat, axis=0).T).sum() > LONGEST_M:
+    if line_length(flat) > LONGEST_M:
         raise layers.wrong(thing, f"`{name}` is longer than {LONGEST_M / 1000:g} km")
     return without_repeats(flat, _CLOSEST_M)
 

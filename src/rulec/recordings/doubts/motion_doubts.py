@@ -13,6 +13,7 @@ from rulec.diagnostics import RulecError
 from rulec.recordings.doubts.impossible_speeds import without_impossible_speeds
 from rulec.recordings.doubts.limit_doubts import limit_doubts
 from rulec.recordings.doubts.road_doubts import road_doubts
+from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Recording
 from rulec.recordings.track import Track, TrackStates
 from rulec.trace.plain_arrays import median
@@ -111,7 +112,7 @@ def _askew_deg(track: Track) -> float:
     dx, dy = _ways(track).T
     speed = track.rows[:, 3]
     away = np.arctan2(dy, dx) - track.rows[1:, 2] + np.pi * (speed[1:] + speed[:-1] < 0)
-    turned = np.abs((away + np.pi) % (2 * np.pi) - np.pi)
+    turned = np.abs(wrapped(away))
     return float(np.degrees(np.average(turned, weights=np.hypot(dx, dy))))
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rulec.diagnostics import SourceLocation
 from rulec.recordings.encodings.xml_element import short
-from rulec.recordings.polylines import places_in
+from rulec.recordings.polylines import arc_lengths, places_in
 from rulec.recordings.recording import Lanelet, Participant, Points, Recording, is_lane
 from rulec.recordings.recording_messages import OTHER_NET
 from rulec.recordings.track import Track, TrackStates
@@ -197,7 +197,7 @@ def _leads(middle: Points, moves: Moves) -> NDArray[np.bool_]:
 def _moves(track: Track) -> Moves:
     """Some of the places of a track, with the ways on from there."""
     places = track.rows[:, :2]
-    driven = np.append(0.0, np.hypot(*np.diff(places, axis=0).T).cumsum())
+    driven = arc_lengths(places)
     rows = np.searchsorted(driven, np.linspace(0.0, driven[-1], _MOST_PLACES))
     some = places[distinct(rows)]
     return np.column_stack((some[:-1], np.diff(some, axis=0)))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy import float64, int64
 from numpy.typing import NDArray
 
+from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Participant
 from rulec.recordings.track import Track, tracked
 
@@ -54,8 +55,7 @@ def bridged(boxes: BoxTrack, step_s: float) -> BoxTrack:
         table[measured] = values
         return table
 
-    headings = filled(np.unwrap(boxes.headings)[:, None])[:, 0]
-    headings = (headings + np.pi) % (2 * np.pi) - np.pi
+    headings = wrapped(filled(np.unwrap(boxes.headings)[:, None])[:, 0])
     headings[measured] = boxes.headings
     return BoxTrack(
         every, filled(boxes.centres), headings, filled(boxes.velocities), filled(boxes.sizes)

@@ -12,8 +12,8 @@ from rulec.recordings.lane_centres.road_features import (
     CentreLane,
     Places3d,
     RoadFeatures,
-    lengths_along,
 )
+from rulec.recordings.polylines import arc_lengths
 
 CROSSING_RAD = np.radians(30.0)
 """Lanes that meet at a smaller angle join or part."""
@@ -54,7 +54,7 @@ def junction_stretches(features: RoadFeatures) -> dict[str, Stretch]:
 
 
 def _stretch(lane: CentreLane, places: list[float], *, from_start: bool) -> Stretch:
-    along = lengths_along(lane)
+    along = arc_lengths(lane.centre[:, :2])
     last = len(along) - 1
     if along[-1] <= LONGEST_M:
         return 0, last

@@ -14,8 +14,8 @@ from rulec.recordings.lane_centres.road_features import (
     CentreLane,
     LaneSide,
     NeighbourPart,
-    lengths_along,
 )
+from rulec.recordings.polylines import arc_lengths
 from rulec.recordings.recording import LaneMark
 
 SHORTEST_BESIDE_M = 8.0
@@ -42,7 +42,7 @@ def pieces_of_lanes(
 
     ``stretches`` are parts of lanes that are pieces, too.
     """
-    reach = {name: lengths_along(lane) for name, lane in lanes.items()}
+    reach = {name: arc_lengths(lane.centre[:, :2]) for name, lane in lanes.items()}
     cuts: dict[str, set[int]] = defaultdict(set)
     waiting = [(name, index) for name, lane in lanes.items() for index in _ends(lane, reach[name])]
     waiting += [(name, index) for name, stretch in stretches.items() for index in stretch]

@@ -17,7 +17,7 @@ from rulec.recordings.lane_centres.road_features import (
     LaneSide,
     RoadFeatures,
 )
-from rulec.recordings.polylines import parallel_line
+from rulec.recordings.polylines import arc_lengths, parallel_line
 
 Widths = NDArray[float64]
 
@@ -149,7 +149,7 @@ def _sound(widths: Widths) -> Widths:
 def _filled(lane: CentreLane, known: Mapping[str, HalfWidths], side: int) -> Widths:
     own = known[lane.id][side]
     there = ~np.isnan(own)
-    along = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(lane.centre[:, :2], axis=0).T))))
+    along = arc_lengths(lane.centre[:, :2])
     if there.any():
         filled: Widths = np.interp(along, along[there], own[there])
         return filled

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
@@ -66,12 +65,6 @@ class CentreLane:
     left: LaneSide = LaneSide()
     right: LaneSide = LaneSide()
     area: Points | None = None
-
-
-def lengths_along(lane: CentreLane) -> NDArray[float64]:
-    """How far (m) along a lane each point of its centre is."""
-    steps = np.hypot(*np.diff(lane.centre[:, :2], axis=0).T)
-    return np.concatenate(([0.0], np.cumsum(steps)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.recordings.polylines import interpolated, line_length, shares_along
 from rulec.recordings.recording import Points
 
 _CLOSEST_M = 1e-6
@@ -69,27 +70,13 @@ def distinct(line: Points) -> Points | None:
 
 def middle_line(left: Points, right: Points) -> Points:
     """The line between two bounds: at the same part of either's length, at each point of both."""
-    parts = [_parts(line) for line in (left, right)]
+    parts = [shares_along(line) for line in (left, right)]
     every = np.unique(np.concatenate(parts))
-    shortest = min(_length(left), _length(right))
+    shortest = min(line_length(left), line_length(right))
     apart = np.diff(every) * shortest > _CLOSEST_M
     kept = every[np.concatenate(([True], apart[:-1], [True]))]
     kept[-1] = 1.0
-    both = [_at(line, own, kept) for line, own in zip((left, right), parts, strict=True)]
+    both = [interpolated(kept, *own) for own in zip(parts, (left, right), strict=True)]
     line = distinct((both[0] + both[1]) / 2)
     # Bounds that lead to each other's beginning have no middle
     return left if line is None else line
-
-
-def _length(line: Points) -> float:
-    return float(np.hypot(*np.diff(line, axis=0).T).sum())
-
-
-def _parts(line: Points) -> NDArray[float64]:
-    along = np.append(0.0, np.hypot(*np.diff(line, axis=0).T).cumsum())
-    parts: NDArray[float64] = along / along[-1]
-    return parts
-
-
-def _at(line: Points, own: NDArray[float64], parts: NDArray[float64]) -> Points:
-    return np.stack([np.interp(parts, own, line[:, axis]) for axis in (0, 1)], axis=1)

@@ -30,7 +30,7 @@ from rulec.recordings.lanes.lanes_along import (
     linked,
     with_ends_that_meet,
 )
-from rulec.recordings.polylines import without_repeats
+from rulec.recordings.polylines import line_length, without_repeats
 from rulec.recordings.recording import LONGEST_M, Lanelet, LaneMark, Points, Side
 from rulec.recordings.road_map import RoadMap
 
@@ -181,7 +181,7 @@ class _LaneTable:
         if len(kept) < 2:
             why = f"lane `{short(name)}` has one place only"
             raise self.columns.wrong(int(own[0]), why, "expected two points or more in order")
-        length = np.hypot(*np.diff(kept, axis=0).T).sum()
+        length = line_length(kept)
         if length > LONGEST_M:
             why = f"lane `{short(name)}` is {length:,.0f} m long"
             expected = f"expected {LONGEST_M:,.0f} m at most"

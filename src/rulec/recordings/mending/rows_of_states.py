@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy import float64, int64
+from numpy import int64
 from numpy.typing import NDArray
 
 from rulec.recordings.recording import Participant, Points, TrackState
@@ -20,12 +20,6 @@ def steps_of(body: Participant) -> NDArray[int64]:
 def row_of(state: TrackState) -> tuple[float, ...]:
     """A state as a row of a track."""
     return state.x, state.y, state.heading, state.speed, state.acceleration
-
-
-def turns(angles: NDArray[float64]) -> NDArray[float64]:
-    """Angles from -π to π."""
-    turned: NDArray[float64] = (angles + np.pi) % (2 * np.pi) - np.pi
-    return turned
 
 
 def moved_outline(outline: Points, before: TrackState, now: TrackState) -> Points:

@@ -8,7 +8,8 @@ import numpy as np
 from numpy import float64, int64, intp
 from numpy.typing import NDArray
 
-from rulec.recordings.mending.rows_of_states import moved_outline, row_of, steps_of, turns
+from rulec.recordings.mending.rows_of_states import moved_outline, row_of, steps_of
+from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Lamp, Participant, Recording, TrackState
 from rulec.recordings.track import Track, TrackOutlines, TrackStates
 
@@ -93,7 +94,7 @@ class _Known:
         in_hole = around.searchsorted(hole)
         told = np.abs(self.rows[hole : hole + 2, 3]).max()
         fastest = max(float(told), *np.delete(speeds, in_hole).tolist(), 0.0)
-        turned = abs(turns(np.diff(self.rows[hole : hole + 2, 2]))[0])
+        turned = abs(wrapped(np.diff(self.rows[hole : hole + 2, 2]))[0])
         too_fast = speeds[in_hole] > fastest * _FASTER + _FASTER_MPS
         return bool(too_fast or turned > _LARGEST_TURN)
 
@@ -103,7 +104,7 @@ class _Known:
         before, behind = self.rows[hole], self.rows[hole + 1]
         share = (missing - self.steps[hole]) / (self.steps[hole + 1] - self.steps[hole])
         gained = behind - before
-        gained[2] = turns(gained[2:3])[0]
+        gained[2] = wrapped(gained[2:3])[0]
         values: NDArray[float64] = before + share[:, None] * gained
         around = self._around(hole)
         values[:, :2] = _cubic(self.steps[around], self.rows[around, :2], missing)

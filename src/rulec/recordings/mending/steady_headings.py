@@ -14,7 +14,8 @@ import numpy as np
 from numpy import bool_, float64, int64, intp
 from numpy.typing import NDArray
 
-from rulec.recordings.mending.rows_of_states import moved_outline, row_of, steps_of, turns
+from rulec.recordings.mending.rows_of_states import moved_outline, row_of, steps_of
+from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Participant, Recording, TrackState
 from rulec.recordings.track import TrackOutlines, TrackStates, outlines_on_track
 
@@ -98,7 +99,7 @@ def _steady(times: Floats, places: Floats, heading: Floats) -> Floats | None:
 
 def _spins(apart: Floats, ways: Floats, heading: Floats) -> NDArray[bool_]:
     """Flags of states, but for the last, up to whose next the heading turns as nobody can."""
-    turned = np.abs(turns(np.diff(heading)))
+    turned = np.abs(wrapped(np.diff(heading)))
     spins: NDArray[bool_] = turned > np.maximum(_LEAST_TURN, ways / _LEAST_RADIUS_M)
     return spins & (apart <= _SOON_S)
 
@@ -110,20 +111,20 @@ def _turned_back(times: Floats, places: Floats, heading: Floats, apart: Floats) 
     """
     found: Floats = heading.copy()
     whole = len(heading)
-    flips = (np.abs(turns(np.diff(heading))) > _ROUND) & (apart <= _SOON_S)
+    flips = (np.abs(wrapped(np.diff(heading))) > _ROUND) & (apart <= _SOON_S)
     parts = list(pairwise([0, *(flips.nonzero()[0] + 1).tolist(), whole]))
     for number, (begin, end) in enumerate(parts):
         if times[min(end, whole - 1)] - times[begin] >= _BRIEF_S or len(parts) == 1:
             continue
         if begin > 0 and end < whole:
-            wrong = abs(turns(found[begin : begin + 1] - found[begin - 1])[0]) > _ROUND
+            wrong = abs(wrapped(found[begin : begin + 1] - found[begin - 1])[0]) > _ROUND
         else:
             beside = parts[1] if begin == 0 else parts[number - 1]
             wrong = end - begin < beside[1] - beside[0] and (
                 _forwards(places, heading, (begin, end)) <= _forwards(places, heading, beside)
             )
         if wrong:
-            found[begin:end] = turns(found[begin:end] + np.pi)
+            found[begin:end] = wrapped(found[begin:end] + np.pi)
     return found
 
 
@@ -153,7 +154,7 @@ def _of_before_and_after(
         if one is None or other is None:
             continue
         share = np.linspace(0.0, 1.0, end - begin)
-        found[begin:end] = turns(one + share * turns(np.array([other - one])))
+        found[begin:end] = wrapped(one + share * wrapped(np.array([other - one])))
     return found
 
 

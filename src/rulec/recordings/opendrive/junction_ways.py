@@ -17,6 +17,7 @@ from rulec.recordings.opendrive.content.elements import OpenDrive, RoadJunction
 from rulec.recordings.opendrive.lane_links import LaneKey, LaneLinks
 from rulec.recordings.opendrive.pieces import RoadPiece
 from rulec.recordings.opendrive.plan_view import places_on
+from rulec.recordings.polylines import wrapped
 
 _ARMS = 3
 _LIKE = np.radians(30.0)
@@ -77,7 +78,7 @@ def _differ(headings: Sequence[float]) -> bool:
     """True if two of some directions differ by more than what joins at an acute angle."""
     if not headings:
         return False
-    turned = (np.array(headings) - headings[0] + pi) % (2 * pi) - pi
+    turned = wrapped(np.array(headings) - headings[0])
     return bool(np.ptp(turned) > _LIKE)
 
 

@@ -16,6 +16,7 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from rulec.recordings.osi.lane_messages import Boundary, TraceLane
+from rulec.recordings.polylines import line_length
 from rulec.recordings.recording import Points
 
 USUAL_WIDTH_M = 3.5
@@ -96,7 +97,7 @@ def lane_shape(
     lines = [lane.centre] if len(lane.centre) > 1 else [x for side in sides for x in side]
     if not lines:
         return None
-    line = _Line(max(lines, key=lambda x: float(np.hypot(*np.diff(x, axis=0).T).sum())))
+    line = _Line(max(lines, key=line_length))
     known = [_side(line, side) if side else None for side in sides]
     end = line.reached[-1]
     stations = np.concatenate([line.reached, *(side[0] for side in known if side is not None)])

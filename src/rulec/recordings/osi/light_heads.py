@@ -16,6 +16,7 @@ import numpy as np
 from rulec.recordings.encodings.wire_format import WireFile
 from rulec.recordings.osi.message_fields import Fields, assigned_lanes, number, part
 from rulec.recordings.osi.message_times import TimeGrid
+from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Lanelet, ObservedLight, Points
 
 _TOLD = {"off": 1, "red": 2, "yellow": 3, "green": 4}
@@ -150,7 +151,7 @@ def _lit(
 def _direction(lanelet: Lanelet, onward: Lanelet) -> str:
     """Where a way on leads, by its end."""
     before, after = (_heading(x.centre[-2:]) for x in (lanelet, onward))
-    turned = (after - before + np.pi) % (2 * np.pi) - np.pi
+    turned = wrapped(after - before)
     return "straight" if abs(turned) < _TURNED else "left" if turned > 0 else "right"
 
 

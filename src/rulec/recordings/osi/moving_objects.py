@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from rulec.recordings.encodings.wire_format import WireFile
 from rulec.recordings.osi.message_fields import Fields, number, part, places
 from rulec.recordings.osi.message_times import TimeGrid
+from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Lamp, Participant, Points
 from rulec.recordings.track import Track, tracked
 from rulec.trace.plain_arrays import median
@@ -212,8 +213,7 @@ def _track_rows(rows: NDArray[float64], times: NDArray[float64]) -> NDArray[floa
     acceleration = (np.stack(motion[2:]) * ahead).sum(axis=0)
     if np.isnan(acceleration).any():
         acceleration = np.gradient(speed, times) if len(x) > 1 else np.zeros(len(x))
-    heading = (heading + np.pi) % (2 * np.pi) - np.pi
-    return np.column_stack((x, y, heading, speed, acceleration))
+    return np.column_stack((x, y, wrapped(heading), speed, acceleration))
 
 
 def _directions(velocity: NDArray[float64]) -> NDArray[float64]:

@@ -11,6 +11,7 @@ import shapely
 from rulec.recordings.encodings.speed_units import SPEED_UNITS
 from rulec.recordings.encodings.wire_format import WireFile
 from rulec.recordings.osi.message_fields import Fields, assigned_lanes, number, part, places
+from rulec.recordings.polylines import arc_lengths
 from rulec.recordings.recording import Lanelet, Points
 from rulec.recordings.road_map import crosswalk
 
@@ -101,8 +102,7 @@ def _is_mark_of(said: Fields, sign: str) -> bool:
 
 def _across(lanelet: Lanelet, place: Points) -> Points:
     """The ends of the line across a lanelet beside a place."""
-    steps = np.hypot(*np.diff(lanelet.centre, axis=0).T)
-    reached = np.concatenate(([0.0], np.cumsum(steps)))
+    reached = arc_lengths(lanelet.centre)
     along = shapely.line_locate_point(shapely.LineString(lanelet.centre), shapely.points(place))
     ends = [
         [np.interp(along, reached, axis)[0] for axis in bound.T]

@@ -17,6 +17,7 @@ from rulec.recordings.lane_centres.road_features import (
     NeighbourPart,
     RoadFeatures,
 )
+from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import LONGEST_M, LaneMark
 from rulec.recordings.scenarionet.data_sets import DataSet
 from rulec.recordings.scenarionet.scenario_dictionary import KeyedValue
@@ -172,7 +173,7 @@ def joined(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:
     for one, other in sorted(pairs.T.tolist()):
         own, following = there[one], there[other]
         turned = _heading(following, 0) - _heading(own, -2)
-        if own is not following and abs((turned + np.pi) % (2 * np.pi) - np.pi) < _TURNED_RAD:
+        if own is not following and abs(wrapped(turned)) < _TURNED_RAD:
             after.setdefault(own.id, []).append(following.id)
             before.setdefault(following.id, []).append(own.id)
     return {

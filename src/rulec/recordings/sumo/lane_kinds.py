@@ -13,8 +13,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping, Set
 
-import numpy as np
-
+from rulec.recordings.polylines import line_length
 from rulec.recordings.recording import RAMPS
 from rulec.recordings.sumo.net import SumoNet
 
@@ -101,8 +100,7 @@ def _that_stay(net: SumoNet, lanes: list[str], onward: _Lanes) -> list[str]:
         after = _beside_each_other(net, [*now.values()], onward)
         now = {lane: after[at] for lane, at in now.items() if at in after}
         if now:
-            shape = net.lanes[next(iter(now.values()))].shape
-            way += float(np.hypot(*np.diff(shape, axis=0).T).sum())
+            way += line_length(net.lanes[next(iter(now.values()))].shape)
     return list(now)
 
 
@@ -131,5 +129,5 @@ def _goes_on(net: SumoNet, edge: str, edges: _Lanes, onward: _Lanes) -> bool:
         if edge in seen:
             return True
         seen.add(edge)
-        way += float(np.hypot(*np.diff(net.lanes[min(ends)].shape, axis=0).T).sum())
+        way += line_length(net.lanes[min(ends)].shape)
     return True

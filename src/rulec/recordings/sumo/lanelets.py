@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Set
 
 import numpy as np
 
-from rulec.recordings.polylines import parallel_line, without_repeats
+from rulec.recordings.polylines import interpolated, parallel_line, without_repeats
 from rulec.recordings.recording import (
     CYCLES_TOO,
     STRAIGHT_ON,
@@ -136,8 +136,7 @@ def _lines(lane: NetLane, shape: Points) -> tuple[Points, Points, Points]:
 
 def _resampled(points: Points, count: int) -> Points:
     at = np.linspace(0, len(points) - 1, count)
-    every = np.arange(len(points))
-    return np.stack([np.interp(at, every, points[:, axis]) for axis in (0, 1)], axis=1)
+    return interpolated(at, np.arange(len(points), dtype=float), points)
 
 
 def _successors(

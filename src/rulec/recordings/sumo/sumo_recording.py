@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from rulec.diagnostics import SourceLocation
 from rulec.recordings.encodings.xml_element import short
+from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import (
     MOST_STEPS,
     SPARSEST,
@@ -326,8 +327,7 @@ def _centres_along_way(
 
 
 def _centres(rows: NDArray[float64], length: float) -> NDArray[float64]:
-    heading = np.pi / 2 - np.radians(rows[:, 2])
-    heading = (heading + np.pi) % (2 * np.pi) - np.pi
+    heading = wrapped(np.pi / 2 - np.radians(rows[:, 2]))
     x = rows[:, 0] - length / 2 * np.cos(heading)
     y = rows[:, 1] - length / 2 * np.sin(heading)
     return np.column_stack((x, y, heading, rows[:, 3]))

@@ -6,6 +6,7 @@ import numpy as np
 from numpy import float64
 from numpy.typing import NDArray
 
+from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Points
 
 FLICKER_M = 1.0
@@ -26,15 +27,7 @@ def headings_of(places: Points) -> Floats | None:
     ahead = np.diff(places[anchors], axis=0)
     directions = np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0]))
     middles = (anchors[:-1] + anchors[1:]) / 2
-    turned = np.interp(np.arange(len(places)), middles, directions)
-    headings: Floats = wrapped(turned)
-    return headings
-
-
-def wrapped(angles: Floats) -> Floats:
-    """Angles from -π to π."""
-    result: Floats = (angles + np.pi) % (2 * np.pi) - np.pi
-    return result
+    return wrapped(np.interp(np.arange(len(places)), middles, directions))
 
 
 def _anchors(places: Points) -> NDArray[np.intp]:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from rulec.diagnostics import RulecError, did_you_mean
 from rulec.recordings.encodings.table_columns import Columns, Texts
 from rulec.recordings.encodings.xml_element import LARGEST, short
+from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Lamp, Participant, id_order
 from rulec.recordings.track import Track, tracked
 from rulec.recordings.tracks import derived_motion as motion
@@ -200,7 +201,7 @@ class _Reading:
     def _heading(self, kind: str, own: NDArray[np.intp], places: NDArray[float64]) -> Floats:
         stated = None if self.rows.heading is None else self.rows.heading[own]
         if stated is not None and not np.isnan(stated).any():
-            return motion.wrapped(stated)
+            return wrapped(stated)
         derived = self._by_velocity(own)
         if derived is None:
             derived = motion.headings_of(places)
@@ -208,7 +209,7 @@ class _Reading:
             if stated is None or np.isnan(stated).all():
                 self.taken[f"heading of a {kind} that does not move that of the lane"] += 1
             derived = np.full(len(own), self.heading_at(*places[0].tolist()))
-        return motion.wrapped(derived if stated is None else _filled(stated, derived))
+        return wrapped(derived if stated is None else _filled(stated, derived))
 
     def _by_velocity(self, own: NDArray[np.intp]) -> Floats | None:
         """The direction of velocities, which who is slow keeps; None if nobody is fast enough."""
@@ -358,10 +359,10 @@ def _check_headings(rows: TrackRows) -> None:
     # Who backs, by its own speeds, goes the other way
     backs = 0.0 if rows.speed is None else np.pi * (rows.speed[order][:-1] < 0)
     turned = np.arctan2(dy, dx) - heading[order][:-1]
-    off = np.abs(motion.wrapped(turned - backs))[moving]
+    off = np.abs(wrapped(turned - backs))[moving]
     if len(off) > _ENOUGH and np.median(off) > _TURNED:
         row = int(order[:-1][moving][int(np.argmax(off))])
-        if np.median(np.abs(motion.wrapped(turned))[moving]) <= _TURNED:
+        if np.median(np.abs(wrapped(turned))[moving]) <= _TURNED:
             why = "most who move have a negative speed, and do not move backwards by their headings"
             way_out = "leave out the sign: only who drives backwards has a negative speed"
             raise rows.columns.wrong(row, why, help_text=way_out)

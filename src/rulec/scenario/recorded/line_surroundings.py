@@ -8,6 +8,7 @@ import numpy as np
 from numpy import bool_, float64
 from numpy.typing import NDArray
 
+from rulec.recordings.polylines import arc_lengths, interpolated
 from rulec.recordings.recording import Points
 
 _SQUARE_M = 10.0
@@ -42,15 +43,14 @@ class LineSurroundings:
 
 def line_surroundings(corners: Points, near_m: float) -> LineSurroundings:
     """The squares in which all places lie that are within ``near_m`` of a line through corners."""
-    steps = np.hypot(*np.diff(corners, axis=0).T)
-    arc = np.append(0.0, steps.cumsum())
+    arc = arc_lengths(corners)
     size = _SQUARE_M
     area = (np.ptp(corners, axis=0) + 2 * near_m).prod()
     while area > _MOST_SQUARES * size**2 or arc[-1] > _MOST_ALONG * size:
         size *= 2
     count = int(np.ceil(arc[-1] / (size / 2))) + 1
     at = np.linspace(0.0, arc[-1], count)
-    samples = np.stack([np.interp(at, arc, column) for column in corners.T], axis=1)
+    samples = interpolated(at, arc, corners)
     # The nearest sample is a quarter of a square farther away than the line, at most
     more = int(np.ceil(near_m / size + 0.25))
     corner = samples.min(axis=0) - (more + 1.5) * size

@@ -12,13 +12,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar
 
 import numpy as np
 from numpy import float64, intp
 from numpy.typing import NDArray
 
-from rulec.recordings.polylines import densified, without_repeats
+from rulec.recordings.polylines import (
+    Angle,
+    arc_lengths,
+    densified,
+    interpolated,
+    without_repeats,
+    wrapped,
+)
 from rulec.recordings.recording import Points
 from rulec.scenario.recorded.line_fans import LineFans, line_fans
 from rulec.scenario.recorded.line_surroundings import LineSurroundings, line_surroundings
@@ -41,7 +47,6 @@ _STEP_M = 0.5
 _TURN_RAD = np.radians(5.0)
 _HAIR = 1e-9
 _Values = NDArray[float64]
-Angle = TypeVar("Angle", float, _Values)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -218,10 +223,10 @@ def smoothed(corners: Points) -> Points:
     added again (twicing: Tukey, "Exploratory data analysis", 1977). The ends stay.
     """
     kept = densified(without_repeats(corners, _CLOSEST_M), _STEP_M)
-    arc = np.concatenate(([0.0], np.hypot(*np.diff(kept, axis=0).T).cumsum()))
+    arc = arc_lengths(kept)
     count = max(2, round(float(arc[-1]) / _STEP_M) + 1)
     at = np.linspace(0.0, arc[-1], count)
-    points = np.stack([np.interp(at, arc, column) for column in kept.T], axis=1)
+    points = interpolated(at, arc, kept)
     means = _means(points)
     line: Points = 2 * means - _means(means)
     return line[_bends(line)]
@@ -250,7 +255,7 @@ def _bends(points: Points) -> NDArray[intp]:
 
 def turn(before: Angle, after: Angle) -> Angle:
     """The way from one angle (rad) to another, the short way round."""
-    return (after - before + np.pi) % (2 * np.pi) - np.pi
+    return wrapped(after - before)
 
 
 def pieces_at(borders: _Values, s: _Values) -> NDArray[intp]:

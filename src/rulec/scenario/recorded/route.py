@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from rulec.recordings.polylines import line_length
 from rulec.recordings.recording import Lanelet, Points, Recording, TrackState, id_order, is_lane
 from rulec.scenario.recorded.reference_line import pieces_at, turn
 
@@ -177,7 +178,7 @@ def _straight_on(
 
 def lanelet_length(lanelet: Lanelet) -> float:
     """The length (m) of a lanelet's middle."""
-    return float(np.hypot(*np.diff(lanelet.centre, axis=0).T).sum())
+    return line_length(lanelet.centre)
 
 
 def _end_heading(lanelet: Lanelet, backwards: bool) -> float:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import cos, degrees, pi
+from math import cos, degrees
 
 import numpy as np
 
+from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Participant, Points, Recording
 from rulec.scenario import scenario_model as model
 from rulec.scenario.geometry import Box
@@ -196,7 +197,7 @@ def _walking_direction(view: TrafficView, participant: Participant) -> float | N
         return None
     place = view.line.coordinates(np.array([[state.x, state.y]]))
     turn = state.heading - view.line.heading_at(float(np.nan_to_num(place[0, 0])))
-    return degrees((turn + pi) % (2 * pi) - pi)
+    return degrees(wrapped(turn))
 
 
 def _signals(participant: Participant) -> dict[str, model.SignalValue]:
