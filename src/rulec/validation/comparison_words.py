@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from rulec.validation.formula_words import formula_words, term_words
+from rulec.validation.formula_words import comparisons_in, formula_words, term_words
 from rulec.validation.unprovable import UnprovableError, exact, require
 
 _MIRRORED = {"<": ">", ">": "<", "<=": ">=", ">=": "<=", "=": "=", "!=": "!="}
@@ -52,7 +52,8 @@ def check_comparison(comparison: Mapping[str, Any], units: Mapping[str, str]) ->
     require(len(terms) > 0, "a comparison compares nothing")
     for _, term in terms:
         if "count" in term:
-            _check_body(term["body"], units)
+            for inner in comparisons_in(term["body"]):
+                check_comparison(inner, units)
     if len(terms) == 1 and "count" in terms[0][1] and text.startswith(("some ", "every ")):
         require(_says_some_or_every(comparison), f"`{text}` is not what is compared")
         return
@@ -73,14 +74,6 @@ def check_comparison(comparison: Mapping[str, Any], units: Mapping[str, str]) ->
         and -difference.constant / first == exact(comparison["limit"])
     )
     require(same, f"`{comparison['text']}` is not what is compared")
-
-
-def _check_body(tree: Any, units: Mapping[str, str]) -> None:
-    if isinstance(tree, list):
-        for part in tree[1:]:
-            _check_body(part, units)
-    elif isinstance(tree, dict) and "terms" in tree:
-        check_comparison(tree, units)
 
 
 def _says_some_or_every(comparison: Mapping[str, Any]) -> bool:

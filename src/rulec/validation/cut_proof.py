@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rulec.validation.formula_progression import DemandState
-from rulec.validation.letter_sets import Letters
+from rulec.validation.letter_sets import Letters, told_apart
 from rulec.validation.table_proof import MOST_STATES, ClaimedTable, FormulaMachine, led_to
 from rulec.validation.unprovable import require
 
@@ -85,11 +85,8 @@ def _atoms(
 ) -> list[int]:
     """The coarsest sets of letters that all moves and classes respect."""
     sets = {move.letters for state in states for move in machine.moves(state)}
-    atoms = [machine.possible]
-    for letters in sorted(sets | set(table.classes)):
-        atoms = [part for atom in atoms for part in (atom & letters, atom & ~letters) if part]
-        require(len(atoms) <= MOST_ATOMS, "its formula tells too many letters apart")
-    return atoms
+    reason = "its formula tells too many letters apart"
+    return told_apart(machine.possible, sorted(sets | set(table.classes)), MOST_ATOMS, reason)
 
 
 def _blocks(targets: Sequence[Sequence[int]], outcomes: Sequence[Sequence[int]]) -> list[int]:

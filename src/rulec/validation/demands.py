@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Literal, TypeAlias
 
+from rulec.validation.formula_words import parted
 from rulec.validation.functions import FALSE, MOST_WORK, TRUE, Function, FunctionAlgebra
 from rulec.validation.unprovable import UnprovableError, exact, require
 
@@ -176,8 +177,7 @@ class Demands:
         if isinstance(tree, dict):
             return self.number(Now(letters_of(tree)))
         require(isinstance(tree, list) and 2 <= len(tree) <= 4, "its tree is no formula")
-        operator, *rest = tree
-        bound = rest.pop() if isinstance(rest[-1], dict) and "unit" in rest[-1] else None
+        operator, rest, bound = parted(tree)
         limits = _limits(operator, bound, step)
         operands = [self.read(operand, step, letters_of) for operand in rest]
         if len(operands) == 1:

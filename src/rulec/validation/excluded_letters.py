@@ -13,7 +13,7 @@ from itertools import pairwise, product
 from math import prod
 from typing import Any
 
-from rulec.validation.formula_words import term_words
+from rulec.validation.formula_words import atoms_in, term_words
 from rulec.validation.letter_sets import TRUE_FOR, DigitRead, Letters, subject
 from rulec.validation.unprovable import UnprovableError, exact, require
 
@@ -33,21 +33,12 @@ def possible_letters(letters: Letters, book: Mapping[str, Any], rule: Mapping[st
     ]
     possible = letters.everything
     for group in _linked(instances):
-        possible &= _of_group(letters, group, list(_atoms(rule["tree"])), vocabulary)
+        possible &= _of_group(letters, group, list(atoms_in(rule["tree"])), vocabulary)
     return possible
 
 
 def _counts(tree: Any) -> bool:
-    return any("count" in term for atom in _atoms(tree) for _, term in atom.get("terms", ()))
-
-
-def _atoms(tree: Any) -> Iterator[dict[str, Any]]:
-    if isinstance(tree, dict):
-        if "unit" not in tree:  # that is a bound
-            yield tree
-    elif isinstance(tree, list):
-        for part in tree[1:]:
-            yield from _atoms(part)
+    return any("count" in term for atom in atoms_in(tree) for _, term in atom.get("terms", ()))
 
 
 def _instances(
@@ -100,7 +91,7 @@ def _linked(instances: Sequence[Any]) -> list[list[Any]]:
     """The instances in groups that have no word in common."""
     groups: list[tuple[set[Any], list[Any]]] = []
     for instance in instances:
-        about, members = {subject(atom) for atom in _atoms(instance)}, [instance]
+        about, members = {subject(atom) for atom in atoms_in(instance)}, [instance]
         for group in [group for group in groups if group[0] & about]:
             groups.remove(group)
             about, members = about | group[0], [*group[1], *members]
@@ -114,7 +105,7 @@ def _of_group(
     """The letters that go with some values of all that a group of facts speaks of."""
     atoms: dict[Any, list[Any]] = {}
     for instance in group:
-        for atom in _atoms(instance):
+        for atom in atoms_in(instance):
             atoms.setdefault(subject(atom), []).append(atom)
     reads = {read.about: read for read in letters.reads if read.about in atoms}
     if not reads:

@@ -13,7 +13,7 @@ from rulec.validation.cut_proof import prove_cut_table
 from rulec.validation.demands import Demands
 from rulec.validation.excluded_letters import possible_letters
 from rulec.validation.formula_progression import FormulaProgression
-from rulec.validation.formula_words import formula_words
+from rulec.validation.formula_words import comparisons_in, formula_words
 from rulec.validation.hoa_proof import prove_hoa
 from rulec.validation.letter_sets import Letters
 from rulec.validation.parts_proof import prove_parts
@@ -105,7 +105,7 @@ def _prove(rule: Mapping[str, Any], book: Mapping[str, Any]) -> None:
     tree, machine = rule["tree"], rule["machine"]
     require(formula_words(tree) == rule["formula"], "its formula in words is not its tree")
     units = {item["name"]: item["unit"] for item in declarations if item["kind"] == "quantity"}
-    for comparison in _comparisons(tree):
+    for comparison in comparisons_in(tree):
         check_comparison(comparison, units)
     letters = Letters(machine["reads"], {item["name"]: item for item in declarations})
     possible = possible_letters(letters, book, rule)
@@ -130,9 +130,3 @@ def table_digest(letters: Any, following: Any, accepting: Any) -> str:
     """The SHA-256 of a table, as JSON without spaces: its letters, its states, its verdicts."""
     table = json.dumps([letters, following, accepting], separators=(",", ":"))
     return sha256(table.encode()).hexdigest()
-
-
-def _comparisons(tree: Any) -> list[Mapping[str, Any]]:
-    if isinstance(tree, list):
-        return [comparison for part in tree[1:] for comparison in _comparisons(part)]
-    return [tree] if isinstance(tree, dict) and "terms" in tree else []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -11,14 +11,34 @@ from rulec.validation.unprovable import exact
 _LOOSEST_FIRST = ("iff", "implies", "then", "xor", "or", "and")
 
 
+def parted(tree: Sequence[Any]) -> tuple[Any, list[Any], Any]:
+    """The operator of a tree that is no atom, its operands, and its bound, None without one."""
+    operator, *operands = tree
+    is_bounded = operands and isinstance(operands[-1], dict) and "unit" in operands[-1]
+    return operator, operands, operands.pop() if is_bounded else None
+
+
+def atoms_in(tree: Any) -> Iterator[dict[str, Any]]:
+    """The atoms and comparisons of a tree, but for those within counts."""
+    if isinstance(tree, dict):
+        yield tree
+    elif isinstance(tree, list):
+        for operand in parted(tree)[1]:
+            yield from atoms_in(operand)
+
+
+def comparisons_in(tree: Any) -> Iterator[dict[str, Any]]:
+    """The comparisons among them."""
+    return (atom for atom in atoms_in(tree) if "terms" in atom)
+
+
 def formula_words(tree: Any) -> str:
     """The words of a formula, with as few parentheses as rulec writes."""
     if isinstance(tree, bool):
         return "true" if tree else "false"
     if isinstance(tree, dict):
         return _atom_words(tree)
-    operator, *rest = tree
-    bound = rest.pop() if isinstance(rest[-1], dict) and "unit" in rest[-1] else None
+    operator, rest, bound = parted(tree)
     word = operator if bound is None else f"{operator}[{_bound_words(operator, bound)}]"
     if len(rest) == 1:
         inner = formula_words(rest[0])
@@ -31,8 +51,7 @@ def _is_binary(tree: Any) -> bool:
     """Tell whether the outermost operator has two operands."""
     if not isinstance(tree, list):
         return False
-    bounded = isinstance(tree[-1], dict) and "unit" in tree[-1]
-    return len(tree) - bounded == 3
+    return len(parted(tree)[1]) == 2
 
 
 def _binds(operator: str) -> int:

@@ -8,12 +8,11 @@ pairs of states that a trace leads both to; other infinite words are none of a t
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from rulec.validation.formula_words import formula_words
-from rulec.validation.hoa_text import HoaAutomaton, HoaEdge, read_hoa
-from rulec.validation.letter_sets import Letters
+from rulec.validation.formula_words import atoms_in, formula_words
+from rulec.validation.hoa_text import HoaAutomaton, read_hoa
+from rulec.validation.letter_sets import Letters, told_apart
 from rulec.validation.table_proof import FormulaMachine, led_to
 from rulec.validation.unprovable import require
 
@@ -32,7 +31,7 @@ def prove_hoa(
     trace goes on.
     """
     size, possible = letters.count, machine.possible
-    truth = {formula_words(atom): letters.of(atom) for atom in _atoms(tree)}
+    truth = {formula_words(atom): letters.of(atom) for atom in atoms_in(tree)}
     going_on = ((1 << size) - 1) << size
     unknown: list[str] = []
 
@@ -73,19 +72,13 @@ def prove_hoa(
                     waiting.append(target)
 
 
-def _atoms(tree: Any) -> Iterator[Mapping[str, Any]]:
-    if isinstance(tree, list):
-        for part in tree[1:]:
-            yield from _atoms(part)
-    elif isinstance(tree, dict) and ("terms" in tree or "name" in tree):
-        yield tree
-
-
 def _repeated(automaton: HoaAutomaton, possible: int) -> list[int]:
     """For each state the letters that are accepted if they are repeated for ever from there."""
     accepted = [0] * len(automaton.edges)
     steps = 0
-    for letters in _classes(automaton.edges, possible):
+    labels = {edge.letters for row in automaton.edges for edge in row}
+    most = MOST_STEPS // len(accepted)
+    for letters in told_apart(possible, labels, most, "its HOA text is too large for this checker"):
         steps += len(accepted)
         require(steps <= MOST_STEPS, "its HOA text is too large for this checker")
         own = [next(edge for edge in row if edge.letters & letters) for row in automaton.edges]
@@ -134,14 +127,3 @@ def _over(automaton: HoaAutomaton, possible: int) -> list[int]:
         require(len(marks) == 1, "its HOA text goes on judging when a trace is over")
         result.append(possible if verdicts == {True} else 0)
     return result
-
-
-def _classes(rows: Sequence[Sequence[HoaEdge]], possible: int) -> list[int]:
-    """Sets of letters that no label tells apart."""
-    classes = [possible]
-    for label in {edge.letters for row in rows for edge in row}:
-        classes = [part for own in classes for part in (own & label, own & ~label) if part]
-        require(
-            len(classes) * len(rows) <= MOST_STEPS, "its HOA text is too large for this checker"
-        )
-    return classes

@@ -110,6 +110,15 @@ def _passes(value: Fraction | str | bool, limit: Fraction, inclusive: bool) -> b
     return value >= limit if inclusive else value > limit
 
 
+def told_apart(letters: int, sets: Iterable[int], most: int, reason: str) -> list[int]:
+    """The coarsest parts of some letters that sets of letters do not cut, ``most`` of them."""
+    parts = [letters]
+    for own in sets:
+        parts = [cut for part in parts for cut in (part & own, part & ~own) if cut]
+        require(len(parts) <= most, reason)
+    return parts
+
+
 def subject(entry: Any) -> Any:
     """What a read or an atom is about, as something that can be compared."""
     if "terms" in entry:
