@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from rulec.recordings.lanelet2.signs import Sign, sign_of
+from rulec.recordings.commonroad.traffic_signs import Sign
+from rulec.recordings.lanelet2.signs import sign_of
 from rulec.recordings.map_files import read_map
 from support.builders.lanelet2_files import SAMPLES, MapFile
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from rulec.recordings import recording
 from rulec.recordings.commonroad.areas import read_points
-from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, MIN_SPEED, SignElement, speed_limit
+from rulec.recordings.commonroad.traffic_signs import MAX_SPEED, MIN_SPEED, Sign, speed_limit
 from rulec.recordings.encodings.tree import Tree
 
 _MARKS: Mapping[str, recording.LaneMark | None] = MappingProxyType(
@@ -116,7 +116,7 @@ def _stop_line(tree: Tree | None) -> recording.Points | None:
 
 def complete(
     entry: LaneletEntry,
-    signs: Mapping[str, tuple[SignElement, ...]],
+    signs: Mapping[str, tuple[Sign, ...]],
     lights: Mapping[str, recording.Light],
     junction: str,
 ) -> recording.Lanelet:

@@ -32,7 +32,7 @@ from rulec.recordings.commonroad.planning_problems import (
     read_problem,
 )
 from rulec.recordings.commonroad.time_extent import TimeExtent
-from rulec.recordings.commonroad.traffic_signs import SignElement, read_sign
+from rulec.recordings.commonroad.traffic_signs import Sign, read_sign
 from rulec.recordings.encodings.file_format import FileFormat
 from rulec.recordings.encodings.tree import Tree
 
@@ -51,7 +51,7 @@ class Content:
     step_s: float = 0.0
     sign_country: str = ""
     lanelets: dict[str, LaneletEntry] = field(default_factory=dict)
-    signs: dict[str, tuple[SignElement, ...]] = field(default_factory=dict)
+    signs: dict[str, tuple[Sign, ...]] = field(default_factory=dict)
     lights: dict[str, recording.Light | None] = field(default_factory=dict)
     intersections: dict[str, Intersection] = field(default_factory=dict)
     bodies: dict[str, dict[str, recording.Participant]] = field(default_factory=dict)

@@ -162,14 +162,14 @@ _WITH_UNIT = re.compile(r"(\d{1,3}(?:\.\d{1,3})?) ?(kmh|km/h|mph|m/s)", re.ASCII
 """Limits as maps of the INTERACTION dataset have them, ``80kmh`` for one."""
 
 
-class SignElement(NamedTuple):
-    """A sign, of perhaps several on a post; the speed limit (m/s) that it says, or least speed."""
+class Sign(NamedTuple):
+    """A sign's name, and the speed limit (m/s) that it says, or least speed, if any."""
 
     name: str
-    limit_mps: float | None
+    limit_mps: float | None = None
 
 
-def read_sign(tree: Tree, country: str) -> tuple[SignElement, ...]:
+def read_sign(tree: Tree, country: str) -> tuple[Sign, ...]:
     """The signs on a post, by the ids of a country (ISO 3166).
 
     Of those above a plate that says for whom or when they hold nothing is known.
@@ -177,16 +177,16 @@ def read_sign(tree: Tree, country: str) -> tuple[SignElement, ...]:
     signs = tuple([_element(child, country) for child in tree.all("trafficSignElement")])
     if not any(sign.name in _PLATES.values() for sign in signs):
         return signs
-    return tuple([SignElement(UNKNOWN, None) for _ in signs])
+    return (Sign(UNKNOWN),) * len(signs)
 
 
-def _element(tree: Tree, country: str) -> SignElement:
+def _element(tree: Tree, country: str) -> Sign:
     named = tree.first("signName")
     name = sign_name(tree.child("trafficSignID").word, country) if named is None else named.word
     value = tree.first("additionalValue")
     if name not in (MAX_SPEED, MIN_SPEED) or value is None:
-        return SignElement(name, None)
-    return SignElement(name, speed_limit(value))
+        return Sign(name)
+    return Sign(name, speed_limit(value))
 
 
 def sign_name(number: str, country: str) -> str:

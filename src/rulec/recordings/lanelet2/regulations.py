@@ -12,10 +12,11 @@ from dataclasses import dataclass, field
 import numpy as np
 import shapely
 
+from rulec.recordings.commonroad.traffic_signs import Sign
 from rulec.recordings.lanelet2.lane_tags import velocity
 from rulec.recordings.lanelet2.map_lanelets import MapLanelet, lanes
 from rulec.recordings.lanelet2.osm_file import OsmFile, OsmRelation
-from rulec.recordings.lanelet2.signs import Sign, sign_of
+from rulec.recordings.lanelet2.signs import sign_of
 from rulec.recordings.lanelet2.topology import Topology
 from rulec.recordings.recording import ObservedLight, Points
 

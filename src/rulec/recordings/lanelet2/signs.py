@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
 
-from rulec.recordings.commonroad.traffic_signs import CATALOGUED, MAX_SPEED, UNKNOWN, national_sign
+from rulec.recordings.commonroad.traffic_signs import (
+    CATALOGUED,
+    MAX_SPEED,
+    UNKNOWN,
+    Sign,
+    national_sign,
+)
 from rulec.recordings.lanelet2.lane_tags import velocity
 from rulec.recordings.lanelet2.region_codes import sign_parts
 
@@ -13,13 +18,6 @@ AUTOWARE_SIGNS = {"stop_sign": "STOP", "yield_sign": "YIELD"}
 """Subtypes without a country."""
 
 _GERMAN_LIMIT = re.compile(r"de[ _:-]?274[-_](\d{1,3})$", re.IGNORECASE)
-
-
-class Sign(NamedTuple):
-    """A sign's name, and the limit (m/s) that it says, if any."""
-
-    name: str
-    limit_mps: float | None = None
 
 
 def sign_of(kind: str) -> Sign:

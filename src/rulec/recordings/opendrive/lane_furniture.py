@@ -132,7 +132,7 @@ def _place_signal(
     sign = sign_of(posted.signal)
     if not (light or line or (sign is not None and sign.name not in HOLDS_ON)):
         return
-    for key in _lanes_at(street, road, posted):
+    for key in _posted_lanes(street, road, posted):
         for entry, way in _entries(street, road, key, posted.s):
             own = street.at(entry)
             if light:
@@ -154,7 +154,7 @@ def _hold_on(street: _Street, road: MapRoad, posted: Posted, *, forward: bool) -
     if sign is None or sign.name not in HOLDS_ON:
         return
     begun = HOLDS_ON[sign.name]
-    for key in _lanes_at(street, road, posted):
+    for key in _posted_lanes(street, road, posted):
         for onward in _onward(street, key, posted.s) if key.forward == forward else ():
             own = street.at(onward)
             # The end of what another sign began
@@ -165,23 +165,25 @@ def _hold_on(street: _Street, road: MapRoad, posted: Posted, *, forward: bool) -
                 own.signs.add(sign.name)
 
 
-def _lanes_at(street: _Street, road: MapRoad, posted: Posted) -> list[LaneKey]:
-    """The lanes that a signal holds for: those that it names, else those of its direction.
+def _posted_lanes(street: _Street, road: MapRoad, posted: Posted) -> list[LaneKey]:
+    piece = piece_at(street.pieces[road.id], posted.s)
+    return _lanes_at(piece, posted.orientation, posted.lanes)
+
+
+def _lanes_at(
+    piece: RoadPiece, orientation: Orientation, lanes: Sequence[tuple[int, int]] | None
+) -> list[LaneKey]:
+    """The lanes that a thing is for: those that it names, else those of its direction.
 
     Where the lanes that it names are driven the other way, what it names counts.
     """
-    piece = piece_at(street.pieces[road.id], posted.s)
     keys = [
         key
         for key in drivable(piece)
-        if posted.lanes is None or any(low <= key.lane <= high for low, high in posted.lanes)
+        if lanes is None or any(low <= key.lane <= high for low, high in lanes)
     ]
-    fitting = [
-        key
-        for key in keys
-        if posted.orientation == "none" or key.forward == (posted.orientation == "+")
-    ]
-    return fitting if fitting or posted.lanes is None else keys
+    fitting = [key for key in keys if orientation == "none" or key.forward == (orientation == "+")]
+    return fitting if fitting or lanes is None else keys
 
 
 def drivable(piece: RoadPiece) -> Iterator[LaneKey]:
@@ -273,23 +275,8 @@ def _place_line(street: _Street, road: MapRoad, thing: RoadObject) -> None:
     reach = max(thing.length, thing.width) / 2
     spans = [t for _, t in thing.corners] if thing.on_road else [thing.t - reach, thing.t + reach]
     piece = piece_at(street.pieces[road.id], thing.s)
-    posted = Posted(_LINE, thing.s, thing.orientation, None)
     low, high = min(spans), max(spans)
-    for key in _lanes_at(street, road, posted):
+    for key in _lanes_at(piece, thing.orientation, None):
         if low <= sum(span_at(piece, key.lane, thing.s)) / 2 <= high:
             for entry, _ in _entries(street, road, key, thing.s):
                 street.at(entry).stop_line = key, thing.s
-
-
-_LINE = RoadSignal(
-    id="",
-    s=0.0,
-    orientation="none",
-    type="294",
-    subtype="",
-    country="",
-    dynamic=False,
-    value=None,
-    unit="",
-    lanes=None,
-)

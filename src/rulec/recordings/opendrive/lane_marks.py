@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from rulec.recordings.opendrive.content.elements import LaneSection, MarkRecord
+from rulec.recordings.opendrive.content.elements import LaneSection, MarkRecord, record_at
 from rulec.recordings.recording import LaneMark
 
 _MARKS: Mapping[str, tuple[LaneMark, LaneMark]] = MappingProxyType(
@@ -51,11 +51,7 @@ def seen(mark: MarkRecord | None) -> Marks:
 def mark_at(section: LaneSection, lane: int, s: float) -> MarkRecord | None:
     """The mark of a lane at a place on the road."""
     own = section.lanes.get(lane)
-    found = None
-    for mark in () if own is None else own.marks:
-        if section.start + mark.start <= s:
-            found = mark
-    return found
+    return None if own is None else record_at(own.marks, s, section.start)
 
 
 def mark_beside(section: LaneSection, lane: int, s: float, *, left: bool) -> LaneMark | None:

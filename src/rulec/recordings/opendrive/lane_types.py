@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from rulec.recordings.opendrive.content.elements import Lane, LaneSection, MapRoad, RoadType
+from rulec.recordings.opendrive.content.elements import Lane, LaneSection, MapRoad, record_at
 from rulec.recordings.recording import CYCLES_TOO, TAXIS_TOO
 
 _DRIVING: tuple[str, ...] = ()
@@ -65,25 +65,13 @@ def lane_types(section: LaneSection, lane: Lane, s: float) -> tuple[str, ...]:
     return ("bicycleLane",) if allowed <= _WALKERS | _RIDERS else types
 
 
-def type_at(road: MapRoad, s: float) -> RoadType | None:
-    """What a road is at a place."""
-    found = None
-    for kind in road.types:
-        if kind.start <= s:
-            found = kind
-    return found
-
-
 def road_types(road: MapRoad, s: float) -> tuple[str, ...]:
     """What a road is at a place, in the words of lanelets."""
-    kind = type_at(road, s)
+    kind = record_at(road.types, s)
     return () if kind is None else _ROAD_TYPES.get(kind.type, ())
 
 
 def limit_at(section: LaneSection, lane: Lane, s: float) -> float | None:
     """The limit (m/s) that the lane itself has at a place, None if it has none of its own."""
-    found = None
-    for speed in lane.speeds:
-        if section.start + speed.start <= s:
-            found = speed.limit_mps
-    return found
+    speed = record_at(lane.speeds, s, section.start)
+    return None if speed is None else speed.limit_mps

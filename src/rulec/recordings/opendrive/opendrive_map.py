@@ -11,7 +11,7 @@ import numpy as np
 import shapely
 
 from rulec.recordings.encodings.xml_element import short
-from rulec.recordings.opendrive.content.elements import Lane, OpenDrive
+from rulec.recordings.opendrive.content.elements import Lane, OpenDrive, record_at
 from rulec.recordings.opendrive.content.file_reader import OPENDRIVE, read_file
 from rulec.recordings.opendrive.crosswalks import crosswalks
 from rulec.recordings.opendrive.junction_ways import Crossroads, crossroads
@@ -31,7 +31,6 @@ from rulec.recordings.opendrive.lane_types import (
     lane_types,
     limit_at,
     road_types,
-    type_at,
 )
 from rulec.recordings.opendrive.pieces import RoadPiece, directions, neighbour, pieces_of
 from rulec.recordings.opendrive.signal_catalogues import country_of
@@ -232,7 +231,7 @@ def _limit(piece: RoadPiece, lane: Lane, own: LaneFurniture) -> float | None:
     limit = limit_at(piece.section, lane, piece.middle)
     if limit is None:
         limit = own.limit_mps
-    kind = type_at(piece.road, piece.middle)
+    kind = record_at(piece.road.types, piece.middle)
     return kind.limit_mps if limit is None and kind is not None else limit
 
 

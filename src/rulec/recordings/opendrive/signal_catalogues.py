@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from types import MappingProxyType
-from typing import NamedTuple
 
-from rulec.recordings.commonroad.traffic_signs import CATALOGUED, UNKNOWN, national_sign
+from rulec.recordings.commonroad.traffic_signs import CATALOGUED, UNKNOWN, Sign, national_sign
 from rulec.recordings.encodings.speed_units import KMH, SPEED_UNITS
 from rulec.recordings.opendrive.content.elements import RoadSignal
 
@@ -64,13 +63,6 @@ HOLDS_ON: Mapping[str, frozenset[str]] = MappingProxyType(
 PRIORITY_SIGNS = frozenset({"PRIORITY"})
 
 
-class CatalogueSign(NamedTuple):
-    """A sign's name, and the limit (m/s) that it says, if any."""
-
-    name: str
-    limit_mps: float | None
-
-
 def country_of(code: str) -> str:
     """The code of a country (ISO 3166, three letters), as far as it is known here."""
     return _CODES.get(code.upper(), code.upper())
@@ -88,7 +80,7 @@ def is_stop_line(signal: RoadSignal) -> bool:
     return signal.type == _STOP_LINE and country_of(signal.country) in _GERMAN
 
 
-def sign_of(signal: RoadSignal) -> CatalogueSign | None:
+def sign_of(signal: RoadSignal) -> Sign | None:
     """The sign that a signal is, None if it is none that is known, or shows what it likes."""
     country = country_of(signal.country)
     if signal.dynamic or not signal.type or signal.type in ("-1", "none"):
@@ -100,7 +92,7 @@ def sign_of(signal: RoadSignal) -> CatalogueSign | None:
     for number in (whole, f"{signal.type}.{signal.subtype}", signal.type):
         name = national_sign(number, numbered)
         if name != UNKNOWN:
-            return CatalogueSign(name, _limit(signal, country) if name == "MAX_SPEED" else None)
+            return Sign(name, _limit(signal, country) if name == "MAX_SPEED" else None)
     return None
 
 

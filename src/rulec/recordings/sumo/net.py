@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -141,28 +142,26 @@ class SumoNet:
 
         A light that reacts to traffic, or has several programmes, has none that one could tell.
         """
-        lights: dict[str, list[Light]] = {}
-        for connection in self.connections:
-            programmes = self.programmes.get(connection.light, [])
-            if len(programmes) != 1 or programmes[0] is None:
-                continue
-            light = programmes[0].light(connection.link, step_s)
-            known = lights.setdefault(connection.start, [])
-            if light is not None and light not in known:
-                known.append(light)
+        lights: dict[str, list[Light]] = defaultdict(list)
+        for connection, light in self._lights(step_s):
+            if light not in lights[connection.start]:
+                lights[connection.start].append(light)
         return lights
 
     def way_lights(self, step_s: float) -> dict[str, dict[str, Light]]:
         """Lane -> the lane that follows -> the light for that way."""
-        lights: dict[str, dict[str, Light]] = {}
+        lights: dict[str, dict[str, Light]] = defaultdict(dict)
+        for connection, light in self._lights(step_s):
+            lights[connection.start][connection.via or connection.end] = light
+        return lights
+
+    def _lights(self, step_s: float) -> Iterator[tuple[NetConnection, Light]]:
         for connection in self.connections:
             programmes = self.programmes.get(connection.light, [])
             if len(programmes) == 1 and programmes[0] is not None:
                 light = programmes[0].light(connection.link, step_s)
                 if light is not None:
-                    onward = connection.via or connection.end
-                    lights.setdefault(connection.start, {})[onward] = light
-        return lights
+                    yield connection, light
 
     def unknown_lights(self) -> list[str]:
         """The lights whose programme is not known."""

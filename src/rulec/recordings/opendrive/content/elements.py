@@ -6,9 +6,9 @@ to its left; lanes left of it have ids above 0, those right of it below 0, numbe
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeVar
 
 ContactPoint = Literal["start", "end"]
 Orientation = Literal["+", "-", "none"]
@@ -107,6 +107,18 @@ class RoadType:
     type: str
     limit_mps: float | None
     country: str
+
+
+_Record = TypeVar("_Record", MarkRecord, RoadType, Speed)
+
+
+def record_at(records: Iterable[_Record], s: float, origin: float = 0.0) -> _Record | None:
+    """What holds at a place of records in their order, whose starts count from ``origin``."""
+    found: _Record | None = None
+    for record in records:
+        if origin + record.start <= s:
+            found = record
+    return found
 
 
 @dataclass(frozen=True, slots=True)

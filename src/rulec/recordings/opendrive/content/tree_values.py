@@ -15,6 +15,8 @@ _UNITS = {**SPEED_UNITS, "": 1.0}
 
 _MOST_LANES = 1_000
 _STEEPEST = 1e30
+_ENDS: dict[str, ContactPoint] = {"start": "start", "end": "end"}
+_DIRECTIONS: dict[str, Orientation] = {"+": "+", "-": "-"}
 
 
 def name(tree: Tree, key: str = "id") -> str:
@@ -75,22 +77,12 @@ def _coefficient(tree: Tree, key: str) -> float:
 
 def contact_point(tree: Tree) -> ContactPoint | None:
     """The end of a road that something is linked with, None if it is not said."""
-    match text(tree, "contactPoint"):
-        case "start":
-            return "start"
-        case "end":
-            return "end"
-    return None
+    return _ENDS.get(text(tree, "contactPoint"))
 
 
 def orientation(tree: Tree) -> Orientation:
     """The direction of the road in which something holds."""
-    match text(tree, "orientation"):
-        case "+":
-            return "+"
-        case "-":
-            return "-"
-    return "none"
+    return _DIRECTIONS.get(text(tree, "orientation"), "none")
 
 
 def validity(tree: Tree) -> tuple[tuple[int, int], ...] | None:
