@@ -21,7 +21,7 @@ TABLE = pyarrow.table({"x": [1.5, 2.0], "n": [3, 4], "t": ["a", "b"], "more": [N
 
 
 def rows_of(column):
-    return [column.values[code] for code in column.codes.tolist()]
+    return [column.names[code] for code in column.codes.tolist()]
 
 
 def as_parquet(path, table):

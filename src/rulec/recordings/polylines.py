@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TypeVar
 
 import numpy as np
@@ -98,15 +98,17 @@ def paired(line: Points, other: Points) -> tuple[Points, Points]:
 
 
 def leads_the_same_way(
-    own: tuple[Points, Points], other: tuple[Points, Points], *, left: bool
+    bounds: Mapping[int, tuple[Points, Points]], own: int, other: object, *, left: bool
 ) -> bool:
-    """Does a lane on the left or right lead the same way? Lanes are their left and right bounds.
+    """Does a lane lead the same way as the one that is told to be on its left or right?
 
-    Then the border between them runs the same way for both.
+    Lanes are their left and right bounds. The border between them runs the same way for both then.
     """
-    border, same = own[0 if left else 1], other[1 if left else 0]
-    opposite = other[0 if left else 1][::-1]
-    return ends_apart(border, same) <= ends_apart(border, opposite)
+    if not isinstance(other, int) or other == own or other not in bounds:
+        return False
+    side = 0 if left else 1
+    border, same, opposite = bounds[own][side], bounds[other][1 - side], bounds[other][side]
+    return ends_apart(border, same) <= ends_apart(border, opposite[::-1])
 
 
 def ends_apart(line: Points, other: Points) -> float:

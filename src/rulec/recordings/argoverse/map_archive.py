@@ -135,9 +135,7 @@ def _beside(
     own: int, other: int | None, bounds: Mapping[int, tuple[Points, Points]], *, left: bool
 ) -> str | None:
     """The lane beside one if it leads the same way."""
-    if other is None or other == own or other not in bounds:
-        return None
-    return str(other) if leads_the_same_way(bounds[own], bounds[other], left=left) else None
+    return str(other) if leads_the_same_way(bounds, own, other, left=left) else None
 
 
 MARKS: Mapping[str, LaneMark] = MappingProxyType(

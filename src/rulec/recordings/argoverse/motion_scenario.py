@@ -64,7 +64,7 @@ def read_motion(path: Path, map_path: Path | None = None) -> Recording:
         raise MOTION.refused(path, "nobody is in it")
     road = read_map_archive(map_path or map_beside(path, MOTION))
     participants = tuple(_participants(table))
-    names = table.texts["scenario_id"].values if "scenario_id" in table.texts else ()
+    names = table.texts["scenario_id"].names if "scenario_id" in table.texts else ()
     return Recording(
         name=names[0] if names else path.stem.removeprefix("scenario_"),
         step_s=_STEP_S,
@@ -91,17 +91,13 @@ def _participants(table: ArrowTable) -> Iterator[Participant]:
         raise table.refused(row, f"`timestep` is {steps[row]}", f"0 to {MOST_STEPS:,}")
     states = np.stack([table.numbers[name] for name in _WANTED.numbers], axis=1)
     kinds = table.texts["object_type"]
-    # By track, in the order of the file, and within it by step
-    order = np.lexsort((steps, tracks.codes))
-    starts = np.flatnonzero(np.diff(tracks.codes[order], prepend=-1))
-    for number, rows in enumerate(np.split(order, starts[1:])):
+    for name, rows in tracks.groups(steps):
         own = steps[rows]
         twice = np.flatnonzero(np.diff(own) == 0)
-        name = tracks.values[number]
         if len(twice):
             row = int(rows[twice[0] + 1])
             raise table.refused(row, f"`{short(name)}` is twice in time step {steps[row]}")
-        kind = kinds.values[most_frequent(kinds.codes[rows])]
+        kind = kinds.names[most_frequent(kinds.codes[rows])]
         if kind not in MOTION_TYPES:
             raise table.refused(int(rows[0]), f"`object_type` is `{short(kind)}`")
         yield _participant(name, kind, own, states[rows])

@@ -145,21 +145,19 @@ def _tracks(table: ArrowTable, sweeps: _Sweeps, sweep_of: NDArray[intp]) -> Iter
         raise table.refused(row, f"a box is {length:g} m by {width:g} m")
     names, kinds = table.texts["track_uuid"], table.texts["category"]
     in_city = sweeps.poses.taken(sweep_of).after(_poses(table))
-    order = np.lexsort((sweep_of, names.codes))
-    starts = np.flatnonzero(np.diff(names.codes[order], prepend=-1))
-    for number, rows in enumerate(np.split(order, starts[1:])):
-        category, own = kinds.values[most_frequent(kinds.codes[rows])], sweep_of[rows]
+    for name, rows in names.groups(sweep_of):
+        category, own = kinds.names[most_frequent(kinds.codes[rows])], sweep_of[rows]
         twice = np.flatnonzero(np.diff(own) == 0)
         if len(twice):
             row = int(rows[twice[0] + 1])
-            raise table.refused(row, f"`{short(names.values[number])}` is twice in one sweep")
+            raise table.refused(row, f"`{short(name)}` is twice in one sweep")
         if category in NOT_ON_THE_ROAD:
             continue
         if category not in CATEGORIES:
             raise table.refused(int(rows[0]), f"`category` is `{short(category)}`")
         length, width = np.median(sizes[rows], axis=0).tolist()
         poses = in_city.taken(rows)
-        boxes = TrackBoxes(names.values[number], category, own, poses, (length, width))
+        boxes = TrackBoxes(name, category, own, poses, (length, width))
         points = table.whole.get(_POINTS)
         yield boxes if points is None else boxes.measured(points[rows], sweeps.seconds)
 

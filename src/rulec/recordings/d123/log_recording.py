@@ -157,7 +157,7 @@ def _tracks(table: ArrowTable, about: Mapping[Any, Any]) -> Iterator[TrackBoxes]
         np.array_equal(boxes.starts, labels.starts) and np.array_equal(boxes.starts, tokens.starts)
     ):
         raise LOG.refused(table.path, "it has not as many labels and tracks as boxes")
-    sweep_of, values, names = boxes.row_of, boxes.values, tokens.values
+    sweep_of, values = boxes.row_of, boxes.values
     sizes = values[:, 7:9]
     odd = ((sizes <= 0) | (sizes > _LARGEST_M)).any(axis=1)
     if odd.any():
@@ -165,12 +165,9 @@ def _tracks(table: ArrowTable, about: Mapping[Any, Any]) -> Iterator[TrackBoxes]
         length, width = sizes[at]
         raise table.refused(int(sweep_of[at]), f"a box is {length:g} m by {width:g} m")
     poses = _poses(table, values, sweep_of)
-    order = np.lexsort((sweep_of, names.codes))
-    starts = np.flatnonzero(np.diff(names.codes[order], prepend=-1))
-    for number, rows in enumerate(np.split(order, starts[1:]) if len(order) else ()):
+    for name, rows in tokens.values.groups(sweep_of):
         own, label = sweep_of[rows], most_frequent(labels.values[rows])
         twice = np.flatnonzero(np.diff(own) == 0)
-        name = names.values[number]
         if len(twice):
             row = int(own[twice[0]])
             raise table.refused(row, f"`{short(name)}` is twice in one moment")

@@ -199,9 +199,7 @@ def _ids(layers: _Layers, thing: _Thing, name: str) -> list[int]:
 def _beside(lane: _Thing, bounds: Mapping[int, tuple[Points, Points]], *, left: bool) -> str | None:
     """The lane beside one if it leads the same way; data sets name others there, too."""
     other = lane.said.get("left_lane_id" if left else "right_lane_id")
-    if not isinstance(other, int) or other == lane.id or other not in bounds:
-        return None
-    return str(other) if leads_the_same_way(bounds[lane.id], bounds[other], left=left) else None
+    return str(other) if leads_the_same_way(bounds, lane.id, other, left=left) else None
 
 
 def _limit(layers: _Layers, lane: _Thing) -> float | None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy import bool_, float64, int64
@@ -31,11 +32,13 @@ class Texts(NamedTuple):
     codes: NDArray[int64]
     names: tuple[str, ...]
 
-    def groups(self) -> Iterator[tuple[str, NDArray[np.intp]]]:
-        """Each text that occurs, with the places of its rows."""
-        order = np.argsort(self.codes, kind="stable")
-        starts = np.flatnonzero(np.diff(self.codes[order], prepend=-1))
-        for start, end in zip(starts, [*starts[1:].tolist(), len(order)], strict=True):
+    def groups(
+        self, by: NDArray[np.integer[Any]] | None = None
+    ) -> Iterator[tuple[str, NDArray[np.intp]]]:
+        """Each text that occurs, with the places of its rows, ascending ``by`` other numbers."""
+        order = np.lexsort((self.codes,) if by is None else (by, self.codes))
+        starts = np.flatnonzero(np.diff(self.codes[order], prepend=-1)).tolist()
+        for start, end in pairwise([*starts, len(order)]):
             yield self.names[int(self.codes[order[start]])], order[start:end]
 
     def of(self, row: int | np.intp) -> str:

@@ -1,12 +1,16 @@
-"""States of tracks as rows of numbers, and what turns and moves them."""
+"""States of tracks as rows of numbers, and what turns, moves and mends them."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
+from operator import is_
+
 import numpy as np
-from numpy import int64
+from numpy import float64, int64
 from numpy.typing import NDArray
 
-from rulec.recordings.recording import Participant, Points, TrackState
+from rulec.recordings.recording import Participant, Points, Recording, TrackState
 from rulec.recordings.track import TrackStates
 
 
@@ -17,9 +21,20 @@ def steps_of(body: Participant) -> NDArray[int64]:
     return np.sort(np.fromiter(body.states, dtype=int64, count=len(body.states)))
 
 
-def row_of(state: TrackState) -> tuple[float, ...]:
-    """A state as a row of a track."""
-    return state.x, state.y, state.heading, state.speed, state.acceleration
+def rows_of(body: Participant) -> NDArray[float64]:
+    """These states as rows of a track."""
+    if isinstance(body.states, TrackStates):
+        return body.states.track.rows
+    states = [body.states[step] for step in steps_of(body).tolist()]
+    return np.array([(x.x, x.y, x.heading, x.speed, x.acceleration) for x in states])
+
+
+def with_mended(recording: Recording, mend: Callable[[Participant], Participant]) -> Recording:
+    """A recording with each participant mended; the same one if that changes nobody."""
+    bodies = tuple([mend(body) for body in recording.participants])
+    if all(map(is_, bodies, recording.participants)):
+        return recording
+    return replace(recording, participants=bodies)
 
 
 def moved_outline(outline: Points, before: TrackState, now: TrackState) -> Points:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy import float64, int64, intp
 from numpy.typing import NDArray
 
-from rulec.recordings.mending.rows_of_states import moved_outline, row_of, steps_of
+from rulec.recordings.mending.rows_of_states import moved_outline, rows_of, steps_of, with_mended
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Lamp, Participant, Recording, TrackState
 from rulec.recordings.track import Track, TrackOutlines, TrackStates
@@ -27,13 +27,7 @@ def without_short_holes(recording: Recording, longest_s: float) -> Recording:
     none, nor is a lamp lit in them that is not on both sides.
     """
     most = int(longest_s / recording.step_s + 1e-9)
-    bodies = tuple([_filled(body, most, recording.step_s) for body in recording.participants])
-    if all(
-        participant is other
-        for participant, other in zip(bodies, recording.participants, strict=True)
-    ):
-        return recording
-    return replace(recording, participants=bodies)
+    return with_mended(recording, lambda body: _filled(body, most, recording.step_s))
 
 
 def _filled(body: Participant, most: int, step_s: float) -> Participant:
@@ -43,10 +37,7 @@ def _filled(body: Participant, most: int, step_s: float) -> Participant:
     if body.standing or not len(holes) or body.states.keys() != body.outlines.keys():
         return body
     track = body.states.track if isinstance(body.states, TrackStates) else None
-    if track is None:
-        rows = np.array([row_of(body.states[step]) for step in steps.tolist()])
-    else:
-        rows = track.rows
+    rows = rows_of(body)
     own = _Known(steps, rows, 2 * most, step_s)
     missing = [
         steps[hole] + np.arange(1, apart[hole]) for hole in holes.tolist() if not own.jumps(hole)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy import bool_, float64, int64, intp
 from numpy.typing import NDArray
 
-from rulec.recordings.mending.rows_of_states import moved_outline, row_of, steps_of
+from rulec.recordings.mending.rows_of_states import moved_outline, rows_of, steps_of, with_mended
 from rulec.recordings.polylines import wrapped
 from rulec.recordings.recording import Participant, Recording, TrackState
 from rulec.recordings.track import TrackOutlines, TrackStates, outlines_on_track
@@ -46,13 +46,7 @@ def with_steady_headings(recording: Recording) -> Recording:
     A heading that is turned round for less than ``_BRIEF_S`` is turned back. Headings of one that
     stands, and that spin, are those of before and after.
     """
-    bodies = tuple([_steadied(body, recording.step_s) for body in recording.participants])
-    if all(
-        participant is other
-        for participant, other in zip(bodies, recording.participants, strict=True)
-    ):
-        return recording
-    return replace(recording, participants=bodies)
+    return with_mended(recording, lambda body: _steadied(body, recording.step_s))
 
 
 def _steadied(body: Participant, step_s: float) -> Participant:
@@ -61,11 +55,7 @@ def _steadied(body: Participant, step_s: float) -> Participant:
     on_track = outlines_on_track(body)
     if on_track is None and body.states.keys() != body.outlines.keys():
         return body
-    steps = steps_of(body)
-    if on_track is None:
-        rows = np.array([row_of(body.states[step]) for step in steps.tolist()])
-    else:
-        rows = on_track.track.rows
+    steps, rows = steps_of(body), rows_of(body)
     times: Floats = (steps * step_s).astype(float64)
     heading = _steady(times, rows[:, :2], rows[:, 2])
     if heading is None:

@@ -93,14 +93,10 @@ class _Reading:
 
     def result(self) -> ReadTracks:
         rows = self.rows
-        order = np.lexsort((rows.times.steps, rows.track.codes))
-        codes, steps = rows.track.codes[order], rows.times.steps[order]
-        starts = np.flatnonzero(np.diff(codes, prepend=-1))
+        steps = rows.times.steps
         participants: list[Participant] = []
-        for start, end in zip(starts, [*starts[1:].tolist(), len(order)], strict=True):
-            name = rows.track.names[int(codes[start])]
-            own = order[start:end]
-            twice = np.diff(steps[start:end]) == 0
+        for name, own in rows.track.groups(steps):
+            twice = np.diff(steps[own]) == 0
             if twice.any():
                 raise self._twice(name, own, int(np.argmax(twice)))
             participants += self._participants(name, own)

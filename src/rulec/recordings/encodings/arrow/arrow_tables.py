@@ -23,6 +23,7 @@ from rulec.recordings.encodings.arrow.nested_columns import (
     nested_column,
 )
 from rulec.recordings.encodings.file_format import FileFormat
+from rulec.recordings.encodings.table_columns import Texts
 from rulec.recordings.encodings.xml_element import LARGEST, short
 from rulec.trace.formats.arrow.parquet import without_arrow
 
@@ -43,14 +44,6 @@ _STREAM_MARK = b"\xff\xff\xff\xff"
 _HEADER_BYTES = 8
 
 
-@dataclass(frozen=True, slots=True)
-class TextColumn:
-    """A column of texts: the number of each row's among the different ones."""
-
-    codes: NDArray[int64]
-    values: tuple[str, ...]
-
-
 @dataclass(frozen=True, eq=False, slots=True)
 class ArrowTable:
     """Columns of a file by name, without gaps; numbers are finite, below ``LARGEST``.
@@ -63,7 +56,7 @@ class ArrowTable:
     rows: int
     numbers: Mapping[str, NDArray[float64]]
     whole: Mapping[str, NDArray[int64]]
-    texts: Mapping[str, TextColumn]
+    texts: Mapping[str, Texts]
     nested: Mapping[str, NestedColumn] = field(default_factory=dict)
     metadata: Mapping[bytes, bytes] = field(default_factory=dict)
 
@@ -258,7 +251,7 @@ def _whole(name: str, column: Any, arrow: Any) -> NDArray[int64]:
     return values
 
 
-def _texts(name: str, column: Any, arrow: Any) -> TextColumn:
+def _texts(name: str, column: Any, arrow: Any) -> Texts:
     kind = column.type.value_type if arrow.types.is_dictionary(column.type) else column.type
     if not (arrow.types.is_string(kind) or arrow.types.is_large_string(kind)):
         raise OddColumnError(f"its column `{name}` is of type {short(str(column.type))}")
@@ -278,7 +271,7 @@ def _texts(name: str, column: Any, arrow: Any) -> TextColumn:
     ]
     if None in numbers:
         raise OddColumnError(f"`{name}` has no value")
-    return TextColumn(
+    return Texts(
         np.concatenate(codes) if codes else np.zeros(0, dtype=int),
         tuple(value for value in numbers if value is not None),
     )
