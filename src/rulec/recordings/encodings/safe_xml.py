@@ -35,11 +35,8 @@ def scan(
     *,
     end: Callable[[str], None] | None = None,
     comment: Callable[[str], None] | None = None,
-    text: Callable[[str], None] | None = None,
 ) -> None:
-    """Scan an XML file once, with callbacks where elements begin and end, for comments and text.
-
-    Text comes in pieces of some kB.
+    """Scan an XML file once, with callbacks where elements begin and end, and for comments.
 
     Raises RulecError R0610 for a file that is none, R0701 for one that cannot be read.
     """
@@ -48,7 +45,7 @@ def scan(
     def element(name: str, attributes: dict[str, str]) -> None:
         begin(XmlElement(name, attributes, parser, path, form))
 
-    _scan(parser, path, form, element, end=end, comment=comment, text=text)
+    _scan(parser, path, form, element, end=end, comment=comment)
 
 
 def scan_names(
@@ -60,6 +57,8 @@ def scan_names(
     text: Callable[[str], None],
 ) -> None:
     """Scan an XML file once; elements begin with their name, attributes and line.
+
+    Text comes in pieces of some kB.
 
     Raises RulecError: as for ``scan``.
     """

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from math import atan2
 from pathlib import Path
 
 import numpy as np
+import shapely
 from numpy import float64
 from numpy.typing import NDArray
 
@@ -17,8 +19,7 @@ from rulec.recordings.map_files import read_map
 from rulec.recordings.recording import Lanelet, Recording
 from rulec.recordings.recording_messages import NET_MISSING
 from rulec.recordings.road_map import RoadMap
-from rulec.recordings.tracks.headings_on_lanes import heading_on
-from rulec.recordings.tracks.track_rows import TrackRows, read_tracks
+from rulec.recordings.tracks.track_rows import HeadingAt, TrackRows, read_tracks
 
 _LANES = (".csv", ".parquet")
 
@@ -52,6 +53,25 @@ def roads_of(path: Path, map_path: Path | None, step_s: float, beside: Sequence[
     return read_map(found, step_s)
 
 
+def _heading_on(lanelets: Iterable[Lanelet]) -> HeadingAt:
+    """The direction (rad) of the nearest lanelet at a place; 0 without any lanelets."""
+    middles = [shapely.LineString(lanelet.centre) for lanelet in lanelets]
+    tree = shapely.STRtree(middles)
+
+    def heading_at(x: float, y: float) -> float:
+        nearest = tree.nearest(shapely.Point(x, y))
+        if nearest is None:
+            return 0.0
+        line = middles[int(nearest)]
+        at = line.project(shapely.Point(x, y))
+        reach = min(1.0, line.length / 2)
+        start = line.interpolate(max(0.0, at - reach))
+        end = line.interpolate(min(line.length, at + reach))
+        return atan2(end.y - start.y, end.x - start.x)
+
+    return heading_at
+
+
 def track_recording(
     name: str,
     tables: Sequence[TrackRows],
@@ -64,7 +84,7 @@ def track_recording(
 
     Raises RulecError R0610 for a row that makes no sense.
     """
-    heading_at = heading_on(roads.lanelets.values())
+    heading_at = _heading_on(roads.lanelets.values())
     found = [read_tracks(rows, heading_at) for rows in tables]
     said = [remark for part in found for remark in part.remarks]
     recording = Recording(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -18,10 +18,10 @@ from rulec.recordings.recording import Lamp, Participant, id_order
 from rulec.recordings.track import Track, tracked
 from rulec.recordings.tracks import derived_motion as motion
 from rulec.recordings.tracks.even_times import EvenTimes
-from rulec.recordings.tracks.headings_on_lanes import HeadingAt
 from rulec.recordings.tracks.road_user_types import TYPES, USUAL_TYPE, type_of, usual_size
 
 Floats = NDArray[float64]
+HeadingAt = Callable[[float, float], float]
 
 LONGEST_BODY_M = 100.0
 _NAMED = 3

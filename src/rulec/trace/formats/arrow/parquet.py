@@ -117,11 +117,12 @@ def _pieces(
 def _first_no_text(batch: Any) -> tuple[int, str] | None:
     """The first row with a text that is not UTF-8, counted from 0, and its column."""
     columns = zip(batch.schema.names, batch.columns, strict=True)
-    found = [(_first_that_fails(column), name) for name, column in columns if not _is_valid(column)]
+    found = [(_first_that_fails(column), name) for name, column in columns if not is_valid(column)]
     return min(found, default=None)
 
 
-def _is_valid(column: Any) -> bool:
+def is_valid(column: Any) -> bool:
+    """True if Arrow finds nothing wrong in a column, as in a text that is not UTF-8."""
     try:
         column.validate(full=True)
     except ValueError:  # Arrow's error is one

@@ -22,7 +22,7 @@ from rulec.trace.formats.arrow.arrow_arrays import (
     with_plain_texts,
 )
 from rulec.trace.formats.arrow.arrow_blocks import cut
-from rulec.trace.formats.arrow.parquet import check_types
+from rulec.trace.formats.arrow.parquet import check_types, is_valid
 from rulec.trace.formats.table_reader import STEP, TRACE, Table, check_columns
 from rulec.trace.trace_model import Trace
 
@@ -58,17 +58,9 @@ def groups(table: Any, keys: Sequence[str], order: Sequence[str]) -> Iterator[tu
 def _readable_by_row(table: Any) -> Any:
     """A table in which a text that is not UTF-8 is met in its rows alone, in no dictionary."""
     for place, (name, column) in enumerate(zip(table.column_names, table.columns, strict=True)):
-        if types.is_dictionary(column.type) and not _is_valid(column):
+        if types.is_dictionary(column.type) and not is_valid(column):
             table = table.set_column(place, name, _plain(column))
     return table
-
-
-def _is_valid(column: Any) -> bool:
-    try:
-        column.validate(full=True)
-    except pyarrow.ArrowInvalid:
-        return False
-    return True
 
 
 def _plain(column: Any) -> Any:
@@ -186,7 +178,7 @@ def key_texts(table: Any, keys: Sequence[str], between: str) -> tuple[NDArray[np
 
 def not_utf8(table: Any, names: Sequence[str]) -> str:
     """Which of some columns has a text that is not UTF-8, in words; empty if none has."""
-    bad = (name for name in names if not _is_valid(_plain(table.column(name))))
+    bad = (name for name in names if not is_valid(_plain(table.column(name))))
     return f"the column `{name}` has a text that is not UTF-8" if (name := next(bad, "")) else ""
 
 
