@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy import float64, intp
+from numpy import float64, int64, intp
 from numpy.typing import NDArray
+
+from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable
 
 _Floats = NDArray[float64]
 
@@ -32,6 +34,16 @@ class CityPoses:
         """Poses in these frames as poses in the frame that these are in, row by row."""
         moved = np.einsum("nij,nj->ni", self.rotations, inner.translations) + self.translations
         return CityPoses(np.einsum("nij,njk->nik", self.rotations, inner.rotations), moved)
+
+
+def poses_in(
+    table: ArrowTable, rows: NDArray[int64], places: _Floats, quaternions: _Floats
+) -> CityPoses:
+    """The poses in some rows of a table. Raises RulecError R0610 for a quaternion of 0."""
+    flat = np.abs(quaternions).max(axis=1, initial=0.0) < 1e-6
+    if flat.any():
+        raise table.refused(int(rows[np.argmax(flat)]), "its quaternion is 0")
+    return CityPoses(rotations(quaternions), places)
 
 
 def rotations(quaternions: _Floats) -> _Floats:

@@ -17,7 +17,7 @@ from numpy import float64, int64, intp
 from numpy.typing import NDArray
 
 from rulec.recordings.argoverse.argoverse_files import ANNOTATIONS, MAP, POSES, map_beside, only_in
-from rulec.recordings.argoverse.city_frame import CityPoses, rotations
+from rulec.recordings.argoverse.city_frame import CityPoses, poses_in
 from rulec.recordings.argoverse.map_archive import read_map_archive
 from rulec.recordings.argoverse.object_types import (
     CATEGORIES,
@@ -26,7 +26,7 @@ from rulec.recordings.argoverse.object_types import (
     NOT_ON_THE_ROAD,
     RIDES,
 )
-from rulec.recordings.argoverse.sweep_boxes import TrackBoxes, participant, with_riders
+from rulec.recordings.argoverse.sweep_boxes import TrackBoxes, check_sizes, participant, with_riders
 from rulec.recordings.argoverse.sweep_grid import NANOSECONDS, on_grid
 from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable, Wanted, read_table
 from rulec.recordings.encodings.file_format import FileFormat
@@ -54,7 +54,6 @@ _BOXES = Wanted(
     texts=("track_uuid", "category"),
     optional=frozenset({_POINTS}),
 )
-_LARGEST_M = 200.0
 _NAME = re.compile(MAP.replace("*", r"([0-9A-Za-z-]+)_*.*").replace(".json", r"\.json"))
 _REMARK = (
     f"ego's middle, which the log does not say, is taken to be {EGO_MIDDLE_M:g} m ahead of its "
@@ -129,20 +128,13 @@ def _poses_at(table: ArrowTable, moments: NDArray[int64]) -> CityPoses:
 
 def _poses(table: ArrowTable) -> CityPoses:
     quaternions = np.stack([table.numbers[name] for name in _QUATERNION], axis=1)
-    flat = np.abs(quaternions).max(axis=1, initial=0.0) < 1e-6
-    if flat.any():
-        raise table.refused(int(np.argmax(flat)), "its quaternion is 0")
     places = np.stack([table.numbers[name] for name in _PLACE], axis=1)
-    return CityPoses(rotations(quaternions), places)
+    return poses_in(table, np.arange(table.rows), places, quaternions)
 
 
 def _tracks(table: ArrowTable, sweeps: _Sweeps, sweep_of: NDArray[intp]) -> Iterator[TrackBoxes]:
     sizes = np.stack([table.numbers["length_m"], table.numbers["width_m"]], axis=1)
-    odd = ((sizes <= 0) | (sizes > _LARGEST_M)).any(axis=1)
-    if odd.any():
-        row = int(np.argmax(odd))
-        length, width = sizes[row]
-        raise table.refused(row, f"a box is {length:g} m by {width:g} m")
+    check_sizes(table, np.arange(table.rows), sizes)
     names, kinds = table.texts["track_uuid"], table.texts["category"]
     in_city = sweeps.poses.taken(sweep_of).after(_poses(table))
     for name, rows in names.groups(sweep_of):

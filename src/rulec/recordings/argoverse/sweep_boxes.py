@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 
 from rulec.recordings.argoverse.city_frame import CityPoses
 from rulec.recordings.argoverse.sweep_grid import rates
+from rulec.recordings.encodings.arrow.arrow_tables import ArrowTable
 from rulec.recordings.recording import Participant
 from rulec.recordings.track import Track, tracked
 
+_LARGEST_M = 200.0
 _RIDDEN_M = 1.0
 """A rider's box is on what it rides if their middles are no farther apart."""
 
@@ -59,6 +61,15 @@ class TrackBoxes:
             axis=0,
         )
         return self.kept((points > 0) | short | stayed)
+
+
+def check_sizes(table: ArrowTable, rows: NDArray[int64], sizes: NDArray[float64]) -> None:
+    """Refuse a box, of those in some rows of a table, that nobody is in."""
+    odd = ((sizes <= 0) | (sizes > _LARGEST_M)).any(axis=1)
+    if odd.any():
+        at = int(np.argmax(odd))
+        length, width = sizes[at]
+        raise table.refused(int(rows[at]), f"a box is {length:g} m by {width:g} m")
 
 
 def with_riders(boxes: Sequence[TrackBoxes], rides: Mapping[str, str]) -> list[TrackBoxes]:

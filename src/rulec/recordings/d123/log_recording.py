@@ -17,9 +17,9 @@ from numpy import float64, int64
 from numpy.typing import NDArray
 
 from rulec.recordings.adjacency import with_untold_neighbours
-from rulec.recordings.argoverse.city_frame import CityPoses, rotations
+from rulec.recordings.argoverse.city_frame import CityPoses, poses_in, rotations
 from rulec.recordings.argoverse.object_types import RIDES
-from rulec.recordings.argoverse.sweep_boxes import TrackBoxes, participant, with_riders
+from rulec.recordings.argoverse.sweep_boxes import TrackBoxes, check_sizes, participant, with_riders
 from rulec.recordings.argoverse.sweep_grid import NANOSECONDS, on_grid
 from rulec.recordings.d123 import log_files as files
 from rulec.recordings.d123.log_files import LOG
@@ -36,7 +36,6 @@ EGO = "ego"
 
 _MICROSECOND_NS = 1000
 _POSE, _BOX = 7, 10
-_LARGEST_M = 200.0
 _FARTHEST_S = 0.5
 """Ego's pose is known at moments that are no farther from those that it is said for."""
 
@@ -159,12 +158,8 @@ def _tracks(table: ArrowTable, about: Mapping[Any, Any]) -> Iterator[TrackBoxes]
         raise LOG.refused(table.path, "it has not as many labels and tracks as boxes")
     sweep_of, values = boxes.row_of, boxes.values
     sizes = values[:, 7:9]
-    odd = ((sizes <= 0) | (sizes > _LARGEST_M)).any(axis=1)
-    if odd.any():
-        at = int(np.argmax(odd))
-        length, width = sizes[at]
-        raise table.refused(int(sweep_of[at]), f"a box is {length:g} m by {width:g} m")
-    poses = _poses(table, values, sweep_of)
+    check_sizes(table, sweep_of, sizes)
+    poses = poses_in(table, sweep_of, values[:, :3], values[:, 3:7])
     for name, rows in tokens.values.groups(sweep_of):
         own, label = sweep_of[rows], most_frequent(labels.values[rows])
         twice = np.flatnonzero(np.diff(own) == 0)
@@ -177,13 +172,6 @@ def _tracks(table: ArrowTable, about: Mapping[Any, Any]) -> Iterator[TrackBoxes]
         if category != LEFT_OUT:
             length, width = np.median(sizes[rows], axis=0).tolist()
             yield TrackBoxes(name, category, own, poses.taken(rows), (length, width))
-
-
-def _poses(table: ArrowTable, values: NDArray[float64], row_of: NDArray[int64]) -> CityPoses:
-    flat = np.abs(values[:, 3:7]).max(axis=1, initial=0.0) < 1e-6
-    if flat.any():
-        raise table.refused(int(row_of[np.argmax(flat)]), "its quaternion is 0")
-    return CityPoses(rotations(values[:, 3:7]), values[:, :3])
 
 
 def _ego(path: Path, sweeps: _Sweeps) -> TrackBoxes:
@@ -201,8 +189,9 @@ def _ego(path: Path, sweeps: _Sweeps) -> TrackBoxes:
         raise LOG.refused(path, "there is no pose in it")
     moments = moments * _MICROSECOND_NS
     values = table.nested[f"{key}.imu_se3"].values[rows]
-    centre = _poses(table, np.repeat(ahead, len(values), axis=0), rows)
-    body = _poses(table, values, rows).after(centre)
+    ahead = np.repeat(ahead, len(values), axis=0)
+    centre, body = (poses_in(table, rows, x[:, :3], x[:, 3:7]) for x in (ahead, values))
+    body = body.after(centre)
     at = np.searchsorted(moments, sweeps.moments)
     before, after = moments[np.maximum(at - 1, 0)], moments[np.minimum(at, len(moments) - 1)]
     near = np.minimum(np.abs(sweeps.moments - before), np.abs(after - sweeps.moments))

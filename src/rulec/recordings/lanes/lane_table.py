@@ -112,13 +112,9 @@ class _LaneTable:
             raise self.columns.wrong(row, why, expected)
 
     def road_map(self) -> RoadMap:
-        order = np.argsort(self.lane.codes, kind="stable")
-        codes = self.lane.codes[order]
-        starts = np.flatnonzero(np.diff(codes, prepend=-1))
-        ends = [*starts[1:].tolist(), len(order)]
         lanelets = {}
-        for start, end in zip(starts.tolist(), ends, strict=True):
-            lanelet = self._lanelet(order[start:end])
+        for _, rows in self.lane.groups():
+            lanelet = self._lanelet(rows)
             lanelets[lanelet.id] = lanelet
         self._check_references(lanelets)
         remarks = [unread_remark(self.named.unread, LANE_COLUMNS)]
@@ -130,7 +126,7 @@ class _LaneTable:
             lanelets = with_ends_that_meet(lanelets)
             if any(lanelet.successors for lanelet in lanelets.values()):
                 remarks.append("lanes whose ends meet are taken to follow each other")
-        side = self._one_of("side", np.arange(len(order)), get_args(Side))
+        side = self._one_of("side", np.arange(len(self.lane.codes)), get_args(Side))
         return RoadMap(
             form="lanes as a table",
             lanelets=lanelets,
