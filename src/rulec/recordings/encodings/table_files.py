@@ -82,8 +82,9 @@ def open_table(path: Path, form: FileFormat, names: Sequence[str] = ()) -> Colum
         with _lines(path, form, refused) as stream:
             if not names:
                 stream.readline(LONGEST_LINE)
-            reader = csv.reader(stream, delimiter=mark) if mark != " " else _Blanks(stream)
-            return _read(reader, given, (numbers, texts), refused, 1 if names else 2)
+            by_blanks = mark == " "
+            rows = map(str.split, stream) if by_blanks else csv.reader(stream, delimiter=mark)
+            return _read(rows, given, (numbers, texts), refused, 1 if names else 2)
 
     return ColumnTable(given, refused, read_csv)
 
@@ -103,16 +104,6 @@ def _checked_names(names: tuple[str, ...], refused: Any) -> tuple[str, ...]:
     if twice is not None:
         raise refused(f"it has two columns `{short(twice)}`", 1)
     return names
-
-
-class _Blanks:
-    """Rows of cells with blanks in between."""
-
-    def __init__(self, stream: io.TextIOWrapper) -> None:
-        self.stream = stream
-
-    def __iter__(self) -> Iterator[list[str]]:
-        return map(str.split, self.stream)
 
 
 @contextmanager
@@ -154,7 +145,7 @@ class _Bounded(io.RawIOBase):
 
 
 def _read(
-    reader: Any,
+    rows: Iterator[list[str]],
     names: Sequence[str],
     wanted: tuple[Sequence[str], Sequence[str]],
     refused: Any,
@@ -166,7 +157,7 @@ def _read(
     found: dict[str, list[NDArray[Any]]] = {name: [] for name in (*numbers, *texts)}
     codes: dict[str, dict[str, int]] = {name: {} for name in texts}
     lines: list[NDArray[int64]] = []
-    rows, count = iter(reader), 0
+    count = 0
     while True:
         try:
             block = list(islice(rows, _ROWS_AT_ONCE))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 from numpy import float64
@@ -152,9 +153,8 @@ class _Reading:
             raise rows.columns.wrong(int(own[1]), why, help_text=way_out)
         if standing:
             own, gaps = own[:1], gaps[:0]
-        ends = [*(np.flatnonzero(gaps > 1) + 1).tolist(), len(own)]
-        start = 0
-        for number, end in enumerate(ends, 1):
+        ends = [0, *(np.flatnonzero(gaps > 1) + 1).tolist(), len(own)]
+        for number, (start, end) in enumerate(pairwise(ends), 1):
             part = own[start:end]
             track = self._track(kind, part, length, width)
             yield tracked(
@@ -165,7 +165,6 @@ class _Reading:
                 lamps=self._lamps(part),
                 shows=frozenset(rows.lamps),
             )
-            start = end
 
     def _size(self, kind: str, own: NDArray[np.intp]) -> tuple[float, float]:
         """Length and width: those in the middle of what is stated, else the usual ones."""
