@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import islice, pairwise
-from math import ceil, floor
 
 import numpy as np
 
@@ -100,32 +99,11 @@ def in_layers(found, drive):
     """
     graph = found.graph
     per_layer = graph.step_s / states_of(found)[0]
-    every, trace = round(per_layer), drive.trace
-    if abs(per_layer - every) > 1e-6 or len(trace.states) < every * (len(graph.layers) - 1) + 1:
+    every, last = round(per_layer), len(graph.layers) - 1
+    if abs(per_layer - every) > 1e-6 or drive.arrays.n_states < every * last + 1:
         return None
-    last = len(graph.layers) - 1
-    spans = {name: trace.present.get(name, (0, every * last)) for name in trace.objects}
-    spans = {
-        name: (ceil(first / every), min(floor(end / every), last))
-        for name, (first, end) in spans.items()
-    }
-    spans = {name: (first, end) for name, (first, end) in spans.items() if first <= end}
-    return replace(
-        trace,
-        step_s=graph.step_s,
-        states=tuple(
-            {
-                name: {item: x for item, x in value.items() if item in spans}
-                if isinstance(value, dict)
-                else value
-                for name, value in state.items()
-            }
-            for state in trace.states[::every][: last + 1]
-        ),
-        objects={name: kind for name, kind in trace.objects.items() if name in spans},
-        present={name: span for name, span in spans.items() if span != (0, last)},
-        ends="complete",
-    )
+    arrays = drive.arrays.at(range(0, every * last + 1, every))
+    return replace(arrays, step_s=graph.step_s, ends="complete").trace()
 
 
 def on_an_edge(found, nodes, motion):
