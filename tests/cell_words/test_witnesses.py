@@ -3,6 +3,7 @@
 import os
 import random
 from dataclasses import replace
+from itertools import pairwise
 from math import atan2, floor, hypot
 from types import SimpleNamespace
 
@@ -12,7 +13,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from rulec import Maneuver, RulecError, compile_rulebook, find_maneuvers, verify_many
-from rulec.cell_words.place_words import PlaceWords
+from rulec.cell_words.place_words import PlaceWords, SceneWords
 from rulec.cell_words.probe_drives import LaneProbe, probe_drives
 from rulec.cell_words.road_frame import RoadFrame
 from rulec.scenario import Choice
@@ -141,6 +142,13 @@ def test_distances_to_junctions_between_two_places():
     assert found["distance_to_junction"] == Interval(0.0, 41.0)
 
 
+def test_what_never_changes_is_known_of_all_times_once_it_is_of_one():
+    told, untold = ({"two_wheeled": {"a": value}} for value in (False, UNKNOWN))
+    probes = SimpleNamespace(timed=[SimpleNamespace(states=[told, untold, {}])])
+    scene = SceneWords(probes, frozenset(), no_junction=True, no_crossing=True, straight=True)
+    assert scene.constants(frozenset({"two_wheeled", "ego_type"})) == told
+
+
 def test_nobody_is_there_before_it_is_recorded_nor_too_far_away_to_count(german):
     """What is said of them would be unknown, and every rule about them open."""
     comes = vehicle(10, {k: (80.0 + 5 * k, 4.0) for k in range(3, 13)}, speed=10.0)
@@ -259,12 +267,39 @@ def test_lines_cut_corners_each_in_its_own_way(german):
     driven_among(riders, german, motion, 0.0, speed=6.0, lanes=lanes)
 
 
+@pytest.mark.parametrize(("count", "said"), [(2, True), (3, UNKNOWN)])
+def test_a_jam_is_on_half_of_the_lanes(german, count, said):
+    """Ego stands behind four in its lane, and nobody is on the others."""
+    lanes = (
+        straight(
+            k, 0, 300, y=4.0 * k - 4, right_of=k - 1 or None, left_of=k + 1 if k < count else None
+        )
+        for k in range(1, count + 1)
+    )
+    queue = [vehicle(n, dict.fromkeys(range(13), (7.0 * n, 0.0))) for n in range(10, 14)]
+    motion = [(0.0, 0.0, 0.0, 0.0)] * 3
+    states = driven_among(queue, german, motion, 0.0, speed=0.0, lanes=tuple(lanes))
+    assert states[0]["congested"] is said
+
+
+def test_what_is_shorter_than_places_are_apart_is_asked_for(german):
+    """After 0.5 s ego is on 0.5 m of carriageway between two junctions."""
+    inside, ends = {"types": frozenset({"intersection"})}, [0, 61, 65.2, 65.7, 90, 300]
+    lanes = tuple(
+        straight(k, *own, successors=[k + 1], predecessors=[k - 1], **({} if k % 2 else inside))
+        for k, own in enumerate(pairwise(ends), 1)
+    )
+    motion = [(5.45 * k, 10.9, 0.0, 0.0) for k in range(3)]
+    states = driven_among([], german, motion, 0.0, speed=10.9, lanes=lanes)
+    assert "carriageway" in states[1]["surface"].values
+
+
 def frame_of(lanes, rules):
     """The road of a scene on lanes, ego at x = 60."""
     made = replace(recording(lanes, ego=(60.0, 0.0)), side="right")
     graph = find_maneuvers(seen_from_ego(made, Choice(), "f"), rules, horizon_s=1.0).graph
     origin = graph.scenario.account.origin
-    return RoadFrame(probe_drives(graph, origin, rules, "right", frozenset()))
+    return RoadFrame(probe_drives(graph, origin, rules, "right", frozenset()), half_m=2.0)
 
 
 def test_where_a_lane_has_ended_those_of_the_other_direction_may_lie(german):
@@ -278,6 +313,19 @@ def test_where_a_lane_has_ended_those_of_the_other_direction_may_lie(german):
     sides = np.array([-1.0, -1.0]), np.array([1.0, 1.0])
     # Its left side at y = 1 m is 5 m from the left bound of two lanes, and 1 m from that of one
     assert frame.gap_to_oncoming_lanes(ends, sides).tolist() == [5.0, 1.0]
+
+
+def test_where_a_road_bends_the_middle_of_a_body_is_beside_its_place(german):
+    """Ends 2 m from the middle are 2² / 2 / 12 m aside on a circle of 12 m, from s = 24 m on."""
+    lanes = (
+        straight(1, 0, 84, successors=[2]),
+        lanelet(2, around(12.0, np.linspace(0.0, np.pi / 2, 40)), predecessors=[1], successors=[3]),
+        lanelet(3, [(96, 12), (96, 200)], predecessors=[2]),
+    )
+    ends = np.array([0.0, 30.0, 0.0]), np.array([10.0, 36.0, 36.0])
+    straight_on, bends, both = frame_of(lanes, german).bent(ends)
+    assert straight_on == pytest.approx(0.0, abs=1e-6)
+    assert 4 / 24 <= bends <= both <= 2 * 4 / 24
 
 
 def test_beyond_a_split_somebody_is_in_any_of_its_lanes(german):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from math import hypot
 from typing import Any
 
 import numpy as np
@@ -69,7 +70,7 @@ def cell_words(graph: NavigationGraph, rules: CompiledRulebook) -> CellWords | N
         raise other_side(graph.scenario.name, str(origin.recording.side), rules.name, rules.traffic)
     probes = probe_drives(graph, origin, rules, side, NEEDS_JUNCTION | NEEDS_CROSSING)
     try:
-        frame = RoadFrame(probes)
+        frame = RoadFrame(probes, hypot(*body_size(graph)) / 2)
     except ValueError:
         frame = None
     return _Words(graph, rules, probes, frame).all()
@@ -90,6 +91,7 @@ class _Words:
         self._names = names_read(rules) & probes.told
         self._boxes = list(ego_boxes(graph, probes.recording.step_s))
         self._scene = self._scene_words()
+        self._constants = self._scene.constants(self._names & {*self._vocabulary.constants})
         self._at_lines = PlaceWords(probes, self._names & AT_LINE)
         self._places = PlaceWords(probes, self._names)
         self._lines = LineWords(probes, frame, self._names, body_size(graph)[0])
@@ -230,7 +232,7 @@ class _Words:
             if not declaration.parameters:
                 words[name] = everywhere.get(name, self._by_motion(name))
             else:
-                said = of_others.get(name, {})
+                said = of_others.get(name, {}) | self._constants.get(name, {})
                 words[name] = {item: said.get(item, about_all.get(name, UNKNOWN)) for item in items}
         return words
 

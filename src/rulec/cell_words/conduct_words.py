@@ -69,9 +69,9 @@ class ConductWords:
     @cached_property
     def _lanes(self) -> Flags:
         """Flags of the lanes that ego's middle may be in, by cell."""
-        low, high = self._boxes.d
-        found: Flags = (self._straight[None, :-1] <= high[:, None] + _HAIR_M) & (
-            self._straight[None, 1:] >= low[:, None] - _HAIR_M
+        (low, high), aside = self._boxes.d, _HAIR_M + self._frame.bent(self._boxes.s)
+        found: Flags = (self._straight[None, :-1] <= column(high + aside)) & (
+            self._straight[None, 1:] >= column(low - aside)
         )
         return found
 
@@ -140,7 +140,7 @@ class ConductWords:
 
     def _room(self, aside: Floats) -> Flags:
         """Whether so much room (m) is left to both bounds of ego's lane, wherever in the cell."""
-        (low, high), loose = self._boxes.d, self._frame.loose_d
+        (low, high), loose = self._boxes.d, self._frame.loose_d + self._frame.bent(self._boxes.s)
         lane = np.clip(np.searchsorted(self._straight, low, "right") - 1, 0, None)
         lane = np.minimum(lane, len(self._straight) - 2)
         inside = (low - aside - loose > self._straight[lane]) | (lane == 0)

@@ -323,6 +323,15 @@ class SceneWords:
         probes += [own.states for own in self.probes.timed]
         return (state[name] for states in probes for state in states if name in state)
 
+    def constants(self, names: frozenset[str]) -> dict[str, dict[str, Any]]:
+        """What is said of others at any time, of these names whose values never change."""
+        found: dict[str, dict[str, Any]] = {}
+        for state in (state for probe in self.probes.timed for state in probe.states):
+            for name in names & OF_OTHERS & state.keys():
+                known = {item: value for item, value in state[name].items() if value is not UNKNOWN}
+                found.setdefault(name, {}).update(known)
+        return found
+
     def of_others(self, states: Sequence[int]) -> dict[str, dict[str, Any]]:
         """What is said of others in states of the scene's time, all drives agreeing."""
         found: dict[str, dict[str, list[Any]]] = {}

@@ -18,10 +18,11 @@ from rulec.extraction.traffic_thresholds import USUAL
 from rulec.partition import NavigationGraph
 from rulec.recordings.recording import HEADINGS, Participant, Recording, Side
 from rulec.recordings.track import Track, TrackOutlines, TrackStates
+from rulec.scenario.recorded.lane_coordinates import borders_along
 from rulec.scenario.recorded.scene_origin import SceneOrigin
 
 EVERY_M = 1.0
-"""Places along a lane are asked for so far apart."""
+"""Places along a lane are asked for so far apart, nearer where something on it is shorter."""
 
 _BEFORE_M, _BEYOND_M = 30.0, 30.0
 _SLOWER_MPS, _FASTER_MPS = 10.0, 10.0
@@ -137,7 +138,7 @@ def probe_drives(
     reach = [own.s for row in graph.reach for own in row if own is not None]
     low = min((s for s, _ in reach), default=graph.scenario.road.s[0]) - _BEFORE_M
     high = max((s for _, s in reach), default=graph.scenario.road.s[1]) + _BEYOND_M
-    rows = list(_along_lanes(origin, low, high))
+    rows = list(_along_lanes(origin, _places(graph, origin, low, high)))
     lanes = [lane for lane, _ in rows]
     bodies = [
         body_along(graph, origin, row, np.full(len(row[0]), EVERY_M / step_s)) for _, row in rows
@@ -174,10 +175,20 @@ def probe_drives(
     )
 
 
-def _along_lanes(origin: SceneOrigin, low: float, high: float) -> Iterator[tuple[int, Row]]:
+def _places(graph: NavigationGraph, origin: SceneOrigin, low: float, high: float) -> Floats:
+    """Places along the road, and one in whatever is shorter than between two of them."""
+    lanelets = [origin.recording.lanelets[name] for name in origin.way]
+    borders = borders_along(lanelets, origin.line) - origin.ego_s
+    crossings = [end for surface in graph.scenario.road.surfaces for end in surface.s]
+    ends = np.union1d(borders, crossings)
+    middles = ((ends[1:] + ends[:-1]) / 2)[np.diff(ends) <= EVERY_M]
+    even = np.arange(low, high + EVERY_M, EVERY_M)
+    return np.union1d(even, middles[(middles > low) & (middles < high)])
+
+
+def _along_lanes(origin: SceneOrigin, s: Floats) -> Iterator[tuple[int, Row]]:
     """Along the middle of each lane, wherever it is, in runs."""
     straight = origin.lanes.straight
-    s = np.arange(low, high + EVERY_M, EVERY_M)
     existing = origin.lanes.existing_at(s + origin.ego_s)
     for lane in range(len(straight) - 1):
         edges = np.flatnonzero(np.diff(existing[:, lane], prepend=False, append=False))

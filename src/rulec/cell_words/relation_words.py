@@ -66,7 +66,8 @@ class Relations:
         half = boxes.half_length
         self.front = column(boxes.s[0] + half[0]), column(boxes.s[1] + half[1])
         self.rear = column(boxes.s[0] - half[1]), column(boxes.s[1] - half[0])
-        self._aside_d = column(frame.bounds_apart(boxes.s))
+        self._bent_d = column(frame.bent(boxes.s))
+        self._aside_d = column(frame.bounds_apart(boxes.s)) + self._bent_d
         self.stations = self._stations()
         self.laterals = self._laterals()
 
@@ -202,7 +203,7 @@ class Relations:
     def flow(self, below_kmh: float) -> list[Any]:
         """Whether traffic around ego is slower than this in the median, by cell.
 
-        Where one may be much faster its lane may flow.
+        Where one may be much faster its lane may flow, and where nobody is others might.
         """
         others, limit = self._others, below_kmh / KMH
         near, far = self.gaps
@@ -216,6 +217,11 @@ class Relations:
         is_fast = (must & (low >= limit)).sum(axis=1) + (slow >= limit)
         no = (may.sum(axis=1) + 1 < USUAL.fewest) | (is_fast > may_be_slow)
         yes = (must.sum(axis=1) + 1 >= USUAL.fewest) & (is_slow > may_be_fast)
+        # On half of the lanes that there are
+        one_lane = others.lanes & (others.perhaps.sum(axis=1, keepdims=True) == 1)
+        used = (must & (high < limit)).astype(int) @ one_lane.astype(int) > 0
+        surely, perhaps = self._frame.travel_lanes(self._boxes.s)
+        yes &= 2 * (used & surely).sum(axis=1) >= perhaps.sum(axis=1)
         flows = TIMES_AS_FAST * limit
         yes &= ~(may & (high >= flows)).any(axis=1) & (fast < flows)
         return [
@@ -226,7 +232,7 @@ class Relations:
     def _aside(self) -> Bounds:
         boxes, others = self._boxes, self._others
         own, theirs = (self._frame.line_apart(ends) for ends in (boxes.s, others.s))
-        loose = self._frame.loose_d + self._frame.stretched + column(own) + theirs
+        loose = self._frame.loose_d + self._frame.stretched + column(own) + theirs + self._bent_d
         wide, narrow = column(boxes.half_width[1]), column(boxes.half_width[0])
         low, high = column(boxes.d[0]), column(boxes.d[1])
         least = np.maximum(others.d[0] - high - wide, low - wide - others.d[1]) - loose

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from rulec.cell_words.ego_boxes import Floats
 from rulec.cell_words.probe_drives import ProbeDrives
 from rulec.extraction.drive_context import KMH
+from rulec.extraction.signals.ego_lanelets import CYCLE_LANE, SHOULDER, lanes_of_type
 from rulec.extraction.signals.map.line_signals import lights_of
 from rulec.extraction.signals.settling import fewest_states
 from rulec.extraction.tracks.driven_road import DrivenRoad
@@ -24,6 +25,9 @@ from rulec.recordings.recording import Lanelet, Light, ObservedLight
 
 _FAR_M = 300.0
 _HAIR_M = 0.05
+_PARTS = 4
+"""In so many parts half of a body is looked at."""
+
 _BENDS = np.radians(USUAL.turned_deg - 15.0)
 """Whose way in a junction differs by less from its direction before goes straight on."""
 
@@ -93,10 +97,11 @@ class RoadFrame:
     distances may be wrong for that and since places are known to ``place_m`` only. ``has_rails``:
     is there a level crossing on it? ``one_way``: does nobody come the other way on it, surely?
     ``goes_straight``: does it turn in none of its junctions? ``lights`` are those of its lanes.
+    Ego is ``half_m`` long from its middle to its corners at most.
     Raises ValueError: no drive has such a road, or it meets itself.
     """
 
-    def __init__(self, probes: ProbeDrives) -> None:
+    def __init__(self, probes: ProbeDrives, half_m: float) -> None:
         origin, among = probes.origin, probes.among
         found = among.map.road(origin.way)
         if isinstance(found, str):
@@ -131,6 +136,8 @@ class RoadFrame:
         self.loose_s = self.place_m + self.apart_s
         self._line_s = origin.lanes.s[at] - origin.ego_s
         self._line_d, self._bounds_d = self._apart(road)
+        self._bent_d = _bent(self._line_s, headings, half_m)
+        self._lasting = _lasting_lanes(road)
 
     def _lane_lights(self, road: DrivenRoad) -> Iterator[LaneLight]:
         recording, ends = self.probes.recording, road.borders[1:].tolist()
@@ -189,6 +196,27 @@ class RoadFrame:
     def bounds_apart(self, s: tuple[Floats, Floats]) -> Floats:
         """The same of the bounds of lanes."""
         return self._most(self._bounds_d, s)
+
+    def bent(self, s: tuple[Floats, Floats]) -> Floats:
+        """How far (m) the middle of ego's body is beside ego's place, at most, where it bends.
+
+        To extraction the middle is halfway between the ends of the body across the road.
+        """
+        return self._most(self._bent_d, s)
+
+    def travel_lanes(self, s: tuple[Floats, Floats]) -> tuple[Flags, Flags]:
+        """Flags of lanes (second axis) that are there to travel on for sure, and perhaps.
+
+        Wherever ego is between two places, a row for each two.
+        """
+        lanes, first = self._origin.lanes, self._origin.ego_s
+        begins, ends = (
+            lanes.pieces_at(place + first + aside).tolist()
+            for place, aside in zip(s, (-self.apart_s, self.apart_s), strict=True)
+        )
+        there = [lanes.there[k : end + 1] for k, end in zip(begins, ends, strict=True)]
+        surely = np.array([part.all(axis=0) for part in there]) & self._lasting
+        return surely, np.array([part.any(axis=0) for part in there])
 
     def _most(self, values: Floats, s: tuple[Floats, Floats]) -> Floats:
         begins = np.searchsorted(self._line_s, s[0] - self.apart_s, "right") - 1
@@ -320,6 +348,28 @@ class RoadFrame:
         beyond = np.where(low < 0, straight[lane] + low, straight[lane + 1] + high)
         found: Floats = np.where((low >= 0) & (high <= 0), inside, beyond)
         return found
+
+
+def _bent(s: Floats, headings: Floats, half_m: float) -> Floats:
+    """How far (m) a line bends aside within so much of each of its places, at most."""
+    found: Floats = np.zeros(len(s))
+    part = half_m / _PARTS
+    for way in (1, -1):
+        turned = (
+            np.abs(np.interp(s + way * number * part, s, headings) - headings)
+            for number in range(1, _PARTS + 1)
+        )
+        found = np.maximum(found, part * sum(turned))
+    return found
+
+
+def _lasting_lanes(road: DrivenRoad) -> Flags:
+    """Flags of lanes that nowhere are for cycles, nor shoulders; none where these may part two."""
+    shoulders, cycles = (
+        np.logical_or.reduce(lanes_of_type(road, kind)) for kind in (SHOULDER, CYCLE_LANE)
+    )
+    lasting: Flags = ~shoulders & ~cycles & ~np.any(shoulders[1:-1])
+    return lasting
 
 
 def _linked(lanelet: Lanelet, way: int) -> tuple[str, ...]:
