@@ -284,7 +284,9 @@ def to_traces(
     Raises UnlikeDrivesError for several that say different names.
     """
     read, spans = _names_written(writer), context.spans
-    signals = agreeing(settled(_SIGNALS(context, read), LEAST_S, context.recording.step_s, spans))
+    known = ~np.isnan(context.extents.s_min)
+    every = settled(_SIGNALS(context, read), LEAST_S, context.recording.step_s, spans, known)
+    signals = agreeing(every)
     if context.wrong_way:
         signals = known_only(signals, _WITHOUT_DIRECTION)
     types = [body.object_types for body in context.tracks.participants]

@@ -60,6 +60,28 @@ def test_at_the_ends_of_a_recording_a_short_value_is_not_known(values, unknown):
         assert "".join("?" if flag else "." for flag in np.ravel(flags).tolist()) == unknown
 
 
+@pytest.mark.parametrize(
+    ("values", "there", "unknown"),
+    [
+        # Nothing is said of who is not there, and what stands for that is no neighbour
+        ([1, 1, 0, 1, 1, 1], "..tttt", "..?..."),
+        ([1, 1, 1, 0, 0, 1], "ttttt.", "...??."),
+        ([1, 1, 1, 0, 0, 0], "ttttt.", "...??."),
+        ([1, 0, 0, 0, 1, 1], ".ttt..", "......"),
+        ([1, 1, 1, 0, 1, 1, 1], "ttttttt", "......."),
+    ],
+)
+def test_where_somebody_comes_or_goes_a_short_value_is_not_known(values, there, unknown):
+    column, is_there = np.array([values], dtype=bool), np.array([[x == "t" for x in there]])
+    signals, spans = SignalColumns({}, {"p": column}), EndToEnd.of_one(len(values))
+    found = settling.settled(signals, {"p": 0.3}, 0.1, spans, is_there)
+    flags = found.unknown.get("p", np.zeros((1, len(values)), dtype=bool))
+    shown = zip(flags[0].tolist(), there, strict=True)
+    assert "".join("?" if flag and x == "t" else "." for flag, x in shown) == unknown
+    kept = [k for k, x in enumerate(there) if x == "t" and unknown[k] == "?"]
+    assert found.about["p"][0, kept].tolist() == column[0, kept].tolist()
+
+
 def test_flicker_is_settled_by_what_it_began_with():
     assert after("aaababaaa") == "aaaaaaaaa"
     assert after("aaabababbb") == "aaaaaaabbb"

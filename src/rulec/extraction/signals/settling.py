@@ -34,18 +34,24 @@ def fewest_states(least_s: float, step_s: float) -> int:
 
 
 def settled(
-    signals: SignalColumns, least_s: Mapping[str, float], step_s: float, spans: EndToEnd
+    signals: SignalColumns,
+    least_s: Mapping[str, float],
+    step_s: float,
+    spans: EndToEnd,
+    there: Flags | None = None,
 ) -> SignalColumns:
     """The signals of drives without values that are shorter than their word's least duration (s).
 
     Such a value between two equal ones becomes theirs, and no better known than they. At the ends
-    of a recording nobody knows it: it may be noise or last.
+    of a recording, and where others come or go, who are not ``there`` (a row each) before or after,
+    nobody knows it: it may be noise or last.
     """
     least = {name: fewest_states(seconds, step_s) for name, seconds in least_s.items()}
     unknown = dict(signals.unknown)
+    comes = None if there is None else _coming_or_going(there, spans)
     world, about = (
-        {**columns, **_changed(columns, least, unknown, spans)}
-        for columns in (signals.world, signals.about)
+        {**columns, **_changed(columns, least, unknown, spans, parts)}
+        for columns, parts in ((signals.world, None), (signals.about, comes))
     )
     return signals._replace(world=world, about=about, unknown=unknown)
 
@@ -72,6 +78,7 @@ def _changed(
     least: Mapping[str, int],
     unknown: dict[str, Flags],
     spans: EndToEnd,
+    parts: Flags | None,
 ) -> dict[str, SignalColumn]:
     """The columns that change by being settled, each as it is then.
 
@@ -80,8 +87,10 @@ def _changed(
     changed: dict[str, SignalColumn] = {}
     for names in _alike(columns, least):
         before = np.array([columns[name] for name in names])
-        after = without_blips(before, least[names[0]], spans)
+        after = without_blips(before, least[names[0]], spans, parts)
         brief = _brief_at_ends(after, least[names[0]], spans)
+        if parts is not None:
+            brief |= _brief_beside(after, least[names[0]], spans, parts)
         for number, name in enumerate(names):
             if after is not before and (blips := after[number] != before[number]).any():
                 changed[name] = after[number]
@@ -141,24 +150,54 @@ def _brief_at_ends(column: SignalColumn, least: int, spans: EndToEnd) -> Flags:
     return brief
 
 
-def without_blips(column: SignalColumn, least: int, spans: EndToEnd) -> SignalColumn:
+def _coming_or_going(there: Flags, spans: EndToEnd) -> Flags | None:
+    """Flags of the states in which others, a row each, come or are gone; None if nobody does."""
+    found = np.zeros(there.shape, dtype=bool)
+    found[:, 1:] = there[:, 1:] != there[:, :-1]
+    found[:, spans.begins] = False
+    return found if found.any() else None
+
+
+def _brief_beside(column: SignalColumn, least: int, spans: EndToEnd, parts: Flags) -> Flags:
+    """Flags of values, by row, that last for fewer states from where somebody comes or is gone."""
+    starts, at_end = _runs(column, spans, parts)
+    lengths = starts[1:] - starts[:-1]
+    brief: Flags = (at_end[:-1] != at_end[1:]) & (lengths < least)
+    return brief.repeat(lengths).reshape(column.shape)
+
+
+def _runs(
+    column: SignalColumn, spans: EndToEnd, parts: Flags | None
+) -> tuple[NDArray[intp], Flags]:
+    """Where runs of one value begin, in all rows laid flat, and flags of those with none before.
+
+    Behind them all is one more.
+    """
+    begins, ends = np.ones(column.shape, dtype=bool), spans.begins_here
+    begins[..., 1:] = column[..., 1:] != column[..., :-1]
+    begins[..., spans.begins] = True
+    if parts is not None:
+        ends = ends | parts
+        begins |= parts
+    starts = np.append(begins.ravel().nonzero()[0], column.size)
+    return starts, ends.ravel()[starts % ends.size]
+
+
+def without_blips(
+    column: SignalColumn, least: int, spans: EndToEnd, parts: Flags | None = None
+) -> SignalColumn:
     """A column, or rows of them, without values that last for fewer states than ``least``.
 
     Only between equal neighbours, from the first on: flicker becomes what it began with. Where
-    there are none it is the column itself.
+    there are none it is the column itself. What is beyond where somebody comes or is gone,
+    flagged in ``parts``, is no neighbour.
     """
-    states = column.shape[-1]
-    rows = column.reshape(-1, states)
-    begins = np.ones(rows.shape, dtype=bool)
-    begins[:, 1:] = rows[:, 1:] != rows[:, :-1]
-    begins[:, spans.begins] = True
-    starts = np.append(begins.ravel().nonzero()[0], rows.size)
-    at_end = spans.begins_here[starts % states]
+    starts, at_end = _runs(column, spans, parts)
     between = ~(at_end[:-1] | at_end[1:])
     brief = (between & (starts[1:] - starts[:-1] < least)).nonzero()[0]
     if not len(brief):
         return column
-    given, found = rows.ravel(), np.array(rows).ravel()
+    given, found = column.ravel(), np.array(column).ravel()
     for start, end in zip(starts[brief].tolist(), starts[brief + 1].tolist(), strict=True):
         if found[start - 1] == given[end]:
             found[start:end] = found[start - 1]
