@@ -20,7 +20,8 @@ from rulec.scenario import Choice
 from rulec.scenario.recorded.recorded_scene import seen_from_ego
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
 from support.builders.recordings import RECORDINGS, lanelet, recording, straight, vehicle
-from support.generators.driven_motions import driven, paths_of
+from support.generators.driven_motions import paths_of
+from support.generators.motion_kinds import KINDS, of_a_kind
 from support.oracles.witness_drives import (
     contradicting,
     disagreeing,
@@ -97,7 +98,8 @@ def check_sampled(found, number, chance):
     every = round(graph.step_s / step_s)
     pairs, compared_so_far = [], 0
     for left in reversed(range(TRIED * number)):
-        motion = np.array(driven(graph.scenario.ego, graph.bounds, step_s, count, chance, 2))
+        kind = chance.choice(KINDS)
+        motion = np.array(of_a_kind(kind, graph.scenario, graph.bounds, step_s, count, chance))
         path = paths_of(graph, motion[::every].tolist())
         if path is not None and all(len(cells) == 1 for cells in path):
             pairs.append((tuple(next(iter(cells)) for cells in path), motion))

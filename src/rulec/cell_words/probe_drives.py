@@ -179,8 +179,11 @@ def _places(graph: NavigationGraph, origin: SceneOrigin, low: float, high: float
     """Places along the road, and one in whatever is shorter than between two of them."""
     lanelets = [origin.recording.lanelets[name] for name in origin.way]
     borders = borders_along(lanelets, origin.line) - origin.ego_s
-    crossings = [end for surface in graph.scenario.road.surfaces for end in surface.s]
-    ends = np.union1d(borders, crossings)
+    crossings = np.array([surface.s for surface in graph.scenario.road.surfaces]).ravel()
+    # Who is on a crossing with any part is on it
+    half = body_size(graph)[0] / 2
+    ends = np.concatenate((borders, crossings, crossings - half, crossings + half))
+    ends.sort()
     middles = ((ends[1:] + ends[:-1]) / 2)[np.diff(ends) <= EVERY_M]
     even = np.arange(low, high + EVERY_M, EVERY_M)
     return np.union1d(even, middles[(middles > low) & (middles < high)])

@@ -1,10 +1,40 @@
 """Motions of ego within bounds, sampled: double integrators along and across the road."""
 
 import random
+from dataclasses import replace
 from itertools import pairwise
 
 STEPS = 10
 """Accelerations change so many times in a layer."""
+
+
+class Limits:
+    """What ego can do within bounds, whatever is asked for."""
+
+    def __init__(self, ego, bounds):
+        speed = ego.speed or 0.0
+        self._bounds = bounds
+        self._slope = max(1.0, abs(ego.lateral_speed) / speed if speed else 1.0)
+        self._top, self._side = (
+            max(bounds.speed, speed),
+            max(bounds.lateral_speed, abs(ego.lateral_speed)),
+        )
+
+    def after(self, state, along, across, dt):
+        """Place and speed (s, v, d, w) after a piece of these accelerations, as far as may be."""
+        (s, v, d, w), bounds = state, self._bounds
+        along = min(max(along, -bounds.braking), bounds.acceleration)
+        ahead = min(max(along, -v / dt), (self._top - v) / dt)
+        # Sideways no faster than ahead, at the end of the piece as at its beginning.
+        most = min(self._side, self._slope * (v + ahead * dt))
+        least = max(-bounds.lateral_acceleration, (-most - w) / dt)
+        greatest = min(bounds.lateral_acceleration, (most - w) / dt)
+        if least > greatest:
+            # Too slow to straighten: brake less, as it may.
+            ahead, least, greatest = 0.0, 0.0, 0.0
+        sideways = min(max(across, least), greatest)
+        s, v = s + v * dt + ahead * dt * dt / 2, v + ahead * dt
+        return s, v, d + w * dt + sideways * dt * dt / 2, w + sideways * dt
 
 
 def driven(ego, bounds, step, layers, chance: random.Random, pieces=STEPS):
@@ -13,11 +43,9 @@ def driven(ego, bounds, step, layers, chance: random.Random, pieces=STEPS):
     In so many pieces a layer.
     """
     speed = chance.uniform(0, bounds.speed) if ego.speed is None else ego.speed
-    s, v, d, w = ego.s, speed, ego.d, ego.lateral_speed
-    slope = max(1.0, abs(w) / v if v else 1.0)
-    top, side = max(bounds.speed, v), max(bounds.lateral_speed, abs(w))
-    states = [(s, v, d, w)]
-    dt = step / pieces
+    limits = Limits(replace(ego, speed=speed), bounds)
+    state = ego.s, speed, ego.d, ego.lateral_speed
+    states = [state]
     # Motions that keep to something for long reach the bounds, those that change do not.
     hold = chance.choice([1, 3, STEPS, 4 * STEPS])
     a = b = 0.0
@@ -26,19 +54,9 @@ def driven(ego, bounds, step, layers, chance: random.Random, pieces=STEPS):
             pick = chance.choice([chance.uniform, lambda low, high: chance.choice([low, high, 0])])
             a = pick(-bounds.braking, bounds.acceleration)
             b = pick(-bounds.lateral_acceleration, bounds.lateral_acceleration)
-        ahead = min(max(a, -v / dt), (top - v) / dt)
-        # Sideways no faster than ahead, at the end of the piece as at its beginning.
-        most = min(side, slope * (v + ahead * dt))
-        least = max(-bounds.lateral_acceleration, (-most - w) / dt)
-        greatest = min(bounds.lateral_acceleration, (most - w) / dt)
-        if least > greatest:
-            # Too slow to straighten: brake less, as it may.
-            ahead, least, greatest = 0.0, 0.0, 0.0
-        sideways = min(max(b, least), greatest)
-        s, v = s + v * dt + ahead * dt * dt / 2, v + ahead * dt
-        d, w = d + w * dt + sideways * dt * dt / 2, w + sideways * dt
+        state = limits.after(state, a, b, step / pieces)
         if (k + 1) % pieces == 0:
-            states.append((s, v, d, w))
+            states.append(state)
     return states
 
 
