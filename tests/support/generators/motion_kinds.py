@@ -77,15 +77,15 @@ def _wanted(kind, scenario, bounds, horizon, chance):
     if kind == "creeps":
         slow = chance.uniform(0.05, 3.0)
         return (lambda _, __, v: _GAIN * (slow - v)), stays
-    there = {other: swept(other, 0.0, 0.0) for other in scenario.obstacles}
-    there = {other: box for other, box in there.items() if box is not None}
+    boxes = [(other, swept(other, 0.0, 0.0)) for other in scenario.obstacles]
+    there = [(other, box) for other, box in boxes if box is not None]
     if kind == "stops" or not there:
-        ahead = [box.s_min - chance.uniform(2.3, 8.0) for box in there.values()]
+        ahead = [box.s_min - chance.uniform(2.3, 8.0) for _, box in there]
         goal = chance.choice([*(s for s in ahead if s > ego.s), ego.s + chance.uniform(1.0, 80.0)])
         return (
             lambda _, s, v: -(v**2) / 2 / max(goal - s, 0.1) if s + 2 * v > goal else 0.3
         ), stays
-    other, gap = chance.choice(list(there)), chance.choice([0.5, 2.0, 4.0, 10.0, -8.0])
+    (other, _), gap = chance.choice(there), chance.choice([0.5, 2.0, 4.0, 10.0, -8.0])
     shift = chance.uniform(-6.0, 6.0) if kind == "stays beside" else -gap - ego.length / 2
 
     def with_it(t, s, v):

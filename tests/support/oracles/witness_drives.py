@@ -9,7 +9,9 @@ import numpy as np
 
 from rulec.cell_words.probe_drives import body_along, world_of
 from rulec.extraction.recording_verdicts import names_read
+from rulec.extraction.signals.settling import fewest_states
 from rulec.extraction.to_trace import Drive, TraceWriter
+from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.planning.ranking.cheapest import cheapest
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
 
@@ -107,12 +109,17 @@ def in_layers(found, drive):
 
 
 def on_an_edge(found, nodes, motion):
-    """Whether ego is on the border of a cell, across the road, when a layer begins."""
-    graph = found.graph
-    places = motion[:: round(graph.step_s / states_of(found)[0]), 2]
+    """Whether ego is on the border of a cell, across the road, when a layer begins.
+
+    Or is so near to it that it gets beyond and back before that is more than noise.
+    """
+    graph, step_s = found.graph, states_of(found)[0]
+    least = fewest_states(LEAST_S["lateral"], step_s)
+    beyond = graph.bounds.lateral_acceleration * (least * step_s) ** 2 / 8 if least > 1 else 0.0
+    places = motion[:: round(graph.step_s / step_s), 2]
     return any(
         min(abs(d - edge) for box in layer.cells[node].boxes for edge in (box.d_min, box.d_max))
-        < _EDGE_M
+        < _EDGE_M + beyond
         for layer, node, d in zip(graph.layers, nodes, places, strict=True)
     )
 
