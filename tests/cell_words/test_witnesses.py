@@ -237,8 +237,8 @@ def test_a_side_for_a_moment_is_that_before_and_after(german):
     # for a fifth of a second it would be left of it, and is in its lane before and after
     comes = {k: (75.0 + k, 0.75 + 0.1 * k) for k in range(41)}
     comes = vehicle(10, comes, speed=10.0)
-    motion = [(k * 1.0, 10.0, 1.75 + 0.15 * k, 1.5) for k in range(6)]
-    states = driven_among([comes], german, motion, 1.75, aside=1.5, step_s=0.1)
+    motion = [(k * 1.0, 10.0, 1.76 + 0.16 * k, 1.6) for k in range(6)]
+    states = driven_among([comes], german, motion, 1.76, aside=1.6, step_s=0.1)
     assert states[2]["lateral"]["10"] == OneOf(frozenset({"same_lane", "left_of"}))
 
 

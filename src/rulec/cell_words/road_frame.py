@@ -316,14 +316,17 @@ class RoadFrame:
             np.any(places.counts[:, part], axis=1, keepdims=True) for part in (before, behind)
         )
         s = s0 - self._origin.ego_s, s1 - self._origin.ego_s
-        lanes = np.all(((inside > least + _HAIR_M) & there) | absent[..., None], axis=1)
-        perhaps = np.any((inside > least - _HAIR_M) & there, axis=1)
+        # There, too, drives have bounds of their own
+        apart = self.bounds_apart(s)
+        loose = (_HAIR_M + apart)[:, None, None]
+        lanes = np.all(((inside > least + loose) & there) | absent[..., None], axis=1)
+        perhaps = np.any((inside > least - loose) & there, axis=1)
         self._spread_over_splits(s, lanes, perhaps)
         return OthersNow(
             s=s,
             d=(low[:, now].min(axis=1), high[:, now].max(axis=1)),
-            right=(np.fmin.reduce(low, axis=1), np.fmax.reduce(low, axis=1)),
-            left=(np.fmin.reduce(high, axis=1), np.fmax.reduce(high, axis=1)),
+            right=(np.fmin.reduce(low, axis=1) - apart, np.fmax.reduce(low, axis=1) + apart),
+            left=(np.fmin.reduce(high, axis=1) - apart, np.fmax.reduce(high, axis=1) + apart),
             lanes=lanes,
             perhaps=perhaps,
             along=((along - error).min(axis=1), (along + error).max(axis=1)),

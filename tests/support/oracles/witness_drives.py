@@ -15,7 +15,8 @@ from rulec.extraction.traffic_thresholds import LEAST_S
 from rulec.planning.ranking.cheapest import cheapest
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
 
-_EDGE_M = 0.02
+_EDGE_M = 0.05
+"""So well places are known."""
 
 _ON_S, _ON_MPS, _ON_MPS2 = 8.0, 10.0, 3.0
 """For how long a motion goes on, and how fast; it speeds up by no more than the third."""
