@@ -89,6 +89,18 @@ class LaneLight:
         )
 
 
+@dataclass(frozen=True, slots=True)
+class _Parting:
+    """A place (m) of the road beyond which lanes may be others, ahead (1) or behind (-1) of ego.
+
+    ``shifts`` say how many lanes farther left they may be, ascending.
+    """
+
+    place: float
+    way: int
+    shifts: Sequence[int]
+
+
 class RoadFrame:
     """A scene's road, with everybody on it as extraction has them.
 
@@ -116,7 +128,7 @@ class RoadFrame:
         self.junctions = self._in_scene(road, road.junctions)
         lanelets = [lanelet for row in road.rows for lanelet in row if lanelet is not None]
         self.lights = tuple(self._lane_lights(road))
-        self._splits = self._in_scene_splits(road)
+        self._partings = self._partings_along(road)
         self.has_rails = any("level_crossing" in lanelet.types for lanelet in lanelets)
         self.one_way = all(among.surroundings.directions(lanelet)[0] for lanelet in lanelets)
         turns = [road.turned(start, end, aside_m=1.0) for start, end in road.junctions]
@@ -246,37 +258,44 @@ class RoadFrame:
             found.append((first, last))
         return found
 
-    def _in_scene_splits(self, road: DrivenRoad) -> list[tuple[float, int, list[int]]]:
-        """Where one lane becomes several, ahead or behind (1, -1), and which these are.
+    def _partings_along(self, road: DrivenRoad) -> list[_Parting]:
+        """Where one lane becomes several, or several become one, ahead of ego and behind.
 
-        A drive that ends before does not tell into which of them it leads.
+        A drive's own lanes beyond are those that its lane leads to, or comes from, and ego may be
+        in any of these.
         """
         found = []
-        for way, rows, ends in (
-            (1, road.rows, road.borders[1:-1]),
-            (-1, road.rows[::-1], road.borders[-2:0:-1]),
+        for (before, after), border in zip(
+            pairwise(road.rows), road.borders[1:-1].tolist(), strict=True
         ):
-            for (row, onward), end in zip(pairwise(rows), ends.tolist(), strict=True):
-                for lanelet in row:
-                    linked = () if lanelet is None else _linked(lanelet, way)
-                    into = [k for k, lane in enumerate(onward) if lane and lane.id in linked]
+            ((place, _),) = self._in_scene(road, [(border, border)])
+            way = 1 if place > 0.0 else -1
+            near, far = (before, after) if way > 0 else (after, before)
+            shifts = {0}
+            for row, others, onward in ((near, far, way), (far, near, -way)):
+                for k, lanelet in enumerate(row):
+                    linked = () if lanelet is None else _linked(lanelet, onward)
+                    into = [j for j, lane in enumerate(others) if lane and lane.id in linked]
                     if len(into) > 1:
-                        found.append((end, way, into))
-        places = self._in_scene(road, [(end, end) for end, *_ in found])
-        return [
-            (place, way, into)
-            for (place, _), (_, way, into) in zip(places, found, strict=True)
-            if place * way > 0.0
-        ]
+                        shifts |= {k - j if row is near else j - k for j in into}
+            if len(shifts) > 1:
+                found.append(_Parting(place, way, sorted(shifts)))
+        return found
 
-    def _spread_over_splits(self, s: tuple[Floats, Floats], lanes: Flags, perhaps: Flags) -> None:
-        """Let who is beyond a split be in each of its lanes, for none of them sure."""
-        for place, way, into in self._splits:
-            beyond = s[1] > place if way > 0 else s[0] < place
-            there = beyond & perhaps[:, into].any(axis=1)
-            rows = np.flatnonzero(there)
-            perhaps[np.ix_(rows, np.array(into))] = True
-            lanes[rows] = False
+    def _with_partings(self, now: OthersNow) -> OthersNow:
+        """The others, with those beyond a parting in each lane that they may be in to a drive."""
+        lanes, perhaps = now.lanes.copy(), now.perhaps.copy()
+        sides = [side.copy() for side in (*now.d, *now.right, *now.left)]
+        widest = float(np.diff(self._straight).max())
+        for parting in self._partings:
+            s, place = now.s, parting.place
+            rows = np.flatnonzero(s[1] > place if parting.way > 0 else s[0] < place)
+            lanes[rows] = np.all([_shifted(lanes[rows], by) for by in parting.shifts], axis=0)
+            perhaps[rows] = np.any([_shifted(perhaps[rows], by) for by in parting.shifts], axis=0)
+            for number, side in enumerate(sides):
+                side[rows] += parting.shifts[-(number % 2)] * widest
+        d, right, left = zip(sides[::2], sides[1::2], strict=True)
+        return replace(now, lanes=lanes, perhaps=perhaps, d=d, right=right, left=left)
 
     def at(self, seconds: float) -> OthersNow | None:
         """The others at a time of the scene; None before or after the recording."""
@@ -321,8 +340,7 @@ class RoadFrame:
         loose = (_HAIR_M + apart)[:, None, None]
         lanes = np.all(((inside > least + loose) & there) | absent[..., None], axis=1)
         perhaps = np.any((inside > least - loose) & there, axis=1)
-        self._spread_over_splits(s, lanes, perhaps)
-        return OthersNow(
+        now_there = OthersNow(
             s=s,
             d=(low[:, now].min(axis=1), high[:, now].max(axis=1)),
             right=(np.fmin.reduce(low, axis=1) - apart, np.fmax.reduce(low, axis=1) + apart),
@@ -339,6 +357,7 @@ class RoadFrame:
             ever_come=np.any(self._come, axis=1),
             loose_s=self.loose_s,
         )
+        return self._with_partings(now_there) if self._partings else now_there
 
     def _straightened(self, left_of: Floats) -> Floats:
         """The scene's coordinate across the road, from how far left of each bound places are."""
@@ -373,6 +392,14 @@ def _lasting_lanes(road: DrivenRoad) -> Flags:
     )
     lasting: Flags = ~shoulders & ~cycles & ~np.any(shoulders[1:-1])
     return lasting
+
+
+def _shifted(flags: Flags, by: int) -> Flags:
+    """Flags of lanes (second axis), so many lanes farther left."""
+    found = np.zeros_like(flags)
+    count = flags.shape[1]
+    found[:, max(by, 0) : count + min(by, 0)] = flags[:, max(-by, 0) : count - max(by, 0)]
+    return found
 
 
 def _linked(lanelet: Lanelet, way: int) -> tuple[str, ...]:
