@@ -342,6 +342,42 @@ def test_beyond_a_split_somebody_is_in_any_of_its_lanes(german):
     assert states[0]["lateral"]["10"] is UNKNOWN or "same_lane" in states[0]["lateral"]["10"].values
 
 
+def test_before_a_split_somebody_is_behind_any_of_its_lanes(german):
+    """Ego changes to the left one, which is that of the one behind to its drive."""
+    lanes = (
+        straight(1, 0, 50, y=2, successors=[2, 3]),
+        straight(2, 50, 300, left_of=3, predecessors=[1]),
+        straight(3, 50, 300, y=4, right_of=2, predecessors=[1]),
+    )
+    behind = vehicle(10, {k: (20.0 + k, 2.0) for k in range(25)}, speed=2.0)
+    across = [
+        (0.0, 0.0),
+        (0.225, 0.9),
+        (0.9, 1.8),
+        (1.8, 1.8),
+        (2.7, 1.8),
+        (3.375, 0.9),
+        (3.6, 0.0),
+    ]
+    motion = [(5.0 * k, 10.0, *own) for k, own in enumerate(across)]
+    states = driven_among([behind], german, motion, 0.0, lanes=lanes)
+    assert states[-1]["lateral"]["10"] is UNKNOWN
+
+
+@pytest.mark.parametrize(("onward", "said"), [((), False), ((3,), UNKNOWN)])
+def test_who_changes_to_a_lane_that_leaves_the_road_is_on_another_one(german, onward, said):
+    lanes = (
+        straight(1, 0, 150, left_of=2, successors=[4]),
+        straight(2, 0, 150, y=4, right_of=1, successors=onward),
+        lanelet(3, [(150, 4), (300, 60)], predecessors=[2]),
+        straight(4, 150, 300, predecessors=[1]),
+    )
+    ahead = vehicle(10, dict.fromkeys(range(13), (120.0, 0.0)))
+    motion = [(5.0 * k, 10.0, 0.0, 0.0) for k in range(7)]
+    states = driven_among([ahead], german, motion, 0.0, lanes=lanes)
+    assert states[0]["leads_elsewhere"]["10"] is said
+
+
 def test_who_passes_a_cycle_may_overtake(german):
     rider = vehicle(10, {k: (62.0 + 2 * k, 0.0) for k in range(13)}, "bicycle", 1.8, 0.6, speed=4.0)
     motion = [(5.0 * k, 10.0, 0.0, 0.0) for k in range(5)]

@@ -21,6 +21,7 @@ from rulec.cell_words.place_words import (
     PlaceWords,
     SceneWords,
     Words,
+    lanes_of,
     settled_by_place,
 )
 from rulec.cell_words.probe_drives import ProbeDrives, probe_drives
@@ -91,6 +92,11 @@ class _Words:
         self._names = names_read(rules) & probes.told
         self._boxes = list(ego_boxes(graph, probes.recording.step_s))
         self._scene = self._scene_words()
+        self._may_leave = frame is None or any(
+            frame.leaving[first : last + 1].any()
+            for boxes in self._boxes
+            for first, last in zip(*lanes_of(boxes, probes.origin.lanes.straight), strict=True)
+        )
         self._constants = self._scene.constants(self._names & {*self._vocabulary.constants})
         self._at_lines = PlaceWords(probes, self._names & AT_LINE)
         self._places = PlaceWords(probes, self._names)
@@ -233,6 +239,9 @@ class _Words:
                 words[name] = everywhere.get(name, self._by_motion(name))
             else:
                 said = of_others.get(name, {}) | self._constants.get(name, {})
+                if name == "leads_elsewhere" and self._may_leave:
+                    # Who leaves the road for good has another one, on which they may be or not
+                    said = {}
                 words[name] = {item: said.get(item, about_all.get(name, UNKNOWN)) for item in items}
         return words
 

@@ -108,7 +108,8 @@ class RoadFrame:
     the same lanes, ``apart_d`` how far those across it, ``loose_s`` and ``loose_d`` how far
     distances may be wrong for that and since places are known to ``place_m`` only. ``has_rails``:
     is there a level crossing on it? ``one_way``: does nobody come the other way on it, surely?
-    ``goes_straight``: does it turn in none of its junctions? ``lights`` are those of its lanes.
+    ``goes_straight``: does it turn in none of its junctions? ``lights`` are those of its lanes,
+    ``leaving`` flags of those that lead to another one, or come from there.
     Ego is ``half_m`` long from its middle to its corners at most.
     Raises ValueError: no drive has such a road, or it meets itself.
     """
@@ -150,6 +151,7 @@ class RoadFrame:
         self._line_d, self._bounds_d = self._apart(road)
         self._bent_d = _bent(self._line_s, headings, half_m)
         self._lasting = _lasting_lanes(road)
+        self.leaving = _leaving(road.rows, 1) | _leaving(road.rows[::-1], -1)
 
     def _lane_lights(self, road: DrivenRoad) -> Iterator[LaneLight]:
         recording, ends = self.probes.recording, road.borders[1:].tolist()
@@ -382,6 +384,16 @@ def _bent(s: Floats, headings: Floats, half_m: float) -> Floats:
             for number in range(1, _PARTS + 1)
         )
         found = np.maximum(found, part * sum(turned))
+    return found
+
+
+def _leaving(rows: Sequence[Sequence[Lanelet | None]], way: int) -> Flags:
+    """Flags of lanes of a road, piece by piece, that somewhere go on, but not on it."""
+    found: Flags = np.zeros(len(rows[0]), dtype=bool)
+    for row, onward in pairwise(rows):
+        there = {lanelet.id for lanelet in onward if lanelet is not None}
+        linked = [() if lanelet is None else _linked(lanelet, way) for lanelet in row]
+        found |= [bool(ids) and there.isdisjoint(ids) for ids in linked]
     return found
 
 
