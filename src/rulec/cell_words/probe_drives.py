@@ -182,7 +182,9 @@ def _places(graph: NavigationGraph, origin: SceneOrigin, low: float, high: float
     crossings = np.array([surface.s for surface in graph.scenario.road.surfaces]).ravel()
     # Who is on a crossing with any part is on it
     half = body_size(graph)[0] / 2
-    ends = np.concatenate((borders, crossings, crossings - half, crossings + half))
+    there = origin.lanes.there
+    begin_or_end = origin.lanes.s[1:-1][np.any(there[1:] != there[:-1], axis=1)] - origin.ego_s
+    ends = np.concatenate((borders, begin_or_end, crossings, crossings - half, crossings + half))
     ends.sort()
     middles = ((ends[1:] + ends[:-1]) / 2)[np.diff(ends) <= EVERY_M]
     even = np.arange(low, high + EVERY_M, EVERY_M)
