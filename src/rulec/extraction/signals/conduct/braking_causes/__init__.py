@@ -1,0 +1,1 @@
+"""What may make ego brake, stand or be slow, and what surely does."""

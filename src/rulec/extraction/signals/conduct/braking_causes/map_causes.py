@@ -1,0 +1,206 @@
+"""What of the map may make ego brake, stand or be slow, and what of it surely does, or does not.
+
+A junction or a crossing ahead is a reason only for who has to let somebody pass there, or may have
+to. It is none for who goes straight on at a green light, or on the road that goes first, nor for
+who has stood there alone for long. Nets alone tell that, which have all lights, signs and traffic.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
+
+from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.signals.conduct.braking_causes.others_around import (
+    CROSSES_M,
+    others_in,
+    without_followers,
+)
+from rulec.extraction.signals.map.level_crossing_signals import level_crossings
+from rulec.extraction.signals.map.line_signals import colour_at, lights_of
+from rulec.extraction.signals.map.map_signals import next_crossing
+from rulec.extraction.signals.map.stop_lines import ends_at_line, stop_line
+from rulec.extraction.signals.map.zone_signals import crossings_lit
+from rulec.extraction.signals.measured_numbers import moves, own_front
+from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.recordings.recording import STOP_SIGNS
+from rulec.scenario.recorded.reference_line import turn
+from rulec.trace.plain_arrays import distinct, zero_if_nan
+
+_BEND_RAD, _EVERY_M = np.radians(20.0), 10.0
+_SLOWER_KMH = 1.0
+
+MOVES_OFF_S = 5.0
+"""Who has waited gets going in so long."""
+
+LOOKS_S = 3.0
+"""Who has stood for so long has looked whether anybody comes."""
+
+_TURNS_MPS = 4.0
+"""Nobody has to be slower than that to turn."""
+
+_SEES_GREEN_S = 1.0
+"""So long after a light has turned green one may still be braking for it."""
+
+_GIVES_WAY = STOP_SIGNS | {"YIELD"}
+_GO, _STOP, _UNTOLD = 1, 2, 3
+_TELLS = {"green_light": _GO, "red_light": _STOP, "amber_light": _STOP, "no_light": 0}
+
+_HAIR_M = 0.01
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class MapReasons:
+    """Flags of states: the map ``may`` give a reason, and ``does``.
+
+    ``freely``: there is a junction or a crossing, and only others could make ego wait there.
+    """
+
+    may: Flags
+    does: Flags
+    freely: Flags
+
+
+def map_reasons(context: DriveContext, asked: Flags, reach: Floats) -> MapReasons:
+    """What is on the map as far ahead as ego looks, told apart in states that are ``asked`` for."""
+    road, front, rear = context.road, context.ego_extents.s_max[0], context.ego_extents.s_min[0]
+    speed, drives = context.ego.speed[0], moves(context)
+    shown = _lights_ahead(context, asked, reach)
+    does = (shown == _STOP) | (asked & _at_stop_sign(context, reach))
+    goes_on = asked & (shown <= _GO) & _all_are_recorded(context)
+    changed = context.spans.within_last(shown > _GO, _steps(context, _SEES_GREEN_S))
+    may, freely, at_junction = np.zeros((3, context.states), dtype=bool)
+    for start, end in road.junctions:
+        here = (front >= start - reach) & (rear <= end)
+        turned = abs(road.turned(start, end, aside_m=1.0))
+        first, lit = _goes_first(context, start)
+        lets_go = (shown == _GO) | first | ((front > start) & lit)
+        free = here & goes_on & lets_go & (turned <= _BEND_RAD)
+        may |= here & ~free
+        freely |= free
+        at_junction |= here
+        if turned > np.radians(context.thresholds.turned_deg):
+            does |= here & (front < end) & (speed > _TURNS_MPS)
+    alone = _stands_alone(context, at_junction & goes_on & ~drives)
+    may &= ~alone
+    freely |= alone
+    crossing, _ = next_crossing(context)
+    at_crossing = crossing - front <= reach
+    if at_crossing.any():
+        lights = crossings_lit(context)
+        untold = np.array([lights.get(start, (True, True))[1] for start in crossing.tolist()])
+        free = at_crossing & goes_on & ~untold
+        may |= at_crossing & ~free
+        freely |= free
+    may |= freely & changed
+    for start, end in level_crossings(context):
+        may |= (front >= start - reach) & (rear <= end)
+    # Beyond its map nobody knows the road
+    may |= (front + reach > road.borders[-1]) | (rear < road.borders[0])
+    may |= speed * KMH > context.limit_mps * KMH + _SLOWER_KMH
+    return MapReasons(may | does, does, freely & ~may)
+
+
+def _steps(context: DriveContext, seconds: float) -> int:
+    return round(seconds / context.recording.step_s)
+
+
+def _all_are_recorded(context: DriveContext) -> bool:
+    return {"arrivals", "light", "YIELD"} <= context.recording.complete
+
+
+def _goes_first(context: DriveContext, start: float) -> tuple[bool, bool]:
+    """True if nobody goes before ego on its road at a junction, and no sign makes it wait.
+
+    And whether it has a light there.
+    """
+    road = context.road
+    before, inside = road.piece(np.array([start - _HAIR_M, start + _HAIR_M])).tolist()
+    entry, way = (road.lanelet(piece, road.own_lanes[piece]) for piece in (before, inside))
+    first = way.first is not None and not way.first and not entry.signs & _GIVES_WAY
+    return first, bool(entry.lights)
+
+
+def _lights_ahead(context: DriveContext, asked: Flags, reach: Floats) -> NDArray[intp]:
+    """What the light ahead of ego tells it in states that are asked for, 0 without any."""
+    road, front, recording = context.road, own_front(context), context.recording
+    told = np.zeros(context.states, dtype=intp)
+    for piece in range(len(road.rows) - 1, -1, -1):
+        if not asked.any() or not any(row is not None and row.lights for row in road.rows[piece]):
+            continue
+        for lane in distinct(context.ego_lane).tolist():
+            lights = lights_of(recording, road, piece, lane)
+            if not lights or not ends_at_line(context, piece, lane):
+                continue
+            first, last = stop_line(context, piece, lane)
+            ahead = asked & (context.ego_lane == lane) & (front <= last) & (front > first - reach)
+            for state in ahead.nonzero()[0].tolist():
+                colour = colour_at(lights, int(context.steps[state]))
+                told[state] = _TELLS.get(colour, _UNTOLD)
+    return told
+
+
+def _at_stop_sign(context: DriveContext, reach: Floats) -> Flags:
+    """Flags of states in which ego comes to a stop sign, or has not stood there for long."""
+    road, front, spans = context.road, own_front(context), context.spans
+    there = np.zeros(context.states, dtype=bool)
+    for piece, row in enumerate(road.rows):
+        if not any(lanelet and STOP_SIGNS & lanelet.signs for lanelet in row):
+            continue
+        for lane in distinct(context.ego_lane).tolist():
+            stops = bool(STOP_SIGNS & road.lanelet(piece, lane).signs)
+            if stops and ends_at_line(context, piece, lane):
+                first, last = stop_line(context, piece, lane)
+                there |= (context.ego_lane == lane) & (front <= last) & (front > first - reach)
+    drives = moves(context)
+    return there & spans.within_last(drives, _steps(context, LOOKS_S))
+
+
+def _stands_alone(context: DriveContext, where: Flags) -> Flags:
+    """Flags of states in which ego has stood somewhere for ``MOVES_OFF_S``, and been alone there.
+
+    Nobody was within ``CROSSES_M``, but for who has come up behind ego, and waits for it.
+    """
+    spans, alone = context.spans, np.zeros(context.states, dtype=bool)
+    states = np.flatnonzero(where)
+    if not len(states):
+        return alone
+    others = without_followers(context, others_in(context, states))
+    about = np.hypot(others.ahead, others.left) <= CROSSES_M
+    alone[states] = ~about.any(axis=0)
+    steps = _steps(context, MOVES_OFF_S)
+    found: Flags = ~spans.within_last(~alone, steps) & (spans.columns - spans.first >= steps)
+    return found
+
+
+def road_reasons(
+    context: DriveContext, states: NDArray[intp], reach: Floats
+) -> tuple[Flags, Flags]:
+    """Flags of these states with a bend, a lower limit or an end of the lane ahead.
+
+    And of those in which ego is faster than such a limit.
+    """
+    road, width, reach = context.road, context.existing_lanes.shape[1], reach[states]
+    front, speed = context.ego_extents.s_max[0, states], context.ego.speed[0, states]
+    lanes, turned = context.ego_lane[states], np.radians(context.thresholds.turned_deg)
+    before = road.line.headings_at(zero_if_nan(context.ego_extents.s[0, states]))
+    # Rows of places ahead, a column for each state
+    ahead = np.arange(0.0, float(np.nanmax(reach, initial=0.0)) + _EVERY_M, _EVERY_M)[:, None]
+    place = zero_if_nan(front + ahead)
+    # Nobody stands for a bend
+    bends = np.abs(turn(before, road.line.headings_at(place))) > _BEND_RAD
+    bends &= moves(context)[states]
+    there = road.lanes.existing_at(place)[:, np.arange(len(states)), lanes]
+    codes = road.piece(place) * width + lanes
+    different = distinct(codes)
+    told = [road.limit_mps(code // width, code % width, turned) for code in different.tolist()]
+    known = np.array([np.inf if limit is None else limit for limit in told])
+    limits, seen = known[different.searchsorted(codes)], ahead <= reach
+    lower = (limits < speed) | (limits < context.limit_mps[states])
+    too_fast = (
+        seen & (limits * KMH + _SLOWER_KMH < speed * KMH) & (limits < context.limit_mps[states])
+    )
+    return (seen & (bends | ~there | lower)).any(axis=0), too_fast.any(axis=0)

@@ -1,0 +1,97 @@
+"""Where others are around ego, and how they move, by its own heading, on whatever road."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy import intp
+from numpy.typing import NDArray
+
+from rulec.extraction.drive_context import KMH, DriveContext
+from rulec.extraction.signals import relations
+from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.scenario.recorded.reference_line import turn
+
+CROSSES_M, ACROSS_RAD = 30.0, np.radians(30.0)
+"""Who is so far to the side, and drives across, may come into ego's way."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Others:
+    """Where others are in some ``states``: ahead of ego and left of it (m), by its heading.
+
+    A row for each, whose ``rows`` are those among all of the recording; ``away`` is how far (m)
+    they are from ego's line to either side.
+    """
+
+    states: NDArray[intp]
+    rows: NDArray[intp]
+    ahead: Floats
+    left: Floats
+    away: Floats
+
+    def part(self, chosen: NDArray[intp]) -> Others:
+        """The same in some of the states."""
+        ahead, left, away = (own.take(chosen, axis=1) for own in (self.ahead, self.left, self.away))
+        return Others(self.states.take(chosen), self.rows, ahead=ahead, left=left, away=away)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class MotionAhead:
+    """How some others move: their speeds ahead of ego and to its left (m/s), by its heading.
+
+    ``turned`` is their heading from its own (rad).
+    """
+
+    along: Floats
+    sideways: Floats
+    turned: Floats
+    moves: Flags
+
+
+def others_in(context: DriveContext, states: NDArray[intp]) -> Others:
+    """All others of the recording in some states, also those that are not on ego's road."""
+    tracks, own, spans = context.surroundings.tracks, context.ego, context.spans
+    columns = context.columns[states]
+    rows = tracks.present.take(columns, axis=1).any(axis=1).nonzero()[0]
+    x, y = (values[rows].take(columns, axis=1) for values in (tracks.x, tracks.y))
+    if context.own is context.surroundings:
+        drives = spans.number[states]
+        places = rows.searchsorted(own.rows)[drives]
+        there = (places < len(rows)).nonzero()[0]
+        there = there[rows[places[there]] == own.rows[drives[there]]]
+        x[places[there], there] = np.nan
+    heading = own.heading[0, states]
+    cos, sin = np.cos(heading), np.sin(heading)
+    x -= own.x[0, states]
+    y -= own.y[0, states]
+    left = y * cos - x * sin
+    return Others(states, rows, ahead=x * cos + y * sin, left=left, away=np.abs(left))
+
+
+def without_followers(context: DriveContext, others: Others) -> Others:
+    """The same without those who go ego's way behind it: they wait for ego, and it not for them."""
+    places = others.rows.searchsorted(context.tracks.rows)
+    there = (others.rows.take(places, mode="clip") == context.tracks.rows).nonzero()[0]
+    behind = (relations.station(context) == relations.IN_FRONT_OF) & context.going_along
+    gone = np.zeros(others.ahead.shape, dtype=bool)
+    gone[places[there]] = behind[there].take(others.states, axis=1)
+    ahead, left, away = (
+        np.where(gone, np.nan, own) for own in (others.ahead, others.left, others.away)
+    )
+    return Others(others.states, others.rows, ahead=ahead, left=left, away=away)
+
+
+def motion_of(context: DriveContext, rows: NDArray[intp], states: NDArray[intp]) -> MotionAhead:
+    """How some others move, of rows among all of the recording, in as many states."""
+    tracks = context.surroundings.tracks
+    at, own = (rows, context.columns[states]), context.ego.heading[0]
+    cos, sin, own = np.cos(own)[states], np.sin(own)[states], own[states]
+    vx, vy = tracks.vx[at], tracks.vy[at]
+    return MotionAhead(
+        along=vx * cos + vy * sin,
+        sideways=vy * cos - vx * sin,
+        turned=turn(own, tracks.heading[at]),
+        moves=np.hypot(vx, vy) * KMH >= context.thresholds.standing_kmh,
+    )

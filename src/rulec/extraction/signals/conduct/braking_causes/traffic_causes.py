@@ -1,0 +1,156 @@
+"""What of the others may make ego brake, stand or be slow, and what of them surely does.
+
+One ahead in ego's lane makes it slow; to brake hard only if it would run into that one, and to
+stand only if that one is near. Who comes to where ways cross makes it wait if it gets there first.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rulec.extraction.drive_context import DriveContext
+from rulec.extraction.signals import relations
+from rulec.extraction.signals.conduct.braking_causes.others_around import (
+    ACROSS_RAD,
+    CROSSES_M,
+    Others,
+    motion_of,
+)
+from rulec.extraction.signals.map.priority_signals import approach, own_passages, passages_of
+from rulec.extraction.signals.measured_numbers import moves
+from rulec.extraction.tracks.tracks import Flags, Floats
+from rulec.trace.cells import Cells
+
+IN_WAY_M, COMES_M = 2.5, 6.0
+"""Sideways: who is in ego's way, and may come into it."""
+
+REACH_M = 20.0
+"""Who is so near ahead counts also for one that stands."""
+
+_SEEN_M, _WALKS_M = 60.0, 30.0
+"""Sideways: who is so near and comes to a junction, or walks, ego may think of."""
+
+_SIDEWAYS_MPS, _ALIKE_MPS = 0.3, 3.0
+_HOLDS_UP_M, _BRAKES_MPS2, _LEAST_MPS2, _NEAR_S, _REACTS_S = 10.0, 1.0, 0.5, 1.0, 2.0
+"""Who is so near ahead lets ego stand; who brakes so hard, or makes ego do so, or is so near by
+time, lets it brake, up to so long ago or later."""
+
+_WAITS_S, _THINKS_OF_S = 5.0, 8.0
+"""So long before one gets to where ways meet ego may wait for it, and think of it."""
+
+
+def led(context: DriveContext, brakes: Flags, reach: Floats) -> Flags:
+    """Flags of states in which one ahead in ego's lane is why it brakes, stands or is slow."""
+    ahead = relations.station(context) == relations.BEHIND
+    ahead &= context.relevant & context.in_ego_lane & (relations.gap(context) <= reach)
+    found, spans = np.zeros(context.states, dtype=bool), context.spans
+    cells = Cells.at(ahead)
+    if not len(cells):
+        return found
+    gap, theirs = cells.of(relations.gap(context)), np.maximum(cells.of(context.extents.along), 0.0)
+    own, soon = context.ego.speed[0], round(_REACTS_S / context.recording.step_s)
+    slow = theirs < cells.of(own) + _ALIKE_MPS
+    held = (gap <= _HOLDS_UP_M) & slow
+    came = cells.of(spans.most_of_last(own, soon))
+    closing = np.maximum(came - theirs, 0.0) ** 2 / 2 >= _LEAST_MPS2 * np.maximum(gap, 1.0)
+    hard = closing | (cells.of(context.tracks.acceleration) <= -_BRAKES_MPS2) & slow
+    hard |= gap <= _NEAR_S * cells.of(own)
+    by_speed = np.where(cells.of(moves(context)), slow, held)
+    found[cells.columns[by_speed]] = True
+    for_braking = np.zeros(context.states, dtype=bool)
+    for_braking[cells.columns[hard]] = True
+    for_braking = spans.within(for_braking, soon) | spans.within_last(for_braking, soon)
+    return np.where(brakes, for_braking, found)
+
+
+def may_be_others(context: DriveContext, others: Others, reach: Floats) -> Flags:
+    """Flags of the others' states with one ahead in ego's way, coming into it, or across it."""
+    states, reach = others.states, reach[others.states]
+    near = (others.ahead > -REACH_M / 4) & (others.ahead <= reach + REACH_M)
+    found: Flags = np.logical_or.reduce(near & (others.away <= IN_WAY_M))
+    cells = Cells.at(near & (others.away <= CROSSES_M) & ~found)
+    rows, columns = cells.rows, cells.columns
+    left, away = cells.of(others.left), cells.of(others.away)
+    motion = motion_of(context, others.rows[rows], states[columns])
+    comes = (away <= COMES_M) & (-motion.sideways * np.sign(left) > _SIDEWAYS_MPS)
+    angle = np.abs(motion.turned)
+    across = (angle > ACROSS_RAD) & (angle < np.pi - ACROSS_RAD)
+    # Whom ego may not pass on the near side
+    to_far = left * (1 if context.side == "right" else -1)
+    speed = context.ego.speed[0, states[columns]]
+    slower = (angle < ACROSS_RAD) & (motion.along < speed + _ALIKE_MPS)
+    not_to_pass = slower & (to_far > 0) & (away <= COMES_M)
+    found[columns[comes | (across & motion.moves) | not_to_pass]] = True
+    rest = (~found).nonzero()[0]
+    at = states[rest]
+    in_lane = relations.station(context)[:, at] == relations.BEHIND
+    in_lane &= context.relevant[:, at] & context.in_ego_lane[:, at]
+    in_lane &= relations.gap(context)[:, at] <= reach[rest]
+    found[rest] = in_lane.any(axis=0)
+    return found
+
+
+def may_come(context: DriveContext, others: Others, reach: Floats) -> Flags:
+    """Flags of the others' states with somebody about who may come to a junction or a crossing.
+
+    Who drives across towards ego's line, or is on foot or on a cycle near it.
+    """
+    states = others.states
+    near = (others.ahead > -REACH_M / 4) & (others.ahead <= reach[states] + REACH_M)
+    users = context.surroundings.tracks.of_type("vulnerable_user")[others.rows]
+    found: Flags = np.logical_or.reduce(near & (others.away <= _WALKS_M) & users[:, None])
+    cells = Cells.at(near & (others.away <= _SEEN_M) & ~found)
+    motion = motion_of(context, others.rows[cells.rows], states[cells.columns])
+    angle = np.abs(motion.turned)
+    comes = (angle > ACROSS_RAD) & (angle < np.pi - ACROSS_RAD) & motion.moves
+    comes &= motion.sideways * cells.of(others.left) < 0
+    found[cells.columns[comes]] = True
+    return found
+
+
+def crossed(context: DriveContext, others: Others, reach: Floats) -> Flags:
+    """Flags of states in which somebody walks or drives across ego's way, or is about to."""
+    states = others.states
+    near = (others.ahead > 0) & (others.ahead <= reach[states])
+    cells = Cells.at(near & (others.away <= IN_WAY_M))
+    motion = motion_of(context, others.rows[cells.rows], states[cells.columns])
+    angle, there = np.abs(motion.turned), np.zeros(context.states, dtype=bool)
+    across = (angle > ACROSS_RAD) & (angle < np.pi - ACROSS_RAD) & motion.moves
+    there[states[cells.columns[across]]] = True
+    return context.spans.within(there, round(_WAITS_S / context.recording.step_s))
+
+
+def met(context: DriveContext, asked: Flags, reach: Floats) -> tuple[Flags, Flags]:
+    """Flags of states in which one makes ego wait where their ways meet in a junction, or may."""
+    waits, thinks = np.zeros((2, context.states), dtype=bool)
+    for number, columns in context.spans.those(context.spans.any(asked)):
+        if passages_of(context, number):
+            waits[columns], thinks[columns] = _met_alone(context.one(number), reach[columns])
+    return waits & asked, thinks & asked
+
+
+def _met_alone(context: DriveContext, reach: Floats) -> tuple[Flags, Flags]:
+    """The same in one drive."""
+    passages, first = context.surroundings.passages, int(context.columns[0])
+    waits_for, thinks_of = (
+        round(seconds / context.recording.step_s) for seconds in (_WAITS_S, _THINKS_OF_S)
+    )
+    waits, thinks = np.zeros((2, context.states), dtype=bool)
+    for own in own_passages(context):
+        stop = approach(context, own).stop
+        travelled = passages.travelled[own.row]
+        near = travelled[own.first] - travelled[context.columns] <= reach
+        start = int(near.argmax())
+        for other in passages.through[own.junction]:
+            meeting = passages.junctions[own.junction].meeting(own.way, other.way)
+            elsewhen = other.last - first < start or other.first - first - thinks_of > stop
+            if other.row == own.row or meeting is None or elsewhen:
+                continue
+            enters, _ = passages.occupied(own, meeting[0])
+            comes, leaves = passages.occupied(other, meeting[1])
+            begin = (other.last if comes is None else int(comes)) - first
+            end = max(min(stop, context.states if leaves is None else int(leaves) - first + 1), 0)
+            thinks[max(begin - thinks_of, 0) : end] |= near[max(begin - thinks_of, 0) : end]
+            if comes is not None and (enters is None or comes < enters):
+                waits[max(begin - waits_for, 0) : end] |= near[max(begin - waits_for, 0) : end]
+    return waits, thinks
