@@ -52,6 +52,9 @@ _ROAD_M, _HALF, _CALLED_M = 15.0, 0.5, 100.0
 _FAR_SLOWER, _SLOWER = 0.5, 0.75
 """Parts of the limit: who is slower than the first holds others up, than the second perhaps."""
 
+_SETS_OFF_S = 2.0
+"""Nobody is expected to set off sooner, once it may."""
+
 _DRIVES_KMH = 30.0
 """Who is as fast later on has not broken down, nor is towed."""
 
@@ -82,7 +85,9 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     caused = on_map.does | led(context, brakes, reach)
     perhaps = on_map.may.copy()
     others = others_in(context, (~perhaps | (asked & ~caused)).nonzero()[0])
-    perhaps[others.states] |= may_be_others(context, others, reach)
+    in_way, kept_back = may_be_others(context, others, reach)
+    perhaps[others.states] |= in_way
+    caused[others.states] |= kept_back & ~stands[others.states]
     freely = on_map.freely[others.states].nonzero()[0]
     if len(freely):
         there = others.part(freely)
@@ -113,9 +118,8 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
     least = context.ego.acceleration[0] - context.ego.acceleration_error[0]
     perhaps |= (least <= -context.thresholds.braking_hard_mps2) & ~_followed(context)
     if stands.any():
-        held = spans.latest(stands & (caused | perhaps))
-        since_s = (spans.columns - held) * context.recording.step_s
-        perhaps |= stands & (held > spans.latest(~stands)) & (since_s <= MOVES_OFF_S)
+        caused |= stands & _since(context, caused & stands, _SETS_OFF_S)
+        perhaps |= stands & _since(context, stands & (caused | perhaps), MOVES_OFF_S)
         # Who has just come to a stop may have seen somebody who did not come after all
         looks = spans.within_last(~stands, round(LOOKS_S / context.recording.step_s))
         perhaps |= on_map.freely & stands & looks
@@ -123,6 +127,15 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
         farther = (others.ahead > reach[others.states]) & (others.away <= _ROAD_M)
         perhaps[others.states] |= ~farther.any(axis=0)
     return caused, perhaps & ~caused
+
+
+def _since(context: DriveContext, flags: Flags, seconds: float) -> Flags:
+    """Flags of states in which ego has not moved since others, at most so long ago."""
+    spans = context.spans
+    latest = spans.latest(flags)
+    recent = (spans.columns - latest) * context.recording.step_s <= seconds
+    found: Flags = recent & (latest > spans.latest(moves(context)))
+    return found
 
 
 def _asked(context: DriveContext) -> tuple[Flags, Flags]:
@@ -240,10 +253,13 @@ def _impedes(context: DriveContext) -> SignalColumns:
     steps = round(context.thresholds.preparing_s / context.recording.step_s)
     runs = context.spans.columns - context.spans.latest(~far_slower)
     impedes = followed & (runs > steps)
-    slower = ~told | (speed < _SLOWER * limit)
+    slower = (~told | (speed < _SLOWER * limit)) & moves(context) & ~gains & ~caused
+    since = context.spans.latest(~slower)
+    # What was before its drive began nobody has seen
+    for_long = (context.spans.columns - since > steps) | (since < context.spans.first)
     return SignalColumns(
         {"impedes_traffic": impedes},
-        unknown={"impedes_traffic": followed & slower & ~caused & ~impedes},
+        unknown={"impedes_traffic": followed & slower & for_long & ~impedes},
     )
 
 

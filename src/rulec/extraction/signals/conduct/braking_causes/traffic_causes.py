@@ -52,8 +52,10 @@ def led(context: DriveContext, brakes: Flags, reach: Floats) -> Flags:
     slow = theirs < cells.of(own) + _ALIKE_MPS
     held = (gap <= _HOLDS_UP_M) & slow
     came = cells.of(spans.most_of_last(own, soon))
-    closing = np.maximum(came - theirs, 0.0) ** 2 / 2 >= _LEAST_MPS2 * np.maximum(gap, 1.0)
-    hard = closing | (cells.of(context.tracks.acceleration) <= -_BRAKES_MPS2) & slow
+    hard = (
+        _closes(came - theirs, gap)
+        | (cells.of(context.tracks.acceleration) <= -_BRAKES_MPS2) & slow
+    )
     hard |= gap <= _NEAR_S * cells.of(own)
     by_speed = np.where(cells.of(moves(context)), slow, held)
     found[cells.columns[by_speed]] = True
@@ -63,8 +65,11 @@ def led(context: DriveContext, brakes: Flags, reach: Floats) -> Flags:
     return np.where(brakes, for_braking, found)
 
 
-def may_be_others(context: DriveContext, others: Others, reach: Floats) -> Flags:
-    """Flags of the others' states with one ahead in ego's way, coming into it, or across it."""
+def may_be_others(context: DriveContext, others: Others, reach: Floats) -> tuple[Flags, Flags]:
+    """Flags of the others' states with one ahead in ego's way, coming into it, or across it.
+
+    And with one on the far side whom ego may not pass, and would without braking.
+    """
     states, reach = others.states, reach[others.states]
     near = (others.ahead > -REACH_M / 4) & (others.ahead <= reach + REACH_M)
     found: Flags = np.logical_or.reduce(near & (others.away <= IN_WAY_M))
@@ -81,13 +86,24 @@ def may_be_others(context: DriveContext, others: Others, reach: Floats) -> Flags
     slower = (angle < ACROSS_RAD) & (motion.along < speed + _ALIKE_MPS)
     not_to_pass = slower & (to_far > 0) & (away <= COMES_M)
     found[columns[comes | (across & motion.moves) | not_to_pass]] = True
+    soon = round(_REACTS_S / context.recording.step_s)
+    came = context.spans.most_of_last(context.ego.speed[0], soon)[states[columns]]
+    gap = cells.of(others.ahead)
+    kept_back = np.zeros(len(states), dtype=bool)
+    kept_back[columns[not_to_pass & (gap > 0) & _closes(came - motion.along, gap)]] = True
     rest = (~found).nonzero()[0]
     at = states[rest]
     in_lane = relations.station(context)[:, at] == relations.BEHIND
     in_lane &= context.relevant[:, at] & context.in_ego_lane[:, at]
     in_lane &= relations.gap(context)[:, at] <= reach[rest]
     found[rest] = in_lane.any(axis=0)
-    return found
+    return found, kept_back
+
+
+def _closes(faster: Floats, gap: Floats) -> Flags:
+    """Flags of those whom ego, faster by so much, would run into if it did not brake at all."""
+    closes: Flags = np.maximum(faster, 0.0) ** 2 / 2 >= _LEAST_MPS2 * np.maximum(gap, 1.0)
+    return closes
 
 
 def may_come(context: DriveContext, others: Others, reach: Floats) -> Flags:
