@@ -46,6 +46,10 @@ def judged_rules(
     return known[told, cut]
 
 
+_TOO_LARGE_IF_CUT = (
+    "of what is cut out of something longer, as recordings are, its automaton is too large; it is "
+    "smaller for larger time steps"
+)
 _MOST_KNOWN = 1 << 6
 """Kinds of sources whose rules are kept before all are forgotten."""
 
@@ -65,8 +69,7 @@ def _judged_rules(
     for rule in rulebook.rules:
         outcomes = None if prefixes is None else prefixes.get(rule.name)
         if prefixes is not None and outcomes is None:
-            why = "there is no machine for what it says of a trace that is cut"
-            not_judged.append(RuleNotJudged(rule.name, rule.strength, (), why))
+            not_judged.append(RuleNotJudged(rule.name, rule.strength, (), _TOO_LARGE_IF_CUT))
             continue
         machine = uncertain_machine(rule, outcomes)
         untold = machine.untold(unknown)
