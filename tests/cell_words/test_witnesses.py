@@ -128,20 +128,27 @@ def test_a_bus_may_be_a_school_bus_for_maneuvers_as_for_drives(kind, lacking):
     assert ("school_bus" in untold) == lacking
 
 
-def test_distances_to_junctions_between_two_places():
-    """Right behind a junction it is as far to the next one as it gets, place or no place."""
-    far = (1.0, 0.0, 40.0, 39.0, 38.0)
-    states = [{"distance_to_junction": metres} for metres in far]
-    lane = LaneProbe(0, np.arange(5.0), states)
-    lanes = SimpleNamespace(straight=np.array([-2.0, 2.0]))
+@pytest.mark.parametrize(("far_left", "most"), [(30.0, 41.0), (60.0, 60.0)])
+def test_distances_to_junctions_between_two_places(far_left, most):
+    """Right behind a junction it is as far to the next one as it gets, place or no place.
+
+    Or as far as it is in a lane to which ego may change later.
+    """
+    lanes = tuple(
+        LaneProbe(number, np.arange(5.0), [{"distance_to_junction": metres} for metres in far])
+        for number, far in enumerate([(1.0, 0.0, 40.0, 39.0, 38.0), (far_left,) * 5])
+    )
+    straightened = SimpleNamespace(straight=np.array([-2.0, 2.0, 6.0]))
     probes = SimpleNamespace(
-        origin=SimpleNamespace(lanes=lanes), lanes=(lane,), stretches=((0, 0.0, 4.0),)
+        origin=SimpleNamespace(lanes=straightened),
+        lanes=lanes,
+        stretches=((0, 0.0, 4.0), (1, 0.0, 4.0)),
     )
     places = PlaceWords(probes, frozenset({"distance_to_junction"}))
     (found,) = places.of_cells(
         SimpleNamespace(s=(np.array([1.0]), np.array([3.0])), d=(np.zeros(1), np.zeros(1)))
     )
-    assert found["distance_to_junction"] == Interval(0.0, 41.0)
+    assert found["distance_to_junction"] == Interval(0.0, most)
 
 
 def test_what_never_changes_is_known_of_all_times_once_it_is_of_one():

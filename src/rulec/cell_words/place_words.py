@@ -208,7 +208,7 @@ class PlaceWords:
             self._known[key] = self._said_in(*key)
         found = self._known[key]
         if self._distances:
-            found = {**found, **self._ways(spans, low, high)}
+            found = {**found, **self._ways(low, high)}
         return found
 
     def _said_in(self, spans: tuple[tuple[int, int, int], ...], whole: bool) -> Words:
@@ -221,15 +221,15 @@ class PlaceWords:
             return dict.fromkeys(self._names, UNKNOWN)
         return {name: hull(one[name] for one in said) for name in self._names}
 
-    def _ways(self, spans: Sequence[tuple[int, int, int]], low: float, high: float) -> Words:
-        return {name: hull(self._distances_to(name, spans, low, high)) for name in self._distances}
+    def _ways(self, low: float, high: float) -> Words:
+        return {name: hull(self._distances_to(name, low, high)) for name in self._distances}
 
-    def _distances_to(
-        self, name: str, spans: Sequence[tuple[int, int, int]], low: float, high: float
-    ) -> Iterator[Any]:
-        """How far it may be to something, at the places of lanes between two."""
-        for number, _, _ in spans:
-            lane = self._lanes[number]
+    def _distances_to(self, name: str, low: float, high: float) -> Iterator[Any]:
+        """How far it may be to something, at the places between two.
+
+        In all lanes: ego's way is that of the lane to which it may change later.
+        """
+        for lane in self._lanes:
             begin = int(np.searchsorted(lane.s, low - EVERY_M, "left"))
             end = int(np.searchsorted(lane.s, high + EVERY_M, "right"))
             values = [state.get(name, UNKNOWN) for state in lane.probe.states[begin:end]]
