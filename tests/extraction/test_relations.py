@@ -14,6 +14,9 @@ from support.builders.drive_contexts import context_of, steady
 from support.builders.recordings import recording
 from support.generators.random_recordings import STEP_S, lanes, scenes
 
+PLACE_M = 0.05
+"""Places of a recording made by hand are as good."""
+
 
 def lane_polygons(found):
     return [
@@ -80,13 +83,22 @@ def test_who_is_where(found):
     for drive in (one for ego in told.egos() for one in told.of(ego)):
         if not isinstance(drive, Drive):
             continue
+        seen = set()
         for number, state in enumerate(drive.trace.states):
             step = round(drive.start_s / STEP_S) + number
             ego = bodies[drive.ego, step]
             for other in state.get("station", {}):
                 body = bodies[other.partition("_")[0], step]
                 expected = seen_from(body, ego, lanes)
-                assert state["station"][other] == expected[0]
+                # Ego may be passing who is beside it when it is first seen
+                at_first = other not in seen and expected[0] == "beside"
+                seen.add(other)
+                (low, _, high, _), (begin, _, end, _) = body.bounds, ego.bounds
+                level = min(abs(low - end), abs(begin - high)) <= PLACE_M
+                told_one = state["station"][other]
+                assert told_one == (UNKNOWN if at_first else expected[0]) or (
+                    level and told_one == UNKNOWN
+                )
                 assert state["lateral"][other] in (expected[1], UNKNOWN)
                 gap = shadow(body, 0).distance(shadow(ego, 0))
                 beside = shadow(body, 1).distance(shadow(ego, 1))

@@ -49,6 +49,21 @@ def test_relations_and_distances():
     assert (beside["station"], beside["gap"]) == ("beside", 0.0)
 
 
+@pytest.mark.parametrize(
+    ("other", "unknown"),
+    [
+        (steady(8, 1, 4), [True, False, False, False]),
+        (steady(8, 30, 4, speed=-58), [False, False, False, False]),
+        (steady(8, 6, 4, steps=3, first=1), [False, True, False, False]),
+    ],
+    ids=["at first", "later", "comes into sight"],
+)
+def test_ego_may_be_passing_who_is_beside_it_at_first(other, unknown):
+    signals = participant_signals(context(other))
+    for name in ("station", "lateral"):
+        assert signals.unknown[name][0].tolist() == unknown
+
+
 @pytest.mark.parametrize("angle", [0.0, 0.4, 0.8, 1.2])
 def test_who_stays_is_the_same_however_axes_lie(angle):
     """Boxes wander to three corners that are 1.3 m from each other, or to two 1.6 m apart."""

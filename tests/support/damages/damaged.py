@@ -97,6 +97,15 @@ def cut_in_pieces(recording, mean_s=6.0, hole_s=0.5, seed=1):
     return _of(recording, bodies, was)
 
 
+def later(recording, share):
+    """What whoever begins to record later has of it, from a share of its time on."""
+    steps = [step for body in _moving(recording) for step in body.outlines]
+    first = min(steps) + round(share * (max(steps) - min(steps)))
+    rest = with_states(recording, lambda body: [x for x in body.outlines if x >= first])
+    # From then on nobody is missing
+    return replace(rest, recording=replace(rest.recording, complete=recording.complete))
+
+
 def with_drops(recording, share=0.1, seed=1):
     """The recording without some of its states, each by itself."""
     pick = random.Random(seed)
@@ -191,6 +200,8 @@ DAMAGES: dict[str, Callable] = {
     "pieces_without_holes": _of_all(lambda recording: cut_in_pieces(recording, 4.0, 0.0)),
     "drops_5": _of_all(lambda recording: with_drops(recording, 0.05)),
     "drops_20": _of_all(lambda recording: with_drops(recording, 0.2)),
+    "later_40": _of_all(lambda recording: later(recording, 0.4)),
+    "later_70": _of_all(lambda recording: later(recording, 0.7)),
     "range_40": _of_each(in_range),
     "range_60": _of_each(lambda recording, ego: in_range(recording, ego, 60.0)),
     "view": _of_each(in_view),

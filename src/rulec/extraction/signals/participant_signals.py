@@ -7,7 +7,7 @@ from numpy import intp
 from numpy.typing import NDArray
 
 from rulec.extraction.drive_context import KMH, DriveContext, once
-from rulec.extraction.presences import in_presences, presence_cells
+from rulec.extraction.presences import in_presences, presence_cells, presence_runs
 from rulec.extraction.recording_parts import span_of
 from rulec.extraction.signals import relations
 from rulec.extraction.signals.ego_lanelets import (
@@ -67,7 +67,8 @@ def _station(context: DriveContext) -> SignalColumns:
     """The stations; unknown within the tolerance of places, but for who passes.
 
     There only the moment is in doubt. Who gets on so slowly that it is for long is beside ego, or
-    is not, all that time. Unknown, too, of cycles and people whom nobody saw beside ego.
+    is not, all that time. Unknown, too, of cycles and people whom nobody saw beside ego, and where
+    one is beside it in the first state: ego may have come up from behind.
     """
     station, others = relations.station(context), relations.possible_stations(context)
     doubtful = np.logical_or.reduce([station != codes for codes in others])
@@ -77,9 +78,23 @@ def _station(context: DriveContext) -> SignalColumns:
     doubtful &= ~only_when(station, doubtful, there, longest, context.spans)
     return SignalColumns(
         about={"station": station},
-        unknown={"station": doubtful | _passed_unseen(context)},
+        unknown={"station": doubtful | _passed_unseen(context) | _beside_at_first(context)},
         texts={"station": STATIONS},
     )
+
+
+@once
+def _beside_at_first(context: DriveContext) -> Flags:
+    """Flags of the first states of those who are beside ego then, and were not recorded before."""
+    runs, spans, first = presence_runs(context), context.spans, np.zeros_like(context.relevant)
+    rows, columns = runs.rows, spans.begins[runs.drives] + runs.first
+    beside = relations.station(context)[rows, columns] == relations.BESIDE
+    rows, columns = rows[beside], columns[beside]
+    present = context.surroundings.tracks.present
+    before = np.maximum(context.columns[columns] - 1, 0)
+    unseen = ~present[context.tracks.rows[rows], before] | (columns == spans.first[columns])
+    first[rows[unseen], columns[unseen]] = True
+    return first
 
 
 def _passed_unseen(context: DriveContext) -> Flags:
@@ -103,7 +118,8 @@ def _passed_unseen(context: DriveContext) -> Flags:
 def _lateral(context: DriveContext) -> SignalColumns:
     """The sides of others; unknown within tolerances, but where ego or the other one moves over.
 
-    There only the moment is in doubt, as it is for stations.
+    There only the moment is in doubt, as it is for stations. Unknown, too, where one is beside ego
+    in the first state: ego may have left its lane just before.
     """
     laterals = relations.laterals(context)
     there = context.relevant & ~np.isnan(context.extents.s_min)
@@ -112,7 +128,7 @@ def _lateral(context: DriveContext) -> SignalColumns:
     over = only_when(codes, laterals.doubtful, there, longest, context.spans)
     return SignalColumns(
         about={"lateral": codes},
-        unknown={"lateral": laterals.doubtful & ~over},
+        unknown={"lateral": (laterals.doubtful & ~over) | _beside_at_first(context)},
         texts={"lateral": LATERALS},
     )
 

@@ -139,16 +139,16 @@ def _since(context: DriveContext, flags: Flags, seconds: float) -> Flags:
 
 
 def _asked(context: DriveContext) -> tuple[Flags, Flags]:
-    """Flags of states in which ego may brake hard, and of those in which rules ask for a reason.
+    """Flags of states in which ego brakes hard, and of those in which rules ask for a reason.
 
-    In the latter it brakes hard, within a second, stands, or is slow, or may be for who follows it.
+    In the latter it may brake so, within a second, stands, is slow, or may be for who follows it.
     """
-    least = context.ego.acceleration[0] - context.ego.acceleration_error[0]
-    brakes = least <= -context.thresholds.braking_hard_mps2
+    acceleration, hard = context.ego.acceleration[0], -context.thresholds.braking_hard_mps2
+    brakes = acceleration - context.ego.acceleration_error[0] <= hard
     limit, speed = context.limit_mps, context.ego.speed[0]
     slow = np.where(np.isfinite(limit), speed < _SLOWER * limit, _followed(context))
     second = round(1.0 / context.recording.step_s)
-    return brakes, context.spans.within(brakes, second) | ~moves(context) | slow
+    return acceleration <= hard, context.spans.within(brakes, second) | ~moves(context) | slow
 
 
 def _drives_on(context: DriveContext, stands: Flags) -> Flags:
