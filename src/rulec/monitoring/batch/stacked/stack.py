@@ -184,23 +184,7 @@ class Stack:
     @cached_property
     def columns(self) -> Mapping[str, StackColumn]:
         """The columns of all names that are said. Raises UnencodableError."""
-        plain = self._plain_signals() if len(self._pieces) == 1 else {}
-        return {name: plain.get(name) or self._column(name) for name in self.said}
-
-    def _plain_signals(self) -> dict[str, StackColumn]:
-        """The columns of Boolean signals of the only piece of which all is said, as most are."""
-        (piece,), (dark, absent) = self._pieces, self._flagged
-        others = {*dark, *absent, *self._partly, *piece.texts}
-        declarations, found = self.vocabulary.declarations, {}
-        for is_about, columns in ((False, piece.world), (True, piece.about)):
-            for name, values in columns.items():
-                if values.dtype.kind == "b" and name not in others:
-                    signal = declarations.get(name)
-                    if not isinstance(signal, Signal) or len(signal.parameters) != is_about:
-                        continue
-                    if all(map(self._all_are, signal.parameters)):
-                        found[name] = StackColumn(values, None, None, None)
-        return found
+        return {name: self._column(name) for name in self.said}
 
     def ends(self, name: str) -> tuple[float, float] | None:
         """The least and the greatest number of a quantity; None if some are unknown, or none said.

@@ -21,7 +21,6 @@ from rulec.monitoring.batch.stacked.instances import (
 )
 from rulec.monitoring.batch.stacked.stack_reader import Spots, StackReader
 from rulec.monitoring.batch.stacked.stacked_rule import FEW_WORDS, ODD, StackedRule, stretches
-from rulec.monitoring.batch.stacked.words_together import are_many
 from rulec.monitoring.batch.uncertain.partial_reader import number_of_value
 from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.monitoring.uncertainty.state_letters.unknown_subjects import Subject
@@ -274,10 +273,6 @@ def _are_surely_kept(
         words = [rule.answer_to(letters[i:j]) for i, j in pairwise(bounds.tolist())]
         # What cannot be, because facts exclude it, is never kept
         return np.array([word is not None and word.worst == KEPT for word in words])
-    if are_many(n_words, int(np.diff(bounds).max())):
-        together = rule.words_together.are_kept(letters, bounds)
-        if together is not None:
-            return together
     kept = np.zeros(n_words, dtype=bool)
     first_alike = _first_alike([letters], bounds)
     rows, ends = stretches(letters, bounds)

@@ -15,7 +15,6 @@ from rulec.automata.thresholds import ThresholdScale, scale
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_of
 from rulec.logic.kleene import holds
-from rulec.monitoring.batch.stacked.words_together import WordsTogether
 from rulec.monitoring.batch.uncertain.partial_reader import meanings_of
 from rulec.monitoring.uncertainty.state_letters.entangled_reads import (
     EntangledReads,
@@ -116,8 +115,7 @@ class StackedRule:
     ``entangled`` are its entangled reads, if its own objects alone decide what these may be, and
     ``related`` the places of all reads that may have to do with each other. ``constants`` are those
     of reads of what never changes, ``hidden`` the names of such in sums and counts.
-    ``counts_everywhere``: it counts objects in all states, whatever its own are. ``words_together``
-    run many words of the ``letters``.
+    ``counts_everywhere``: it counts objects in all states, whatever its own are.
     """
 
     def __init__(
@@ -161,7 +159,6 @@ class StackedRule:
         self._class_bits: NDArray[np.uint64] = np.zeros(0, dtype=np.uint64)
         self._fit_bits = machine.machine.n_classes <= _MOST_BITS
         self.letters = self._no_letters()
-        self.words_together = WordsTogether(machine.monitor, self.letters)
         self._answers: dict[bytes, Answer] = {}
         self._words: dict[bytes, Answer | None] = {}
         self._bytes = 0
@@ -210,7 +207,6 @@ class StackedRule:
             self.letters, self._answers, self._words = self._no_letters(), {}, {}
             self._busy_flags = np.zeros(0, dtype=bool)
             self._class_bits = np.zeros(0, dtype=np.uint64)
-            self.words_together = WordsTogether(self.machine.monitor, self.letters)
 
     def busy_flags(self) -> NDArray[np.bool_]:
         """Whether each set of letters that has been met might do something: it is not idle."""
