@@ -97,11 +97,13 @@ def _causes(context: DriveContext) -> tuple[Flags, Flags]:
         waits, thinks = met(context, asked, reach)
         caused |= waits
         perhaps |= on_map.freely & thinks
-    bends, too_fast = road_reasons(context, others.states, reach)
-    perhaps[others.states] |= bends
-    caused[others.states] |= too_fast
+    on_road = (~caused & (asked | ~perhaps)).nonzero()[0]
+    bends, too_fast = road_reasons(context, on_road, reach)
+    perhaps[on_road] |= bends
+    caused[on_road] |= too_fast
     if (caused | perhaps).all():
         return caused, ~caused
+    others = others.part((~(caused | perhaps)[others.states]).nonzero()[0])
     soon = round(context.thresholds.preparing_s / context.recording.step_s)
     if stands.any():
         broken_down = stands & ~_drives_on(context, stands)
