@@ -118,8 +118,7 @@ def _passed_unseen(context: DriveContext) -> Flags:
 def _lateral(context: DriveContext) -> SignalColumns:
     """The sides of others; unknown within tolerances, but where ego or the other one moves over.
 
-    There only the moment is in doubt, as it is for stations. Unknown, too, where one is beside ego
-    in the first state: ego may have left its lane just before.
+    There only the moment is in doubt, as it is for stations.
     """
     laterals = relations.laterals(context)
     there = context.relevant & ~np.isnan(context.extents.s_min)
@@ -128,7 +127,7 @@ def _lateral(context: DriveContext) -> SignalColumns:
     over = only_when(codes, laterals.doubtful, there, longest, context.spans)
     return SignalColumns(
         about={"lateral": codes},
-        unknown={"lateral": (laterals.doubtful & ~over) | _beside_at_first(context)},
+        unknown={"lateral": laterals.doubtful & ~over},
         texts={"lateral": LATERALS},
     )
 
