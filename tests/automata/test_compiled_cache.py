@@ -10,8 +10,8 @@ import pytest
 from rulec import pipeline
 from rulec.api.rulebook_compilation import machines
 from rulec.automata import compiled_cache, compiler, prefix_machines
+from rulec.automata.bundle.mapped_tables import MappedTables, TableWriter, mapped
 from rulec.cache.cache_folder import cache_folder
-from rulec.cache.kept_bytes import read_kept, write_kept
 from rulec.diagnostics import RulecError
 from support.builders.rulebook_projects import project_in
 
@@ -199,11 +199,9 @@ def test_the_day_counts_where_the_rulebook_says_none(folder, made, monkeypatch):
         lambda path: path.write_bytes(b""),
         lambda path: path.write_bytes(path.read_bytes()[:-9]),
         lambda path: path.write_bytes(path.read_bytes()[:20]),
-        lambda path: write_kept(path, read_kept(path)[:-9]),
-        lambda path: write_kept(path, b"[[],[],[],[],[]]"),
-        lambda path: write_kept(path, b'[["word"],[],[],[],[]]'),
-        lambda path: write_kept(path, b"[[],[],[],[],[[0,1]]]"),
-        lambda path: write_kept(path, b"\xff"),
+        lambda path: path.write_bytes(path.read_bytes().replace(b"second", b"third!")),
+        lambda path: path.write_bytes(TableWriter().file(b"{}")),
+        lambda path: path.write_bytes(TableWriter().file(b"\xff")),
     ],
 )
 def test_a_damaged_file_is_made_anew(folder, made, damage):
@@ -258,13 +256,31 @@ def test_a_pickled_one_still_asks_the_cache(folder, no_worker):
     assert book.at_step(0.5) == compiled().at_step(0.5)
 
 
-def test_every_bit_of_a_file_counts(tmp_path):
+def test_a_row_is_what_was_placed(tmp_path):
+    tables = TableWriter()
+    written = [(1, -1, 0), (), (1 << 40, -(1 << 40)), (127, 128), (1, -1, 0)]
+    places = [tables.place(row) for row in written]
+    assert places[0] == places[-1]
     path = tmp_path / "x.tables"
-    write_kept(path, b"text")
-    assert read_kept(path) == b"text"
-    data = path.read_bytes()
+    path.write_bytes(tables.file(b"text"))
+    read = mapped(path)
+    assert read.text == b"text"
+    assert [read.row(place) for place in places] == written
+    assert read.rows(places[2], 1) == ((1 << 40,), (-(1 << 40),))
+    with pytest.raises(ValueError, match="width"):
+        read.rows(places[0], 2)
+    with pytest.raises(ValueError, match="cut off"):
+        read.row(("q", 8, 1000))
+    with pytest.raises(ValueError, match="no place"):
+        read.row(("b", -1, 1))
+
+
+def test_every_bit_of_a_file_counts():
+    tables = TableWriter()
+    tables.place((1, 2, 3))
+    data = tables.file(b"text")
     for number in range(8 * len(data)):
         changed = bytearray(data)
         changed[number // 8] ^= 1 << number % 8
-        path.write_bytes(changed)
-        assert read_kept(path) is None
+        with pytest.raises(ValueError, match="it is"):
+            MappedTables(bytes(changed))

@@ -17,11 +17,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
-from rulec.automata.bundle.kept_rulebook import Compilation, compilation_in, written
+from rulec.automata.bundle.mapped_rulebook import Compilation, compilation_in, written
+from rulec.automata.bundle.mapped_tables import mapped
 from rulec.automata.bundle.stored_prefixes import StoredPrefixes, stored
 from rulec.automata.worker import compiler_choice
-from rulec.cache.cache_folder import program_digest, tidy, usable_folder
-from rulec.cache.kept_bytes import read_kept, write_kept
+from rulec.cache.cache_folder import program_digest, tidy, usable_folder, write_own
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.rulebook.batch.check_cache import is_as_it_was
 from rulec.rulebook.files.search_path import Dependency, find_rulebook, read_bytes
@@ -131,9 +131,10 @@ class _File:
         return Path(f"{self.question.file}-{self.step}{_ENDING}")
 
     def read(self) -> Compilation | None:
-        data = read_kept(self.path)
-        with suppress(ValueError, TypeError, LookupError):
-            return None if data is None else compilation_in(data, self.given)
+        with suppress(OSError, ValueError, TypeError, LookupError):
+            compilation = compilation_in(mapped(self.path), self.given)
+            os.utime(self.path)
+            return compilation
         return None
 
     def write(self, text: Compilation, compiled: CompiledRulebook | None) -> None:
@@ -141,7 +142,7 @@ class _File:
             prefixes = compiled.prefixes if isinstance(compiled.prefixes, StoredPrefixes) else None
             compiled = replace(compiled, source=None, recompile=None, prefixes=prefixes)
         with suppress(OSError, ValueError):
-            write_kept(self.path, written(replace(text, rulebook=compiled), self.given))
+            write_own(self.path, written(replace(text, rulebook=compiled), self.given))
             tidy(self.path.parent, _ENDING, MOST_FILES)
 
 

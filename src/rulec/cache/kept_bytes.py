@@ -49,7 +49,16 @@ class KeptBytes:
         folder = usable_folder() if is_keeping() else None
         if folder is None:
             return None
-        return read_kept(self._path(folder, key))
+        path = self._path(folder, key)
+        with suppress(OSError, ValueError, zlib.error):
+            with path.open("rb") as stream:
+                if not is_own(os.fstat(stream.fileno())):
+                    return None
+                digest, packed = stream.read(sha256().digest_size), stream.read()
+            if digest == _digest(key, packed):
+                os.utime(path)
+                return zlib.decompress(packed)
+        return None
 
     def keep(self, contents: Mapping[str, bytes]) -> None:
         """Keep something under each key, if that is possible."""
@@ -58,32 +67,14 @@ class KeptBytes:
             return
         with suppress(OSError, ValueError):
             for key, data in contents.items():
-                write_kept(self._path(folder, key), data)
+                packed = zlib.compress(data, _QUICKLY)
+                write_own(self._path(folder, key), _digest(key, packed) + packed)
             tidy(folder, f".{self.kind}", self.most)
 
     def _path(self, folder: Path, key: str) -> Path:
         return folder / f"{key}.{self.kind}"
 
 
-def read_kept(path: Path) -> bytes | None:
-    """What a file was written with; None if it is not there as this user wrote it."""
-    with suppress(OSError, ValueError, zlib.error):
-        with path.open("rb") as stream:
-            if not is_own(os.fstat(stream.fileno())):
-                return None
-            digest, packed = stream.read(sha256().digest_size), stream.read()
-        if digest == _digest(path, packed):
-            os.utime(path)
-            return zlib.decompress(packed)
-    return None
-
-
-def write_kept(path: Path, data: bytes) -> None:
-    """Write a file for ``read_kept``. Raises OSError, or ValueError for a path that is none."""
-    packed = zlib.compress(data, _QUICKLY)
-    write_own(path, _digest(path, packed) + packed)
-
-
-def _digest(path: Path, packed: bytes) -> bytes:
+def _digest(key: str, packed: bytes) -> bytes:
     """What tells whether a file is as it was written, and under its own name."""
-    return sha256(path.stem.encode() + packed).digest()
+    return sha256(key.encode() + packed).digest()

@@ -1,21 +1,20 @@
-"""Serialisation of cached compiled rulebooks.
+"""Serialisation of cached compiled rulebooks: JSON with rows of integers beside it.
 
-It is a list of parts, each behind those that it is made of, and equal ones are there once: rules
-share most of what they speak of.
+A file is made of parts, each behind those that it is made of, and equal ones are there once: rules
+share most of what they speak of. Nothing is checked but that the file is as this rulec wrote it.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
-from itertools import accumulate
 from operator import attrgetter
-from typing import Any, TypeAlias
-
-import msgspec
+from typing import Any
 
 from rulec.automata.bundle.compiled_rulebook import CompiledAxiom, CompiledRule, CompiledRulebook
+from rulec.automata.bundle.mapped_tables import MappedTables, TableWriter
 from rulec.automata.bundle.stored_prefixes import CutTables, StoredPrefixes
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead, Read, Threshold
 from rulec.diagnostics import Diagnostic, Fix, Label, SourceLocation
@@ -27,7 +26,7 @@ from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabula
 
 @dataclass(frozen=True, slots=True)
 class Compilation:
-    """What is kept: what it depends on, what there was to be said, and the rulebook.
+    """What a file says: what it depends on, what there was to be said, and the rulebook.
 
     ``stamp`` is a digest of what it was compiled from and by. ``day`` is the one whose law it is,
     if nothing else says that; empty if something does. ``problems`` say why there is no rulebook.
@@ -92,91 +91,86 @@ _NUMBERS = {cls: number for number, cls in enumerate(_KINDS)}
 _MAKE = [kind.make for kind in _KINDS.values()]
 
 
-_Row: TypeAlias = tuple[int, ...]
-
-
-class _Packed(msgspec.Struct, array_like=True):
-    """Values, rows and tables of numbers, and parts that are made of these.
-
-    A part has the number of its kind and those of what it is made of: what both sides are given
-    comes first, then come the values, the rows, the tables of integers and of truth values, and the
-    parts themselves.
-    """
-
-    values: list[bool | int | float | str | None]
-    rows: list[_Row]
-    tables: list[tuple[_Row, ...]]
-    truths: list[tuple[tuple[bool, ...], ...]]
-    parts: list[_Row]
-
-
-_GIVEN, _VALUES, _ROWS, _TABLES, _TRUTHS, _PARTS = range(6)
-
-
 def written(known: Compilation, given: Sequence[object] = ()) -> bytes:
-    """The bytes of a compilation; ``compilation_in`` takes the same ``given`` objects.
-
-    Raises ValueError for a text that is none.
-    """
-    return _Writer(given).written(known)
+    """The file of a compilation. Whoever reads it is ``given`` the same objects."""
+    return _Writer(given).file(known)
 
 
-def compilation_in(data: bytes, given: Sequence[object] = ()) -> Compilation:
-    """The compilation that bytes say. Raises ValueError, TypeError or LookupError for others."""
-    packed = msgspec.json.decode(data, type=_Packed)
-    made = [*given, *packed.values, *packed.rows, *packed.tables, *packed.truths]
-    part = made.__getitem__
-    for kind, *numbers in packed.parts:
-        made.append(_MAKE[kind](*map(part, numbers)))
+def compilation_in(tables: MappedTables, given: Sequence[object] = ()) -> Compilation:
+    """The compilation of a file. Raises ValueError, TypeError or LookupError if there is none."""
+    text = json.loads(tables.text)
+    made = [*given, *[_value(value, tables) for value in text["values"]]]
+    numbers, part, place = tables.row(tuple(text["parts"])), made.__getitem__, 0
+    while place < len(numbers):
+        end = place + numbers[place]
+        made.append(_MAKE[numbers[place + 1]](*map(part, numbers[place + 2 : end])))
+        place = end
     found = made[-1]
     if not isinstance(found, Compilation):
         raise ValueError("it says nothing of a rulebook")
     return found
 
 
+def _value(value: Any, tables: MappedTables) -> object:
+    match value:
+        case [code, first, count]:
+            return tables.row((code, first, count))
+        case [code, first, count, width, are_truths]:
+            return (tables.truths if are_truths else tables.rows)((code, first, count), width)
+    return value
+
+
 class _Writer:
-    """What has been met, each with its place: a group of ``_Packed`` and a number in it."""
+    """Parts that have been placed: values, which come first, and what is made of them."""
 
     def __init__(self, given: Sequence[object]) -> None:
+        self._n_given = len(given)
         self._given = {id(part): number for number, part in enumerate(given)}
-        self._met: list[dict[Any, int]] = [{} for _ in range(_PARTS + 1)]
+        self._tables = TableWriter()
+        # A value's number is below 0 until it is known how many there are.
+        self._values: dict[tuple[type, object], int] = {}
+        self._parts: dict[tuple[int, ...], int] = {}
 
-    def written(self, known: Compilation) -> bytes:
-        """All that a compilation is made of."""
-        self._place(known)
-        _, values, rows, tables, truths, parts = self._met
-        sizes = [len(self._given), *map(len, self._met[_VALUES:])]
-        starts = list(accumulate(sizes, initial=0))
-        packed = _Packed(
-            [value for _, value in values],
-            list(rows),
-            list(tables),
-            list(truths),
-            [(kind, *[starts[group] + number for group, number in own]) for kind, *own in parts],
-        )
-        return msgspec.json.encode(packed)
+    def file(self, known: Compilation) -> bytes:
+        """The whole file."""
+        self._number(known)
+        n_values = len(self._values)
+        numbers: list[int] = []
+        for kind, *parts in self._parts:
+            own = [self._n_given + ~n if n < 0 else self._behind(n, n_values) for n in parts]
+            numbers += [len(own) + 2, kind, *own]
+        text = {
+            "values": [value for _, value in self._values],
+            "parts": self._tables.place(numbers),
+        }
+        return self._tables.file(json.dumps(text, separators=(",", ":")).encode())
 
-    def _place(self, item: object) -> tuple[int, int]:
+    def _behind(self, number: int, n_values: int) -> int:
+        return number if number < self._n_given else number + n_values
+
+    def _number(self, item: object) -> int:
         if id(item) in self._given:
-            return _GIVEN, self._given[id(item)]
+            return self._given[id(item)]
         if item is None or isinstance(item, bool | int | float | str):
-            return self._known(_VALUES, (type(item), item))
-        if isinstance(item, tuple) and (group := _group_of(item)) is not None:
-            return self._known(group, item)
+            return self._value(type(item), item)
+        if isinstance(item, tuple) and (rows := self._rows(item)) is not None:
+            return self._value(tuple, rows)
         cls = type(item) if type(item) in _KINDS else dict  # a view of one, else
-        return self._known(_PARTS, (_NUMBERS[cls], *map(self._place, _KINDS[cls].parts(item))))
+        part = (_NUMBERS[cls], *map(self._number, _KINDS[cls].parts(item)))
+        return self._parts.setdefault(part, self._n_given + len(self._parts))
 
-    def _known(self, group: int, key: object) -> tuple[int, int]:
-        met = self._met[group]
-        return group, met.setdefault(key, len(met))
+    def _value(self, cls: type, value: object) -> int:
+        return self._values.setdefault((cls, value), ~len(self._values))
 
-
-def _group_of(item: tuple[Any, ...]) -> int | None:
-    """Where a tuple of integers is, or of rows of them or of truth values; None for others."""
-    kinds = set(map(type, item))
-    if kinds == {int}:
-        return _ROWS
-    if kinds != {tuple} or not all(item):
+    def _rows(self, item: tuple[Any, ...]) -> tuple[object, ...] | None:
+        """Where the integers of a tuple are, or those of its rows, which may be truth values."""
+        if not item:
+            return None
+        if all(type(entry) is int for entry in item):
+            return self._tables.place(item)
+        if not all(type(inner) is tuple and inner and len(inner) == len(item[0]) for inner in item):
+            return None
+        kinds = {type(entry) for row in item for entry in row}
+        if kinds == {int} or kinds == {bool}:
+            return (*self._tables.place_rows(item), len(item[0]), kinds == {bool})
         return None
-    kinds = {type(entry) for row in item for entry in row}
-    return _TABLES if kinds == {int} else _TRUTHS if kinds == {bool} else None

@@ -1,0 +1,134 @@
+"""A file of a text and rows of integers beside it, mapped into memory instead of decoded.
+
+The file begins with a head: what it is, the SHA-256 of the rest, the length of the text.
+Then come the text and the rows, each as integers of the least width that holds all of its own, in
+the byte order of the machine that wrote it. A file of another order has another head.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from array import array
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from hashlib import sha256
+from itertools import chain
+from mmap import ACCESS_READ, mmap
+from pathlib import Path
+from struct import Struct, error
+from typing import Literal, TypeAlias, TypeVar, get_args
+
+from rulec.files import is_own
+
+_Entry = TypeVar("_Entry", int, bool)
+
+_HEAD = Struct("<16s32sQ")
+_KIND = f"rulec tables 1 {sys.byteorder[0]}".encode()
+_ALIGNED = 8
+Width: TypeAlias = Literal["B", "b", "h", "i", "q"]
+"""Type codes of ``array``: unsigned bytes, and signed integers of 1, 2, 4 and 8 bytes."""
+
+_WIDTHS: tuple[Width, ...] = get_args(Width)
+
+RowPlace: TypeAlias = tuple[Width, int, int]
+"""Where a row is: type code, first byte after the text, number of integers."""
+
+
+@dataclass(slots=True)
+class TableWriter:
+    """Rows that have been placed one after the other; equal ones have one place."""
+
+    _bytes: bytearray = field(default_factory=bytearray)
+    _known: dict[tuple[Width, bytes], RowPlace] = field(default_factory=dict)
+
+    def place(self, row: Iterable[int]) -> RowPlace:
+        """Place a row of integers of at most 64 bits."""
+        numbers = tuple(row)
+        least, most = min(numbers, default=0), max(numbers, default=0)
+        code = next(code for code in _WIDTHS if _holds(code, least) and _holds(code, most))
+        data = array(code, numbers).tobytes()
+        if (code, data) not in self._known:
+            self._known[code, data] = code, len(self._bytes), len(numbers)
+            self._bytes += data + bytes(-len(data) % _ALIGNED)
+        return self._known[code, data]
+
+    def place_rows(self, rows: Iterable[Iterable[int]]) -> RowPlace:
+        """Place rows, one behind the other."""
+        return self.place(chain.from_iterable(rows))
+
+    def file(self, text: bytes) -> bytes:
+        """The whole file."""
+        rest = text + bytes(-len(text) % _ALIGNED) + self._bytes
+        return _HEAD.pack(_KIND, _digest(len(text), rest), len(text)) + rest
+
+
+def _digest(length: int, rest: bytes | memoryview[int]) -> bytes:
+    seen = sha256(b"%d " % length)
+    seen.update(rest)
+    return seen.digest()
+
+
+def _holds(code: Width, number: int) -> bool:
+    if code == "B":
+        return 0 <= number < 1 << 8
+    bits = 8 * array(code).itemsize - 1
+    return -(1 << bits) <= number < 1 << bits
+
+
+class MappedTables:
+    """A file's text, and its rows by their places.
+
+    ``data`` is all of it. Raises ValueError if it is no such file, or damaged.
+    """
+
+    def __init__(self, data: bytes | mmap) -> None:
+        view = memoryview(data)
+        try:
+            kind, digest, length = _HEAD.unpack_from(view)
+        except error:
+            raise ValueError("it is too short") from None
+        rest = view[_HEAD.size :]
+        if kind.rstrip(b"\0") != _KIND or _digest(length, rest) != digest:
+            raise ValueError("it is not what was written")
+        self.text = bytes(rest[:length])
+        self._rows = rest[length + -length % _ALIGNED :]
+        self._known: dict[RowPlace, tuple[int, ...]] = {}
+
+    def row(self, place: RowPlace) -> tuple[int, ...]:
+        """The integers at a place; the same object each time. ValueError if it is none."""
+        if place not in self._known:
+            self._known[place] = tuple(self.view(place).tolist())
+        return self._known[place]
+
+    def rows(self, place: RowPlace, width: int) -> tuple[tuple[int, ...], ...]:
+        """Rows of a width, of which a place has several. ValueError if they do not fit."""
+        return _of_width(self.row(place), width)
+
+    def truths(self, place: RowPlace, width: int) -> tuple[tuple[bool, ...], ...]:
+        """Rows of truth values, written as 0 and 1."""
+        return _of_width(tuple(map(bool, self.row(place))), width)
+
+    def view(self, place: RowPlace) -> memoryview[int]:
+        """The integers at a place, where they are. ValueError if it is none."""
+        code, first, count = place
+        if first < 0 or count < 0:
+            raise ValueError("a row has no place")
+        last = first + count * array(code).itemsize
+        if last > len(self._rows):
+            raise ValueError("a row is cut off")
+        return self._rows[first:last].cast(code)
+
+
+def _of_width(row: Sequence[_Entry], width: int) -> tuple[tuple[_Entry, ...], ...]:
+    if width <= 0 or len(row) % width:
+        raise ValueError("rows do not fit their width")
+    return tuple([tuple(row[start : start + width]) for start in range(0, len(row), width)])
+
+
+def mapped(path: Path) -> MappedTables:
+    """Map a file of this user's. Raises OSError, or ValueError if it is damaged or not theirs."""
+    with path.open("rb") as stream:
+        if not is_own(os.fstat(stream.fileno())):
+            raise ValueError("somebody else may have written it")
+        return MappedTables(mmap(stream.fileno(), 0, access=ACCESS_READ))
