@@ -355,3 +355,16 @@ def test_a_large_machine_and_states_that_cannot_be_and_are_not_met():
     unanswered = [one.id for one in traces if one.states[-1]["asked"]]
     found = verify_chunk(traces, compiled)
     assert [one.trace for one in found if one.violations] == unanswered
+
+
+@pytest.mark.parametrize("count", [255, 256, 300])
+def test_a_number_may_pass_more_thresholds_than_a_byte_counts(count):
+    passed = tuple(Threshold(Fraction(n), inclusive=True) for n in range(count))
+    terms = tuple((Fraction(1), QuantityTerm(name)) for name in ("speed", "limit"))
+    speeds, limits = np.array([-1.0, 0.0, 200.0, 400.0]), np.array([0.0, 0.0, 54.5, 0.0])
+    sums = [(Fraction(1), speeds), (Fraction(1), limits)]
+    found = digits_of(scale(NumberRead(terms, passed)), sums, 4)
+    assert found.tolist() == [0, 1, 255, count]
+    counting = NumberRead(((Fraction(1), Count("v", "vehicle", near("v"))),), passed)
+    objects = np.array([0, 254, 400])
+    assert digits_of(scale(counting), [(Fraction(1), objects)], 3).tolist() == [1, 255, count]

@@ -87,7 +87,7 @@ def _digits_of_sum(
     summands: Sequence[Summand],
     n_states: int,
     ignored: Mask,
-) -> NDArray[np.uint8]:
+) -> Array:
     """For each state how many of the read's thresholds the sum passes; any if it is ignored."""
     total = np.zeros(n_states)
     size = np.zeros(n_states)
@@ -98,7 +98,7 @@ def _digits_of_sum(
             size += np.abs(part)
         # Each part: its decimal, its coefficient, the product; then the sums, and the limit.
         error = size * ((len(summands) + 4) * _UNIT) + _TINY
-        digits = np.zeros(n_states, dtype=np.uint8)
+        digits = np.zeros(n_states, dtype=smallest_unsigned(read.size))
         unclear = ~np.isfinite(total + error)
         for threshold in read.thresholds:
             limit = _nearest(threshold.limit)
@@ -115,10 +115,10 @@ def _digits_of_sum(
     return digits
 
 
-def _digits_of_count(read: NumberRead, counted: Array) -> NDArray[np.uint8]:
+def _digits_of_count(read: NumberRead, counted: Array) -> Array:
     """For each state how many of the read's thresholds the number of objects passes."""
-    numbers = range(int(counted.max(initial=0)) + 1)
-    return np.array([read.digit(Fraction(n)) for n in numbers], dtype=np.uint8).take(counted)
+    digits = [read.digit(Fraction(n)) for n in range(int(counted.max(initial=0)) + 1)]
+    return np.array(digits, dtype=smallest_unsigned(read.size)).take(counted)
 
 
 def _numbers_in(summands: Sequence[Summand], state: int) -> tuple[float, ...]:
