@@ -85,6 +85,20 @@ def test_a_road_that_leads_out_of_the_world(tmp_path):
     assert found.place.line == 2
 
 
+@pytest.mark.parametrize("square", [-1e29, -9e7, -10])
+def test_a_width_far_below_0(tmp_path, square):
+    narrow = cubic("width", "sOffset", 0, 3, 0, square)
+    found = problem_with(tmp_path, document(road(1, section(lane(-1, width=narrow)))))
+    assert "its lane -1 has a width of -" in found.message
+    assert found.place.line == 2
+
+
+def test_a_lane_that_ends_may_have_a_width_a_little_below_0(tmp_path):
+    ends = cubic("width", "sOffset", 0, 3, -0.05)
+    good = document(road(1, section(lane(-1), lane(-2, width=ends))))
+    assert len(read_map(written(tmp_path, good), 0.1).lanelets) == 2
+
+
 def test_lanes_that_are_too_wide(tmp_path):
     found = problem_with(tmp_path, document(road(1, section(lane(-1, width=90_000)))))
     assert "longer than 20 km" in found.message

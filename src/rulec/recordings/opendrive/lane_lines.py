@@ -27,6 +27,7 @@ MOST_PLACES = 1_000_000
 """Of all lines of a piece together."""
 
 _LARGEST = 1e8
+_NARROWEST_M = -1000.0
 
 Lines = NDArray[float64]
 """Lines beside each other: their number, places along them, x and y."""
@@ -35,7 +36,8 @@ Lines = NDArray[float64]
 def lane_borders(piece: RoadPiece) -> Mapping[int, Lines]:
     """Lane -> its border at smaller ``t`` and that at greater ``t``, both in the road's direction.
 
-    Raises ValueError: the road winds so much that it has too many places, or leads too far.
+    Raises ValueError: the road winds so much that it has too many places, or leads too far, or a
+    lane's width is far below 0.
     """
     road, section = piece.road, piece.section
     numbers = _in_order(section)
@@ -43,12 +45,21 @@ def lane_borders(piece: RoadPiece) -> Mapping[int, Lines]:
     for lane in section.lanes.values():
         breaks += [section.start + x.start for x in (*lane.widths, *lane.borders)]
     s = np.array(sorted({piece.start, piece.end, *breaks}))
-    s = s[(s >= piece.start) & (s <= piece.end)]
-    lines = _lines(piece, _fine_enough(piece, s))
+    s = _fine_enough(piece, s[(s >= piece.start) & (s <= piece.end)])
+    _check_widths(section, np.minimum(s, max(piece.end - _BEFORE_M, piece.start)))
+    lines = _lines(piece, s)
     return {
         lane: lines[row : row + 2]
         for row, lane in enumerate(number for number in numbers if number != 0)
     }
+
+
+def _check_widths(section: LaneSection, s: Numbers) -> None:
+    """Raise ValueError where a width is no lane's that ends; such a one is a little below 0."""
+    for number, lane in section.lanes.items():
+        least = cubics_at(lane.widths, s - section.start).min()
+        if not least > _NARROWEST_M:
+            raise ValueError(f"its lane {number} has a width of {least:g} m")
 
 
 def _in_order(section: LaneSection) -> list[int]:
