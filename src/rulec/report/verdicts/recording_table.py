@@ -93,7 +93,8 @@ def _unjudged(rules: Sequence[CompiledRule], tally: ViolationTally, width: int) 
     if len(rules) > MOST_UNJUDGED:
         yield from _folded("", f"and {len(rules) - MOST_UNJUDGED:,} more", width)
     if by_words:
-        yield from _folded("", "docs/recorded_words.md: what tells the words in brackets", width)
+        way_out = "`rulec explain WORD` says which recordings can tell a word in brackets"
+        yield from _folded("", way_out, width)
 
 
 def _folded(label: str, text: str, width: int) -> list[str]:
