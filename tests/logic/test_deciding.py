@@ -13,15 +13,15 @@ from support.generators.timed_formulas import letters_of, timed_formulas, timed_
 P, Q = Atom("p"), Atom("q")
 
 
-def deciding(formula, word, semantics="stutter"):
+def deciding(formula, word, semantics="stutter", since=0):
     known = extended_values(formula, word, semantics)
-    decides = instants_among(known, formula, len(word), semantics)
+    decides = instants_among(known, formula, len(word), semantics, since)
     assert decides.keys() == known.keys()
     return decides
 
 
 def check(formula, word, semantics, chance):
-    decides = deciding(formula, word, semantics)
+    decides = deciding(formula, word, semantics, chance.randrange(len(word)))
     assert decides[formula][0]
     # Elsewhere the atoms may be as they like.
     other = [
@@ -45,6 +45,14 @@ def test_the_value_stays_as_long_as_what_decides_does(semantics, formula, word, 
 @given(formula=timed_formulas, word=timed_words, chance=st.randoms(use_true_random=False))
 def test_the_same_with_bounds_and_a_past(semantics, formula, word, chance):
     check(formula, letters_of(formula, word), semantics, chance)
+
+
+def test_the_first_failure_decides_or_the_first_from_an_instant_on():
+    always = Unary(UnaryOperator.ALWAYS, P)
+    word = word_of("FTFTF", "FFFFF")
+    assert [deciding(always, word, since=n)[P].index(True) for n in range(5)] == [0, 2, 2, 4, 4]
+    never = Unary(UnaryOperator.NEVER, P)
+    assert [deciding(never, word, since=n)[P].index(True) for n in range(5)] == [1, 1, 3, 3, 1]
 
 
 def binary(operator, left, right):

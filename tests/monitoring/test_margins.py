@@ -3,11 +3,14 @@
 import pytest
 
 from rulec import compile_rulebook
+from rulec.monitoring.explain.explained_arrays import explain_arrays
 from rulec.monitoring.explain.explanation import explain
 from rulec.monitoring.explain.margins import Margin
 from rulec.monitoring.verify import verify
 from rulec.report.verdicts import violation_table
 from rulec.trace import Trace
+from rulec.vocabulary.partial_values import UNKNOWN
+from support.builders.array_traces import in_arrays
 
 
 @pytest.fixture(scope="module")
@@ -89,6 +92,25 @@ def test_what_was_too_little_all_along_is_measured_while_it_counted(tmp_path):
     assert violation.step == 3
     (found,) = explain(violation, trace, rules).margins()
     assert str(found) == "speed_difference(c) 9.5 km/h < 10.0 km/h"
+
+
+def test_what_may_have_been_broken_before_is_not_what_is_measured(tmp_path):
+    """Whether both were alike at first nobody knows: that violated nothing for sure."""
+    book = tmp_path / "alike.rules"
+    book.write_text(
+        "rulebook alike\ntype car\nsignal a\nsignal b\nquantity gap(c: car) in m\n"
+        "hard rule far (c: car) { require always ((a iff b) implies gap(c) >= 15 m) }\n"
+    )
+    rules = compile_rulebook(book)
+    said = [(UNKNOWN, False, 5.0), (True, True, 20.0), (True, True, 12.0), (True, False, 3.0)]
+    states = tuple([{"a": a, "b": b, "gap": {"c": gap}} for a, b, gap in said])
+    trace = Trace("t", 1.0, {"c": "car"}, states, ends="cut")
+    (violation,) = verify(trace, rules).violations
+    assert violation.step == 2
+    explanation = explain(violation, trace, rules, repaired=False)
+    assert [str(margin) for margin in explanation.margins()] == ["gap(c) 12 m < 15 m"]
+    arrays = in_arrays(trace, rules.vocabulary)
+    assert explain_arrays(violation, arrays, rules, {}) == explanation
 
 
 def test_numbers_are_told_apart():

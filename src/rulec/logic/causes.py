@@ -23,10 +23,13 @@ def instants_among(
     formula: Formula,
     n_letters: int,
     semantics: Semantics = "stutter",
+    since: int = 0,
 ) -> dict[Formula, list[bool]]:
     """The instants at which a formula and its parts decide its value at the first instant.
 
-    They are found from the ``extended_values`` on a word of so many letters.
+    They are found from the ``extended_values`` on a word of so many letters. Where what always or
+    never must be fails at several instants the first of them decides, if there is one the first
+    not before ``since``.
     """
     length, last = len(known[formula]), n_letters - 1
     onward, backward = _Columns(known), _Columns(known, turned=True)
@@ -52,6 +55,8 @@ def instants_among(
                 reasons = [(one, length - 1 - b, length - 1 - a) for one, a, b in mirrored]
             else:
                 reasons = list(_reasons(part, instant, onward, ends=semantics == "finite"))
+                if part.operator in _INVARIANT and part.bound is None:
+                    reasons = [_not_before(since, reason, onward) for reason in reasons]
             for operand, start, stop in reasons:
                 own = of_operand.get(id(operand))
                 if own is None:
@@ -125,7 +130,17 @@ _FAILING = frozenset(
 """These say that no instant is found at which operands fail; the others, that one is or is not at
 which they hold."""
 
+_INVARIANT = (UnaryOperator.ALWAYS, UnaryOperator.NEVER)
+
 _WEAK = frozenset((BinaryOperator.WEAK_UNTIL, BinaryOperator.STRONG_RELEASE))
+
+
+def _not_before(since: int, reason: _Reason, columns: _Columns) -> _Reason:
+    """The reason why something fails to hold always, or never, at an instant from ``since`` on."""
+    operand, first, last = reason
+    column = columns[operand]
+    later = column.next(column.values[first], max(first, since))
+    return (operand, later, later) if first == last and later < len(column.values) else reason
 
 
 def _reasons(part: Formula, instant: int, columns: _Columns, *, ends: bool) -> Iterator[_Reason]:

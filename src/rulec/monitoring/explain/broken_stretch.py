@@ -50,6 +50,15 @@ def broken_stretch(
     return decisive, decisive
 
 
+def is_broken_before(
+    first: int, formula: ltl.Formula, values: Mapping[ltl.Formula, list[bool]]
+) -> bool:
+    """Whether the body of an outermost always or never is broken in a state before one."""
+    return any(
+        wanted is not value for part, wanted in _bodies(formula) for value in values[part][:first]
+    )
+
+
 def _bodies(formula: ltl.Formula) -> Iterator[tuple[ltl.Formula, bool]]:
     """What has to be true, or false, in all states, and which of both."""
     match formula:

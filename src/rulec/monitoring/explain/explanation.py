@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import Protocol
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
+from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
 from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError
 from rulec.logic import formula as ltl
@@ -18,7 +19,7 @@ from rulec.logic.kleene import objects_counted
 from rulec.logic.printing import formula_text, term_text
 from rulec.logic.semantics import Semantics, extended_by_columns
 from rulec.monitoring.bindings import Binding, binding_of
-from rulec.monitoring.explain.broken_stretch import broken_stretch
+from rulec.monitoring.explain.broken_stretch import broken_stretch, is_broken_before
 from rulec.monitoring.explain.explained_states import states_to_explain
 from rulec.monitoring.explain.margins import Margin, choosing_comparisons
 from rulec.monitoring.explain.nearest_satisfying import Repair, nearest_satisfying
@@ -36,6 +37,7 @@ from rulec.trace import Trace, Value
 from rulec.value_display import short_repr
 from rulec.vocabulary import Quantity, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
+from rulec.witnesses.letter_functions import letter_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,9 +246,10 @@ def explanation_of(
     formula = in_steps(rule.formula, exact_step(subject.step_s))
     known = extended_by_columns(formula, truths, n_states, semantics)
     values = {part: column[:n_states] for part, column in known.items()}
-    instants = instants_among(known, formula, n_states, semantics)
-    deciding = {part: _decides_at(at, observed) for part, at in instants.items() if True in at}
     first, last = broken_stretch(formula, values, truths, place, numbers)
+    early = is_broken_before(first, formula, values) and _is_violated_before(rule.machine, observed)
+    instants = instants_among(known, formula, n_states, semantics, first if early else 0)
+    deciding = {part: _decides_at(at, observed) for part, at in instants.items() if True in at}
     states = tuple([numbers[index] for index in observed.shown])
     return Explanation(
         rule=rule,
@@ -262,6 +265,23 @@ def explanation_of(
         vocabulary=subject.vocabulary,
         lasts=(numbers[first], numbers[last]),
     )
+
+
+def _is_violated_before(machine: MealyMonitor, observed: ObservedStates) -> bool:
+    """Whether a machine takes the states to be violated, or impossible, before the decisive one.
+
+    Surely they are not, but what stands for what is unknown, or was before the first state, may say
+    so. That is not what the verdict rests on.
+    """
+    state = 0
+    for digits in observed.word(machine, observed.decisive):
+        own = machine.letters[letter_of(digits, machine.reads)]
+        if own == IMPOSSIBLE:
+            return True
+        state = machine.successors[state][own]
+        if state == machine.rejecting_sink:
+            return True
+    return False
 
 
 def _decides_at(instants: Sequence[bool], observed: ObservedStates) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import TYPE_CHECKING, TypeVar
 
 from rulec.automata.mealy_monitor import MealyMonitor, NumberRead
@@ -68,8 +69,8 @@ class ObservedStates:
             found.append(own)
         return found
 
-    def word(self, machine: MealyMonitor) -> list[Letter]:
-        """The letters that a machine reads, digit by digit."""
+    def word(self, machine: MealyMonitor, n_states: int | None = None) -> list[Letter]:
+        """The letters that a machine reads in the first states, or in all, digit by digit."""
         return [
             tuple(
                 [
@@ -79,7 +80,7 @@ class ObservedStates:
                     for read in machine.reads
                 ]
             )
-            for view in self.views
+            for view in islice(self.views, n_states)
         ]
 
     @property
