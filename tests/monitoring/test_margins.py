@@ -113,6 +113,31 @@ def test_what_may_have_been_broken_before_is_not_what_is_measured(tmp_path):
     assert explain_arrays(violation, arrays, rules, {}) == explanation
 
 
+def test_what_decides_in_a_state_that_is_not_shown_is_measured_there(tmp_path):
+    """Beside the other ego was faster by 2 km/h, and passed it long ago."""
+    book = tmp_path / "long.rules"
+    book.write_text(
+        "rulebook long\nuse road\n"
+        "hard rule faster (v: vehicle) {\n"
+        "  require never (behind(v) then beside(v) then wet)\n"
+        "  unless not beside(v) or speed_difference(v) >= 10 km/h throughout\n}\n"
+    )
+    rules = compile_rulebook(book)
+    passing = [("behind", 1.0), ("beside", 2.0)] + [("beside", 12.0)] * 30 + [("beside", 13.0)]
+    states = [
+        {"station": {"c": station}, "speed_difference": {"c": faster}, "wet": faster == 13.0}
+        for station, faster in passing
+    ]
+    trace = Trace("t", 1.0, {"c": "car"}, tuple(states))
+    (violation,) = verify(trace, rules).violations
+    assert violation.step == len(states) - 1
+    explanation = explain(violation, trace, rules)
+    assert 1 not in explanation.states
+    assert [str(margin) for margin in explanation.margins()] == [
+        "speed_difference(c) 2 km/h < 10 km/h"
+    ]
+
+
 def test_numbers_are_told_apart():
     def sides(value, limit):
         return Margin("x", value, "<", limit, "").sides

@@ -46,7 +46,8 @@ class Observation:
 
     A value that is unknown is None, a number may be an interval. ``unit`` is a quantity's.
     ``objects`` are, for a count, those that counted in each state. ``margins`` are, for a signal
-    that was decided by a number, by how much, as far as is known.
+    that was decided by a number, by how much, as far as is known, ``measured`` is the one where the
+    signal decides last.
     ``changed``: does the rule tell the value in the decisive state from the one before?
     ``decides``: does a part that decides read it?
     """
@@ -58,6 +59,7 @@ class Observation:
     unit: str = ""
     objects: tuple[tuple[str, ...], ...] | None = None
     margins: tuple[Margin | None, ...] = ()
+    measured: Margin | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,9 +67,9 @@ class Part:
     """Subformula at a ``depth`` of nesting, with its truth by state.
 
     ``changed``: is its value in the decisive state another than in the one before? ``decides``: is
-    it one of those that, at some instant, make the formula come out as it does? ``decides_at`` is
-    the place among the states of the last such one up to the decisive one, and of this if none of
-    them is shown. ``margins`` are a comparison's by state.
+    it one of those that, at some instant, make the formula come out as it does? ``margins`` are a
+    comparison's by state, ``measured`` is that of the last state up to the decisive one, shown or
+    not, in which it decides.
     """
 
     formula: ltl.Formula
@@ -76,8 +78,8 @@ class Part:
     values: tuple[bool, ...]
     changed: bool
     decides: bool
-    decides_at: int
     margins: tuple[Margin | None, ...] = ()
+    measured: Margin | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,21 +118,12 @@ class Explanation:
         """
         when = set() if self.rule.trigger is None else set(ltl.atoms_of(self.rule.trigger))
         asked = [part for part in self.parts if part.decides and part.formula not in when]
-        places = {
-            part.formula.name: part.decides_at
-            for part in asked
-            if isinstance(part.formula, ltl.Atom)
-        }
-        margins = [
-            fact.margins[at]
-            for fact in self.facts
-            if fact.decides and fact.margins
-            if (at := places.get(fact.text.partition("(")[0])) is not None
-        ]
+        signals = {part.formula.name for part in asked if isinstance(part.formula, ltl.Atom)}
+        margins = [fact.measured for fact in self.facts if fact.text.partition("(")[0] in signals]
         choosing = choosing_comparisons(self.rule.formula)
         compared = [part for part in asked if part.margins]
         asks = [part for part in compared if part.formula not in choosing] or compared
-        margins += [part.margins[part.decides_at] for part in asks]
+        margins += [part.measured for part in asks]
         return [margin for margin in dict.fromkeys(margins) if margin is not None]
 
     def __str__(self) -> str:
@@ -249,15 +242,18 @@ def explanation_of(
     first, last = broken_stretch(formula, values, truths, place, numbers)
     early = is_broken_before(first, formula, values) and _is_violated_before(rule.machine, observed)
     instants = instants_among(known, formula, n_states, semantics, first if early else 0)
-    deciding = {part: _decides_at(at, observed) for part, at in instants.items() if True in at}
+    deciding = {part: _last_until(place, at) for part, at in instants.items() if True in at}
     states = tuple([numbers[index] for index in observed.shown])
+    decided_at = {
+        part.name: numbers[index] for part, index in deciding.items() if isinstance(part, ltl.Atom)
+    }
     return Explanation(
         rule=rule,
         violation=subject.violation,
         states=states,
         decisive=numbers[place],
         facts=tuple(
-            _with_margins(fact, decided_by, states)
+            _with_margins(fact, decided_by, states, decided_at)
             for fact in _facts(truths, deciding.keys(), observed)
         ),
         parts=tuple(_parts((rule.formula, formula), values, deciding, observed)),
@@ -284,14 +280,9 @@ def _is_violated_before(machine: MealyMonitor, observed: ObservedStates) -> bool
     return False
 
 
-def _decides_at(instants: Sequence[bool], observed: ObservedStates) -> int:
-    """The place of the last shown state up to the decisive one that is among the instants.
-
-    If none is, that of the decisive one.
-    """
-    decisive = observed.shown.index(observed.decisive)
-    places = [place for place in range(decisive + 1) if instants[observed.shown[place]]]
-    return places[-1] if places else decisive
+def _last_until(place: int, instants: Sequence[bool]) -> int:
+    """The last of the instants that is not beyond a place; if all of them are, that place."""
+    return next((instant for instant in range(place, -1, -1) if instants[instant]), place)
 
 
 def _looked_at(
@@ -319,14 +310,18 @@ def _window(numbers: Sequence[int], place: int) -> tuple[int, int]:
 
 
 def _with_margins(
-    fact: Observation, decided_by: Mapping[str, Deciding], states: Sequence[int]
+    fact: Observation,
+    decided_by: Mapping[str, Deciding],
+    states: Sequence[int],
+    decided_at: Mapping[str, int],
 ) -> Observation:
     name, _, rest = fact.text.partition("(")
     if name not in decided_by:
         return fact
-    numbers = decided_by[name]
-    margins = tuple([numbers.margin(rest.removesuffix(")"), state) for state in states])
-    return replace(fact, margins=margins)
+    numbers, item = decided_by[name], rest.removesuffix(")")
+    margins = tuple([numbers.margin(item, state) for state in states])
+    measured = numbers.margin(item, decided_at[name]) if name in decided_at else None
+    return replace(fact, margins=margins, measured=measured)
 
 
 def shown_states(stretch: range, decisive: int) -> tuple[int, ...]:
@@ -397,6 +392,12 @@ def _parts(
     depth: int = 0,
 ) -> Iterator[Part]:
     written, stepped = formulas
+    margins: tuple[Margin | None, ...] = ()
+    measured = None
+    if isinstance(written, ltl.Comparison):
+        margins = observed.margins(written)
+        if margins and stepped in deciding:
+            measured = observed.margin(written, deciding[stepped])
     yield Part(
         formula=written,
         text=formula_text(written),
@@ -404,8 +405,8 @@ def _parts(
         values=tuple(truths[stepped][n] for n in observed.shown),
         changed=observed.changes(truths[stepped]),
         decides=stepped in deciding,
-        decides_at=deciding.get(stepped, 0),
-        margins=observed.margins(written) if isinstance(written, ltl.Comparison) else (),
+        margins=margins,
+        measured=measured,
     )
     match formulas:
         case ltl.Unary(_, operand), ltl.Unary(_, same):

@@ -92,8 +92,12 @@ class ObservedStates:
         """The margins of a comparison in the states that are shown; none of one of counts."""
         if any(isinstance(term, ltl.Count) for _, term in comparison.terms):
             return ()
-        margins = [margin_in(comparison, self.bound, self.given(number)) for number in self.shown]
-        return tuple([None if isinstance(margin, Unknown) else margin for margin in margins])
+        return tuple([self.margin(comparison, number) for number in self.shown])
+
+    def margin(self, comparison: ltl.Comparison, index: int) -> Margin | None:
+        """The margin of a comparison in one of the states, as far as it is known."""
+        margin = margin_in(comparison, self.bound, self.given(index))
+        return None if isinstance(margin, Unknown) else margin
 
     def changes(self, values: Sequence[object] | Mapping[int, object]) -> bool:
         """Tell whether the decisive state's value differs from the one before."""
