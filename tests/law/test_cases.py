@@ -30,7 +30,7 @@ FOUND_SINCE = {
     **{
         (case, "it"): ["allowed"]
         for case in (
-            *("X1", "X2", "X4", "X104", "X109", "X112", "X117", "X118", "X120"),
+            *("X1", "X2", "X4", "X104", "X105", "X107", "X109", "X112", "X117", "X118", "X120"),
             *("BD-R17", "BD-E11", "BA-M1", "ST-it-7", "OV3"),
         )
     },
@@ -42,7 +42,8 @@ its r. 164 wants who is beside a tram at a stop to wait, and its r. 160(2) nobod
 its right. California: § 21756 wants who comes up behind a streetcar at its stop to wait behind it,
 and lets nobody past a safety zone faster than 10 mph. India: regulation 12(1)(f) of 2017 lets one
 turn left at red. Italy: who gets past on the right without leaving its lane does not overtake, by
-the highway police and Cass. civ. 4820/1979, which none of these had read. Japan: art. 18(3) on
+the highway police, Cass. civ. 4820/1979 and art. 346(1) of the regulation, which none of these
+had read. Japan: art. 18(3) on
 passing cycles is in force since 2026-04-01.
 """
 
