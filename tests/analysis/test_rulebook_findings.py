@@ -342,3 +342,14 @@ def test_an_inherited_rule_that_adds_nothing_is_told_where_it_is_inherited(tmp_p
     text = path.read_text().replace("base\n", "base  # rulec: allow R0803 because so it is\n")
     path.write_text(text)
     assert analyze(path) == ()
+
+
+def test_inherited_rules_of_another_step_are_compared_at_one_step(tmp_path):
+    soon = "require always (wet implies eventually[<= {} s] fog)"
+    (tmp_path / "base.rules").write_text(
+        HEAD.replace("example", "base") + f"hard rule r {{ {soon.format(2)} }}\n"
+    )
+    path = tmp_path / "own.rules"
+    path.write_text(f"rulebook own\nextends base\nstep 0.5 s\nhard rule s {{ {soon.format(1)} }}\n")
+    (found,) = analyze(path)
+    assert found.message == "rule `r` adds nothing: `s` forbids all that it forbids"

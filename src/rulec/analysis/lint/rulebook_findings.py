@@ -16,7 +16,7 @@ from rulec.analysis.lint.conflict_findings import (
 )
 from rulec.analysis.lint.questions import ComparedRules, Question, RuleAnswers, Spread
 from rulec.analysis.lint.related_rules import RelatedRules
-from rulec.analysis.shared_compilation import AnalyzedRule, compile_shared
+from rulec.analysis.shared_compilation import AnalyzedRule, at_one_step, compile_shared
 from rulec.analysis.trace_display import trace_note
 from rulec.diagnostics import Diagnostic, Label, Span
 from rulec.diagnostics.diagnostic import at
@@ -58,7 +58,9 @@ def rulebook_findings(
     }
     asked = {name: occurrence(*condition, name) for name, condition in conditions.items()}
     inherited = [{rule.name: rule for rule in base.rules if rule.name in by_name} for base in bases]
-    own, *of_bases = compile_shared([book, *bases], [{**by_name, **asked}, *inherited])
+    own, *of_bases = compile_shared(
+        [book, *bases], _at_one_step([{**by_name, **asked}, *inherited])
+    )
     related = RelatedRules(list(by_name), own, book.name)
     answers = RuleAnswers(ComparedRules(own, of_bases), tell)
     occurring: dict[str, list[tuple[Antecedent, str]]] = {name: [] for name in by_name}
@@ -91,6 +93,12 @@ def rulebook_findings(
                 is_own = by_name[name].book == book.name
                 diagnostics.append(diagnostic if is_own else _inherited(diagnostic, extends))
     return tuple(diagnostics)
+
+
+def _at_one_step(rules: Sequence[Mapping[str, Rule]]) -> list[dict[str, Rule]]:
+    """Those of several rulebooks for one step: a rule keeps that of the book that it is from."""
+    common = iter(at_one_step([rule for named in rules for rule in named.values()], None))
+    return [dict(zip(named, common, strict=False)) for named in rules]
 
 
 def _likely(
