@@ -13,9 +13,10 @@ def test_what_is_bare_is_named():
         'hard rule a { says "I cite no one" require never p }\n'
         'hard rule b { cite "1" require never p reject { p } }\n'
         "soft rule c { require never p accept { not p } }\n"
+        'hard rule f { cite " " says "cite" require never p accept { p } }\n'
         "override hard rule d { require never p }\nconfirm rule e\n"
     )
-    assert bare_rules(text) == (["a", "c"], ["a"])
+    assert bare_rules(text) == (["a", "c", "f"], ["a"])
 
 
 @pytest.mark.parametrize("text", ["", "rulebook r\n", "vocabulary v { signal p }\n"])

@@ -99,6 +99,28 @@ def test_an_unknown_name_lists_the_nearest_and_all(tmp_path):
     assert one.help == f"did you mean `esterle2019`? (available: {named(own_first)})"
 
 
+@pytest.mark.parametrize(
+    ("line", "way_out"),
+    [
+        (
+            "extends road",
+            "`road` is a vocabulary, from which a rulebook takes its words by `use road`",
+        ),
+        ("use vienna", "`vienna` is a rulebook, upon which one builds by `extends vienna`"),
+    ],
+)
+def test_the_name_of_the_other_kind_leads_to_its_line(line, way_out, tmp_path):
+    # A title that begins like the vocabulary is not what is meant.
+    write(tmp_path / "other.rules", MINE.replace("\n", '\ntitle "Road traffic"\n', 1))
+    one = only(
+        write(
+            tmp_path / "one.rules",
+            f"rulebook one\n{line}\nsignal p\nhard rule r {{ require always p }}\n",
+        )
+    )
+    assert (one.code, one.help) == ("R0703", way_out)
+
+
 @pytest.mark.parametrize("name", ["", "..", "nothing\0here", "x" * 5000, "C:\\book", "*"])
 def test_strange_names_are_not_found(name):
     assert only(name).code == "R0703"

@@ -189,6 +189,11 @@ FORMULAS = [
     ("every x: T, y: T (p)", ",", f"{ONE_VARIABLE}`every x: T (every y: T (…))`"),
     # Arguments and what joins formulas.
     ("p(q(v))", "(", "an argument is a name; it has no arguments of its own"),
+    (
+        "nie (q(v) und p)",
+        "(",
+        "an argument is a name; it has no arguments of its own; no operator is called `nie`",
+    ),
     ("nevr (p(v) and q)", "(", "did you mean `never`?"),
     ("alwais (p and q)", "and", "did you mean `always`?"),
     ("p(v w)", "w", "separate the names by `,`"),

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import re
 
-_COMMENT_OR_TEXT = re.compile(r'"[^"\n]*"|#[^\n]*')
+# What cites an empty text cites nothing.
+_COMMENT_OR_TEXT = re.compile(r'\bcite\s*"[ \t]*"|"[^"\n]*"|#[^\n]*')
 _RULE = re.compile(r"(?:^|[\s}])(override\s+)?(?:hard|soft)\s+rule\s+(\w+)|\bconfirm\s+rule\b")
 _CITE = re.compile(r"\bcite\b")
 _EXAMPLE = re.compile(r"\b(?:accept|reject)\b")

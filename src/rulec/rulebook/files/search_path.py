@@ -124,7 +124,9 @@ def find_vocabulary(name: str, use: Span, user: Path | None, search_path: Sequen
     path = locate_vocabulary(name, user, search_path)
     if path is None:
         known = [path.stem for path in available_vocabularies(search_path, user)]
-        raise _not_found("vocabulary", name, use, known)
+        other = locate_base(name, user, search_path) is not None
+        by = f"`{name}` is a rulebook, upon which one builds by `extends {name}`" if other else ""
+        raise _not_found("vocabulary", name, use, known, by=by)
     return path
 
 
@@ -149,7 +151,10 @@ def find_base(name: str, line: Span, user: Path | None, search_path: Sequence[Pa
             f"`{name}{SUFFIX}` is looked for beside this file, on the search path, and in rulec"
         )
         folders = [*_around(user), *search_path]
-        raise _not_found("rulebook", name, line, known, looked, by=_by_title(name, known, folders))
+        by = _by_title(name, known, folders)
+        if locate_vocabulary(name, user, search_path) is not None:
+            by = f"`{name}` is a vocabulary, from which a rulebook takes its words by `use {name}`"
+        raise _not_found("rulebook", name, line, known, looked, by=by)
     return path
 
 

@@ -84,7 +84,7 @@ def translate_rule(
             if variable.type
         ),
         formula=formula,
-        cite=item.cite.value if item.cite else "",
+        cite=item.cite.value.strip() if item.cite else "",
         says=item.says.value if item.says else "",
         examples=tuple(examples),
         span=item.span,

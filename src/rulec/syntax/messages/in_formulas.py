@@ -149,7 +149,12 @@ def _arguments(scene: ParseContext) -> str:
     if scene.accepted == {"COMMA", "RPAR"} and scene.text == "(":
         if opened and scene.text_at(opened - 1).casefold() in ("abs", "absolute", "magnitude"):
             return _ABSOLUTE
-        return "an argument is a name; it has no arguments of its own"
+        way_out = "an argument is a name; it has no arguments of its own"
+        spaced = opened and scene.tokens[opened - 1].end < scene.tokens[opened].start
+        # `nie (p(x) …)` is meant for an operator
+        return (
+            f"{way_out}; no operator is called `{scene.text_at(opened - 1)}`" if spaced else way_out
+        )
     joins = scene.text in keywords.PRECEDENCE or scene.text in (
         *keywords.SYMBOLS.values(),
         *RELATIONS,
