@@ -15,10 +15,10 @@ BEGINNING = {"processId": None, "rootUri": None, "capabilities": {}}
 class Wire:
     """A server's standard input and output."""
 
-    def __init__(self, *, begun=True):
+    def __init__(self, *, begun=True, stderr=subprocess.DEVNULL):
         command = [sys.executable, "-m", "rulec", "lsp"]
         pipe = subprocess.PIPE
-        self.server = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL)
+        self.server = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=stderr)
         if begun:
             assert "result" in self.ask(0, "initialize", BEGINNING)
 
@@ -32,6 +32,9 @@ class Wire:
 
     def reply(self, text):
         self.say(text)
+        return self.heard()
+
+    def heard(self):
         length = 0
         while (line := self.server.stdout.readline()) != b"\r\n":
             name, _, value = line.partition(b":")
@@ -97,3 +100,18 @@ def test_a_signal_ends_it_though_the_editor_still_has_its_input(wire, number):
     server = wire()
     server.server.send_signal(number)
     assert server.server.wait(60) == 128 + number
+
+
+def test_a_name_that_cannot_be_is_refused_without_a_traceback(wire, tmp_path):
+    session = wire(stderr=subprocess.PIPE)
+    document = {"uri": (tmp_path / "a.rules").as_uri()}
+    text = "rulebook a\nsignal p\nhard rule r { require always p }\n"
+    opened = {**document, "languageId": "rulec", "version": 1, "text": text}
+    session.say(message(method="textDocument/didOpen", params={"textDocument": opened}))
+    place = {"textDocument": document, "position": {"line": 1, "character": 7}}
+    reply = session.ask(1, "textDocument/rename", {**place, "newName": "not"})
+    while "id" not in reply:
+        reply = session.heard()
+    assert reply["error"]["message"] == "`not` is a word of the language"
+    session.server.kill()
+    assert session.server.communicate()[1] == b""

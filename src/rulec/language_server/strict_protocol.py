@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from typing import Any
 
 from lsprotocol import types as lsp
@@ -11,6 +12,15 @@ from pygls.exceptions import (
     JsonRpcServerNotInitialized,
 )
 from pygls.protocol import LanguageServerProtocol
+
+
+def _is_no_refusal(record: logging.LogRecord) -> bool:
+    """Tell whether a record is about more than a refusal, which its reply explains."""
+    return not (record.exc_info and isinstance(record.exc_info[1], JsonRpcException))
+
+
+# An editor shows as a crash of the server what pygls logs of each: a name that cannot be, say.
+logging.getLogger("pygls.protocol.json_rpc").addFilter(_is_no_refusal)
 
 
 class StrictProtocol(LanguageServerProtocol):
