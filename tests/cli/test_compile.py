@@ -1,10 +1,13 @@
 """``rulec compile`` as its user meets it."""
 
+import json
 import os
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
 
+from rulec import Monitor, compile_rulebook
 from rulec.cli.main import main
 from support.oracles.installed_spot import spot
 
@@ -21,6 +24,38 @@ def test_files_and_their_contents(tmp_path, capsys):
     automaton = spot.automaton(str(folder / "R1.hoa"))
     assert automaton.get_name() == "R1"
     assert {ap.ap_name() for ap in automaton.ap()} == {"CONGESTED", "b(v)", "r(v)", "f(v)"}
+
+
+def test_an_heir_of_another_step_is_compiled_for_one_step(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    soon = "require always (p implies eventually[<= {} s] q)"
+    Path("base.rules").write_text(
+        f"rulebook base\nsignal p, q\nhard rule r {{ {soon.format(2)} }}\n"
+    )
+    Path("heir.rules").write_text(
+        f"rulebook heir\nextends base\nstep 0.5 s\nhard rule s {{ {soon.format(1)} }}\n"
+    )
+    for emit in ("automata", "c", "ltl"):
+        assert main(["compile", "./heir.rules", "--emit", emit, "-o", emit]) == 0
+    said = "for states 0.5 s apart, as 2 rules have bounds in seconds; `--step` says else\n"
+    assert capsys.readouterr().err.count(said) == 2
+    assert "STEP_S (0.5)" in Path("c/heir.h").read_text()
+    # Within 2 s is within four states, within 1 s within two.
+    assert Path("ltl/heir.csv").read_text().count("X ") == 4 + 2
+    states = [{"p": number == 0, "q": number == 3} for number in range(5)]
+    Path("t.jsonl").write_text(json.dumps({"id": "t", "step_s": 0.5, "states": states}))
+    assert main(["verify", "t.jsonl", "-r", "automata/heir.json", "--explain", "0"]) == 1
+    assert "hard rule s:" in (out := capsys.readouterr().out)
+    assert "hard rule r:" not in out
+    assert Monitor(compile_rulebook("./heir.rules")).step_s == Fraction(1, 2)
+
+
+def test_automata_that_are_not_of_the_rulebook_are_named(tmp_path, capsys):
+    (tmp_path / "R0.hoa").write_text("of a rule that there was\n")
+    assert main(["compile", "esterle2019", "-o", str(tmp_path)]) == 0
+    said = f"in {tmp_path} stay automata of another rulebook or from before: `R0.hoa`\n"
+    assert capsys.readouterr().err == said
+    assert (tmp_path / "R0.hoa").exists()
 
 
 def test_a_rulebook_with_mistakes_writes_nothing(tmp_path, capsys):

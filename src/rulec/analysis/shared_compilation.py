@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import gcd, lcm
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.compiler import compile_rulebook
-from rulec.logic.bounds import has_seconds
+from rulec.logic.bounds import has_seconds, longest_divisor
 from rulec.logic.free_names import names_in
 from rulec.monitoring.verdict import Violation
 from rulec.monitoring.verify import verify
@@ -95,6 +94,5 @@ def at_one_step(rules: Iterable[Rule], step_s: Fraction | None) -> list[Rule]:
     listed = list(rules)
     steps = [rule.step_s for rule in listed if has_seconds(rule.formula)]
     if step_s is None and steps:
-        whole = lcm(*(step.denominator for step in steps))
-        step_s = Fraction(gcd(*(int(step * whole) for step in steps)), whole)
+        step_s = longest_divisor(steps)
     return [rule if step_s is None else replace(rule, step_s=step_s) for rule in listed]

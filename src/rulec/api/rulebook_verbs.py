@@ -83,6 +83,8 @@ class RulebookVerbs(SessionSettings):
         """
         from rulec.automata.bundle.bundle_file import write_compiled
 
+        # With two steps it could judge no trace.
+        rulebook = rulebook.at_one_step()
         if certificate:
             # What compiles takes 30 ms to load.
             from rulec.automata.second_compiler import certified
@@ -124,16 +126,20 @@ class RulebookVerbs(SessionSettings):
     ) -> tuple[Path, ...]:
         """Write a rulebook's formulas in LTL, for Spot, PRISM and nuXmv; the paths.
 
-        ``step_s`` are the seconds between two states; None for the step of each rule's examples.
+        ``step_s`` are the seconds between two states; None for the step of the rules' examples.
         Raises RulecError R0407 for bounds that are no multiple of it, and R0754.
         """
         from rulec.automata.compiler import lower
         from rulec.automata.thresholds import exact_step
+        from rulec.logic.bounds import has_seconds, longest_divisor
         from rulec.ltl_export.ltl_files import write_ltl
 
         finite("step_s", step_s)
         step = None if step_s is None else exact_step(step_s)
         rulebook = self.load_rulebook(reference) if isinstance(reference, str | Path) else reference
+        steps = [rule.step_s for rule in rulebook.rules if has_seconds(rule.formula)]
+        if step is None and steps:
+            step = longest_divisor(steps)
         return tuple(write_ltl(rulebook, lower(rulebook, step), Path(folder)))
 
     def verify_compiled(self, path: str | Path) -> tuple[RuleProof, ...]:

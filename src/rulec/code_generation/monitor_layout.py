@@ -130,14 +130,12 @@ def monitor_layout(
     bounds: Mapping[str, int],
     code: Callable[[InputFields], ReadingCode] = ReadingCode,
 ) -> MonitorLayout:
-    """The layout for a rulebook, at the step of its first rule that has one.
+    """The layout for a rulebook, at one step.
 
     ``bounds`` are how many objects there may be at a time, by type; ``code`` writes what reads
     digits. Raises RulecError R0750.
     """
-    steps = [rule.step_s for rule in rulebook.rules if rule.step_s is not None]
-    if steps:
-        rulebook = rulebook.fitted_to(steps[0])
+    rulebook = rulebook.at_one_step()
     if not rulebook.rules:
         raise too_large(f"rulebook `{rulebook.name}` has no rules", "give one that has some")
     fields = input_fields(rulebook)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from fractions import Fraction
 from math import gcd, lcm
@@ -104,8 +104,14 @@ def fitting_step(formula: ltl.Formula, step_s: Fraction) -> Fraction:
     bounds = [operation.bound for operation in operations_of(formula)]
     seconds = [bound for bound in bounds if bound is not None and bound.unit == "s"]
     ends = [end for bound in seconds for end in (bound.low, bound.high) if end is not None]
-    whole = lcm(step_s.denominator, *(end.denominator for end in ends))
-    return Fraction(gcd(int(step_s * whole), *(int(end * whole) for end in ends)), whole)
+    return longest_divisor((step_s, *ends))
+
+
+def longest_divisor(times: Iterable[Fraction]) -> Fraction:
+    """The longest time of which all of these, one or more, are multiples."""
+    listed = list(times)
+    whole = lcm(*(time.denominator for time in listed))
+    return Fraction(gcd(*(int(time * whole) for time in listed)), whole)
 
 
 def operations_of(formula: ltl.Formula) -> Iterator[ltl.Unary | ltl.Binary]:

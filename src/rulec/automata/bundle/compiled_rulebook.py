@@ -13,6 +13,7 @@ from rulec.automata.thresholds import exact_step
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.argument_kinds import expected, finite
 from rulec.diagnostics.diagnostic import at
+from rulec.logic.bounds import longest_divisor
 from rulec.logic.formula import Formula
 from rulec.logic.printing import number_in_words
 from rulec.rulebook import rulebook_model as model
@@ -162,6 +163,14 @@ class CompiledRulebook(Rows):
             return compiled
         kept = {rule.name for rule in self.rules}
         return replace(compiled, rules=tuple(r for r in compiled.rules if r.name in kept))
+
+    def at_one_step(self) -> CompiledRulebook:
+        """These rules for one step: where they have several, the longest that divides all.
+
+        An heir's own rules may have another one than those that it inherits. Raises as ``at_step``.
+        """
+        steps = [rule.step_s for rule in self.rules if rule.step_s is not None]
+        return self.at_step(longest_divisor(steps)) if steps else self
 
     def fitted_to(self, step_s: Fraction | float) -> CompiledRulebook:
         """Rulebook recompiled for a step (s) if possible, else this one unchanged."""

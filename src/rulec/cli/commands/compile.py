@@ -14,7 +14,7 @@ from rulec.cli.options import shared_options as shared
 from rulec.cli.options.output_options import Output, refuse_overwriting, refuse_standard_output
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import errors_told, open_session, rulebooks_named, told_apart
-from rulec.diagnostics import SourceLocation, placed_at
+from rulec.diagnostics import SourceLocation, named, placed_at
 from rulec.files import refuse_unwritable
 from rulec.report.text.console import print_line, print_remark
 
@@ -125,7 +125,12 @@ def command(
                 paths = session.write_ltl(book, folder, step_s)
             elif emit == "automata":
                 compiled = session.compile_rulebook(book, step_s=steps_s or None)
+                several = len({rule.step_s for rule in compiled.rules} - {None}) > 1
+                compiled = compiled.at_one_step()
                 paths = session.write_compiled(compiled, folder, certificate=not no_certificate)
+                if several:
+                    _tell_step(compiled)
+                _tell_others(folder, paths)
             else:
                 compiled = session.compile_rulebook(book, step_s=steps_s or None)
                 with placed_at(SourceLocation(book)):
@@ -150,12 +155,21 @@ def _refuse_file(output: str) -> None:
         )
 
 
+def _tell_others(folder: Path, written: Sequence[Path]) -> None:
+    """Say which other automata a folder has, which who reads it could not tell from these."""
+    others = sorted({path.name for path in folder.glob("*.hoa")} - {path.name for path in written})
+    if others:
+        print_remark(
+            f"in {folder} stay automata of another rulebook or from before: {named(others)}"
+        )
+
+
 def _tell_step(compiled: CompiledRulebook) -> None:
     """Say which step a monitor has that nobody has asked for, where a rule depends on it."""
     # Rules, 100 ms: not for --help.
     from rulec.logic.printing import number_in_words
 
-    steps = [rule.step_s for rule in compiled.rules if rule.step_s is not None]
+    steps = [rule.step_s for rule in compiled.at_one_step().rules if rule.step_s is not None]
     if steps:
         rules = "1 rule has" if len(steps) == 1 else f"{len(steps):,} rules have"
         step = number_in_words(steps[0])

@@ -79,6 +79,8 @@ class Monitor:
         finite("step_s", step_s)
         expected("told", "Iterable[str] | None", told)
         expected("cut", "bool", cut)
+        if step_s is None:
+            rulebook = rulebook.at_one_step()
         steps = [rule.step_s for rule in rulebook.rules if rule.step_s is not None]
         self._step_s = exact_step(step_s) if step_s is not None else steps[0] if steps else None
         if self._step_s is not None:

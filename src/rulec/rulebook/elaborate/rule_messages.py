@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from fractions import Fraction
 from itertools import pairwise
-from math import gcd, perm
+from math import perm
 
 from rulec.diagnostics import Diagnostic, Label, did_you_mean, named
 from rulec.diagnostics.code import Code
-from rulec.logic.bounds import NotAMultipleError
+from rulec.logic.bounds import NotAMultipleError, longest_divisor
 from rulec.logic.printing import time_in_words
 from rulec.resource_limits import CHOICES
 from rulec.rulebook.arithmetic.size_limits import DEEPEST, MOST_PARTS, Limit
@@ -268,7 +267,7 @@ def no_multiple(rule: Rule, error: NotAMultipleError) -> Diagnostic:
     """R0407: a bound of the rule falls between two states."""
     below = error.offending // error.step_s * error.step_s
     nearest = [time_in_words(time, "s") for time in (below, below + error.step_s) if time]
-    fitting = time_in_words(_common_step(error.offending, error.step_s), "s")
+    fitting = time_in_words(longest_divisor((error.offending, error.step_s)), "s")
     are = "multiples are" if len(nearest) > 1 else "multiple is"
     return NOT_A_MULTIPLE.at(
         error.span or rule.span,
@@ -289,14 +288,6 @@ def only_fitting_traces(rule: Rule, error: NotAMultipleError) -> Diagnostic:
             f"of traces of another step, rule `{rule.name}` is open where it hangs on this",
             "`rulec test`, `show`, `compile` and `analyze` go by the rulebook's own, and refuse it",
         ),
-    )
-
-
-def _common_step(first: Fraction, second: Fraction) -> Fraction:
-    """The greatest time of which both are multiples."""
-    below = first.denominator * second.denominator
-    return Fraction(
-        gcd(first.numerator * second.denominator, second.numerator * first.denominator), below
     )
 
 
