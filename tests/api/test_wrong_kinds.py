@@ -10,9 +10,13 @@ import pandas as pd
 import pytest
 
 import rulec
+from rulec.cli.main import main
+from rulec.diagnostics.callers_words import in_callers_words
 
 TRACE = rulec.Trace("t", 1.0, {}, ({"CONGESTED": True},))
 FOLLOWING = "docs/samples/following.xml"
+SLIP = rulec.Assumptions(values={"CONG": True})
+SLIPPED = rulec.RequestedDrives(assumed={"CONG": True})
 
 
 @pytest.mark.parametrize(
@@ -42,6 +46,22 @@ FOLLOWING = "docs/samples/following.xml"
         (lambda: rulec.find("CONGESTED", FOLLOWING, wanted={}), TypeError, "RequestedDrives, not"),
         (lambda: rulec.draw_drive(FOLLOWING, "de", wanted="1"), TypeError, "RequestedDrives, not"),
         (lambda: rulec.draw("x"), TypeError, "Maneuvers or a Trace, not str: rulec.nav"),
+        (lambda: rulec.draw_drive(FOLLOWING, "de", only=["nope"]), ValueError, "no such rule"),
+        (lambda: rulec.verify_many([], "esterle2019", engine="d"), ValueError, "'c', not 'd'"),
+        (lambda: rulec.read_recording(FOLLOWING, form="xml"), ValueError, "tracks.*, not 'xml'"),
+        (lambda: rulec.verify(TRACE, "esterle2019", SLIP), rulec.RulecError, "`values`.*`CONG`"),
+        (lambda: rulec.verify_many([], "esterle2019", SLIP), rulec.RulecError, "`CONG`"),
+        (
+            lambda: rulec.find_maneuvers("s2", "esterle2019", assumptions=SLIP),
+            rulec.RulecError,
+            "`CONG`",
+        ),
+        (
+            lambda: rulec.find("CONGESTED", [TRACE], "esterle2019", SLIPPED),
+            rulec.RulecError,
+            "`CONG`",
+        ),
+        (lambda: rulec.draw_drive(FOLLOWING, "de", at_s=6), rulec.RulecError, "not there at 6 s"),
         (lambda: rulec.Assumptions(ends="maybe"), ValueError, "not 'maybe'"),
         (lambda: rulec.Assumptions(values="built_up"), TypeError, "`values` is a dict, not str"),
         (lambda: rulec.Thresholds(near_m=-1), ValueError, "`near_m` is a number from 0 .*not -1"),
@@ -148,7 +168,7 @@ def test_what_is_no_trace_is_said(changes, said):
         (lambda: rulec.check("de", 3), TypeError, "`references` is a str or a path, not int"),
         (lambda: rulec.list("books"), ValueError, "rulebooks, vocabularies.* not 'books'"),
         (lambda: rulec.doc("esterle2019", language="it"), ValueError, "en, de, fr, not 'it'"),
-        (lambda: rulec.doc("esterle2019", form="pdf"), ValueError, "html, markdown, not 'pdf'"),
+        (lambda: rulec.doc("esterle2019", form="pdf"), ValueError, "'html', 'markdown', not 'pdf'"),
         (lambda: rulec.Session(search_path="books"), TypeError, "iterable of str, not str"),
         (lambda: rulec.Session(search_path=[3]), TypeError, r"`search_path\[0\]` is a str or a p"),
         (lambda: rulec.compile_rulebook("de", step_s=NAN), ValueError, "finite number, not nan"),
@@ -340,3 +360,23 @@ def test_what_is_deep_is_named_in_short(call):
     with pytest.raises((TypeError, ValueError, rulec.RulecError)) as error:
         call()
     assert len(str(error.value)) < 300
+
+
+def test_options_are_told_as_arguments(tmp_path, capsys):
+    """Of words in backquotes only those that are an option: a whole command stays one."""
+    roads = "docs/samples/passing.net.xml"
+    with pytest.raises(rulec.RulecError) as caught:
+        rulec.read_recording(FOLLOWING, roads)
+    error = caught.value
+    said = "leave out `map_path`, which is for recordings without roads of their own"
+    assert [error.diagnostics[0].help, *error.__notes__] == [said, f"help: {said}"]
+    assert main(["verify", FOLLOWING, "-r", "esterle2019", "--map", roads]) == 2
+    assert "leave out --map, which" in capsys.readouterr().err
+    told = {
+        "take `--extent body`, `--step 0.5` or another --ego": 'take `extent="body"`, '
+        "`step_s=0.5` or another `ego`",
+        "name the map with --map FILE": "name the map with `map_path`",
+        "add `--input-format csv`": "let its name end in `.csv`",
+        "`rulec compile --step 1`, --fcd-output.geo": "`rulec compile --step 1`, --fcd-output.geo",
+    }
+    assert {text: in_callers_words(text) for text in told} == told

@@ -102,11 +102,8 @@ def test_an_unknown_name_lists_the_nearest_and_all(tmp_path):
 @pytest.mark.parametrize(
     ("line", "way_out"),
     [
-        (
-            "extends road",
-            "`road` is a vocabulary, from which a rulebook takes its words by `use road`",
-        ),
-        ("use vienna", "`vienna` is a rulebook, upon which one builds by `extends vienna`"),
+        ("extends road", "`road` is a vocabulary: `use road`"),
+        ("use vienna", "`vienna` is a rulebook: `extends vienna`"),
     ],
 )
 def test_the_name_of_the_other_kind_leads_to_its_line(line, way_out, tmp_path):
@@ -119,6 +116,7 @@ def test_the_name_of_the_other_kind_leads_to_its_line(line, way_out, tmp_path):
         )
     )
     assert (one.code, one.help) == ("R0703", way_out)
+    assert only("road").help.startswith("`road` is a vocabulary, in whose words")
 
 
 @pytest.mark.parametrize("name", ["", "..", "nothing\0here", "x" * 5000, "C:\\book", "*"])

@@ -65,10 +65,16 @@ def drive_drawing(
     """Draw a judged drive from above, at the first violation or at a time (s of the recording).
 
     ``trace`` is the drive's; if empty it is the one with the first violation in time of the rules
-    ``kept`` (None: of any rule). Raises RulecError: R0612 if there is no such drive.
+    ``kept`` (None: of any rule). Raises RulecError: R0612 if there is no such drive, or it is not
+    there at that time.
     """
     drive, verdict = _chosen_drive(verdicts, trace, kept)
     scene = drive_scene(drive, verdict, verdicts, kept)
+    first_s, last_s = scene.time_s(0), scene.time_s(scene.states - 1)
+    if at_s is not None and not first_s - scene.step_s < at_s < last_s + scene.step_s:
+        message = f"`{drive.arrays.id}` is not there at {at_s:g} s"
+        way_out = f"choose a time from {first_s:g} s to {last_s:g} s"
+        raise NOT_IN_RECORDING.error(SourceLocation(verdicts.recording.name), message, help=way_out)
     state, violation = chosen_moment(scene, at_s)
     return Drawing(
         scene.title,

@@ -255,10 +255,8 @@ class RulebookQuestions(RulebookVerbs):
         from rulec.report.rulebooks.document_language import document_language
         from rulec.report.text.html_page import PageTexts, as_html
 
-        known = ("form", form, ("html", "markdown")), ("language", language, LANGUAGES)
-        for what, given, names in known:
-            if given not in names:
-                raise ValueError(f"the {what} is one of {', '.join(names)}, not {given!r}")
+        if language not in LANGUAGES:
+            raise ValueError(f"the language is one of {', '.join(LANGUAGES)}, not {language!r}")
         loaded, lineage = read_with_lineage(reference, self.search_path, self.at)
         self._warn(loaded.warnings)
         words = document_language(loaded.rulebook, language)

@@ -112,8 +112,6 @@ class RulebookVerbs(SessionSettings):
         """
         from rulec.code_generation.monitor_files import write_monitor
 
-        if language not in ("c", "rust", "ros2"):
-            raise ValueError(f'the language is "c", "rust" or "ros2", not {language!r}')
         compiled = self._compiled(rules)
         paths = write_monitor(compiled, Path(folder), objects or {}, prove=prove, language=language)
         return tuple(paths)

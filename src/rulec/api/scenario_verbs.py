@@ -64,11 +64,12 @@ class ScenarioVerbs(SessionSettings):
         Source: algorithm 1 of the paper. Raises RulecError, R0418 of a recorded scene whose traffic
         keeps to the other side than the rules'.
         """
-        from rulec.monitoring.assumptions import Assumptions
+        from rulec.monitoring.assumptions import Assumptions, check_assumed
         from rulec.planning import SceneReading, evaluate, partition_for
 
         reading = SceneReading(assumptions or Assumptions(), told_only)
         compiled = self._compiled(rules)
+        check_assumed(reading.assumptions.values, compiled.vocabulary, "values")
         options["partition"] = partition_for(compiled, options.get("partition"))
         graph = self.navigation_graph(scenario, **options)
         account, words = graph.scenario.account, None

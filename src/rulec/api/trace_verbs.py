@@ -77,11 +77,14 @@ class TraceVerbs(SessionSettings):
             RulecError: R0501 to R0508 if it is no trace, or the rules cannot judge it.
             TypeError: for the path of a file, which other verbs take.
         """
+        from rulec.monitoring.assumptions import check_assumed
         from rulec.monitoring.verify import verify
 
+        compiled = self._compiled(rules)
         if assumptions is not None:
+            check_assumed(assumptions.values, compiled.vocabulary, "values")
             trace = assumptions.applied(trace)
-        return verify(trace, self._compiled(rules))
+        return verify(trace, compiled)
 
     def verify_many(
         self,
@@ -98,16 +101,19 @@ class TraceVerbs(SessionSettings):
         want of values, Python does, and each verdict says by its ``engine`` which of them did.
         Raises RulecError R0751 if there is no compiler.
         """
+        from rulec.monitoring.assumptions import check_assumed
         from rulec.monitoring.batch.batch_verify import verify_many
 
+        compiled = self._compiled(rules)
         if assumptions is not None:
+            check_assumed(assumptions.values, compiled.vocabulary, "values")
             traces = (assumptions.of([item])[0] for item in traces)
         if engine == "c":
             from rulec.code_generation.compiled_c.c_engine import CEngine
 
-            in_c = CEngine(self._compiled(rules))
+            in_c = CEngine(compiled)
             return (in_c.answer(item) for item in traces)
-        return verify_many(traces, self._compiled(rules))
+        return verify_many(traces, compiled)
 
     def verify_columns(self, columns: TraceColumns, rules: Rules) -> list[VerdictColumns]:
         """Judge traces given as arrays, with one answer per rule and binding. Raises RulecError."""
@@ -230,7 +236,7 @@ class TraceVerbs(SessionSettings):
         """
         from rulec.extraction.moment_search import in_recordings, in_traces
         from rulec.extraction.selection import RequestedDrives
-        from rulec.monitoring.assumptions import Assumptions
+        from rulec.monitoring.assumptions import Assumptions, check_assumed
         from rulec.recordings.recording import Recording
         from rulec.recordings.recording_files import is_recording, read_recordings
         from rulec.recordings.recording_format import RecordingSource
@@ -242,6 +248,7 @@ class TraceVerbs(SessionSettings):
         if isinstance(drives, Recording):
             return in_recordings([drives], query, request, drives.name)
         assumed = Assumptions(None, request.assumed, request.defaults)
+        check_assumed(request.assumed, query.vocabulary)
         if not isinstance(drives, str | Path):
             return in_traces(drives, query, assumed, "")
         if not is_recording(str(drives)):
@@ -313,6 +320,9 @@ class TraceVerbs(SessionSettings):
         vehicle, part, _ = ego.partition("#")
         request = replace(wanted or RequestedDrives(), egos=(vehicle,) if vehicle else ())
         verdicts = self.verify_recording(recording, rules, request, map_path)
+        known = {rule.name for rule in verdicts.rules.rules}
+        if unknown := [name for name in only if name not in known]:
+            raise ValueError(f"`only` has {unknown[0]!r}: {verdicts.rules.name} has no such rule")
         trace = ego if part else ""
         drawing = drive_drawing(verdicts, trace, frozenset(only) if only else None, at_s)
         return as_bytes(drawing, form, verdicts.recording.name, theme)

@@ -15,6 +15,7 @@ from rulec.cli.exit_status import ExitStatus
 from rulec.cli.interruption import is_interrupted
 from rulec.cli.verb_table import VERB_GROUPS, VERBS, WITH_COMPILED
 from rulec.diagnostics import RulecError
+from rulec.diagnostics.callers_words import options_told
 from rulec.version import __version__
 
 
@@ -127,16 +128,17 @@ def rulec(context: click.Context, limits: Sequence[str]) -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command and return its exit status."""
     given = sys.argv[1:] if arguments is None else arguments
-    try:
-        outcome = rulec.main(
-            args=list(given),
-            prog_name="rulec",
-            obj=tuple(given),
-            standalone_mode=False,
-        )
-        sys.stdout.flush()
-    except BaseException as problem:
-        return _status_after(problem)
+    with options_told():
+        try:
+            outcome = rulec.main(
+                args=list(given),
+                prog_name="rulec",
+                obj=tuple(given),
+                standalone_mode=False,
+            )
+            sys.stdout.flush()
+        except BaseException as problem:
+            return _status_after(problem)
     return outcome if isinstance(outcome, int) else ExitStatus.OK
 
 

@@ -89,6 +89,8 @@ def checked_kinds(function: AnyFunction) -> AnyFunction:
 def expected(name: str, annotation: str, value: Any) -> Any:
     """A value that is of one of the kinds of an annotation, else TypeError with the way out.
 
+    Of a text that is none of those that there are it is ValueError.
+
     What has to be a sequence and is an iterator, an array or a column comes as a tuple, what stands
     for a path as one.
     """
@@ -97,6 +99,8 @@ def expected(name: str, annotation: str, value: Any) -> Any:
     kind = _fitting(annotation, cast("Hashable", type(value)))
     if kind is None:
         raise _unexpected(name, annotation, value)
+    if kind.name == "Literal" and repr(str(value)) not in kind.said:
+        raise ValueError(f"`{name}` is {kind.said}, not {value!r}")
     if kind.name == "Path" and not isinstance(value, Path):
         try:
             return Path(value)

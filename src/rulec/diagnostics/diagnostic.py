@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
+from rulec.diagnostics.callers_words import in_callers_words
 from rulec.diagnostics.source_text import SourceLocation, Span, address
 from rulec.value_display import Rows, short_repr
 
@@ -85,7 +86,7 @@ class RulecError(Rows, Exception):
     def __init__(self, diagnostics: Iterable[Diagnostic] | Diagnostic) -> None:
         if isinstance(diagnostics, Diagnostic):
             diagnostics = (diagnostics,)
-        self.diagnostics = tuple(diagnostics)
+        self._given = tuple(diagnostics)
         # Whoever prints it has no trouble with what is no character, as in a file's name
         text = "; ".join(_one_line(d) for d in self.diagnostics)
         super().__init__(text.encode(errors="backslashreplace").decode())
@@ -97,6 +98,11 @@ class RulecError(Rows, Exception):
             f"help: {text.encode(errors='backslashreplace').decode()}" for text in ways_out
         ]
 
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What is wrong, in the words of whoever asks."""
+        return tuple(map(_in_callers_words, self._given))
+
     def __repr__(self) -> str:
         return f"RulecError({'; '.join(d.code for d in self.diagnostics[:20])}: {self.args[0]:.80})"
 
@@ -105,7 +111,7 @@ class RulecError(Rows, Exception):
         return diagnostic_rows(self.diagnostics)
 
     def __reduce__(self) -> tuple[type[RulecError], tuple[Any, ...]]:
-        return type(self), (self.diagnostics,)
+        return type(self), (self._given,)
 
 
 def as_answer(error: RulecError) -> RulecError:
@@ -136,6 +142,13 @@ def with_place(error: RulecError, place: SourceLocation | None) -> RulecError:
             for diagnostic in error.diagnostics
         ]
     )
+
+
+def _in_callers_words(diagnostic: Diagnostic) -> Diagnostic:
+    message, way_out = map(in_callers_words, (diagnostic.message, diagnostic.help))
+    if (message, way_out) == (diagnostic.message, diagnostic.help):
+        return diagnostic
+    return replace(diagnostic, message=message, help=way_out)
 
 
 def _one_line(diagnostic: Diagnostic) -> str:

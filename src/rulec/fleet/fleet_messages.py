@@ -79,7 +79,7 @@ def no_map(name: str, why: str) -> RulecError:
     return NET_MISSING.error(
         None,
         f"recording `{name}`: {why}",
-        help="give a map with `road_map` (--map), or its path in a column `map`",
+        help="give a map, or its path in a column `map`",
     )
 
 

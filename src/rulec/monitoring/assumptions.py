@@ -100,14 +100,16 @@ class Assumptions:
         return _without_unknown(known) if self.defaults else known
 
 
-def check_assumed(values: Mapping[str, Value], vocabulary: Vocabulary) -> None:
+def check_assumed(
+    values: Mapping[str, Value], vocabulary: Vocabulary, given: str = "assumed"
+) -> None:
     """Refuse values that no state of no object has. Raises RulecError R0502 or R0503."""
     for name in values:
         declaration = vocabulary.declarations.get(name)
         if declaration is not None and declaration.parameters:
-            why = f"`assumed` has `{name}`, which is about objects"
+            why = f"`{given}` has `{name}`, which is about objects"
             raise UNFITTING_VALUE.error(None, why, help="assume only what is about none")
-    check_state(values, {}, vocabulary, "`assumed`")
+    check_state(values, {}, vocabulary, f"`{given}`")
 
 
 def _without_unknown(values: Mapping[str, Any]) -> dict[str, Any]:

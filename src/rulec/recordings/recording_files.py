@@ -121,7 +121,7 @@ def read_recording(source: RecordingSource) -> Recording:
             SourceLocation(str(source.path)),
             f"there are several recordings in the file, {named([recording.name, other.name])} "
             "to begin with",
-            help=f"choose one, as with --scenario {recording.name}",
+            help=f"choose one, as with `--scenario {recording.name}`",
         )
     return recording
 
@@ -135,6 +135,9 @@ def _format_of(source: RecordingSource) -> RecordingFormat:
         # Such as of too long a name, of which many questions end in an OSError
         with opened(source.path):
             pass
+    names = [form.name for form in FORMATS]
+    if source.form is not None and source.form not in names:
+        raise ValueError(f"`form` is one of {', '.join(names)}, not {source.form!r}")
     glance = Glance(source.path)
     for form in FORMATS:
         if source.form == form.name or (source.form is None and form.recognises(glance)):

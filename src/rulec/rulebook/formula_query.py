@@ -102,7 +102,7 @@ def _in_words(problem: Diagnostic) -> Diagnostic:
     way_out = re.sub(r": `use (\w+)`$", r": `--use \1`", way_out)
     # Nothing is declared in a formula.
     way_out = re.sub(r"^declare it, such as .*", _NO_WORD, way_out)
-    way_out = re.sub(r": `extends ([\w-]+)`, or copy it$", r": `--rulebook \1`", way_out)
+    way_out = re.sub(r": `extends ([\w-]+)`(, or copy it)?$", r": `--rulebook \1`", way_out)
     return replace(problem, message=problem.message.replace(f" of `{_NAME}`", ""), help=way_out)
 
 

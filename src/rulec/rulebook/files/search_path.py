@@ -75,6 +75,8 @@ def meant_by(name: str, known: Sequence[str], search_path: Sequence[Path]) -> st
             return f"this file is no rulebook; `rulec verify {name} -r de` judges traffic by one"
         renamed = Path(name).with_suffix(SUFFIX).name
         return f"the name of a rulebook's file ends in `{SUFFIX}`: call it `{renamed}`"
+    if locate_vocabulary(name, None, search_path) is not None:
+        return f"`{name}` is a vocabulary, in whose words rulebooks such as `de` are written"
     shipped = {path.stem for path in rules_files(rulebooks_folder())}
     # Of many names the first are shown: the reader's own are those that are not known anyway.
     own_first = sorted(known, key=lambda one: one in shipped)
@@ -125,7 +127,7 @@ def find_vocabulary(name: str, use: Span, user: Path | None, search_path: Sequen
     if path is None:
         known = [path.stem for path in available_vocabularies(search_path, user)]
         other = locate_base(name, user, search_path) is not None
-        by = f"`{name}` is a rulebook, upon which one builds by `extends {name}`" if other else ""
+        by = f"`{name}` is a rulebook: `extends {name}`" if other else ""
         raise _not_found("vocabulary", name, use, known, by=by)
     return path
 
@@ -153,7 +155,7 @@ def find_base(name: str, line: Span, user: Path | None, search_path: Sequence[Pa
         folders = [*_around(user), *search_path]
         by = _by_title(name, known, folders)
         if locate_vocabulary(name, user, search_path) is not None:
-            by = f"`{name}` is a vocabulary, from which a rulebook takes its words by `use {name}`"
+            by = f"`{name}` is a vocabulary: `use {name}`"
         raise _not_found("rulebook", name, line, known, looked, by=by)
     return path
 

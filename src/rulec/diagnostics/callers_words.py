@@ -1,0 +1,75 @@
+"""What an option of the commands is called where Python asks.
+
+Messages name options as the commands have them. Whoever calls a function has arguments instead.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+_VARIABLE = "RULEC_TELLS_OPTIONS"
+
+_ARGUMENTS = {
+    "adjacency": "adjacency",
+    "after": "after",
+    "at-time": "at_s",
+    "bounds": "bounds",
+    "by": "by",
+    "congested-below": "congested_below_kmh",
+    "ego": "ego",
+    "engine": "engine",
+    "extent": "extent",
+    "horizon": "horizon_s",
+    "input-format": "form",
+    "map": "map_path",
+    "objects": "objects",
+    "prediction": "prediction",
+    "prove": "prove",
+    "reference": "reference",
+    "rulebook": "rulebook",
+    "scenario": "scenario_id",
+    "step": "step_s",
+    "use": "vocabulary",
+}
+_OPTION = rf"--({'|'.join(_ARGUMENTS)})(?![\w.-])"
+_PLAIN = re.compile(_OPTION + "(?: FILE)?")
+_QUOTED = re.compile(_OPTION + "(?: (.+))?")
+_FORMAT_OF_TRACES = re.compile(r"add `--input-format (\w+)`")
+
+
+@contextmanager
+def options_told() -> Iterator[None]:
+    """Leave options as they are, here and in processes started meanwhile, in a block."""
+    before = os.environ.get(_VARIABLE)
+    os.environ[_VARIABLE] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[_VARIABLE]
+
+
+def in_callers_words(text: str) -> str:
+    """A message, or a part of it, for whoever is told: with options, or with arguments."""
+    if "--" not in text or _VARIABLE in os.environ:
+        return text
+    text = _FORMAT_OF_TRACES.sub(r"let its name end in `.\1`", text)
+    parts = text.split("`")
+    # Every second one stood in backquotes, such as a whole command, which stays one.
+    parts[::2] = [_PLAIN.sub(lambda found: f"`{_argument(found)}`", part) for part in parts[::2]]
+    parts[1::2] = [
+        _argument(found) if (found := _QUOTED.fullmatch(part)) else part for part in parts[1::2]
+    ]
+    return "`".join(parts)
+
+
+def _argument(option: re.Match[str]) -> str:
+    name = _ARGUMENTS[option[1]]
+    value = option[2] if option.re is _QUOTED else None
+    if value is None:
+        return name
+    is_text = not re.fullmatch(r"[A-Z]+|[0-9./]+", value)
+    return f'{name}="{value}"' if is_text else f"{name}={value}"
