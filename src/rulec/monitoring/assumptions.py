@@ -55,7 +55,7 @@ class Assumptions:
         states = trace.states
         if self.values or self.defaults:
             states = tuple(
-                {**untold, **self._told(state)} if isinstance(state, Mapping) else state
+                {**untold, **self._with_assumed(state)} if isinstance(state, Mapping) else state
                 for state in states
             )
         ends = self.ends or ("complete" if self.defaults else trace.ends)
@@ -91,7 +91,7 @@ class Assumptions:
         except RulecError as error:
             return error
 
-    def _told(self, state: Mapping[str, Any]) -> dict[str, Any]:
+    def _with_assumed(self, state: Mapping[str, Any]) -> dict[str, Any]:
         values = self.values
         known = {
             name: values[name] if type(value) in _NOT_TOLD and name in values else value

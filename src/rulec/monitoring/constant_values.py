@@ -95,13 +95,13 @@ def display(value: object) -> str:
     return f"`{value:g}`" if isinstance(value, float) else f"`{value}`"
 
 
-def _agreed(one: Any, other: Any) -> Any:
+def _agreed(first: Any, second: Any) -> Any:
     """What is known by two values together; None if they contradict each other."""
-    if one is UNKNOWN or other is UNKNOWN:
-        return other if one is UNKNOWN else one
-    bounds = [(x.low, x.high) if isinstance(x, Interval) else (x, x) for x in (one, other)]
-    if not any(isinstance(x, Interval) for x in (one, other)):
-        return one if one == other else None
+    if first is UNKNOWN or second is UNKNOWN:
+        return second if first is UNKNOWN else first
+    bounds = [(x.low, x.high) if isinstance(x, Interval) else (x, x) for x in (first, second)]
+    if not any(isinstance(x, Interval) for x in (first, second)):
+        return first if first == second else None
     low, high = max(x[0] for x in bounds), min(x[1] for x in bounds)
     return None if low > high else low if low == high else Interval(low, high)
 

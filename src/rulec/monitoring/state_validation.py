@@ -142,15 +142,15 @@ def has_partial_values(state: Mapping[str, Any]) -> bool:
 
 def partial_names(states: Iterable[Mapping[str, Any]]) -> set[str]:
     """The names of which some state has a value that is unknown, or an interval."""
-    found: set[str] = set()
+    names: set[str] = set()
     for state in states:
         for name, value in state.items():
-            if name in found:
+            if name in names:
                 continue
             kind = type(value)
             if kind in UNKNOWN_TYPES or (kind not in _PLAIN and has_partial_values({name: value})):
-                found.add(name)
-    return found
+                names.add(name)
+    return names
 
 
 def check_state(
@@ -304,7 +304,7 @@ def _misfit(value: Any, declaration: Declaration) -> str:
     match declaration:
         case Enumeration():
             among = value.values if isinstance(value, OneOf) else (value,)
-            if not all(isinstance(one, str) and one in declaration.values for one in among):
+            if not all(isinstance(item, str) and item in declaration.values for item in among):
                 return f"it is one of {named(declaration.values)}"
         case Signal():
             if not isinstance(value, bool):

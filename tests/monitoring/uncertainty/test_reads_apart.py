@@ -91,7 +91,7 @@ def agree_in_parts(chance, compiled, rule, draw=of_any_kind, times=8):
         missing, found = outcome(reads.number, values)
         assert missing == lacking, (rule, values)
         if expected is not None:
-            assert is_told(reads.found[found], expected), (rule, values)
+            assert is_told(reads.joint_letters[found], expected), (rule, values)
     return True
 
 
@@ -158,7 +158,7 @@ def test_of_law_with_one_number_between_others_in_parts_as_together():
     tables = compiled.prepared[KnownParts].tables.values()
     met = [steps for table in tables for steps in table._steps.values() if steps is not None]
     # Many intervals end beside the same steps
-    assert any(steps.points and len(steps.found) > 3 for steps in met)
+    assert any(steps.points and len(steps.possible) > 3 for steps in met)
 
 
 def outcome(call, *given):
@@ -187,7 +187,10 @@ def agree_on_who_counts(chance, compiled, rule, objects):
         missing, found = outcome(apart.number, values, objects)
         assert missing == lacking, (rule, values)
         if expected is not None:
-            (letters, is_exact), (own, _) = together.found[expected], apart.found[found]
+            (letters, is_exact), (own, _) = (
+                together.joint_letters[expected],
+                apart.joint_letters[found],
+            )
             assert set(own) == set(spelled(letters)) or (not is_exact and set(own) < set(letters))
     return True
 

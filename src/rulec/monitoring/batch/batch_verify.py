@@ -199,13 +199,13 @@ def _verify_columns(
 
 
 def _answer(
-    found: Iterable[tuple[int, Sequence[Violation]]],
+    violated: Iterable[tuple[int, Sequence[Violation]]],
     traces: Sequence[_Placed],
     group: trace_groups.TraceGroup,
     answers: list[Answer | None],
 ) -> None:
     objects = tuple(group.cells.objects)
-    for number, violations in found:
+    for number, violations in violated:
         place, trace = traces[group.order[number]]
         own = trace_groups.under_own_names(violations, objects, tuple(trace.objects))
         answers[place] = Verdict(trace.id, own)

@@ -24,7 +24,7 @@ from rulec.monitoring.uncertainty.uncertain_machine import Answer
 from rulec.monitoring.verdict import OpenReasons, OpenVerdict, RuleNotJudged, Verdict, Violation
 from rulec.trace.trace_arrays import TraceArrays
 
-Found: TypeAlias = Violation | OpenVerdict
+ViolationOrOpen: TypeAlias = Violation | OpenVerdict
 
 Place: TypeAlias = tuple[int, ...]
 """The place of what is not kept: of its rule, and of its objects."""
@@ -95,15 +95,15 @@ class Findings:
         self._names = names
         self._whole = whole
         self._of_rules: list[RuleFindings] = []
-        self._single: dict[int, list[tuple[Place, Found]]] = defaultdict(list)
+        self._single: dict[int, list[tuple[Place, ViolationOrOpen]]] = defaultdict(list)
 
-    def add(self, found: RuleFindings) -> None:
-        """Add what has been found about a rule."""
-        self._of_rules.append(found)
+    def add(self, rule_findings: RuleFindings) -> None:
+        """Add the findings about a rule."""
+        self._of_rules.append(rule_findings)
 
-    def add_single(self, trace: int, place: Place, found: Found) -> None:
-        """Add what has been found about one choice of objects of a trace."""
-        self._single[trace].append((place, found))
+    def add_single(self, trace: int, place: Place, finding: ViolationOrOpen) -> None:
+        """Add the finding about one choice of objects of a trace."""
+        self._single[trace].append((place, finding))
 
     def forget_reasons(self) -> None:
         """Forget why what is open is so, for which all that traces say is kept."""
@@ -121,9 +121,9 @@ class Findings:
             are_violated = np.array([answer.best == VIOLATED for answer in own.answers], dtype=bool)
             yield self._known(own.rule.name, own.traces, are_violated)
         for trace, several in self._single.items():
-            for _, found in several:
-                is_violated = np.array([isinstance(found, Violation)])
-                yield self._known(found.rule, np.array([trace]), is_violated)
+            for _, finding in several:
+                is_violated = np.array([isinstance(finding, Violation)])
+                yield self._known(finding.rule, np.array([trace]), is_violated)
 
     def _known(
         self, rule: str, traces: NDArray[intp], are_violated: NDArray[bool_]
@@ -150,24 +150,24 @@ class Findings:
         """What a trace violates, and what is open."""
         made = [self._made(row) for row in self._by_trace.get(number, ())]
         made += self._single.get(number, ())
-        found = [result for _, result in sorted(made, key=_PLACE)]
-        violations = tuple([result for result in found if isinstance(result, Violation)])
+        findings = [result for _, result in sorted(made, key=_PLACE)]
+        violations = tuple([result for result in findings if isinstance(result, Violation)])
         if number in self._whole:
             return violations, ()
-        return violations, tuple([result for result in found if isinstance(result, OpenVerdict)])
+        return violations, tuple([result for result in findings if isinstance(result, OpenVerdict)])
 
     @cached_property
     def _by_trace(self) -> dict[int, list[_Row]]:
-        found: dict[int, list[_Row]] = defaultdict(list)
+        by_trace: dict[int, list[_Row]] = defaultdict(list)
         for own in self._of_rules:
             objects = [items.tolist() for items in own.objects]
             choices = zip(*objects, strict=True) if objects else repeat(())
             rows = zip(own.traces.tolist(), own.begins.tolist(), choices, strict=False)
             for at, (trace, begin, chosen) in enumerate(rows):
-                found[trace].append((own, at, begin, chosen))
-        return found
+                by_trace[trace].append((own, at, begin, chosen))
+        return by_trace
 
-    def _made(self, row: _Row) -> tuple[Place, Found]:
+    def _made(self, row: _Row) -> tuple[Place, ViolationOrOpen]:
         own, at, begin, chosen = row
         rule, answer = own.rule, own.answers[at]
         name, strength, binding = rule.name, rule.strength, self.binding(rule, chosen)

@@ -84,12 +84,12 @@ class ColumnTruths:
         code: object = wanted
         if texts is not None:
             code = texts.index(str(wanted)) if wanted in texts else len(texts)
-        found: Flags = column.values == code
+        truths: Flags = column.values == code
         if column.unsaid is not None:
-            found = np.where(column.unsaid, unsaid == wanted, found)
+            truths = np.where(column.unsaid, unsaid == wanted, truths)
         if column.unknown is not None:
-            found = np.where(column.unknown, supposed == wanted, found)
-        return found
+            truths = np.where(column.unknown, supposed == wanted, truths)
+        return truths
 
     def of_counted(self, count: ltl.Count) -> Iterator[tuple[slice, ColumnTruths]]:
         """For each object that may count where it is among the states, and the truths there."""
@@ -108,10 +108,10 @@ class ColumnTruths:
 
     def counts(self, count: ltl.Count) -> NDArray[np.intp]:
         """How many objects count in each state."""
-        found = np.zeros(self.n_states, dtype=np.intp)
+        counts = np.zeros(self.n_states, dtype=np.intp)
         for states, own in self.of_counted(count):
-            found[states] += own._holds(count.body)
-        return found
+            counts[states] += own._holds(count.body)
+        return counts
 
     def _holds(self, formula: ltl.Formula) -> Flags:
         """Where a formula of single states holds."""
@@ -189,13 +189,13 @@ class ColumnTruths:
             size += np.abs(share)
         apart = total - float(limit)
         less, more = apart < -_HAIR * size, apart > _HAIR * size
-        found: Flags = {"<": less, "<=": less, ">=": more, ">": more}.get(
+        truths: Flags = {"<": less, "<=": less, ">=": more, ">": more}.get(
             relation, np.full(self.n_states, relation == "!=")
         )
         for state in np.flatnonzero(~(less | more)).tolist():
             parts = [factor * own.exactly(state) for factor, own in numbers]
-            found[state] = stands(sum(parts, Fraction(0)), relation, limit)
-        return found
+            truths[state] = stands(sum(parts, Fraction(0)), relation, limit)
+        return truths
 
     def _numbers(self, term: ltl.Term) -> _Counts | _Numbers:
         return _Counts(self.counts(term)) if isinstance(term, ltl.Count) else _Numbers(self, term)

@@ -51,14 +51,14 @@ def explain_arrays(
     present = {item: (first, last) for item, (first, last) in spans}
     binding = binding_of(violation.binding, present, arrays.n_states)
     stretch = range(binding.first, binding.last + 1)
-    told = _Vocabularies.of(rulebook, rule, arrays.told)
-    truths = ColumnTruths(arrays, rulebook.vocabulary, binding, told.supposed, told.untold)
+    words = _Vocabularies.of(rulebook, rule, arrays.told)
+    truths = ColumnTruths(arrays, rulebook.vocabulary, binding, words.supposed, words.untold)
     is_long = len(stretch) > 2 * LIMITS.states_explained
     if is_long or arrays.ends != "cut" or not _is_plain(rule.formula, truths):
         return None
     decisive = binding.last if violation.step is None else violation.step
     shown = [number - binding.first for number in shown_states(stretch, decisive)]
-    views = _Views(arrays, binding, rule.formula, told)
+    views = _Views(arrays, binding, rule.formula, words)
     observed = _ObservedColumns(
         views=views,
         bound=binding.objects,
@@ -68,7 +68,7 @@ def explain_arrays(
         find_truths=truths.of,
     )
     views.look_at({*observed.looked_up, 0})
-    subject = Explained(violation, rule, told.completed, rulebook.semantics, arrays.step_s)
+    subject = Explained(violation, rule, words.completed, rulebook.semantics, arrays.step_s)
     return explanation_of(subject, observed, stretch, decided_by)
 
 
@@ -78,9 +78,9 @@ def _is_plain(formula: ltl.Formula, truths: ColumnTruths) -> bool:
     effects: set[str] = set()
     ahead = [name for name in vocabulary.implied if truths.says(name)]
     while ahead:
-        found = {*vocabulary.implied.get(ahead.pop(), ())} - effects
-        effects |= found
-        ahead += found
+        implied = {*vocabulary.implied.get(ahead.pop(), ())} - effects
+        effects |= implied
+        ahead += implied
     return not any(
         (name in effects and not own.says_all(name, arguments))
         or (name in vocabulary.constants and not own.is_steady(name, arguments))
@@ -144,34 +144,34 @@ class _ObservedColumns(ObservedStates):
 
     def truths(self, proposition: ltl.Proposition) -> list[bool]:
         """Truth of a proposition in each state."""
-        found: list[bool] = self.find_truths(proposition).tolist()
-        return found
+        truths: list[bool] = self.find_truths(proposition).tolist()
+        return truths
 
 
 class _Views(Sequence[StateView]):
     """Views of the states of a binding, those that have been looked at being made together."""
 
     def __init__(
-        self, arrays: TraceArrays, binding: Binding, formula: ltl.Formula, told: _Vocabularies
+        self, arrays: TraceArrays, binding: Binding, formula: ltl.Formula, words: _Vocabularies
     ) -> None:
         comparisons = [atom for atom in ltl.atoms_of(formula) if isinstance(atom, ltl.Comparison)]
         counts = any(isinstance(term, ltl.Count) for own in comparisons for _, term in own.terms)
-        whom = arrays.objects.keys() if counts else {*binding.objects.values()}
-        self._arrays = arrays.part({*names_in(formula)}, whom)
-        self._binding, self._told = binding, told
+        items = arrays.objects.keys() if counts else {*binding.objects.values()}
+        self._arrays = arrays.part({*names_in(formula)}, items)
+        self._binding, self._vocabularies = binding, words
         self._made: dict[int, tuple[StateView, StateView]] = {}
 
     def look_at(self, indices: Set[int]) -> None:
         """Make the views of some states."""
-        chosen, told = sorted(indices), self._told
+        chosen, words = sorted(indices), self._vocabularies
         part = self._arrays.at([self._binding.first + index for index in chosen])
-        given = with_implied_values(part.trace(), told.declared)
-        known = completed(given, told.declared, told.supposed)
+        given = with_implied_values(part.trace(), words.declared)
+        known = completed(given, words.declared, words.supposed)
         for number, index in enumerate(chosen):
             present = present_in(number, known.objects, known.present)
             self._made[index] = (
-                StateView(known.states[number], present, told.completed),
-                StateView(given.states[number], {}, told.given),
+                StateView(known.states[number], present, words.completed),
+                StateView(given.states[number], {}, words.given),
             )
 
     def given(self, index: int) -> StateView:

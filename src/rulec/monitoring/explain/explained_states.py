@@ -35,7 +35,7 @@ def states_to_explain(
         state = machine.successors[state][letter]
         if state in length_at:
             del way[length_at[state] :]
-            length_at = {one: n for one, n in length_at.items() if n <= len(way)}
+            length_at = {at: n for at, n in length_at.items() if n <= len(way)}
         else:
             way.append(number)
             length_at[state] = len(way)

@@ -131,8 +131,10 @@ class Explanation:
         rule, about = self.rule, self.violation.binding
         cite = f" [{rule.cite}]" if rule.cite else ""
         bound = ", ".join(f"{name} = {item}" for name, item in about.items())
-        whom = f" for {bound}" if bound else ""
-        lines = [f"{rule.strength} rule {rule.name}{cite}{whom}: violated in state {self.decisive}"]
+        bound = f" for {bound}" if bound else ""
+        lines = [
+            f"{rule.strength} rule {rule.name}{cite}{bound}: violated in state {self.decisive}"
+        ]
         lines += [rule.says] if rule.says else []
         lines += map(str, self.margins())
         at = self.states.index(self.decisive)

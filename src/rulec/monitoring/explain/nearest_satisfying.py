@@ -195,11 +195,11 @@ class _LetterDistances:
     def _differs(self, letter: Letter) -> Sequence[int]:
         """In how many reads each letter differs from one."""
         if letter not in self._differ:
-            found = b"\0"
+            counts = b"\0"
             for size, given in zip(self._sizes, letter, strict=True):
-                other = bytes([n + 1 for n in found])
-                found = b"".join([found if digit == given else other for digit in range(size)])
-            self._differ[letter] = found
+                other = bytes([n + 1 for n in counts])
+                counts = b"".join([counts if digit == given else other for digit in range(size)])
+            self._differ[letter] = counts
         return self._differ[letter]
 
     def exclude(self, letters: Sequence[int]) -> None:

@@ -62,12 +62,12 @@ class ObservedStates:
         if in_floats is None:
             return [evaluate(bound, view) is True for view in self.views]
         term, stands = in_floats
-        items, found = self.items(term.arguments), []
+        items, truths = self.items(term.arguments), []
         for view in self.views:
             value = view.value(term.name, items)
             own = stands(value) if type(value) is float else evaluate(bound, view) is True
-            found.append(own)
-        return found
+            truths.append(own)
+        return truths
 
     def word(self, machine: MealyMonitor, n_states: int | None = None) -> list[Letter]:
         """The letters that a machine reads in the first states, or in all, digit by digit."""

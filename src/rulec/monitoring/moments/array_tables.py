@@ -77,18 +77,18 @@ class ArrayTables(NameTables):
 
 def _constant(rows: ValueRows, there: Flags) -> ValueRows:
     """Rows in which what some state says holds in all."""
-    told = there & ~rows.unknown
-    is_told = told.any(axis=1, keepdims=True)
-    first = told.argmax(axis=1)[:, None]
-    values = np.where(is_told, np.take_along_axis(rows.values, first, 1), rows.values)
+    is_stated = there & ~rows.unknown
+    any_stated = is_stated.any(axis=1, keepdims=True)
+    first = is_stated.argmax(axis=1)[:, None]
+    values = np.where(any_stated, np.take_along_axis(rows.values, first, 1), rows.values)
     if rows.upper is rows.values:
-        return ValueRows(values, values, rows.unknown & ~is_told)
+        return ValueRows(values, values, rows.unknown & ~any_stated)
     # Of several intervals what all of them have in common.
-    low = np.where(told, rows.values, -np.inf).max(axis=1, keepdims=True)
-    high = np.where(told, rows.upper, np.inf).min(axis=1, keepdims=True)
+    low = np.where(is_stated, rows.values, -np.inf).max(axis=1, keepdims=True)
+    high = np.where(is_stated, rows.upper, np.inf).min(axis=1, keepdims=True)
     low, high = np.broadcast_arrays(low, values)[0], np.broadcast_arrays(high, values)[0]
     return ValueRows(
-        np.where(is_told, low, rows.values),
-        np.where(is_told, high, rows.upper),
-        rows.unknown & ~is_told,
+        np.where(any_stated, low, rows.values),
+        np.where(any_stated, high, rows.upper),
+        rows.unknown & ~any_stated,
     )

@@ -45,19 +45,19 @@ def facts_of_many(
 ) -> list[DriveFacts]:
     """Those of what was read and has a verdict, in order; what is alike is looked at together."""
     judged = {place: verdict for place, verdict in enumerate(verdicts) if verdict is not None}
-    found: dict[int, DriveFacts] = {}
+    facts_at: dict[int, DriveFacts] = {}
     for alike in alike_traces(items, [*judged], rulebook.vocabulary):
         own = [judged.get(place, _NOT_WANTED) for place in alike.places]
         names = [alike.names(number) for number in range(len(own))]
         tables = ColumnTables(alike.columns, rulebook.vocabulary, alike.told)
         truth = TraceTruth(tables, rulebook.semantics, alike.ends)
         facts = _facts(truth, alike.columns.step_s, rulebook, own, names)
-        found |= zip(alike.places, facts, strict=True)
-    for place in judged.keys() - found.keys():
+        facts_at |= zip(alike.places, facts, strict=True)
+    for place in judged.keys() - facts_at.keys():
         trace = items[place]
         assert isinstance(trace, Trace), "it has been judged"
-        found[place] = facts_of(trace, rulebook, judged[place])
-    return [found[place] for place in judged]
+        facts_at[place] = facts_of(trace, rulebook, judged[place])
+    return [facts_at[place] for place in judged]
 
 
 _NOT_WANTED = Verdict("", ())
@@ -70,8 +70,8 @@ def _facts(
     verdicts: Sequence[Verdict],
     names: Sequence[Names],
 ) -> list[DriveFacts]:
-    found = alike_exposures(truth, step_s, rulebook, verdicts, names)
-    columns = truth.tables.last.tolist(), road_classes(truth.tables), found
+    exposures = alike_exposures(truth, step_s, rulebook, verdicts, names)
+    columns = truth.tables.last.tolist(), road_classes(truth.tables), exposures
     return [
         DriveFacts(last + 1, step_s, road, exposure)
         for last, road, exposure in zip(*columns, strict=True)

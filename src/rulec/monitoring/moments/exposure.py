@@ -85,10 +85,10 @@ def alike_exposures(
         item_of = {
             item: place for place, item in enumerate(own if decided else (), number * len(own))
         }
-        for found in decided:
-            items = tuple([item_of[item] for item in found.binding.values()])
-            outcome: Outcome = "violated" if isinstance(found, Violation) else "open"
-            outcomes.setdefault(found.rule, {})[number, items] = outcome
+        for finding in decided:
+            items = tuple([item_of[item] for item in finding.binding.values()])
+            outcome: Outcome = "violated" if isinstance(finding, Violation) else "open"
+            outcomes.setdefault(finding.rule, {})[number, items] = outcome
     left_out = [{rule.rule for rule in verdict.not_judged} for verdict in verdicts]
     result: list[dict[str, Exposure]] = [{} for _ in verdicts]
     for watched in _watched(rulebook, exact_step(step_s)):
@@ -155,15 +155,15 @@ def _decided(choices: ChosenObjects, left: dict[Chosen, Outcome]) -> tuple[Count
         return np.zeros(0, dtype=np.intp), []
     near = np.flatnonzero(np.isin(choices.trace, [trace for trace, _ in left]))
     those = choices.at(near)
-    rows, found = [], []
+    rows, decided = [], []
     for row, trace, items in zip(
         near.tolist(), those.trace.tolist(), those.items.tolist(), strict=True
     ):
         outcome = left.pop((trace, tuple(items)), None)
         if outcome is not None:
             rows.append(row)
-            found.append(outcome)
-    return np.array(rows, dtype=np.intp), found
+            decided.append(outcome)
+    return np.array(rows, dtype=np.intp), decided
 
 
 def _breached(breach: FormulaTruth, opportunities: Sequence[Stretches]) -> Counts:

@@ -49,16 +49,16 @@ def moments(trace: Trace | TraceArrays, query: FormulaQuery) -> list[Moment]:
     tables = tables_of(trace, query.vocabulary)
     truth, n_states = TraceTruth(tables, query.semantics, trace.ends), tables.n_states
     asked = truth.choices_of(query.rule.variables)
-    found: dict[tuple[str, ...], list[tuple[Flags, Flags]]] = {}
+    flags_of: dict[tuple[str, ...], list[tuple[Flags, Flags]]] = {}
     for rounded in roundings:
         ready = ReadyFormula(rounded, place=trace.place if isinstance(trace, Trace) else None)
         for part in truth.of(ready, asked):
             sure, possible = (flags[:, :n_states] for flags in part.in_trace())
             for row in np.flatnonzero(possible.any(axis=1)).tolist():
                 choice = tuple([tables.objects[item] for item in part.choices.items[row]])
-                found.setdefault(choice, []).append((sure[row], possible[row]))
+                flags_of.setdefault(choice, []).append((sure[row], possible[row]))
     result = []
-    for choice, rows in found.items():
+    for choice, rows in flags_of.items():
         possible = np.any([flags for _, flags in rows], axis=0)
         sure = np.all([flags for flags, _ in rows], axis=0)
         sure &= len(rows) == len(roundings)

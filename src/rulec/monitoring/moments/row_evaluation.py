@@ -145,7 +145,7 @@ class RowEvaluation:
         lows = [(f, part.values if f > 0 else part.upper) for f, part in parts]
         highs = [(f, part.upper if f > 0 else part.values) for f, part in parts]
         low = _digits(ready.scale, lows, unknown)
-        same = all(one is other for (_, one), (_, other) in zip(lows, highs, strict=True))
+        same = all(lower is upper for (_, lower), (_, upper) in zip(lows, highs, strict=True))
         high = low if same else _digits(ready.scale, highs, unknown)
         return TruthRows(ready.every[low, high] & ~unknown, ready.some[low, high] | unknown)
 
@@ -177,5 +177,5 @@ def _digits(
     spread = np.broadcast_arrays(ignored, *[numbers for _, numbers in summands])
     shape = spread[0].shape
     flat = [column.ravel() for column in spread]
-    parts = [(factor, one) for (factor, _), one in zip(summands, flat[1:], strict=True)]
+    parts = [(factor, values) for (factor, _), values in zip(summands, flat[1:], strict=True)]
     return digits_of(ready, parts, flat[0].size, flat[0]).reshape(shape)

@@ -136,15 +136,15 @@ class BoundRules:
             partial = self._partial_state(state, (name, place))
         reader = LetterReader((state,), rulebook, name.format, place=place, objects=self.objects)
         cast = Cast(self.objects, rulebook.vocabulary, 1, {}, place)
-        found: dict[tuple[str, ...], dict[Items, None]] = {}
+        awake: dict[tuple[str, ...], dict[Items, None]] = {}
         for group in self.lazy:
-            own = found.setdefault(group.types, {})
+            own = awake.setdefault(group.types, {})
             for prepared in group.rules:
                 rule = prepared.rule
                 bits = partial.bits_of(prepared) if partial else known_bits(reader, rule)
                 bound = doubtful_bindings(rule, cast, bits, prepared.idle)
                 own.update((tuple(binding.objects.values()), None) for binding in bound)
-        return found
+        return awake
 
     def read(
         self, state: State, number: int, place: SourceLocation | None
@@ -205,14 +205,14 @@ class BoundRules:
 
     def inexact(self, letters: Letters) -> frozenset[str]:
         """Rules of which more is taken to be possible than is, in a state with these letters."""
-        found: frozenset[str] = frozenset()
+        inexact: frozenset[str] = frozenset()
         begin = 0
         for group, bindings in self._bindings:
             if group.inexact:
                 for letter in letters[begin : begin + len(bindings)]:
-                    found |= group.inexact.get(letter, frozenset())
+                    inexact |= group.inexact.get(letter, frozenset())
             begin += len(bindings)
-        return found
+        return inexact
 
     def _careful_letters(
         self,
@@ -233,11 +233,11 @@ class BoundRules:
         check_counting_axioms(rulebook, 1, reader.view, name.format, place)
         is_partial = self.groups.is_partial or has_partial_values(state)
         partial = self._partial_state(state, (name, place)) if is_partial else None
-        found = self._known_letters(state, known)
+        by_place = self._known_letters(state, known)
         for bound_rule in self.rules:
             prepared = bound_rule.prepared
             for place_, items in enumerate(bound_rule.bindings, bound_rule.places.start):
-                own = found[place_]
+                own = by_place[place_]
                 if isinstance(own, list) and own[bound_rule.number] is None:
                     own[bound_rule.number] = (
                         (reader.word(prepared.rule, prepared.bound(items), 0, 0)[0], True)
@@ -246,7 +246,7 @@ class BoundRules:
                     )
         letters = [
             own if isinstance(own, int) else _letter(group, own)
-            for (group, _), own in zip(self._at, found, strict=True)
+            for (group, _), own in zip(self._at, by_place, strict=True)
         ]
         return self._filled(letters, state, (number, place)), is_partial
 
@@ -275,12 +275,12 @@ class BoundRules:
         of_all, number = self._of_all, where[0]
 
         def read(prepared: PreparedRule, items: Items) -> tuple[LetterClass, bool]:
-            found = of_all.letter_class(prepared, items, state)
-            if found is None:
+            classes = of_all.letter_class(prepared, items, state)
+            if classes is None:
                 # Something is wrong.
                 reader = self._partial_state(state, (f"state {number}", where[1]))
-                found = reader.letter_class(prepared, items)
-            return found
+                classes = reader.letter_class(prepared, items)
+            return classes
 
         for at, group, items in has_holes:
             letters[at] = group.filled(letters[at], items, read)
@@ -301,6 +301,6 @@ def _letter(group: RuleGroup, read: RulesRead) -> int:
 
 
 def _chosen(group: RuleGroup, cast: Cast, awake: Awake) -> tuple[Items, ...]:
-    found = awake.get(group.types, ())
-    CHOICES.within(len(found), None, f"rule {named([own.name for own in group.rules])}")
-    return tuple(in_usual_order(found, cast))
+    chosen = awake.get(group.types, ())
+    CHOICES.within(len(chosen), None, f"rule {named([own.name for own in group.rules])}")
+    return tuple(in_usual_order(chosen, cast))

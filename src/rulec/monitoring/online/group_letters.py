@@ -71,10 +71,10 @@ class GroupLetters:
 
     def known_letters(self, state: State, parts: tuple[Encoded, ...]) -> Sequence[int | RulesRead]:
         """The letter of each binding, or what those rules read that need no closer look."""
-        found: list[int | RulesRead] = []
+        letters: list[int | RulesRead] = []
         for number in range(len(self._readers)):
-            found += self._known_of_group(number, state, parts)
-        return found
+            letters += self._known_of_group(number, state, parts)
+        return letters
 
     def _known_of_group(
         self, number: int, state: State, parts: tuple[Encoded, ...]

@@ -169,7 +169,7 @@ class LetterWalk:
                 self._starts.clear()
             known = self._nodes[key] = _Node(self, level, begin, sets, is_exact=is_exact)
             if level == len(self._order):
-                found = self._class_of(sets[0] >> 1)
-                if found is not None and found != IMPOSSIBLE:
-                    known.answer = found, is_exact
+                letter_class = self._class_of(sets[0] >> 1)
+                if letter_class is not None and letter_class != IMPOSSIBLE:
+                    known.answer = letter_class, is_exact
         return known

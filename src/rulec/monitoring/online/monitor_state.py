@@ -214,15 +214,15 @@ def awake(current: MonitorState, objects: Mapping[str, str]) -> Awake:
     """The choices of objects, if all are still there, for which a rule is not where it starts."""
     bound_rules = current.bound_rules
     stayed = {name for name, kind in bound_rules.objects.items() if objects.get(name) == kind}
-    found: dict[tuple[str, ...], set[Items]] = {}
+    choices: dict[tuple[str, ...], set[Items]] = {}
     for own in bound_rules.rules:
         if len(own.group.types) > 2:
-            found.setdefault(own.group.types, set()).update(
+            choices.setdefault(own.group.types, set()).update(
                 items
                 for items, edge in zip(own.bindings, own.edges(current.nodes), strict=True)
                 if stayed.issuperset(items) and not own.prepared.is_at_start(edge)
             )
-    return found
+    return choices
 
 
 def _at_the_end(verdict: RunningVerdict) -> RunningVerdict:

@@ -106,15 +106,15 @@ class _RuleOfAll:
         values = tuple([value_in(state, *asked) for asked in self._asked])
         known = self._known.get(values)
         if known is None:
-            found = self._found(state, values)
-            if found is None:
+            classes = self._read_classes(state, values)
+            if classes is None:
                 return None
             if len(self._known) >= MOST_KNOWN:
                 self._known.clear()
-            known = self._known[values] = found
+            known = self._known[values] = classes
         return known
 
-    def _found(
+    def _read_classes(
         self, state: State, values: tuple[PartialValue | None, ...]
     ) -> tuple[LetterClass, bool] | None:
         entangled = self._letters.entangled
@@ -130,7 +130,7 @@ class _RuleOfAll:
             if entangled.numbers:
                 there = None if entangled.is_local else self._everybody.objects
                 number = entangled.number(values[: len(self._entangled)], there)
-                is_exact = entangled.found[number][1]
+                is_exact = entangled.joint_letters[number][1]
                 key.append(number)
             is_exact = is_exact and not any(
                 self._has_unknown_constant(own, view) for own in self._constants

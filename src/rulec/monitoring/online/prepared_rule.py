@@ -180,7 +180,7 @@ class PreparedRule:
 
     def _decided_by_place(self, place: int) -> _Decided:
         assert self.entangled is not None
-        cubes, is_exact = self.entangled.found[place]
+        cubes, is_exact = self.entangled.joint_letters[place]
         weight: int | None = None
         if len(cubes) == 1 and not any(x & (x - 1) for x in cubes[0]):
             strides = [self._strides[n] for n in self.entangled.numbers]
@@ -196,7 +196,7 @@ class PreparedRule:
     def _cubes_at(self, place: int) -> Letters:
         if self.entangled is None or not self.entangled.numbers:
             return _NO_CUBES
-        return self.entangled.found[place][0]
+        return self.entangled.joint_letters[place][0]
 
     @cached_property
     def _constant_places(self) -> tuple[int, ...]:

@@ -163,7 +163,7 @@ class RuleGroup:
             self.cache_size.n += 1
             if BY_STATE in classes:
                 self.cache_size.has_holes = True
-                own = tuple([n for n, found in enumerate(classes) if found == BY_STATE])
+                own = tuple([n for n, known in enumerate(classes) if known == BY_STATE])
                 self.holes[letter] = Holes(own, frozenset(inexact))
             elif inexact:
                 self.cache_size.is_inexact = True

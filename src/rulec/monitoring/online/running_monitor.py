@@ -326,5 +326,5 @@ def _unpickled(
     return monitor
 
 
-def _no_object(what: str, of: str, place: SourceLocation | None) -> RulecError:
-    return NOT_A_TRACE.error(place, f"{what} is no object of {of}")
+def _no_object(item: str, owner: str, place: SourceLocation | None) -> RulecError:
+    return NOT_A_TRACE.error(place, f"{item} is no object of {owner}")

@@ -236,7 +236,7 @@ def _saved_choices(
 ) -> dict[tuple[str, ...], set[Items]]:
     """The choices of objects that a saved monitor tells of. Raises ValueError for what is none."""
     types = {rule.name: types_of(rule) for rule in rulebook.rules}
-    found: dict[tuple[str, ...], set[Items]] = {}
+    choices: dict[tuple[str, ...], set[Items]] = {}
     for rule in saved.rules:
         for binding in rule.bindings:
             own = types[rule.rule]
@@ -244,8 +244,8 @@ def _saved_choices(
             fit = map(rulebook.vocabulary.is_subtype, kinds, own)
             if not len(own) == len(kinds) == len(set(binding.objects)) or not all(fit):
                 raise ValueError
-            found.setdefault(own, set()).add(binding.objects)
-    return found
+            choices.setdefault(own, set()).add(binding.objects)
+    return choices
 
 
 def _edges(saved: SavedMonitor, bound_rules: BoundRules) -> dict[str, list[Edge]]:

@@ -112,18 +112,18 @@ class Dependence:
         is_one = is_same or self._runs.n_starts == 1
         starts = self._runs.starts(same=is_same)
         agree = self._agree if thoroughly else self._agree_by_few
-        found: bool | None = True
+        decides: bool | None = True
         for group in self._groups(names):
             # Different words come to something else more often than one does
-            for one, other in sorted(product(group, repeat=2), key=lambda both: both[0] is both[1]):
+            for word, other in sorted(product(group, repeat=2), key=lambda two: two[0] is two[1]):
                 # There is one run of a word all of whose reads are fixed
-                if one is other and is_one and self._runs.are_settled(one, set(fixed)):
+                if word is other and is_one and self._runs.are_settled(word, set(fixed)):
                     continue
-                agrees = agree(one, other, fixed, starts)
+                agrees = agree(word, other, fixed, starts)
                 if agrees is False:
                     return False
-                found = found and agrees
-        return found
+                decides = decides and agrees
+        return decides
 
     def _groups(self, names: frozenset[str]) -> Iterator[list[Word]]:
         """Alternatives that have the same values of these constants."""
@@ -133,29 +133,29 @@ class Dependence:
             groups.setdefault(key, []).append(word)
         yield from groups.values()
 
-    def _agree(self, one: Word, other: Word, fixed: tuple[int, ...], pairs: Pairs) -> bool:
+    def _agree(self, first: Word, second: Word, fixed: tuple[int, ...], pairs: Pairs) -> bool:
         """Whether runs on two words, from pairs of states, cannot come to less and to more.
 
         That they can is often told by few pairs.
         """
-        found = self._agree_by_few(one, other, fixed, pairs)
-        if found is None:
-            found = self._agree_by(None, one, other, fixed=fixed, pairs=pairs)
-        assert found is not None, "all pairs were followed"
-        return found
+        agree = self._agree_by_few(first, second, fixed, pairs)
+        if agree is None:
+            agree = self._agree_by(None, first, second, fixed=fixed, pairs=pairs)
+        assert agree is not None, "all pairs were followed"
+        return agree
 
     def _agree_by_few(
-        self, one: Word, other: Word, fixed: tuple[int, ...], pairs: Pairs
+        self, first: Word, second: Word, fixed: tuple[int, ...], pairs: Pairs
     ) -> bool | None:
         """The same by some pairs of each state; None if these do not tell."""
-        return self._agree_by(MOST_TRIED, one, other, fixed=fixed, pairs=pairs)
+        return self._agree_by(MOST_TRIED, first, second, fixed=fixed, pairs=pairs)
 
     def _agree_by(
-        self, most: int | None, one: Word, other: Word, *, fixed: tuple[int, ...], pairs: Pairs
+        self, most: int | None, first: Word, second: Word, *, fixed: tuple[int, ...], pairs: Pairs
     ) -> bool | None:
         """The same by so many pairs after each letter; None if these do not tell."""
-        runs, stretches = self._runs, self._alike(one, other)
-        first, second = runs.prospects(one), runs.prospects(other)
+        runs, stretches = self._runs, self._alike(first, second)
+        first_prospects, second_prospects = runs.prospects(first), runs.prospects(second)
         begin, all_followed = 0, True
         for letters, length in stretches:
             choices, look = runs.choices(*letters, fixed), 0
@@ -164,7 +164,7 @@ class Dependence:
                     # To look is worth while now and then
                     look = 2 * look + 1 if most is None else look + 1
                     at = begin + place
-                    undecided = runs.undecided(pairs, first[at], second[at])
+                    undecided = runs.undecided(pairs, first_prospects[at], second_prospects[at])
                     if undecided is None:
                         return False
                     if not undecided:
@@ -177,17 +177,17 @@ class Dependence:
                     break  # the same again, however often
                 pairs = after
             begin += length
-        agree = runs.agree(pairs, runs.choices(one[-1], other[-1], fixed))
+        agree = runs.agree(pairs, runs.choices(first[-1], second[-1], fixed))
         return agree if all_followed or not agree else None
 
-    def _alike(self, one: Word, other: Word) -> list[_Stretch]:
+    def _alike(self, first: Word, second: Word) -> list[_Stretch]:
         """What two words have for a while, without their last letters."""
-        found = self._stretches.get((one, other))
-        if found is None:
-            together = groupby(zip(one[:-1], other[:-1], strict=True))
-            found = [(letters, len(list(alike))) for letters, alike in together]
-            self._stretches[one, other] = found
-        return found
+        stretches = self._stretches.get((first, second))
+        if stretches is None:
+            together = groupby(zip(first[:-1], second[:-1], strict=True))
+            stretches = [(letters, len(list(alike))) for letters, alike in together]
+            self._stretches[first, second] = stretches
+        return stretches
 
 
 def _some(pairs: Pairs, number: int) -> list[tuple[int, int]]:

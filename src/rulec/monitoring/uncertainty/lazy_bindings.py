@@ -79,11 +79,11 @@ def known_bits(reader: LetterReader, rule: CompiledRule) -> ReadBits:
 
 
 def _in_order(
-    found: Iterator[tuple[str, ...]], begun: Collection[tuple[str, ...]], cast: Cast
+    choices: Iterator[tuple[str, ...]], already_begun: Collection[tuple[str, ...]], cast: Cast
 ) -> Iterator[tuple[str, ...]]:
-    if not begun:
-        return found
-    both = merge(found, in_usual_order(begun, cast), key=usual_order(cast))
+    if not already_begun:
+        return choices
+    both = merge(choices, in_usual_order(already_begun, cast), key=usual_order(cast))
     return iter(dict.fromkeys(both))
 
 

@@ -46,7 +46,7 @@ class Prospects:
         """
         if len(self._tables) > MOST_TABLES:
             self._forget()
-        found: list[bytes] = []
+        backward: list[bytes] = []
         here = -1
         for classes, stretch in groupby(reversed(word)):
             length = len(list(stretch))
@@ -57,11 +57,11 @@ class Prospects:
                     known = self._before[key] = self._number(here, classes)
                 if known == here:
                     # The same again, however often.
-                    found += [self._tables[here]] * (length - done)
+                    backward += [self._tables[here]] * (length - done)
                     break
                 here = known
-                found.append(self._tables[here])
-        return found[::-1]
+                backward.append(self._tables[here])
+        return backward[::-1]
 
     def _number(self, after: int, classes: int) -> int:
         symbols = [n for n in range(classes.bit_length()) if classes >> n & 1]

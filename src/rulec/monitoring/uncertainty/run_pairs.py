@@ -105,12 +105,12 @@ class RunPairs:
 
     def prospects(self, word: Word) -> list[bytes]:
         """For each letter of a word what may come of each state: see ``Prospects``."""
-        found = self._along.get(word)
-        if found is None:
+        prospects = self._along.get(word)
+        if prospects is None:
             classes = {number: self._classes.of(self._letters[number]) for number in set(word)}
-            found = self._prospects.along([classes[number] for number in word])
-            self._along[word] = found
-        return found
+            prospects = self._prospects.along([classes[number] for number in word])
+            self._along[word] = prospects
+        return prospects
 
     def undecided(self, pairs: Pairs, first: bytes, second: bytes) -> Pairs | None:
         """The pairs of which it is open whether the first run comes to less than the second one.
@@ -123,32 +123,32 @@ class RunPairs:
             self._undecided[key] = _undecided(pairs, first, second)
         return self._undecided[key]
 
-    def choices(self, one: int, other: int, fixed: tuple[int, ...]) -> int:
+    def choices(self, first: int, second: int, fixed: tuple[int, ...]) -> int:
         """The number of what two letters may be, with the same digits of fixed reads."""
-        if one == other:
+        if first == second:
             # Reads with one digit divide nothing.
-            fixed = tuple([n for n in fixed if n in self._open[one]])
-        key = one, other, fixed
-        found = self._choices.get(key)
-        if found is None:
-            choices = self._classes.side_by_side(self._letters[one], self._letters[other], fixed)
-            found = self._places.setdefault(choices, len(self._sets))
-            if found == len(self._sets):
-                self._sets.append(choices)
-            self._choices[key] = found
-        return found
+            fixed = tuple([n for n in fixed if n in self._open[first]])
+        key = first, second, fixed
+        number = self._choices.get(key)
+        if number is None:
+            classes = self._classes.side_by_side(self._letters[first], self._letters[second], fixed)
+            number = self._places.setdefault(classes, len(self._sets))
+            if number == len(self._sets):
+                self._sets.append(classes)
+            self._choices[key] = number
+        return number
 
     def after(self, pairs: Pairs, choices: int) -> Pairs:
         """The pairs after one more step."""
         key = pairs, choices
-        found = self._after.get(key)
-        if found is None:
+        onward = self._after.get(key)
+        if onward is None:
             rows: dict[int, int] = {}
             for row in pairs:
-                for one, others in self._onward.get((row, choices)) or self._from(row, choices):
-                    rows[one] = rows.get(one, 0) | others
-            found = self._after[key] = self._furthest(rows)
-        return found
+                for state, others in self._onward.get((row, choices)) or self._from(row, choices):
+                    rows[state] = rows.get(state, 0) | others
+            onward = self._after[key] = self._furthest(rows)
+        return onward
 
     def _from(self, row: tuple[int, int], choices: int) -> list[tuple[int, int]]:
         rows: dict[int, int] = {}
@@ -156,55 +156,55 @@ class RunPairs:
             targets = self._greatest_behind(row[1], second)
             for target in self._least_behind(row[0], first):
                 rows[target] = rows.get(target, 0) | targets
-        found = self._onward[row, choices] = list(rows.items())
-        return found
+        targets_of = self._onward[row, choices] = list(rows.items())
+        return targets_of
 
     def _least_behind(self, state: int, classes: int) -> list[int]:
         key = state, classes
-        found = self._least.get(key)
-        if found is None:
+        least = self._least.get(key)
+        if least is None:
             machine = self._machine
             targets = _behind(machine, state, classes)
-            found = [*bits_of(machine.least(targets))]
-            self._least[key] = found
-        return found
+            least = [*bits_of(machine.least(targets))]
+            self._least[key] = least
+        return least
 
     def _greatest_behind(self, states: int, classes: int) -> int:
         key = states, classes
-        found = self._greatest.get(key)
-        if found is None:
+        greatest = self._greatest.get(key)
+        if greatest is None:
             machine, targets = self._machine, 0
             for state in bits_of(states):
                 targets |= _behind(machine, state, classes)
-            found = self._greatest[key] = machine.greatest(targets)
-        return found
+            greatest = self._greatest[key] = machine.greatest(targets)
+        return greatest
 
     def _furthest(self, rows: Mapping[int, int]) -> Pairs:
         """The pairs without those of which nothing can come that does not come of another.
 
         So it is if the other's first state is no worse and its second one no better.
         """
-        if all(others == 1 << one for one, others in rows.items()):
+        if all(others == 1 << state for state, others in rows.items()):
             return frozenset(rows.items())
-        machine, found = self._machine, []
+        machine, furthest = self._machine, []
         below, lost, safe = machine.below, machine.lost, self._safe
         rows = {
-            one: left
-            for one, others in rows.items()
-            if one not in lost and (left := others & ~safe)
+            state: left
+            for state, others in rows.items()
+            if state not in lost and (left := others & ~safe)
         }
         if len(rows) == 1:
-            ((one, others),) = rows.items()
-            return frozenset([(one, machine.greatest(others))])
+            ((state, others),) = rows.items()
+            return frozenset([(state, machine.greatest(others))])
         ranks = self._ranks
         own = {ranks[row]: row for row in rows}
         firsts = sum(1 << rank for rank in own)
         # By rank what its own second states reach, and those of all whose first one is no worse
         reached: dict[int, int] = {}
         for rank in sorted(own):
-            one = own[rank]
-            others = rows[one]
-            better = self._ranks_below(one) & firsts & (1 << rank) - 1
+            state = own[rank]
+            others = rows[state]
+            better = self._ranks_below(state) & firsts & (1 << rank) - 1
             beyond = 0
             while better:
                 nearest = better.bit_length() - 1
@@ -213,8 +213,8 @@ class RunPairs:
             reached[rank] = beyond | _reach(others, below)
             others &= ~beyond
             if others:
-                found.append((one, machine.greatest(others)))
-        return frozenset(found)
+                furthest.append((state, machine.greatest(others)))
+        return frozenset(furthest)
 
     @cached_property
     def _ranks(self) -> list[int]:
@@ -231,31 +231,31 @@ class RunPairs:
 
     def _ranks_below(self, state: int) -> int:
         """The ranks, as bits, of the states that come to no more than one, and its own."""
-        found = self._below.get(state)
-        if found is None:
+        ranks_below = self._below.get(state)
+        if ranks_below is None:
             ranks = self._ranks
-            found = sum([1 << ranks[other] for other in bits_of(self._machine.below[state])])
-            self._below[state] = found
-        return found
+            ranks_below = sum([1 << ranks[other] for other in bits_of(self._machine.below[state])])
+            self._below[state] = ranks_below
+        return ranks_below
 
     def agree(self, pairs: Pairs, choices: int) -> bool:
         """Whether no first run of pairs comes to less than the second one with a last letter."""
         key = pairs, choices
-        found = self._ends.get(key)
-        if found is None:
+        agree = self._ends.get(key)
+        if agree is None:
             outputs = self._machine.outputs
-            found = self._ends[key] = all(
-                min([outputs[one][symbol] for symbol in bits_of(first)])
+            agree = self._ends[key] = all(
+                min([outputs[state][symbol] for symbol in bits_of(first)])
                 >= max([outputs[n][symbol] for n in bits_of(others) for symbol in bits_of(second)])
-                for (one, others), (first, second) in product(pairs, self._sets[choices])
+                for (state, others), (first, second) in product(pairs, self._sets[choices])
             )
-        return found
+        return agree
 
 
 def _undecided(pairs: Pairs, first: bytes, second: bytes) -> Pairs | None:
-    found = []
-    for one, others in pairs:
-        own, left = first[one], 0
+    undecided = []
+    for state, others in pairs:
+        own, left = first[state], 0
         # A lower bit is a better outcome.
         most = 2 * (own & -own)
         for other in bits_of(others):
@@ -265,8 +265,8 @@ def _undecided(pairs: Pairs, first: bytes, second: bytes) -> Pairs | None:
             if theirs >= most:
                 left |= 1 << other
         if left:
-            found.append((one, left))
-    return frozenset(found)
+            undecided.append((state, left))
+    return frozenset(undecided)
 
 
 def _behind(machine: OutcomeMachine, state: int, classes: int) -> int:
@@ -276,10 +276,10 @@ def _behind(machine: OutcomeMachine, state: int, classes: int) -> int:
 
 
 def _united(masks: Iterable[int]) -> int:
-    found = 0
+    union = 0
     for mask in masks:
-        found |= mask
-    return found
+        union |= mask
+    return union
 
 
 def _reach(states: int, below: Sequence[int]) -> int:

@@ -90,10 +90,10 @@ class ConstantsReader:
 
 def by_name(supposed: Mapping[Subject, Value]) -> dict[str, object]:
     """What is supposed of constants, by their names, to be compared."""
-    found: dict[str, object] = {}
+    named: dict[str, object] = {}
     for (name, items), value in supposed.items():
-        found[name] = (found.get(name), items, value) if items else value
-    return found
+        named[name] = (named.get(name), items, value) if items else value
+    return named
 
 
 def _values_of(

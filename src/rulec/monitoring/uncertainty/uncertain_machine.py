@@ -162,8 +162,8 @@ class UncertainMachine:
         others = frozenset([name for name in others if not dependence.is_idle(name)])
         if all(dependence.needs(name, every) for name in others):
             return others
-        found = dependence.smallest(self._in_order(doubtful, order))
-        return others if found is None else others.intersection(found)
+        smallest = dependence.smallest(self._in_order(doubtful, order))
+        return others if smallest is None else others.intersection(smallest)
 
     def _in_order(self, doubtful: Set[str], order: Sequence[str]) -> list[str]:
         """Names in their order, and what was before last, if that may matter."""
@@ -183,16 +183,16 @@ class UncertainMachine:
         doubtful = _doubtful(alternatives, unknown)
         names = self._in_order(doubtful, order)
         dependence = Dependence(self._runs, alternatives, unknown)
-        found = dependence.smallest(names)
-        on = names if found is None else found
-        told: tuple[Reason, ...] = ("not told",) if any(on) else ()
+        smallest = dependence.smallest(names)
+        on = names if smallest is None else smallest
+        not_told: tuple[Reason, ...] = ("not told",) if any(on) else ()
         before: tuple[Reason, ...] = ("began before",) if BEFORE in on else ()
         depends_on = tuple([name for name in on if name])
         cases = () if before else tuple(self._outcomes(depends_on, alternatives, unknown))
         if len({case.outcome for case in cases}) == 1:
             # It matters when they change: no value that they always have says how it comes out.
             cases = ()
-        return OpenReasons((*told, *before, *pending), depends_on, cases, found is not None)
+        return OpenReasons((*not_told, *before, *pending), depends_on, cases, smallest is not None)
 
     def _run(self, word: _Stretches) -> tuple[int, int]:
         own = [(self.classes.of(letters), length) for letters, length in word]

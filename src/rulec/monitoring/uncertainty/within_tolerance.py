@@ -11,18 +11,18 @@ from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
 
-def told_within_bounds(found: OpenReasons, is_within: Callable[[str], bool]) -> OpenReasons:
+def told_within_bounds(reasons: OpenReasons, is_within: Callable[[str], bool]) -> OpenReasons:
     """The reasons, apart for names that are not told, and for those told within bounds."""
-    if "not told" not in found.because:
-        return found
-    within = [name for name in found.depends_on if is_within(name)]
+    if "not told" not in reasons.because:
+        return reasons
+    within = [name for name in reasons.depends_on if is_within(name)]
     if not within:
-        return found
+        return reasons
     first: tuple[Reason, ...] = ("tolerance",)
-    if len(within) < len(found.depends_on):
+    if len(within) < len(reasons.depends_on):
         first = ("not told", *first)
-    others = [reason for reason in found.because if reason != "not told"]
-    return found._replace(because=(*first, *others))
+    others = [reason for reason in reasons.because if reason != "not told"]
+    return reasons._replace(because=(*first, *others))
 
 
 def is_within_bounds(name: str, states: Sequence[State], vocabulary: Vocabulary) -> bool:

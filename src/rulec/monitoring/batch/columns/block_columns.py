@@ -77,7 +77,7 @@ def columnize_block(group: BlockGroup, vocabulary: Vocabulary) -> TraceColumns:
                 raise UnencodableError
             declaration = vocabulary.declarations[name]
             n_parameters = len(declaration.parameters)
-            known = (one for one in placed if one.is_of(given, n_parameters))
+            known = (item for item in placed if item.is_of(given, n_parameters))
             placement = next(known, None)
             if placement is None:
                 placement = _placement(given, n_parameters, group)

@@ -175,11 +175,11 @@ def comparison_sides(
 
 def alike_places(columns: Iterable[NDArray[Any]], n_places: int) -> NDArray[np.intp]:
     """Numbers from 0 for places, equal for those where each column has the same."""
-    found = np.zeros(n_places, dtype=np.intp)
+    group_of = np.zeros(n_places, dtype=np.intp)
     for column in columns:
         codes = places_among(column)
-        found = places_among(found * (int(codes.max(initial=0)) + 1) + codes)
-    return found
+        group_of = places_among(group_of * (int(codes.max(initial=0)) + 1) + codes)
+    return group_of
 
 
 def said_by(

@@ -72,8 +72,8 @@ def contradicted(linked_facts: Sequence[LinkedFacts], reader: StackReader) -> se
     if not places:
         return set()
     states = distinct(np.concatenate(places))
-    found: list[int] = distinct(reader.stack.begins.searchsorted(states, side="right") - 1).tolist()
-    return set(found)
+    rows: list[int] = distinct(reader.stack.begins.searchsorted(states, side="right") - 1).tolist()
+    return set(rows)
 
 
 def linked(facts: Sequence[CompiledAxiom]) -> Iterator[LinkedFacts]:
@@ -129,8 +129,8 @@ def _contradicted_states(
         said = {(name, items): value for name, value in zip(names, values, strict=True)}
         view = StateView(with_values({}, said), objects, reader.stack.vocabulary)
         broken.append(not can_be(view, facts))
-    found: Places = spots.states[np.array(broken)[kinds]]
-    return found
+    contradicting: Places = spots.states[np.array(broken)[kinds]]
+    return contradicting
 
 
 def _alike(names: Sequence[str], stack: Stack, spots: Spots) -> Places:

@@ -63,7 +63,7 @@ class CrowdedStates:
         self._about = [name for name in names if declared[name].parameters]
         self._counted = sorted({count.type for count in map(count_in, reads) if count is not None})
         self._known: tuple[Places, _AlikeStates | None] | None = None
-        self._told: dict[tuple[Value | None, ...], tuple[EntangledReads, list[int]]] = {}
+        self._numbers: dict[tuple[Value | None, ...], tuple[EntangledReads, list[int]]] = {}
 
     @cached_property
     def are_entangled(self) -> Flags:
@@ -71,24 +71,24 @@ class CrowdedStates:
         stack = self._stack
         everybody = {f"{kind} {n}": kind for kind in self._counted for n in range(2)}
         shared = {name for name, _ in self._rule.reads_among(everybody).shared}
-        found = np.zeros(stack.n_states, dtype=bool)
-        cells = self._cells(found | True)
+        entangled = np.zeros(stack.n_states, dtype=bool)
+        cells = self._cells(entangled | True)
         for name in (*self._world, *self._about):
             column = stack.column(name)
             if column is None:
-                found |= name in shared and stack.default(name) is UNKNOWN
+                entangled |= name in shared and stack.default(name) is UNKNOWN
                 continue
             flags = is_partial(column) if name in shared else column.apart
             if flags is not None and name in self._world:
-                found |= flags
+                entangled |= flags
             elif flags is not None:
-                found[stack.state_of[cells[flags[cells]]]] = True
-        return found
+                entangled[stack.state_of[cells[flags[cells]]]] = True
+        return entangled
 
     def numbers(
         self, states: Places, supposed: Mapping[Subject, Value]
     ) -> tuple[EntangledReads, list[int]] | None:
-        """The rule's entangled reads, and the place of what is found of them in each state.
+        """The rule's entangled reads, and the place of their joint letters in each state.
 
         States are in ascending order. None if one has to look at each by itself.
         """
@@ -97,17 +97,17 @@ class CrowdedStates:
             return None
         # Much of what is supposed is of what these reads do not read
         own = tuple([supposed.get((name, ())) for name in self._world])
-        if own not in self._told:
+        if own not in self._numbers:
             often = alike.often[alike.firsts]
-            reads, found = self._found(states[alike.firsts], often, alike.examples, own)
-            self._told[own] = reads, np.array(found, dtype=np.intp)[alike.groups].tolist()
-        return self._told[own]
+            reads, numbers = self._numbers_of(states[alike.firsts], often, alike.examples, own)
+            self._numbers[own] = reads, np.array(numbers, dtype=np.intp)[alike.groups].tolist()
+        return self._numbers[own]
 
     def _alike(self, states: Places) -> _AlikeStates | None:
         """States in groups that are alike; the same ones are mostly asked about again."""
         if self._known is None or not np.array_equal(self._known[0], states):
             self._known = states, self._grouped(states)
-            self._told = {}
+            self._numbers = {}
         return self._known[1]
 
     def _grouped(self, states: Places) -> _AlikeStates | None:
@@ -144,14 +144,14 @@ class CrowdedStates:
         said = (codes for name in self._about for codes in _codes(stack.column(name), cells))
         return alike_places((stack.kind_of[stack.object_of[cells]], *said), len(cells))
 
-    def _found(
+    def _numbers_of(
         self,
         states: Places,
         often: NDArray[np.intp],
         examples: Places,
         supposed: Sequence[Value | None],
     ) -> tuple[EntangledReads, list[int]]:
-        """What is found in states in which there are objects like these examples so often.
+        """The places of joint letters in states with objects like these examples so often.
 
         ``supposed`` has what is, of the world's names, or None.
         """
@@ -174,7 +174,7 @@ class CrowdedStates:
             there.append(own)
         everybody = {item: types[kind] for own in there for item, kind in own.items()}
         reads = self._rule.reads_among(everybody)
-        found = []
+        numbers = []
         for place, own in enumerate(there):
             values = [
                 world[name][place]
@@ -185,8 +185,8 @@ class CrowdedStates:
                 for name, items in reads.subjects
             ]
             objects = {item: types[kind] for item, kind in own.items()}
-            found.append(reads.number(tuple(values), objects))
-        return reads, found
+            numbers.append(reads.number(tuple(values), objects))
+        return reads, numbers
 
 
 def supposed_instead(

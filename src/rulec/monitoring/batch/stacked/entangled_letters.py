@@ -42,8 +42,8 @@ class EntangledLetters:
         if not len(self.places):
             return [-1] * len(places)
         near = np.minimum(self.places.searchsorted(places), len(self.places) - 1)
-        found: list[int] = np.where(self.places[near] == places, self.numbers[near], -1).tolist()
-        return found
+        numbers: list[int] = np.where(self.places[near] == places, self.numbers[near], -1).tolist()
+        return numbers
 
 
 def entangled_letters(
@@ -61,41 +61,41 @@ def entangled_letters(
     one. The ``crowd`` are the states for rules that count everybody.
     """
     spots, partial = about
-    found: Sequence[int]
+    joint: Sequence[int]
     if rule.entangled is not None:
         reads = rule.entangled
         places = (partial & _are_entangled(reads, reader, spots)).nonzero()[0]
-        found = list(map(reads.number, _rows(reads, reader, spots.part(places), supposed)))
+        joint = list(map(reads.number, _rows(reads, reader, spots.part(places), supposed)))
     else:
         if not crowd.is_known:
             return None
         places = (partial & crowd.are_entangled[spots.states]).nonzero()[0]
-        told = crowd.numbers(spots.states[places], supposed)
-        if told is None:
+        crowded = crowd.numbers(spots.states[places], supposed)
+        if crowded is None:
             return None
-        reads, found = told
+        reads, joint = crowded
     letters = rule.machine.classes.of_rule(rule.rule, reads)
     digits_told = (numbers[n] for n in letters.independent)
-    varying = [told[places] for told in digits_told if isinstance(told, np.ndarray)]
-    different, which = _different(varying, found)
+    varying = [crowded[places] for crowded in digits_told if isinstance(crowded, np.ndarray)]
+    different, which = _different(varying, joint)
     digits = [digits_at(rule, n, numbers[n], places[different]) for n in letters.independent]
     keys: dict[tuple[int, ...], int] = {}
-    alike = [found[place] for place in different.tolist()]
+    alike = [joint[place] for place in different.tolist()]
     own = [keys.setdefault(key, len(keys)) for key in zip(*digits, alike, strict=True)]
     return EntangledLetters(
         places,
         np.array(own, dtype=np.intp)[which],
         tuple(map(letters.letters, keys)),
-        tuple([reads.found[key[-1]][1] for key in keys]),
+        tuple([reads.joint_letters[key[-1]][1] for key in keys]),
         tuple(map(letters.classes_of, keys)),
     )
 
 
 def _different(
-    digits: Sequence[NDArray[Any]], found: Sequence[int]
+    digits: Sequence[NDArray[Any]], joint: Sequence[int]
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """The first of the places that are alike by digits and what is found, and which is whose."""
-    _, firsts, which = np.unique(found, return_index=True, return_inverse=True)
+    """The first of the places alike by digits and joint letters, and which each place is like."""
+    _, firsts, which = np.unique(joint, return_index=True, return_inverse=True)
     for own in digits:
         codes = which * (int(own.max(initial=0)) + 1) + own.astype(np.intp)
         _, firsts, which = np.unique(codes, return_index=True, return_inverse=True)
@@ -107,18 +107,18 @@ def _different(
 
 def _are_entangled(reads: EntangledReads, reader: StackReader, spots: Spots) -> Flags:
     """Where unknown values have to do with each other."""
-    found = np.zeros(len(spots.states), dtype=bool)
+    entangled = np.zeros(len(spots.states), dtype=bool)
     for about in reads.subjects:
         name, variables = about
         column = reader.stack.column(name)
         if column is None:
             if about in reads.shared and reader.stack.default(name) is UNKNOWN:
-                found[:] = True
+                entangled[:] = True
             continue
         flags = is_partial(column) if about in reads.shared else column.apart
         if flags is not None:
-            found |= flags[spots.cells[variables[0]] if variables else spots.states]
-    return found
+            entangled |= flags[spots.cells[variables[0]] if variables else spots.states]
+    return entangled
 
 
 def _rows(

@@ -255,16 +255,16 @@ def _pairs(
     """The pairs of objects that have cells in one state in which a letter might do something."""
     stack = reader.stack
     n_objects = len(stack.types)
-    found = [np.empty(0, dtype=np.intp)]
-    for one, other in _joined(first, second, stack):
-        differ = stack.object_of[one] != stack.object_of[other]
-        one, other = one[differ], other[differ]
-        cells = dict(zip(rule.variables, (one, other), strict=True))
-        numbers = numbers_at(rule, reader, Spots(stack.state_of[one], cells), rule.variables)
-        busy = np.broadcast_to(_are_busy(rule, rule.letters.numbers(numbers)), len(one))
-        pairs = stack.object_of[one[busy]] * n_objects + stack.object_of[other[busy]]
-        found.append(distinct(pairs))
-    every = distinct(np.concatenate(found))
+    pairs_met = [np.empty(0, dtype=np.intp)]
+    for left, right in _joined(first, second, stack):
+        differ = stack.object_of[left] != stack.object_of[right]
+        left, right = left[differ], right[differ]
+        cells = dict(zip(rule.variables, (left, right), strict=True))
+        numbers = numbers_at(rule, reader, Spots(stack.state_of[left], cells), rule.variables)
+        busy = np.broadcast_to(_are_busy(rule, rule.letters.numbers(numbers)), len(left))
+        pairs = stack.object_of[left[busy]] * n_objects + stack.object_of[right[busy]]
+        pairs_met.append(distinct(pairs))
+    every = distinct(np.concatenate(pairs_met))
     return every // n_objects, every % n_objects
 
 

@@ -62,11 +62,11 @@ def joined_traces(traces: Sequence[TraceArrays]) -> Iterator[JoinedTraces]:
     yield JoinedTraces.of(traces[begin:])
 
 
-def _stands_before(one: TraceArrays, other: TraceArrays) -> bool:
-    """Whether all that one trace says stands before what the other one does."""
-    if other.texts is not one.texts:
+def _stands_before(before: TraceArrays, after: TraceArrays) -> bool:
+    """Whether all columns of a trace stand before those of another in their arrays."""
+    if after.texts is not before.texts:
         return False
-    for own, theirs in zip(_columns_of(one), _columns_of(other), strict=True):
+    for own, theirs in zip(_columns_of(before), _columns_of(after), strict=True):
         if isinstance(own, SharedColumns):
             if not own.is_before(theirs):
                 return False

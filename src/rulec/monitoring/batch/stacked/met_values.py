@@ -93,18 +93,18 @@ class MetValues:
     @cached_property
     def signals(self) -> dict[str, int]:
         """The values of each signal, as bits, of which all are known and not too many."""
-        found: dict[str, int] = {}
+        bits_of: dict[str, int] = {}
         for names, columns in self._known_signals():
             rows = _laid_out([column.values for column in columns])
             if rows.dtype == bool:
                 met = 2 * rows.any(axis=1) + ~rows.all(axis=1)
-                found.update(zip(names, met.tolist(), strict=True))
+                bits_of.update(zip(names, met.tolist(), strict=True))
                 continue
             most = int(rows.max())
             if most < max(_BITS):
                 bits = _BITS[8 if most < 8 else 64].take(rows)
-                found.update(zip(names, np.bitwise_or.reduce(bits, axis=1).tolist(), strict=True))
-        return found
+                bits_of.update(zip(names, np.bitwise_or.reduce(bits, axis=1).tolist(), strict=True))
+        return bits_of
 
     def _known_signals(self) -> Iterator[tuple[list[str], list[StackColumn]]]:
         """The names and columns of signals of which all is known, as many together as may be."""

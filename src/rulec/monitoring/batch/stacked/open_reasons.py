@@ -150,9 +150,9 @@ class StackedReasons:
         if (name, kind) not in self._of_type:
             stack = self._reader.stack
             cells = stack.cells_of_type(kind)
-            found: Flags = np.zeros(stack.n_states, dtype=bool)
-            found[stack.state_of[cells if flags is None else cells[flags[cells]]]] = True
-            self._of_type[name, kind] = found
+            flagged: Flags = np.zeros(stack.n_states, dtype=bool)
+            flagged[stack.state_of[cells if flags is None else cells[flags[cells]]]] = True
+            self._of_type[name, kind] = flagged
         return self._of_type[name, kind]
 
     def _is_within_bounds(self, name: str, states: slice) -> bool:
@@ -181,9 +181,9 @@ class StackedReasons:
         stack = self._reader.stack
         if flags is None or name in stack.traces[0].world:
             return flags
-        found: NDArray[np.bool_] = np.zeros(stack.n_states, dtype=bool)
-        found[stack.state_of[flags]] = True
-        return found
+        flagged: NDArray[np.bool_] = np.zeros(stack.n_states, dtype=bool)
+        flagged[stack.state_of[flags]] = True
+        return flagged
 
 
 def _are_more_unknown(words: StackedWords, place: int, names: Set[str]) -> bool:
@@ -216,7 +216,7 @@ def _runs(columns: Sequence[NDArray[np.intp]], length: int) -> tuple[NDArray[np.
 
 def _repeated(values: Sequence[_Value], lengths: Sequence[int]) -> list[_Value]:
     """Each value as often as it stays."""
-    found: list[_Value] = []
+    repeated: list[_Value] = []
     for value, length in zip(values, lengths, strict=True):
-        found += [value] * length
-    return found
+        repeated += [value] * length
+    return repeated

@@ -42,13 +42,13 @@ class SimpleRules:
     def busy(self, reader: StackReader) -> frozenset[int]:
         """The numbers of the rules that may be anything but kept. Raises UnencodableError."""
         digits = reader.digits_of(self.reads)
-        found = self._busy.get(digits)
-        if found is None:
+        busy = self._busy.get(digits)
+        if busy is None:
             if len(self._busy) >= _MOST_KEPT:
                 self._busy.clear()
-            found = self._busy[digits] = frozenset(
+            busy = self._busy[digits] = frozenset(
                 number
                 for number, rule in self.rules.items()
                 if not rule.machine.idle.of_cube([digits[k] for k in self.places[number]])
             )
-        return found
+        return busy

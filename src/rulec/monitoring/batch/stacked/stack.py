@@ -112,9 +112,9 @@ class Stack:
     @cached_property
     def are_first(self) -> Flags:
         """The first cell of each object."""
-        found: Flags = np.zeros(self.starts[-1], dtype=bool)
-        found[self.starts[:-1][self.firsts <= self.lasts]] = True
-        return found
+        are_first: Flags = np.zeros(self.starts[-1], dtype=bool)
+        are_first[self.starts[:-1][self.firsts <= self.lasts]] = True
+        return are_first
 
     def of_type(self, kind: str) -> Flags:
         """Which objects are of a type, or of one below it."""
@@ -146,12 +146,12 @@ class Stack:
     def untold(self, names: Iterable[str]) -> set[str]:
         """Those of some names whose values cannot be read from arrays. Raises UnencodableError."""
         declarations, columns = self.vocabulary.declarations, self.columns
-        found = {x for x in names if x not in columns and declarations[x].default is None}
+        untold = {x for x in names if x not in columns and declarations[x].default is None}
         for name in self.vocabulary.constants:
             apart = columns[name].apart if name in columns else None
             if apart is not None and apart.any():
-                found.add(name)
-        return found
+                untold.add(name)
+        return untold
 
     def odd_traces(self) -> set[int]:
         """Traces in which something is missing, or a constant changes. Raises UnencodableError."""
@@ -174,8 +174,8 @@ class Stack:
         """The traces of a name's values at some places."""
         if self.said[name]:
             places = self.state_of[places]
-        found: list[int] = distinct(self.begins.searchsorted(places, side="right") - 1).tolist()
-        return found
+        traces: list[int] = distinct(self.begins.searchsorted(places, side="right") - 1).tolist()
+        return traces
 
     def column(self, name: str) -> StackColumn | None:
         """The column of a name; None if no state says it. Raises UnencodableError."""
@@ -287,7 +287,7 @@ class Stack:
 
     def _places(self, name: str, declaration: Enumeration, parts: Sequence[Array]) -> Array:
         """The places among the declared values; the one after these for any other."""
-        found = []
+        mapped = []
         for piece, part in zip(self._pieces, parts, strict=True):
             texts = piece.texts.get(name)
             if texts is None:
@@ -296,8 +296,8 @@ class Stack:
                 places = {value: place for place, value in enumerate(declaration.values)}
                 table = [places.get(text, len(places)) for text in texts]
                 part = np.array(table, dtype=np.intp).take(part)
-            found.append(part)
-        return _end_to_end(found)
+            mapped.append(part)
+        return _end_to_end(mapped)
 
     def _numbers(self, name: str, parts: Sequence[Array]) -> tuple[Array, Array | None]:
         """The numbers, or the least that they may be, and the greatest, if some are apart."""
@@ -351,16 +351,16 @@ def _joined(
 
 def _names(flags: Mapping[str, Flags], some: Callable[..., Flags]) -> set[str]:
     """The names of which all or any flags are set."""
-    found: set[str] = set()
+    chosen: set[str] = set()
     lengths = dict(zip(flags, map(len, flags.values()), strict=True))
     for length in set(lengths.values()):
         names = [name for name, own in lengths.items() if own == length]
         if length > FEW:
-            found.update([name for name in names if some(flags[name])])
+            chosen.update([name for name in names if some(flags[name])])
         else:
             are_set = some(np.array([flags[name] for name in names]), axis=1).tolist()
-            found.update([name for name, is_set in zip(names, are_set, strict=True) if is_set])
-    return found
+            chosen.update([name for name, is_set in zip(names, are_set, strict=True) if is_set])
+    return chosen
 
 
 def _end_to_end(parts: Sequence[Array]) -> Array:
@@ -373,11 +373,11 @@ def _ends(low: Array, high: Array | None) -> tuple[float, float]:
     return (low.min().item(), most.max().item()) if len(low) else (0.0, 0.0)
 
 
-def either(one: Flags | None, other: Flags | None) -> Flags | None:
+def either(first: Flags | None, second: Flags | None) -> Flags | None:
     """Where one of both flags is set; None is for nowhere."""
-    if one is None or other is None:
-        return other if one is None else one
-    return one | other
+    if first is None or second is None:
+        return second if first is None else first
+    return first | second
 
 
 def _anything(declaration: Declaration) -> Any:

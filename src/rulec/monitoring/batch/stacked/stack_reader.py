@@ -76,22 +76,22 @@ class StackReader:
 
         Raises UnencodableError.
         """
-        found = self._numbers.get(read.key)
-        if found is None:
+        numbers = self._numbers.get(read.key)
+        if numbers is None:
             are_few = spots is not None and len(spots.states) < len(self._every_cell)
             if len(read.variables) > 1 or (read.is_composed and are_few):
                 assert spots is not None, "it is about objects"
                 return self._of(read, spots)
-            found = self._numbers[read.key] = self._everywhere(read)
-        if spots is None or not isinstance(found, np.ndarray):
-            return found
+            numbers = self._numbers[read.key] = self._everywhere(read)
+        if spots is None or not isinstance(numbers, np.ndarray):
+            return numbers
         if spots.kind is None:
-            return found.take(spots.cells[read.variables[0]] if read.variables else spots.states)
+            return numbers.take(spots.cells[read.variables[0]] if read.variables else spots.states)
         key = read.key, spots.kind
         if key not in self._of_kind:
             own = spots.cells[read.variables[0]] if read.variables else spots.states
-            is_every = bool(read.variables) and len(own) == len(found)
-            self._of_kind[key] = found if is_every else found.take(own)
+            is_every = bool(read.variables) and len(own) == len(numbers)
+            self._of_kind[key] = numbers if is_every else numbers.take(own)
         return self._of_kind[key]
 
     def changes(self, read: StackedRead) -> Flags | None:
@@ -101,13 +101,13 @@ class StackReader:
         """
         if read.key not in self._changes:
             numbers = self.numbers(read, None)
-            found: Flags | None = None
+            changes: Flags | None = None
             if isinstance(numbers, np.ndarray):
-                found = np.zeros(len(numbers), dtype=bool)
-                np.not_equal(numbers[1:], numbers[:-1], out=found[1:])
+                changes = np.zeros(len(numbers), dtype=bool)
+                np.not_equal(numbers[1:], numbers[:-1], out=changes[1:])
                 if not read.variables:
-                    found = found.take(self.stack.state_of) if found.any() else None
-            self._changes[read.key] = found
+                    changes = changes.take(self.stack.state_of) if changes.any() else None
+            self._changes[read.key] = changes
         return self._changes[read.key]
 
     def digits(self, read: StackedRead) -> int:
@@ -174,14 +174,14 @@ class StackReader:
         every = Spots(self._every_state, {}, whole=True)
         if read.variables:
             every = self.every_cell_of(read.variables[0])
-        found = self._of(read, every)
+        numbers = self._of(read, every)
         if isinstance(read.read, Read):
             met = self.met_values.values(read.names[0])
             if met & (met - 1):
-                return found
-        if isinstance(found, np.ndarray) and len(found) and found[0] == found[-1]:
-            return int(found[0]) if (found == found[0]).all() else found
-        return found
+                return numbers
+        if isinstance(numbers, np.ndarray) and len(numbers) and numbers[0] == numbers[-1]:
+            return int(numbers[0]) if (numbers == numbers[0]).all() else numbers
+        return numbers
 
     def _of(self, read: StackedRead, spots: Spots) -> Numbers:
         if isinstance(read.read, Read):

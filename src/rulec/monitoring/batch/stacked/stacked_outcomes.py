@@ -89,8 +89,8 @@ def outcomes(
             answers[place] = answer
             is_told[place] = answer.worst != KEPT
         places = is_told[first_alike].nonzero()[0]
-        found = [answers[first] for first in first_alike[places].tolist()]
-        yield StackedOutcomes(words, places.tolist(), found)
+        answers_at = [answers[first] for first in first_alike[places].tolist()]
+        yield StackedOutcomes(words, places.tolist(), answers_at)
 
 
 def _few(words: StackedWords) -> StackedOutcomes:
@@ -102,9 +102,9 @@ def _few(words: StackedWords) -> StackedOutcomes:
     for place, (begin, end) in enumerate(pairwise(ends)):
         answer: Answer | None = None
         if not any_odd or not words.odd[begin:end].any():
-            found = [words.rule.answer_to(own[begin:end]) for own in words.letters]
+            of_words = [words.rule.answer_to(own[begin:end]) for own in words.letters]
             # What facts exclude is odd
-            answer = _joined([own for own in found if own is not None])
+            answer = _joined([own for own in of_words if own is not None])
             if answer.worst == KEPT:
                 continue
         places.append(place)
@@ -241,7 +241,7 @@ def _alternatives(
     rule: StackedRule, reader: StackReader, chosen: _Chosen
 ) -> Sequence[_Alternative]:
     """The letters for all that is supposed, taking each read for itself."""
-    found = []
+    alternatives = []
     for values in chosen.supposed:
         instead = {}
         for place in chosen.unknown:
@@ -260,8 +260,8 @@ def _alternatives(
                 letters = letters.take(chosen.spots.states)
         if not isinstance(letters, np.ndarray):
             letters = np.full(len(chosen.spots.states), letters, dtype=np.intp)
-        found.append((values, own, letters))
-    return found
+        alternatives.append((values, own, letters))
+    return alternatives
 
 
 def _are_surely_kept(
@@ -336,14 +336,14 @@ def _entangled_words(
 def _hides_constants(rule: StackedRule, reader: StackReader, spots: Spots) -> NDArray[np.bool_]:
     """Where constants are unknown that sums and counts read, and that nothing is supposed of."""
     stack = reader.stack
-    found = np.zeros(len(spots.states), dtype=bool)
+    hidden = np.zeros(len(spots.states), dtype=bool)
     for name in rule.hidden:
         column = stack.column(name)
         if column is None:
-            found |= stack.default(name) is UNKNOWN
+            hidden |= stack.default(name) is UNKNOWN
         elif column.unknown is not None:
             traces = stack.traces_at(name, column.unknown.nonzero()[0])
             first, end = stack.begins[traces], stack.begins[np.array(traces, dtype=np.intp) + 1]
             for begin, last in zip(first.tolist(), end.tolist(), strict=True):
-                found |= (begin <= spots.states) & (spots.states < last)
-    return found
+                hidden |= (begin <= spots.states) & (spots.states < last)
+    return hidden

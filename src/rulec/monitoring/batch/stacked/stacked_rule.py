@@ -259,22 +259,22 @@ class StackedRule:
             return self._words[key]
         rows, _ = stretches(letters, np.array([0, len(letters)], dtype=np.intp))
         sets = self.letters.sets
-        found = self.answer(rows) if all(sets[n] for n in rows[:, 0].tolist()) else None
+        answer = self.answer(rows) if all(sets[n] for n in rows[:, 0].tolist()) else None
         if len(key) <= MOST_BYTES >> 10:
             self._make_room(len(key))
-            self._words[key] = found
-        return found
+            self._words[key] = answer
+        return answer
 
     def answer(self, rows: NDArray[np.intp]) -> Answer:
         """What a word comes to: rows of the number of a letter set, and for how long it stays."""
         key = rows.tobytes()
-        found = self._answers.get(key)
-        if found is None:
+        answer = self._answers.get(key)
+        if answer is None:
             self._make_room(len(key))
             sets = self.letters.sets
             word = ((sets[number], length) for number, length in rows.tolist())
-            found = self._answers[key] = Answer(*self.machine.monitor.run_stretches(word))
-        return found
+            answer = self._answers[key] = Answer(*self.machine.monitor.run_stretches(word))
+        return answer
 
     def _make_room(self, n_bytes: int) -> None:
         self._bytes += n_bytes
@@ -285,20 +285,20 @@ class StackedRule:
 
 
 def different_pairs(
-    one: NDArray[np.uint64], other: NDArray[np.uint64]
+    left: NDArray[np.uint64], right: NDArray[np.uint64]
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """The places of the different pairs of numbers, or of all, and for each pair which it is.
 
     They are told apart by a sum with a weight, and compared then.
     """
-    codes = one * ODD + other
+    codes = left * ODD + right
     different = distinct(codes)
     which: NDArray[np.intp] = different.searchsorted(codes)
     every = np.arange(len(codes))
     examples = np.empty(len(different), dtype=np.intp)
     examples[which] = every
     like = examples[which]
-    if ((one == one[like]) & (other == other[like])).all():
+    if ((left == left[like]) & (right == right[like])).all():
         return examples, which
     return every, every
 

@@ -20,11 +20,11 @@ from rulec.logic.free_names import names_of
 from rulec.monitoring.batch.columns.columnize import UnencodableError
 from rulec.monitoring.batch.findings import (
     Findings,
-    Found,
     JudgedTrace,
     Place,
     Reasons,
     RuleFindings,
+    ViolationOrOpen,
 )
 from rulec.monitoring.batch.stacked.contradictions import contradicted
 from rulec.monitoring.batch.stacked.joined_traces import side_by_side
@@ -194,12 +194,12 @@ class _StackedRun:
             return
         binding = self._findings.binding(rule, place[1:])
         try:
-            found = self._closely[number].answer(rule.name, binding)
+            finding = self._closely[number].answer(rule.name, binding)
         except RulecError:
             self._odd.add(number)
             return
-        if found is not None:
-            self._findings.add_single(number, place, found)
+        if finding is not None:
+            self._findings.add_single(number, place, finding)
 
     def _add_closely(self, rule_number: int, rule: StackedRule) -> None:
         for number, close in enumerate(self._closely):
@@ -277,8 +277,8 @@ class _CloseLook:
         trace = with_all_said(spelled_out(self._trace.trace(), vocabulary), vocabulary)
         return UncertainRun(trace, self._rulebook)
 
-    def answer(self, rule: str, binding: Mapping[str, str]) -> Found | None:
+    def answer(self, rule: str, binding: Mapping[str, str]) -> ViolationOrOpen | None:
         return self._run.answer(rule, binding)
 
-    def answers(self, rule: str) -> list[Found]:
+    def answers(self, rule: str) -> list[ViolationOrOpen]:
         return list(self._run.answers(rule))

@@ -75,8 +75,8 @@ class SupposedRows:
     def traces_at(self, places: Places) -> Places:
         """The traces with states at some places."""
         rows = self.layout.traces_at(places)
-        found: Places = distinct(rows if self.traces is None else self.traces.take(rows))
-        return found
+        traces: Places = distinct(rows if self.traces is None else self.traces.take(rows))
+        return traces
 
     def where_supposed(self, subject: Subject) -> tuple[Sequence[Value], Places] | None:
         """What is supposed of a constant: values, and for each state the place of its one.

@@ -159,14 +159,14 @@ class _Engine:
         """
         own, rows, numbers = rule_reads
 
-        def found_at(places: Places) -> list[int]:
+        def sets_at(places: Places) -> list[int]:
             digits = [machines.digits(n, numbers[n], places) for n in own.independent]
             keys = self._keys(binding, own.entangled, (places, digits), rows)
             return [machines.letters.number_of(each) for each in own.classes(keys)]
 
         coded = self._codes(binding, machines, rule_reads, places)
         if coded is None:
-            return found_at(places)
+            return sets_at(places)
         kind, codes = coded
         known = machines.by_codes((own, kind))
         try:
@@ -174,8 +174,8 @@ class _Engine:
         except KeyError:
             here = zip(codes, places.tolist(), strict=True)
             new = {code: place for code, place in here if code not in known}
-        found = found_at(np.array([*new.values()], dtype=np.intp))
-        known.update(zip(new, found, strict=True))
+        new_sets = sets_at(np.array([*new.values()], dtype=np.intp))
+        known.update(zip(new, new_sets, strict=True))
         return [known[code] for code in codes]
 
     def _codes(
@@ -220,11 +220,11 @@ class _Engine:
         self,
         binding: RuleBinding,
         entangled: EntangledReads,
-        told: tuple[Places, Sequence[Sequence[int]]],
+        independent: tuple[Places, Sequence[Sequence[int]]],
         rows: SupposedRows,
     ) -> list[tuple[int, ...]]:
         """The keys of letters at some places, where independent reads have these digits."""
-        places, digits = told
+        places, digits = independent
         of_traces = rows.places(places)
         columns = [
             rows.with_supposed(subject, self._reader.values_at(subject, of_traces), places)
@@ -244,22 +244,22 @@ class _Engine:
     ) -> NDArray[np.bool_]:
         """The states of rows in which unknown values have to do with each other."""
         columns = self._columns
-        found = np.zeros(columns.layout.n_states, dtype=bool)
+        entangled_states = np.zeros(columns.layout.n_states, dtype=bool)
         reads = own.entangled
         supposed = np.zeros(rows.layout.n_states, dtype=bool)
         asked = zip(reads.subjects, reads.subjects_of(binding.objects), strict=True)
         for about, subject in asked:
             if about in reads.shared and self._reader.is_dark(subject):
-                found[:] = True
+                entangled_states[:] = True
             if about in reads.shared and subject in columns.unknown:
-                found |= columns.unknown[subject]
+                entangled_states |= columns.unknown[subject]
             if subject in columns.upper:
-                found |= columns.upper[subject] != columns.values[subject]
+                entangled_states |= columns.upper[subject] != columns.values[subject]
             # What is supposed is not in the numbers of what counts.
             where = rows.where_supposed(subject)
             if where is not None:
                 supposed |= where[1] >= 0
-        return rows.flags(found) | supposed
+        return rows.flags(entangled_states) | supposed
 
     def _numbers(
         self, read: Read | NumberRead, binding: RuleBinding, rows: SupposedRows
@@ -319,19 +319,19 @@ class _Engine:
     ) -> tuple[Mapping[Subject, NDArray[np.bool_]], NDArray[np.bool_]]:
         """The traces in which each constant is unknown, and those to look at one by one."""
         columns, layout = self._columns, self._columns.layout
-        found: dict[Subject, NDArray[np.bool_]] = {}
+        unknown_in: dict[Subject, NDArray[np.bool_]] = {}
         odd = np.zeros(layout.n_traces, dtype=bool)
         for subject in sorted(self._constants.read_by(binding.rule, binding.objects)):
             first = max((columns.present.get(x, (0, 0))[0] for x in subject[1]), default=0)
             now = slice(layout.starts[first], layout.starts[first] + layout.n_traces)
             unknown = columns.unknown.get(subject)
             if self._reader.is_dark(subject):
-                found[subject] = ~odd | odd
+                unknown_in[subject] = ~odd | odd
             elif unknown is not None and unknown[now].any():
-                found[subject] = unknown[now]
+                unknown_in[subject] = unknown[now]
             if subject in columns.upper:
                 odd |= columns.upper[subject][now] != columns.values[subject][now]
-        return found, odd
+        return unknown_in, odd
 
 
 def _joined_codes(columns: Sequence[tuple[Numbers, int]], places: Places) -> Sequence[object]:

@@ -106,7 +106,7 @@ def crowd_of(
             own[item].append((name, tuple("" if x == item else x for x in items), place))
         if not strangers:
             others.append(place)
-    places = {item: tuple(place for *_, place in sorted(found)) for item, found in own.items()}
+    places = {item: tuple(place for *_, place in sorted(ranked)) for item, ranked in own.items()}
     return Crowd(enough, places, tuple(others))
 
 
@@ -160,8 +160,8 @@ class CountsApart:
         facts = [own for axiom in axioms for own in instances_of(axiom, everybody)]
         places = {subject: place for place, subject in enumerate(subjects)}
         facts = [fact for fact in facts if not fact.about.isdisjoint(places)]
-        world = {one for own in pieces if own.item for one in own.about if not one[1]}
-        self._world = sorted([places[one] for one in world])
+        world = {about for own in pieces if own.item for about in own.about if not about[1]}
+        self._world = sorted([places[about] for about in world])
         declared = [everybody.vocabulary.declarations[subjects[n][0]] for n in self._world]
         self._values = [values_of(declaration) for declaration in declared]
         apart = joined_sets(
@@ -179,8 +179,8 @@ class CountsApart:
         self._letters: dict[tuple[frozenset[Digits], ...], frozenset[Digits]] = {}
 
     def letters(self, values: Sequence[PartialValue | None]) -> Letters:
-        """What the reads may be together. Raises LookupError as ``ReadWays.found``."""
-        found: set[Digits] = set()
+        """What the reads may be together. Raises LookupError as ``ReadWays.digits_of``."""
+        joint: set[Digits] = set()
         supposed = list(values)
         possible = [
             _may_be(values[place], own)
@@ -195,21 +195,22 @@ class CountsApart:
             with suppress(LookupError):
                 # What is supposed has to keep the facts.
                 strict = len(ways) > 1
-                found |= self._found(tuple([part.found(supposed, strict) for part in self._parts]))
-        if not found:
+                parts = [part.digits_of(supposed, strict) for part in self._parts]
+                joint |= self._joint(tuple(parts))
+        if not joint:
             raise LookupError
-        return tuple([tuple([1 << digit for digit in digits]) for digits in sorted(found)])
+        return tuple([tuple([1 << digit for digit in digits]) for digits in sorted(joint)])
 
-    def _found(self, key: tuple[frozenset[Digits], ...]) -> frozenset[Digits]:
+    def _joint(self, key: tuple[frozenset[Digits], ...]) -> frozenset[Digits]:
         """The digits of all reads, by what the parts may come to."""
         known = self._letters.get(key)
         if known is None:
-            found = {(0,) * len(self._reads)}
+            sums = {(0,) * len(self._reads)}
             for part, own in zip(self._parts, key, strict=True):
-                found = {_added(before, part.reads, one) for before in found for one in own}
+                sums = {_added(before, part.reads, more) for before in sums for more in own}
             if len(self._letters) >= MOST_KNOWN:
                 self._letters.clear()
-            digits = [tuple(map(_digit, self._reads, numbers)) for numbers in found]
+            digits = [tuple(map(_digit, self._reads, numbers)) for numbers in sums]
             known = self._letters[key] = frozenset(digits)
         return known
 
@@ -261,8 +262,8 @@ class CountsApart:
             self._known[key] = ReadWays(values, ways), {}
         reads = tuple([piece.read for piece in pieces])
         is_of_world = not set(self._world).isdisjoint(places)
-        ways_of_all, found = self._known[key]
-        return _CountedPart(reads, values_at(places), ways_of_all, found, is_of_world)
+        ways_of_all, joint = self._known[key]
+        return _CountedPart(reads, values_at(places), ways_of_all, joint, is_of_world)
 
 
 class _Piece(NamedTuple):
@@ -282,15 +283,15 @@ class _CountedPart(NamedTuple):
     known: dict[tuple[Any, ...], frozenset[Digits]]
     is_of_world: bool
 
-    def found(self, values: Sequence[PartialValue | None], strict: bool) -> frozenset[Digits]:
-        """What the pieces may be together. Raises LookupError as ``ReadWays.found``."""
+    def digits_of(self, values: Sequence[PartialValue | None], strict: bool) -> frozenset[Digits]:
+        """What the pieces may be together. Raises LookupError as ``ReadWays.digits_of``."""
         strict = strict and self.is_of_world
         own = (*self.values(values), strict)
         known = self.known.get(own)
         if known is None:
             if len(self.known) >= MOST_KNOWN:
                 self.known.clear()
-            known = self.known[own] = self.ways.found(own[:-1], strict=strict)
+            known = self.known[own] = self.ways.digits_of(own[:-1], strict=strict)
         return known
 
 

@@ -141,7 +141,7 @@ class EntangledReads:
         self.regions = number_regions(
             tuple(self._reads), tuple([axiom.formula for axiom in axioms])
         )
-        self.found: list[tuple[Letters, bool]] = []
+        self.joint_letters: list[tuple[Letters, bool]] = []
         self._numbers: dict[tuple[Letters, bool], int] = {}
         self._known: dict[tuple[object, ...], int] = {}
         self._places: dict[tuple[int, ...], int] = {}
@@ -155,7 +155,7 @@ class EntangledReads:
     def number(
         self, values: tuple[PartialValue | None, ...], there: Mapping[str, str] | None = None
     ) -> int:
-        """The place of what is found for these values of the subjects.
+        """The place among ``joint_letters`` of those for these values of the subjects.
 
         Unless the reads are local it matters who is ``there``. Raises MissingValueError.
         """
@@ -170,10 +170,10 @@ class EntangledReads:
                 key, there = self._crowd.few(values, there)
         known = self._known.get(key)
         if known is None:
-            found = self._letters(values, self._everybody.objects if there is None else there)
+            joint = self._letters(values, self._everybody.objects if there is None else there)
             if len(self._known) >= MOST_KNOWN:
                 self._known.clear()
-            known = self._known[key] = self._place(found)
+            known = self._known[key] = self._place(joint)
         return known
 
     @property
@@ -189,10 +189,10 @@ class EntangledReads:
             place = self._places[key] = self._place(self._apart.letters(key))
         return place
 
-    def _place(self, found: tuple[Letters, bool]) -> int:
-        place = self._numbers.setdefault(found, len(self.found))
-        if place == len(self.found):
-            self.found.append(found)
+    def _place(self, joint: tuple[Letters, bool]) -> int:
+        place = self._numbers.setdefault(joint, len(self.joint_letters))
+        if place == len(self.joint_letters):
+            self.joint_letters.append(joint)
         return place
 
     def _letters(
@@ -208,7 +208,7 @@ class EntangledReads:
         if all(own & (own - 1) == 0 for own in digits):
             return (tuple(digits),), True
         joint = joint_digits(self._reads, self._binding, state, self._axioms)
-        letters = [tuple([1 << digit for digit in one]) for one in sorted(joint.digits)]
+        letters = [tuple([1 << digit for digit in letter]) for letter in sorted(joint.digits)]
         return tuple(letters), joint.exact
 
 

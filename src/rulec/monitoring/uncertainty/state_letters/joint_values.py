@@ -113,21 +113,21 @@ class JointValues:
         Facts about what is known are taken to be kept, unless it is ``strict``. Raises LookupError
         if a value is missing.
         """
-        found = self._all
+        ways = self._all
         for own, value in zip(self._of_places, values, strict=True):
             known = own.get(value)
             if known is None:
                 if not isinstance(value, OneOf):
                     raise LookupError
-                known = own[value] = reduce(or_, [own[one] for one in value.values])
-            found &= known
-        allowed = found & self._allowed
+                known = own[value] = reduce(or_, [own[single] for single in value.values])
+            ways &= known
+        allowed = ways & self._allowed
         if allowed or strict:
             return allowed
         for places, kept in self._facts:
             if any(type(values[place]) in UNKNOWN_TYPES for place in places):
-                found &= kept
-        return found
+                ways &= kept
+        return ways
 
     def digits(self, read: ReadDigits, binding: Mapping[str, str]) -> Sequence[tuple[int, Bits]]:
         """Each digit of a read that is asked of a binding's objects, and the ways that have it.
@@ -138,29 +138,29 @@ class JointValues:
         def digit(view: StateView) -> int:
             return read.in_state(binding, view)
 
-        found: dict[int, Bits] = {}
+        ways_of: dict[int, Bits] = {}
         for bit, ways in self._by(subjects_of_read(read.read, binding, self._nobody), digit):
             if bit & (bit - 1):
                 raise LookupError
-            found[bit] = found.get(bit, 0) | ways
-        return [(bit.bit_length() - 1, ways) for bit, ways in found.items()]
+            ways_of[bit] = ways_of.get(bit, 0) | ways
+        return [(bit.bit_length() - 1, ways) for bit, ways in ways_of.items()]
 
     def truths(
         self, formula: ltl.Formula, environment: Mapping[str, str]
     ) -> Sequence[tuple[int, Bits]]:
         """The ways in which a formula does not hold, and in which it does, as for ``digits``."""
-        found = {False: 0, True: 0}
+        ways_of = {False: 0, True: 0}
         about = subjects_in(formula, environment, self._nobody)
         for truth, ways in self._by(about, lambda view: holds(formula, environment, view)):
             if truth is not False and truth is not True:
                 raise LookupError
-            found[truth] |= ways
-        return [(int(truth), ways) for truth, ways in found.items() if ways]
+            ways_of[truth] |= ways
+        return [(int(truth), ways) for truth, ways in ways_of.items() if ways]
 
     def _by(
-        self, about: Iterable[Subject], found: Callable[[StateView], Any]
+        self, about: Iterable[Subject], evaluate: Callable[[StateView], Any]
     ) -> Iterable[tuple[Any, Bits]]:
-        """What is found for each choice of values of those subjects that are asked about."""
+        """What ``evaluate`` says for each choice of values of subjects, and its ways."""
         own = [subject for subject in dict.fromkeys(about) if subject in self._ways]
         for chosen in product(*[self._ways[subject].items() for subject in own]):
             ways = self._all
@@ -168,7 +168,7 @@ class JointValues:
                 ways &= bits
             given = with_values({}, dict(zip(own, [value for value, _ in chosen], strict=True)))
             try:
-                yield found(StateView(given, self._objects, self._vocabulary)), ways
+                yield evaluate(StateView(given, self._objects, self._vocabulary)), ways
             except MissingValueError:
                 raise LookupError from None
 
@@ -179,7 +179,7 @@ class ReadWays(NamedTuple):
     values: JointValues
     digits: tuple[Sequence[tuple[int, Bits]], ...]
 
-    def found(
+    def digits_of(
         self, values: Sequence[PartialValue | None], *, strict: bool = False
     ) -> frozenset[Digits]:
         """The digits that the reads may have together for these values of the subjects.
@@ -189,15 +189,15 @@ class ReadWays(NamedTuple):
         ways = self.values.ways(values, strict=strict)
         if not ways:
             raise LookupError
-        found: list[tuple[Digits, Bits]] = [((), ways)]
+        partial_digits: list[tuple[Digits, Bits]] = [((), ways)]
         for own in self.digits:
-            found = [
+            partial_digits = [
                 ((*before, digit), both)
-                for before, ways in found
+                for before, ways in partial_digits
                 for digit, bits in own
                 if (both := ways & bits)
             ]
-        return frozenset([digits for digits, _ in found])
+        return frozenset([digits for digits, _ in partial_digits])
 
 
 def read_ways(
@@ -229,7 +229,7 @@ def alike_values(
         if isinstance(term, ltl.Count)
     ]
     asked = {(atom.name, atom.value) for part in (*facts, *bodies) for atom in _atoms_in(part)}
-    found: dict[str, Alike] = {}
+    groups_of: dict[str, Alike] = {}
     for name in names:
         declaration = vocabulary.declarations[name]
         if isinstance(declaration, Enumeration):
@@ -238,8 +238,8 @@ def alike_values(
             for value in declaration.values:
                 apart = (name, value) in asked and value
                 groups.setdefault((apart, *[read.digit(value) for read in own]), []).append(value)
-            found[name] = tuple(map(tuple, groups.values()))
-    return found
+            groups_of[name] = tuple(map(tuple, groups.values()))
+    return groups_of
 
 
 def _atoms_in(formula: ltl.Formula) -> Iterator[ltl.Atom]:
@@ -253,13 +253,13 @@ def _atoms_in(formula: ltl.Formula) -> Iterator[ltl.Atom]:
 
 def joined_sets(sets: Sequence[frozenset[Subject]]) -> list[frozenset[Subject]]:
     """The unions of those that have members in common."""
-    found: list[frozenset[Subject]] = []
+    unions: list[frozenset[Subject]] = []
     for own in sets:
         if own:
-            touched = [other for other in found if other & own]
-            found = [other for other in found if not other & own]
-            found.append(own.union(*touched))
-    return found
+            touched = [other for other in unions if other & own]
+            unions = [other for other in unions if not other & own]
+            unions.append(own.union(*touched))
+    return unions
 
 
 def values_at(keys: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:

@@ -53,13 +53,13 @@ class LetterClasses:
         return known
 
     def side_by_side(
-        self, one: Letters, other: Letters, fixed: tuple[int, ...]
+        self, left: Letters, right: Letters, fixed: tuple[int, ...]
     ) -> frozenset[tuple[int, int]]:
         """The classes of two letters for each choice of digits of ``fixed`` reads in both."""
-        if len(one) == len(other) == 1:
-            both = self.diagram.nodes_side_by_side(one[0], other[0], frozenset(fixed))
+        if len(left) == len(right) == 1:
+            both = self.diagram.nodes_side_by_side(left[0], right[0], frozenset(fixed))
             return frozenset([(x >> 1, y >> 1) for x, y in both if x > 1 and y > 1])
-        first, second = self.groups(one, fixed), self.groups(other, fixed)
+        first, second = self.groups(left, fixed), self.groups(right, fixed)
         return frozenset([(first[part], second[part]) for part in first.keys() & second])
 
     def are_indifferent(self, letters: Sequence[Letters], read: int) -> bool:
@@ -151,9 +151,9 @@ class RuleLetters:
         """The letters with a key."""
         if not self.entangled.numbers:
             return (key,)
-        found, _ = self.entangled.found[key[-1]]
+        cubes, _ = self.entangled.joint_letters[key[-1]]
         alone, order = key[:-1], self._order
-        return tuple([tuple([(*alone, *cube)[n] for n in order]) for cube in found])
+        return tuple([tuple([(*alone, *cube)[n] for n in order]) for cube in cubes])
 
 
 def _keep(known: dict[_Key, _Value], key: _Key, value: _Value) -> None:

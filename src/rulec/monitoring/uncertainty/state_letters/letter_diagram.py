@@ -64,13 +64,13 @@ class LetterDiagram:
         return here
 
     def nodes_side_by_side(
-        self, one: Sequence[int], other: Sequence[int], fixed: Set[int]
+        self, first: Sequence[int], second: Sequence[int], fixed: Set[int]
     ) -> set[tuple[int, int]]:
         """The ``nodes`` of two cubes for each choice of digits of ``fixed`` reads in both."""
         step = self.step
         reached = {(self.start, self.start)}
         for read in range(self._n_reads - 1, -1, -1):
-            own, their = one[read], other[read]
+            own, their = first[read], second[read]
             if read in fixed:
                 digits = [1 << digit for digit in bits_of(own & their)]
                 reached = {
@@ -103,16 +103,16 @@ class LetterDiagram:
             here = self.step(level, here, cube[level])
         first, *others = bits_of(cube[read])
         rows = [self._children[read][node] for node in bits_of(here)]
-        pairs = {(row[first], row[other]) for row in rows for other in others}
+        pairs = {(row[first], row[second]) for row in rows for second in others}
         for level in range(read - 1, -1, -1):
             children, digits = self._children[level], bits_of(cube[level])
             pairs = {
-                (children[one][digit], children[other][digit])
-                for one, other in pairs
-                if one != other
+                (children[left][digit], children[second][digit])
+                for left, second in pairs
+                if left != second
                 for digit in digits
             }
-        return all(one == other for one, other in pairs)
+        return all(left == second for left, second in pairs)
 
     def step(self, read: int, here: int, digits: int) -> int:
         """The nodes behind some nodes and some digits of a read, all as bits."""
@@ -139,5 +139,5 @@ def _distinct(rows: Iterable[tuple[int, ...]]) -> tuple[list[tuple[int, ...]], l
     """The different rows, and the place of each row among them."""
     # A row that is not there yet gets the next number; without a line of Python for each.
     places: defaultdict[tuple[int, ...], int] = defaultdict(count().__next__)
-    found = list(map(places.__getitem__, rows))
-    return list(places), found
+    place_of_row = list(map(places.__getitem__, rows))
+    return list(places), place_of_row

@@ -73,10 +73,10 @@ class LetterSets:
         self, columns: Sequence[Numbers] | Mapping[int, Numbers], reads: Sequence[int]
     ) -> NDArray[np.bool_]:
         """Whether some of these reads may have several digits."""
-        found: NDArray[np.bool_] = np.zeros(1, dtype=bool)
+        partial: NDArray[np.bool_] = np.zeros(1, dtype=bool)
         for read in reads:
-            found = found | self._several[read].take(columns[read])
-        return found
+            partial = partial | self._several[read].take(columns[read])
+        return partial
 
     def numbers(self, columns: Sequence[Numbers]) -> Numbers:
         """The number of each letter, for columns of the reads' numbers, or one for all."""

@@ -157,8 +157,8 @@ class PossibleLetters:
         is_exact = True
         if letters.entangled.numbers:
             columns.append(self._entangled_numbers(letters.entangled, about))
-            found = letters.entangled.found
-            is_exact = all(found[number][1] for number in set(columns[-1]))
+            joint = letters.entangled.joint_letters
+            is_exact = all(joint[number][1] for number in set(columns[-1]))
         keys = list(zip(*columns, strict=True)) or [()] * (binding.last - binding.first + 1)
         return PossibleWord(
             tuple(letters.classes(keys)),
@@ -235,12 +235,12 @@ class PossibleLetters:
             self.values(name, tuple([objects[x] for x in variables]), about.supposed)[about.stretch]
             for name, variables in read.summands
         ]
-        found: list[int] = []
+        sums: list[int] = []
         rows = zip(*columns, strict=True) if columns else repeat((), len(numbers))
         for number, row in zip(numbers, rows, strict=True):
             digits = read.of_sum(row)
-            found.append(self._digits_of_sum(read, number, about) if digits is None else digits)
-        return found
+            sums.append(self._digits_of_sum(read, number, about) if digits is None else digits)
+        return sums
 
     def _digits_of_sum(self, read: ReadDigits, number: int, about: _About) -> int:
         try:
@@ -257,20 +257,20 @@ class PossibleLetters:
         ]
         numbers = self._numbers(about)
         rows = zip(*columns, strict=True) if columns else [()] * len(numbers)
-        found: list[int] = []
+        places: list[int] = []
         try:
             # One after the other, so that it is known in which state a value is missing.
             if reads.is_local:
-                found.extend(map(reads.number, rows))
+                places.extend(map(reads.number, rows))
             else:
                 there = [self.view(number).objects for number in numbers]
-                found.extend(map(reads.number, rows, there))
+                places.extend(map(reads.number, rows, there))
         except MissingValueError as error:
             name, variables = error.subject
             subject = name, tuple([objects.get(variable, variable) for variable in variables])
-            number = about.binding.first + len(found)
+            number = about.binding.first + len(places)
             raise self._missing(subject, number, about.rule) from None
-        return found
+        return places
 
     def _numbers(self, about: _About) -> range:
         return range(about.binding.first, about.binding.last + 1)

@@ -42,7 +42,7 @@ from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval, PartialValue
 
 
-class _PartFound(NamedTuple):
+class _PossibleDigits(NamedTuple):
     """What a part's reads may be together, and whether no more is said than is.
 
     ``known`` are their digits if each has but one by itself.
@@ -54,10 +54,10 @@ class _PartFound(NamedTuple):
 
 
 class _Steps(NamedTuple):
-    """Where reads change along a number, and what is found by where its interval ends."""
+    """Where reads change along a number, and the possible digits by where its interval ends."""
 
     points: Sequence[Fraction]
-    found: dict[tuple[int, int], _PartFound]
+    possible: dict[tuple[int, int], _PossibleDigits]
 
     def place(self, number: float) -> int:
         """Where a number lies: odd at a point, even between two of them."""
@@ -83,29 +83,29 @@ class _PartTable:
         self._reads, self._ready = reads, [read_digits(read) for read in reads]
         self._subjects, self._binding, self._axioms = subjects, binding, axioms
         self._objects, self._vocabulary, self._together = objects, vocabulary, together
-        self.found: list[_PartFound] = []
-        self._numbers: dict[_PartFound, int] = {}
+        self.possible: list[_PossibleDigits] = []
+        self._numbers: dict[_PossibleDigits, int] = {}
         self._known: dict[tuple[object, ...], int] = {}
         self._steps: dict[tuple[object, ...], _Steps | None] = {}
 
     def number(self, values: tuple[PartialValue | None, ...]) -> int:
-        """The place of what is found for these values. Raises MissingValueError."""
+        """The place among ``possible`` of the digits for these values. Raises MissingValueError."""
         known = self._known.get(values)
         if known is None:
-            found = self._found_once(values)
-            known = self._numbers.setdefault(found, len(self.found))
-            if known == len(self.found):
-                self.found.append(found)
+            possible = self._once_per_steps(values)
+            known = self._numbers.setdefault(possible, len(self.possible))
+            if known == len(self.possible):
+                self.possible.append(possible)
             if len(self._known) >= MOST_KNOWN:
                 self._known.clear()
             self._known[values] = known
         return known
 
-    def _found_once(self, values: tuple[PartialValue | None, ...]) -> _PartFound:
-        """What is found, the same one for intervals that have the same steps of reads in them."""
+    def _once_per_steps(self, values: tuple[PartialValue | None, ...]) -> _PossibleDigits:
+        """The possible digits: of intervals with the same steps of reads in them the same ones."""
         intervals = [place for place, value in enumerate(values) if isinstance(value, Interval)]
         if len(intervals) != 1 or self._axioms:
-            return self._found(values)
+            return self._possible(values)
         (place,) = intervals
         others = (*values[:place], *values[place + 1 :])
         key = place, others
@@ -115,12 +115,12 @@ class _PartTable:
             self._steps[key] = self._steps_along(place, others)
         steps, interval = self._steps[key], values[place]
         if steps is None:
-            return self._found(values)
+            return self._possible(values)
         assert isinstance(interval, Interval)
         ends = steps.place(interval.low), steps.place(interval.high)
-        if ends not in steps.found:
-            steps.found[ends] = self._found(values)
-        return steps.found[ends]
+        if ends not in steps.possible:
+            steps.possible[ends] = self._possible(values)
+        return steps.possible[ends]
 
     def _steps_along(self, place: int, others: Sequence[PartialValue | None]) -> _Steps | None:
         """Where reads change along one subject's number, the others' being known; None if not."""
@@ -172,22 +172,22 @@ class _PartTable:
             return None if values is None else read_ways(self._ready, self._binding, values)
         return None
 
-    def _found(self, values: Sequence[PartialValue | None]) -> _PartFound:
+    def _possible(self, values: Sequence[PartialValue | None]) -> _PossibleDigits:
         if self._read_ways is not None:
             # What is missing, and what contradicts facts, is found below.
             with suppress(LookupError):
-                joint = self._read_ways.found(values)
+                joint = self._read_ways.digits_of(values)
                 known = next(iter(joint)) if len(joint) == 1 and self._are_known(values) else None
-                return _PartFound(known, joint, True)
+                return _PossibleDigits(known, joint, True)
         state = self._state(values)
         digits = [read.in_state(self._binding, state) for read in self._ready]
         known = None
         if all(own & (own - 1) == 0 for own in digits):
             known = tuple([own.bit_length() - 1 for own in digits])
             if UNKNOWN_TYPES.isdisjoint(map(type, values)):
-                return _PartFound(known, frozenset({known}), True)
-        found = joint_digits(self._reads, self._binding, state, self._axioms)
-        return _PartFound(known, found.digits, found.exact)
+                return _PossibleDigits(known, frozenset({known}), True)
+        possible = joint_digits(self._reads, self._binding, state, self._axioms)
+        return _PossibleDigits(known, possible.digits, possible.exact)
 
     def _are_known(self, values: Sequence[PartialValue | None]) -> bool:
         """Whether each read has but one digit by itself, whatever facts say."""
@@ -280,13 +280,13 @@ class ReadsApart:
         return known
 
     def _together(self, key: Sequence[int]) -> tuple[Letters, bool]:
-        found = [part.table.found[n] for part, n in zip(self._parts, key, strict=True)]
-        sure = [own.known for own in found]
+        parts = [part.table.possible[n] for part, n in zip(self._parts, key, strict=True)]
+        sure = [own.known for own in parts]
         if None not in sure:
             return (self._cube([own for own in sure if own is not None]),), True
-        letters = [self._cube(chosen) for chosen in product(*[own.joint for own in found])]
+        letters = [self._cube(chosen) for chosen in product(*[own.joint for own in parts])]
         # One bit each, so that they are in the order of their digits.
-        return tuple(sorted(letters)), all(own.exact for own in found)
+        return tuple(sorted(letters)), all(own.exact for own in parts)
 
     def _cube(self, digits: Sequence[Digits]) -> tuple[int, ...]:
         cube = [0] * self._n_reads

@@ -18,15 +18,15 @@ def related_facts(
 ) -> tuple[CompiledAxiom, ...]:
     """The facts that speak of some of these names, or of what such facts speak of."""
     about = set(names)
-    found: set[int] = set()
+    related: set[int] = set()
     waiting = [(number, names_of(axiom.formula)) for number, axiom in enumerate(axioms)]
     while True:
         met = [(number, own) for number, own in waiting if not own.isdisjoint(about)]
         if not met:
-            return tuple([axiom for number, axiom in enumerate(axioms) if number in found])
-        found.update(number for number, _ in met)
+            return tuple([axiom for number, axiom in enumerate(axioms) if number in related])
+        related.update(number for number, _ in met)
         about.update(*[own for _, own in met])
-        waiting = [each for each in waiting if each[0] not in found]
+        waiting = [each for each in waiting if each[0] not in related]
 
 
 @lru_cache(maxsize=1 << 10)  # asked of each fact by each rule

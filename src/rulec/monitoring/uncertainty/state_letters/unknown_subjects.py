@@ -86,10 +86,10 @@ def subjects_of_read(
 
 
 def unknown_subjects(
-    what: ltl.Formula | ltl.Term, environment: Mapping[str, str], view: PartialView
+    part: ltl.Formula | ltl.Term, environment: Mapping[str, str], view: PartialView
 ) -> frozenset[Subject]:
     """The unknown subjects of which a formula or a term speaks."""
-    return frozenset(x for x in subjects_in(what, environment, view) if is_unknown(x, view))
+    return frozenset(x for x in subjects_in(part, environment, view) if is_unknown(x, view))
 
 
 def is_unknown(subject: Subject, view: PartialView) -> bool:
@@ -98,14 +98,14 @@ def is_unknown(subject: Subject, view: PartialView) -> bool:
 
 
 def subjects_in(
-    what: ltl.Formula | ltl.Term, environment: Mapping[str, str], view: PartialView
+    part: ltl.Formula | ltl.Term, environment: Mapping[str, str], view: PartialView
 ) -> Iterator[Subject]:
     """What a formula or a term speaks of, for these objects and those that may count."""
-    match what:
+    match part:
         case ltl.Atom(name, arguments) | ltl.QuantityTerm(name, arguments):
             yield name, tuple([environment[variable] for variable in arguments])
         case ltl.Count(variable, _, body):
-            for item in candidates(what, view):
+            for item in candidates(part, view):
                 yield from subjects_in(body, {**environment, variable: item}, view)
         case ltl.Comparison(terms):
             for _, term in terms:

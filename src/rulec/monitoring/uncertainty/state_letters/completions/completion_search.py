@@ -60,12 +60,12 @@ class CompletionSearch:
         ]
         self._reads, self._view = reads, view
         self._values, self._points = values, points
-        self._found: set[Possible] = set()
+        self._possible: set[Possible] = set()
 
-    def found(self) -> set[Possible]:
+    def possible(self) -> set[Possible]:
         """What the completions come to. Raises MissingValueError."""
         self._go_on(0, {}, {}, {})
-        return self._found
+        return self._possible
 
     def _go_on(
         self,
@@ -97,7 +97,7 @@ class CompletionSearch:
                     self._go_on(number, {**supposed, **values}, digits, more)
                 return
             number += 1
-        self._found.add(Possible(tuple(sorted(digits.items())), tuple(sorted(more.items()))))
+        self._possible.add(Possible(tuple(sorted(digits.items())), tuple(sorted(more.items()))))
 
     def _deciding(
         self, truth: Unknown, link: Link, supposed: Mapping[Subject, Value | Fraction]

@@ -85,16 +85,16 @@ def joint_digits(
     for number, read in enumerate(reads):
         if number not in touched and number not in counted:
             fixed[number] = digit_of(read, binding, view)
-    found = {Possible((), ())}
+    combinations = {Possible((), ())}
     is_exact = True
     for cluster in _clusters(links, axioms, view):
         possible = _completed(cluster, reads, view)
         if possible is None:
             is_exact = False
             possible = _independent(cluster, reads)
-        found = {_joined(before, after) for before in found for after in possible}
+        combinations = {_joined(before, after) for before in combinations for after in possible}
     digits = set()
-    for possible_digits in found:
+    for possible_digits in combinations:
         by_read = {**fixed, **dict(possible_digits.digits)}
         more = dict(possible_digits.more)
         for number, count in counted.items():
@@ -213,7 +213,7 @@ def _completed(
             assert isinstance(term, ltl.QuantityTerm)
             supposed[term.name, term.arguments] = value
         numbers.append(supposed)
-    return CompletionSearch(cluster.links, reads, view, values, numbers).found()
+    return CompletionSearch(cluster.links, reads, view, values, numbers).possible()
 
 
 def _joined(first: Possible, second: Possible) -> Possible:
@@ -226,7 +226,7 @@ def _joined(first: Possible, second: Possible) -> Possible:
 
 def _independent(cluster: _Cluster, reads: Sequence[Read | NumberRead]) -> set[Possible]:
     """More than a cluster can come to: all of its links by themselves, and no axioms."""
-    found = {Possible((), ())}
+    combinations = {Possible((), ())}
     for link in cluster.links:
         if link.read is None:
             continue
@@ -234,8 +234,8 @@ def _independent(cluster: _Cluster, reads: Sequence[Read | NumberRead]) -> set[P
             alone = [Possible((), ((link.read, n),)) for n in (0, 1)]
         else:
             alone = [Possible(((link.read, n),), ()) for n in range(reads[link.read].size)]
-        found = {_joined(before, after) for before in found for after in alone}
-    return found
+        combinations = {_joined(before, after) for before in combinations for after in alone}
+    return combinations
 
 
 def _planes(

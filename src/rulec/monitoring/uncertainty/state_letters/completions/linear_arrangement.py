@@ -148,7 +148,7 @@ def _on_a_line(limits: Set[Fraction], interval: tuple[Fraction, Fraction] | None
     low, high = interval
     inner = sorted(x for x in limits if low <= x <= high)
     ends = [low, *inner, high]
-    beside = [(one + other) / 2 for one, other in pairwise(ends) if one < other]
+    beside = [(first + second) / 2 for first, second in pairwise(ends) if first < second]
     return [*inner, *beside] or [low]
 
 

@@ -105,9 +105,9 @@ def _closed(
     across, up = ranges
     if across is not None and up is not None:
         return across, up
-    one, none = Fraction(1), Fraction(0)
-    edges = [PlanarLine(one, none, end) for end in across or ()]
-    edges += [PlanarLine(none, one, end) for end in up or ()]
+    unit, none = Fraction(1), Fraction(0)
+    edges = [PlanarLine(unit, none, end) for end in across or ()]
+    edges += [PlanarLine(none, unit, end) for end in up or ()]
     drawn = [line for line in (*lines, *edges) if line.x or line.y]
     points = [(none, none), *map(_nearest_to_origin, drawn)]
     points += [x for pair in combinations(drawn, 2) if (x := _crossing(*pair)) is not None]
@@ -123,11 +123,11 @@ def _nearest_to_origin(line: PlanarLine) -> Corner:
     return share * line.x, share * line.y
 
 
-def _crossing(one: PlanarLine, other: PlanarLine) -> Corner | None:
+def _crossing(first: PlanarLine, second: PlanarLine) -> Corner | None:
     """Where two lines cross (Cramer's rule); None where they are parallel."""
-    area = one.x * other.y - other.x * one.y
+    area = first.x * second.y - second.x * first.y
     if not area:
         return None
-    x = one.limit * other.y - other.limit * one.y
-    y = one.x * other.limit - other.x * one.limit
+    x = first.limit * second.y - second.limit * first.y
+    y = first.x * second.limit - second.x * first.limit
     return x / area, y / area
