@@ -66,7 +66,7 @@ def bordering(lanelets: Iterable[Lanelet], *, alone: bool = False) -> Iterator[B
     tree = shapely.STRtree(rights.lines)
     owns, others = tree.query(lefts.lines, predicate="dwithin", distance=BORDER_M)
     named = [(right[own], left[other]) for own, other in zip(owns, others, strict=True)]
-    unsaid = [one is not other and one.left_of != other.id for one, other in named]
+    unsaid = [lane is not beside and lane.left_of != beside.id for lane, beside in named]
     owns, others = owns[unsaid], others[unsaid]
     if not len(owns):
         return
@@ -120,8 +120,8 @@ class _Borders:
         before = np.clip(before, self._first[lines], self._last[lines] - 1)
         length = np.maximum(self._along[before + 1] - self._along[before], 1e-12)
         share = np.clip((along - self._along[before]) / length, 0.0, 1.0)[:, None]
-        found: Points = (1 - share) * self._points[before] + share * self._points[before + 1]
-        return found
+        points: Points = (1 - share) * self._points[before] + share * self._points[before + 1]
+        return points
 
     def may_reach(self, lines: _Indices, places: Points) -> NDArray[np.bool_]:
         """Flags of places that may be within ``BORDER_M`` of some of the lines, one each."""
@@ -175,8 +175,8 @@ def _crossed(lanelets: Iterable[Lanelet]) -> set[str]:
 
 def with_untold_neighbours(recording: Recording) -> Recording:
     """The recording, with neighbours if its map, or its form, names none at all."""
-    told = any(lanelet.left_of or lanelet.right_of for lanelet in recording.lanelets.values())
-    return recording if told else with_neighbours(recording)
+    named = any(lanelet.left_of or lanelet.right_of for lanelet in recording.lanelets.values())
+    return recording if named else with_neighbours(recording)
 
 
 def with_neighbours(recording: Recording) -> Recording:
@@ -191,7 +191,7 @@ def with_neighbours(recording: Recording) -> Recording:
         if pair.part >= WHOLE and pair.length >= LONG_M
     ]
     crossed = _crossed(lanelets.values()) if pairs else set()
-    found = []
+    joined = []
     for pair in sorted(pairs, key=lambda pair: -pair.part):
         right, left = lanelets[pair.right.id], lanelets[pair.left.id]
         if crossed.intersection((right.id, left.id)):
@@ -200,13 +200,13 @@ def with_neighbours(recording: Recording) -> Recording:
             continue
         lanelets[right.id] = replace(right, left_of=left.id)
         lanelets[left.id] = replace(left, right_of=right.id)
-        found.append(f"{right.id} and {left.id}")
-    if not found:
+        joined.append(f"{right.id} and {left.id}")
+    if not joined:
         return recording
-    more = f", and {len(found) - _NAMED} more" if len(found) > _NAMED else ""
+    more = f", and {len(joined) - _NAMED} more" if len(joined) > _NAMED else ""
     remark = (
         "lanelets side by side are taken to be neighbours, which the file does not say: "
-        + ", ".join(found[:_NAMED])
+        + ", ".join(joined[:_NAMED])
         + more
     )
     return replace(recording, lanelets=lanelets, remarks=(*recording.remarks, remark))

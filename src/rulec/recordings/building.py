@@ -92,7 +92,7 @@ def build_lanelet(
         checks.positive("limit_mps", limit_mps)
     if stop_line is not None:
         drawn = checks.points("stop_line", stop_line)
-    checks.raise_found()
+    checks.raise_problems()
     return lanelet_along(
         name,
         points,
@@ -123,17 +123,17 @@ def _widths(
         is_one = False
     if is_one:
         return checks.positive("width", cast("float", width))
-    if checks.found:
+    if checks.problems:
         return 1.0
     given = np.array(centre, dtype=float)
     widths = checks.numbers("width", width, len(given))
-    if checks.found:
+    if checks.problems:
         return 1.0
     if not (widths > 0).all():
         checks.wrong(f"`width[{int(np.argmin(widths))}]` is {widths.min():g}", "expected above 0")
     first = [int(np.argmax((given == point).all(axis=1))) for point in kept]
-    found: NDArray[float64] = widths[first]
-    return found
+    kept_widths: NDArray[float64] = widths[first]
+    return kept_widths
 
 
 @checked_kinds
@@ -174,18 +174,18 @@ def build_participant(
     places = np.column_stack((checks.numbers("x", x, count), checks.numbers("y", y, count)))
     given = {"heading": heading, "speed": speed, "acceleration": acceleration}
     stated = {
-        what: checks.numbers(what, values, count)
-        for what, values in given.items()
+        argument: checks.numbers(argument, values, count)
+        for argument, values in given.items()
         if values is not None
     }
     usual = usual_size(kind)
     size = [
-        checks.positive(what, value) if value is not None else usual[at]
-        for at, (what, value) in enumerate((("length", length), ("width", width)))
+        checks.positive(argument, value) if value is not None else usual[at]
+        for at, (argument, value) in enumerate((("length", length), ("width", width)))
     ]
     steps = _steps(checks, times, step_s)
     lit = _lit(checks, lamps or {}, steps)
-    checks.raise_found()
+    checks.raise_problems()
     if "heading" not in stated:
         derived = motion.headings_of(places)
         stated["heading"] = np.zeros(count) if derived is None else derived
@@ -262,17 +262,15 @@ def build_recording(
         checks.one_of("side", side, get_args(Side))
     for kind in sorted(set(complete) - COMPLETE):
         checks.one_of("complete", kind, COMPLETE)
-    for what, ids in (
+    for called, ids in (
         ("lanelets", [lane.id for lane in lanes]),
         ("participants", [participant.id for participant in bodies]),
     ):
         if not ids:
-            checks.wrong(f"it has no {what}")
-        twice = (
-            sorted({one for one in ids if ids.count(one) > 1}) if len(set(ids)) < len(ids) else []
-        )
+            checks.wrong(f"it has no {called}")
+        twice = sorted({x for x in ids if ids.count(x) > 1}) if len(set(ids)) < len(ids) else []
         if twice:
-            checks.wrong(f"there are two {what} {named(twice)}", help_text="give each its own id")
+            checks.wrong(f"there are two {called} {named(twice)}", help_text="give each its own id")
     known = {lane.id: lane for lane in lanes}
     for lanelet in lanes:
         _check_lanelet(lanelet, known, checks)
@@ -280,7 +278,7 @@ def build_recording(
         _check_participant(body, checks)
     if str(ego):
         checks.one_of("ego", str(ego), [participant.id for participant in bodies])
-    checks.raise_found()
+    checks.raise_problems()
     return Recording(
         name=name,
         step_s=step_s,
@@ -298,12 +296,12 @@ def _check_lanelet(lanelet: Lanelet, known: Mapping[str, Lanelet], to: BuildingC
     checks = BuildingChecks(f"lanelet `{lanelet.id:.40}`")
     for side in ("left", "right", "centre"):
         checks.points(side, getattr(lanelet, side))
-    for what, ids in _references(lanelet):
+    for field, ids in _references(lanelet):
         for name in ids:
             if name not in known:
-                why = f"`{what}` has `{name!s:.40}`, which is no lanelet of the recording"
+                why = f"`{field}` has `{name!s:.40}`, which is no lanelet of the recording"
                 checks.wrong(why, help_text=did_you_mean(str(name), known))
-    to.found += checks.found
+    to.problems += checks.problems
 
 
 def _references(lanelet: Lanelet) -> Iterator[tuple[str, Iterable[str]]]:
@@ -331,4 +329,4 @@ def _check_participant(body: Participant, to: BuildingChecks) -> None:
             break
     if body.standing and len(body.states) != 1:
         checks.wrong(f"it stands, and has {len(body.states):,} states", "expected one")
-    to.found += checks.found
+    to.problems += checks.problems

@@ -22,53 +22,53 @@ _MOST_SHOWN = 20
 class BuildingChecks:
     """What is wrong with a thing that is built, all of which is said together."""
 
-    def __init__(self, what: str) -> None:
-        self.what = what
-        self.found: list[Diagnostic] = []
+    def __init__(self, about: str) -> None:
+        self.about = about
+        self.problems: list[Diagnostic] = []
 
     def wrong(self, why: str, expected: str = "", help_text: str = "") -> None:
         """Note a mistake."""
-        said = f"{self.what}: {why}"
-        self.found.append(NOT_BUILT.at(None, said, expected=expected, help=help_text))
+        said = f"{self.about}: {why}"
+        self.problems.append(NOT_BUILT.at(None, said, expected=expected, help=help_text))
 
-    def raise_found(self) -> None:
+    def raise_problems(self) -> None:
         """Raise RulecError R0617 if anything is wrong."""
-        if self.found:
-            raise RulecError(self.found[:_MOST_SHOWN])
+        if self.problems:
+            raise RulecError(self.problems[:_MOST_SHOWN])
 
     def numbers(self, name: str, values: ArrayLike, count: int | None = None) -> NDArray[float64]:
         """Finite numbers in a row, as many as there have to be; zeros where that is not so."""
         try:
-            found = np.array(values, dtype=float)
+            numbers = np.array(values, dtype=float)
         except (TypeError, ValueError, OverflowError):
-            found = np.full(0, np.nan)
+            numbers = np.full(0, np.nan)
             self.wrong(f"`{name}` holds something that is no number", "expected a row of numbers")
             return np.zeros(count or 1)
-        if found.ndim == 0 and count is not None:
-            found = np.full(count, found)
-        if found.ndim != 1 or (count is not None and len(found) != count):
-            size = "one number" if found.ndim == 0 else f"an array of shape {found.shape}"
+        if numbers.ndim == 0 and count is not None:
+            numbers = np.full(count, numbers)
+        if numbers.ndim != 1 or (count is not None and len(numbers) != count):
+            size = "one number" if numbers.ndim == 0 else f"an array of shape {numbers.shape}"
             many = "" if count is None else f"{count:,} "
             self.wrong(f"`{name}` is {size}", f"expected a row of {many}numbers")
             return np.zeros(count or 1)
-        self._bounded(name, found)
-        return found
+        self._bounded(name, numbers)
+        return numbers
 
     def points(self, name: str, values: ArrayLike) -> Points:
         """Two points or more; a line of two where that is not so."""
         line = np.array([[0.0, 0.0], [1.0, 0.0]])
         try:
-            found = np.array(values, dtype=float)
+            points = np.array(values, dtype=float)
         except (TypeError, ValueError, OverflowError):
             self.wrong(f"`{name}` holds something that is no number", "expected points (x, y)")
             return line
-        if found.ndim != 2 or found.shape[1] != 2 or len(found) < 2:
-            shape = f"an array of shape {found.shape}"
+        if points.ndim != 2 or points.shape[1] != 2 or len(points) < 2:
+            shape = f"an array of shape {points.shape}"
             self.wrong(f"`{name}` is {shape}", "expected two points (x, y) or more in order")
             return line
-        if not self._bounded(name, found):
+        if not self._bounded(name, points):
             return line
-        kept = without_repeats(found, CLOSEST_M)
+        kept = without_repeats(points, CLOSEST_M)
         if len(kept) < 2:
             self.wrong(f"`{name}` has one place only", "expected two different points or more")
             return line
@@ -77,12 +77,12 @@ class BuildingChecks:
             self.wrong(f"`{name}` is {length:,.0f} m long", f"expected {LONGEST_M:,.0f} m at most")
         return kept
 
-    def _bounded(self, name: str, found: NDArray[float64]) -> bool:
-        bad = ~(np.abs(found) < LARGEST)
+    def _bounded(self, name: str, numbers: NDArray[float64]) -> bool:
+        bad = ~(np.abs(numbers) < LARGEST)
         if bad.any():
             at = tuple(int(axis[0]) for axis in np.nonzero(bad))
             place = ", ".join(map(str, at))
-            why = f"`{name}[{place}]` is {found[at]:g}"
+            why = f"`{name}[{place}]` is {numbers[at]:g}"
             self.wrong(why, f"expected a number below {LARGEST:.0e}")
         return not bad.any()
 

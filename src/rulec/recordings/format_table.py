@@ -155,8 +155,8 @@ def _is_part(glance: Glance) -> bool:
 
 def _is_about_tracks(glance: Glance) -> bool:
     """True for what is said of a recording of levelX's, and of its tracks, in files beside it."""
-    number, _, what = glance.path.name.partition("_")
-    if not what.lower().startswith(("tracksmeta.csv", "recordingmeta.csv")):
+    number, _, content = glance.path.name.partition("_")
+    if not content.lower().startswith(("tracksmeta.csv", "recordingmeta.csv")):
         return False
     return any(glance.path.parent.glob(f"{escape(number)}_tracks.csv*"))
 

@@ -29,9 +29,10 @@ class SearchedFolder:
     @property
     def in_words(self) -> str:
         """Such as ``3 recordings in drives, 1 other file passed over``."""
-        found = f"{self.recordings:,} recording{'' if self.recordings == 1 else 's'} in {self.path}"
+        plural = "" if self.recordings == 1 else "s"
+        recordings = f"{self.recordings:,} recording{plural} in {self.path}"
         others = f"{self.others:,} other file{'' if self.others == 1 else 's'}"
-        return f"{found}, {others} passed over" if self.others else found
+        return f"{recordings}, {others} passed over" if self.others else recordings
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,13 +59,13 @@ def input_files(arguments: Sequence[str]) -> InputFiles:
             if path == STANDARD_INPUT or not is_folder(Path(path)) or _is_recording(Path(path)):
                 paths[path] = None
                 continue
-            found, others, refused = _recordings_below(path)
+            recordings, others, refused = _recordings_below(path)
             problems += refused
-            if not found and not refused:
+            if not recordings and not refused:
                 why = "there is no recorded traffic in this folder, nor below it"
                 problems.append(RECORDING.refused(Path(path), why, help_text=_as_traces(path)))
-            paths |= dict.fromkeys(found)
-            searched.append(SearchedFolder(path, len(found), others))
+            paths |= dict.fromkeys(recordings)
+            searched.append(SearchedFolder(path, len(recordings), others))
     return InputFiles(tuple(paths), tuple(searched), tuple(problems))
 
 
@@ -84,29 +85,29 @@ def _matching(argument: str, problems: list[RulecError]) -> Sequence[str]:
     if not glob.has_magic(argument) or os.path.lexists(argument):
         return [argument]
     # As the shell does it: what begins with a point has to be named so.
-    found = sorted(glob.glob(argument, recursive=True))  # noqa: PTH207
+    paths = sorted(glob.glob(argument, recursive=True))  # noqa: PTH207
     # What is in a folder that matches, too, counts as the folder's.
     files = []
-    for path in found:
+    for path in paths:
         if not Path(path).is_dir():
             try:
                 refuse_link_out(Path(path))
                 files.append(path)
             except RulecError as error:
                 problems.append(error)
-    if not found:
+    if not paths:
         message = "no file is called like that; `*`, `?` and `[…]` stand for other letters"
         problems.append(
             UNREADABLE_FILE.error(
                 SourceLocation(argument), message, help="check the pattern and the working folder"
             )
         )
-    return files or [path for path in found if Path(path).is_dir()]
+    return files or [path for path in paths if Path(path).is_dir()]
 
 
 def _recordings_below(folder: str) -> tuple[list[str], int, list[RulecError]]:
     """The recordings in and below a folder, by name, the number of other files, and links out."""
-    found: list[str] = []
+    recordings: list[str] = []
     refused: list[RulecError] = []
     others = 0
     tree = tree_of(Path(folder))
@@ -117,10 +118,10 @@ def _recordings_below(folder: str) -> tuple[list[str], int, list[RulecError]]:
             refused.append(error)
             continue
         if _is_recording(path):
-            found.append(str(path))
+            recordings.append(str(path))
         else:
             others += 1
-    return found, others, refused
+    return recordings, others, refused
 
 
 DEEPEST_FOLDER = 200

@@ -51,9 +51,9 @@ def crosswalk_with_outline(name: str, outline: Points) -> Lanelet:
     sides = np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
     if sides[0] + sides[2] < sides[1] + sides[3]:
         corners = np.roll(corners, -1, axis=0)
-    one, other = corners[:2], corners[:1:-1]
-    middle = (one + other) / 2
-    ahead, aside = middle[1] - middle[0], one[0] - other[0]
+    first, second = corners[:2], corners[:1:-1]
+    middle = (first + second) / 2
+    ahead, aside = middle[1] - middle[0], first[0] - second[0]
     if ahead[0] * aside[1] - ahead[1] * aside[0] < 0:
-        one, other = other, one
-    return crosswalk(name, one, other)
+        first, second = second, first
+    return crosswalk(name, first, second)

@@ -45,8 +45,8 @@ def is_track_head(names: Sequence[str]) -> bool:
     if "trace" in given:
         return False
     x, y = ({name, f"{name}_m", f"front_{name}"} & given for name in "xy")
-    found = sum(map(bool, (x, y, _TRACK & given, _TIME & given)))
-    return found >= 3 or bool(x and y and {"speed", "heading"} & given)
+    known = sum(map(bool, (x, y, _TRACK & given, _TIME & given)))
+    return known >= 3 or bool(x and y and {"speed", "heading"} & given)
 
 
 def is_fcd_head(names: Sequence[str]) -> bool:

@@ -40,10 +40,10 @@ def map_beside(path: Path, form: FileFormat) -> Path:
 
 
 def _only(path: Path, folder: Path, pattern: str, form: FileFormat, way_out: str) -> Path:
-    found = sorted(folder.glob(pattern)) if is_folder(folder) else []
-    if len(found) == 1:
-        return found[0]
-    if not found:
+    files = sorted(folder.glob(pattern)) if is_folder(folder) else []
+    if len(files) == 1:
+        return files[0]
+    if not files:
         raise form.refused(path, f"there is no `{pattern}` beside it", help_text=way_out)
-    some = named([short(file.name) for file in found[:_MOST_NAMED]])
-    raise form.refused(path, f"there are {len(found)} beside it: {some}", help_text=way_out)
+    some = named([short(file.name) for file in files[:_MOST_NAMED]])
+    raise form.refused(path, f"there are {len(files)} beside it: {some}", help_text=way_out)

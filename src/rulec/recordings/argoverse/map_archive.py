@@ -92,9 +92,9 @@ def read_map_archive(path: Path) -> RoadMap:
 def _lanes(path: Path, archive: _MapArchive) -> Iterator[Lanelet]:
     bounds = {}
     for segment in archive.lane_segments.values():
-        what = f"lane segment {segment.id}"
+        called = f"lane segment {segment.id}"
         lines = segment.left_lane_boundary, segment.right_lane_boundary
-        own = _bounds(path, what, lines)
+        own = _bounds(path, called, lines)
         # In a part of a city that is cut out, what lies at its edge may have been cut to a point
         if own is not None:
             bounds[segment.id] = own
@@ -158,31 +158,32 @@ Of two different lines the first that is named is the one on the lane's own side
 
 def _crosswalks(path: Path, archive: _MapArchive) -> Iterator[Lanelet]:
     for crossing in archive.pedestrian_crossings.values():
-        what = f"pedestrian crossing {crossing.id}"
-        edges = _bounds(path, what, (crossing.edge1, crossing.edge2))
+        called = f"pedestrian crossing {crossing.id}"
+        edges = _bounds(path, called, (crossing.edge1, crossing.edge2))
         if edges is None:
             continue
-        one, other = edges
-        if ends_apart(one, other[::-1]) < ends_apart(one, other):
+        edge, other = edges
+        if ends_apart(edge, other[::-1]) < ends_apart(edge, other):
             other = other[::-1]
-        one, other = paired(one, other)
-        along, across = (one[-1] - one[0]) + (other[-1] - other[0]), (other - one).mean(axis=0)
+        edge, other = paired(edge, other)
+        along = (edge[-1] - edge[0]) + (other[-1] - other[0])
+        across = (other - edge).mean(axis=0)
         towards_left = float(along[0] * across[1] - along[1] * across[0]) > 0
-        left, right = (other, one) if towards_left else (one, other)
+        left, right = (other, edge) if towards_left else (edge, other)
         yield crosswalk(str(crossing.id), left, right)
 
 
-def _bounds(path: Path, what: str, lines: tuple[_Line, _Line]) -> tuple[Points, Points] | None:
+def _bounds(path: Path, called: str, lines: tuple[_Line, _Line]) -> tuple[Points, Points] | None:
     """The two lines; None if one of them is no longer than nothing."""
-    found = []
+    bounds = []
     for line in lines:
         points: NDArray[float64] = np.array([(point.x, point.y) for point in line]).reshape(-1, 2)
         if len(points) < 2:
-            raise MAP_ARCHIVE.refused(path, f"a bound of {what} has fewer than two points")
+            raise MAP_ARCHIVE.refused(path, f"a bound of {called} has fewer than two points")
         if not (np.abs(points) < LARGEST).all():
-            raise MAP_ARCHIVE.refused(path, f"a place of {what} is not on earth")
+            raise MAP_ARCHIVE.refused(path, f"a place of {called} is not on earth")
         if line_length(points) > LONGEST_M:
-            raise MAP_ARCHIVE.refused(path, f"{what} is longer than {LONGEST_M / 1000:g} km")
-        found.append(without_repeats(points, _CLOSEST_M))
-    first, second = found
-    return (first, second) if min(map(len, found)) > 1 else None
+            raise MAP_ARCHIVE.refused(path, f"{called} is longer than {LONGEST_M / 1000:g} km")
+        bounds.append(without_repeats(points, _CLOSEST_M))
+    left, right = bounds
+    return (left, right) if min(map(len, bounds)) > 1 else None

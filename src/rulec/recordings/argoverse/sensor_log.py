@@ -119,9 +119,9 @@ def _poses_at(table: ArrowTable, moments: NDArray[int64]) -> CityPoses:
     known = table.whole["timestamp_ns"]
     order = np.argsort(known, kind="stable")
     rows = np.searchsorted(known, moments, sorter=order)
-    found = np.append(known[order], -1)[rows] == moments
-    if not found.all():
-        missing = int(moments[np.argmin(found)])
+    have_pose = np.append(known[order], -1)[rows] == moments
+    if not have_pose.all():
+        missing = int(moments[np.argmin(have_pose)])
         raise SENSOR.refused(table.path, f"it has no pose at {missing} ns, a moment of annotations")
     return _poses(table).taken(order[rows])
 

@@ -52,5 +52,5 @@ def rates(values: NDArray[float64], seconds: NDArray[float64]) -> NDArray[float6
     """The rates at which numbers change over time, by central differences; 0 of one alone."""
     if len(values) < 2:
         return np.zeros(len(values))
-    found: NDArray[float64] = np.gradient(values, seconds)
-    return found
+    gradients: NDArray[float64] = np.gradient(values, seconds)
+    return gradients

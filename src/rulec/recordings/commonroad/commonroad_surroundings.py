@@ -82,14 +82,14 @@ def _crossed_after(
     start: str, lanelets: Mapping[str, recording.Lanelet], crossed: Set[str]
 ) -> set[str]:
     """The lanelets that are crossed and follow one end to end, itself included."""
-    found = {start} & crossed
+    following = {start} & crossed
     waiting = [start]
     while waiting:
         for number in lanelets[waiting.pop()].successors:
-            if number in crossed and number not in found:
-                found.add(number)
+            if number in crossed and number not in following:
+                following.add(number)
                 waiting.append(number)
-    return found
+    return following
 
 
 def _crossed(lanelets: Sequence[recording.Lanelet]) -> set[str]:
@@ -97,11 +97,11 @@ def _crossed(lanelets: Sequence[recording.Lanelet]) -> set[str]:
     lines = [shapely.LineString(lanelet.centre) for lanelet in lanelets]
     pairs = shapely.STRtree(lines).query(lines, predicate="crosses").T.tolist()
     crossed: set[str] = set()
-    for one, other in pairs:
-        place = shapely.point_on_surface(shapely.intersection(lines[one], lines[other]))
-        turned = _direction(lines[one], place) - _direction(lines[other], place)
-        if one < other and abs(np.sin(turned)) > _ACUTE:
-            crossed.update((lanelets[one].id, lanelets[other].id))
+    for first, second in pairs:
+        place = shapely.point_on_surface(shapely.intersection(lines[first], lines[second]))
+        turned = _direction(lines[first], place) - _direction(lines[second], place)
+        if first < second and abs(np.sin(turned)) > _ACUTE:
+            crossed.update((lanelets[first].id, lanelets[second].id))
     return crossed
 
 

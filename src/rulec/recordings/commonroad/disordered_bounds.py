@@ -77,5 +77,5 @@ def _going_back(bounds: Iterable[Points]) -> list[int]:
     before, after = lengths[:-1], lengths[1:]
     is_long = np.minimum(before, after) > _BACK_M
     turns = (ways[:-1] * ways[1:]).sum(axis=1)
-    found: list[int] = number[1:-1][is_long & (turns < _SHARP * before * after)].tolist()
-    return found
+    going_back: list[int] = number[1:-1][is_long & (turns < _SHARP * before * after)].tolist()
+    return going_back

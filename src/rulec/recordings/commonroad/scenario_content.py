@@ -137,15 +137,15 @@ def _add_participant(content: Content, tree: Tree, kind: str) -> None:
     content.bodies.setdefault(kind, {})[number] = _KINDS[kind](tree, content.extent)
 
 
-def _add_intersection(content: Content, found: Intersection) -> None:
+def _add_intersection(content: Content, intersection: Intersection) -> None:
     """Add an intersection; of several with one id, as published maps have them, each for itself."""
-    number = found.id
+    number = intersection.id
     if number in content.intersections:
         remark = f"there are several intersections `{number}`: each is taken for one of its own"
         if remark not in content.remarks:
             content.remarks.append(remark)
         number = f"{number}#{len(content.intersections) + 1}"
-    content.intersections[number] = found._replace(id=number)
+    content.intersections[number] = intersection._replace(id=number)
 
 
 def _enter(known: dict[str, _T], tree: Tree, read: Callable[[Tree], _T]) -> None:

@@ -76,20 +76,20 @@ def _check_plain(value: object, depth: int = 0) -> None:
 def said_in(table: ArrowTable) -> Mapping[Any, Any]:
     """What the metadata of a file say. Raises RulecError R0610."""
     try:
-        found = unpacked(table.metadata.get(b"metadata", b""))
+        metadata = unpacked(table.metadata.get(b"metadata", b""))
     except OddPackError:
         raise table.form.refused(table.path, "its `metadata` are no MessagePack") from None
-    if not isinstance(found, dict):
+    if not isinstance(metadata, dict):
         raise table.form.refused(table.path, "its `metadata` are no table of names and values")
-    return found
+    return metadata
 
 
 def word(said: Mapping[Any, Any], name: str) -> str:
     """A text in metadata, empty if it is none, or no name."""
-    found = said.get(name)
-    if not isinstance(found, str) or len(found) > LONGEST_TEXT or not found.isprintable():
+    text = said.get(name)
+    if not isinstance(text, str) or len(text) > LONGEST_TEXT or not text.isprintable():
         return ""
-    return found
+    return text
 
 
 def side_and_country(data_set: str, place: str) -> tuple[Side | None, str]:

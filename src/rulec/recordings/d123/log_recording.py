@@ -223,7 +223,7 @@ def _lights(path: Path, sweeps: _Sweeps) -> dict[str, dict[int, str]]:
     if (np.diff(moments) <= 0).any():
         raise LOG.refused(path, "its moments are not in ascending order")
     half = round(sweeps.step_s * NANOSECONDS / 2)
-    found: dict[str, dict[int, str]] = {}
+    colours_of: dict[str, dict[int, str]] = {}
     latest = np.searchsorted(moments, sweeps.moments, side="right") - 1
     for step, row, moment in zip(
         sweeps.steps.tolist(), latest.tolist(), sweeps.moments.tolist(), strict=True
@@ -234,7 +234,7 @@ def _lights(path: Path, sweeps: _Sweeps) -> dict[str, dict[int, str]]:
         for lane, status in zip(
             lanes.values[part].tolist(), shown.values[part].tolist(), strict=True
         ):
-            own = found.setdefault(str(lane), {})
+            own = colours_of.setdefault(str(lane), {})
             if status in _COLOURS:
                 own[step] = _COLOURS[status]
-    return found
+    return colours_of

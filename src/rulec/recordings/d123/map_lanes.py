@@ -107,11 +107,11 @@ def with_lights(
 ) -> Mapping[str, Lanelet]:
     """The lanelets with what lights were seen to show for the way to each lane that has one."""
     seen = {name: ObservedLight(colours) for name, colours in lights.items() if name in lanelets}
-    found = dict(lanelets)
+    lit = dict(lanelets)
     for name, lanelet in lanelets.items():
         if ways := {other: seen[other] for other in lanelet.successors if other in seen}:
-            found[name] = replace(lanelet, lights=tuple(ways.values()), lights_to=ways)
-    return found
+            lit[name] = replace(lanelet, lights=tuple(ways.values()), lights_to=ways)
+    return lit
 
 
 def _layers(path: Path) -> _Layers:
@@ -120,7 +120,7 @@ def _layers(path: Path) -> _Layers:
         nested_bytes=(Nested(name="features"), Nested(name="wkb")),
     )
     table = read_table(path, MAP, wanted)
-    found: dict[int, list[_Thing]] = defaultdict(list)
+    by_layer: dict[int, list[_Thing]] = defaultdict(list)
     ids, layers = (table.whole[name].tolist() for name in ("object_id", "map_layer"))
     packed, shapes = (table.nested[name].values for name in ("features", "wkb"))
     for row, (key, layer) in enumerate(zip(ids, layers, strict=True)):
@@ -132,8 +132,8 @@ def _layers(path: Path) -> _Layers:
             raise table.refused(row, "its `features` are damaged") from None
         if not isinstance(said, dict):
             raise table.refused(row, "its `features` are no table of names and values")
-        found[layer].append(_Thing(row, key, said, shapes[row]))
-    return _Layers(table, found)
+        by_layer[layer].append(_Thing(row, key, said, shapes[row]))
+    return _Layers(table, by_layer)
 
 
 def _lanes(layers: _Layers) -> Iterator[Lanelet]:
@@ -188,12 +188,12 @@ def _known(names: Iterable[int], bounds: Mapping[int, object]) -> tuple[str, ...
 
 
 def _ids(layers: _Layers, thing: _Thing, name: str) -> list[int]:
-    found = thing.said.get(name)
-    if found is None:
+    ids = thing.said.get(name)
+    if ids is None:
         return []
-    if not isinstance(found, list) or not all(isinstance(x, int) for x in found):
+    if not isinstance(ids, list) or not all(isinstance(x, int) for x in ids):
         raise layers.wrong(thing, f"`{name}` is no list of ids")
-    return list(dict.fromkeys(found))
+    return list(dict.fromkeys(ids))
 
 
 def _beside(lane: _Thing, bounds: Mapping[int, tuple[Points, Points]], *, left: bool) -> str | None:

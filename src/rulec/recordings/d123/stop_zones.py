@@ -63,12 +63,12 @@ def with_signs(
                 untold[name].add(zone.sign)
         for name in before:
             signs[name].add(zone.sign)
-    found = dict(lanelets)
+    signed = dict(lanelets)
     for name, own in signs.items():
-        found[name] = replace(found[name], signs=found[name].signs | own)
+        signed[name] = replace(signed[name], signs=signed[name].signs | own)
     for name, own in untold.items():
-        found[name] = replace(found[name], untold_signs=frozenset(own - found[name].signs))
-    return found, left_out
+        signed[name] = replace(signed[name], untold_signs=frozenset(own - signed[name].signs))
+    return signed, left_out
 
 
 def _lanes_before(

@@ -30,10 +30,10 @@ def without_impossible_speeds(recording: Recording) -> Recording:
     mended, fastest = 0, 0.0
     for body in recording.participants:
         track = body.states.track if isinstance(body.states, TrackStates) else None
-        if track is not None and len(found := _impossible(track, recording.step_s)):
-            mended += len(found)
-            fastest = max(fastest, float(np.abs(track.rows[found, 3]).max()))
-            body = replace(body, states=TrackStates(_mended(track, found, recording.step_s)))
+        if track is not None and len(rows := _impossible(track, recording.step_s)):
+            mended += len(rows)
+            fastest = max(fastest, float(np.abs(track.rows[rows, 3]).max()))
+            body = replace(body, states=TrackStates(_mended(track, rows, recording.step_s)))
         bodies.append(body)
     if not mended:
         return recording
@@ -48,12 +48,12 @@ def without_impossible_speeds(recording: Recording) -> Recording:
 def _impossible(track: Track, step_s: float) -> NDArray[np.intp]:
     """The rows whose stated speed no vehicle has, and their places do not show."""
     stated = np.abs(track.rows[:, 3])
-    found = np.flatnonzero(stated > _MOST_MPS)
+    rows = np.flatnonzero(stated > _MOST_MPS)
     # Most often there is none
-    if not 0 < len(found) <= _MOST_PART * len(stated):
-        return found[:0]
+    if not 0 < len(rows) <= _MOST_PART * len(stated):
+        return rows[:0]
     moved = np.abs(_by_places(track, step_s))
-    return found[moved[found] < _BORNE_OUT * stated[found]]
+    return rows[moved[rows] < _BORNE_OUT * stated[rows]]
 
 
 def _by_places(track: Track, step_s: float) -> NDArray[float64]:
@@ -65,8 +65,8 @@ def _by_places(track: Track, step_s: float) -> NDArray[float64]:
     return speeds
 
 
-def _mended(track: Track, found: NDArray[np.intp], step_s: float) -> Track:
-    rows = track.rows.copy()
-    rows[found, 3] = _by_places(track, step_s)[found]
-    rows[found, 4] = np.gradient(rows[:, 3], track.steps * step_s)[found]
-    return replace(track, rows=rows)
+def _mended(track: Track, impossible: NDArray[np.intp], step_s: float) -> Track:
+    mended = track.rows.copy()
+    mended[impossible, 3] = _by_places(track, step_s)[impossible]
+    mended[impossible, 4] = np.gradient(mended[:, 3], track.steps * step_s)[impossible]
+    return replace(track, rows=mended)

@@ -82,8 +82,8 @@ def _doubts(tracks: list[Track], recording: Recording, angle: float) -> Iterator
         )
     ratio = median(np.array([_speed_ratio(track, recording.step_s) for track in tracks]))
     # Tables have said so themselves, of all their rows
-    told = any(remark.startswith(_SPEEDS) for remark in recording.remarks)
-    if ratio > 0 and not 1 / _ALIKE <= ratio <= _ALIKE and not told:
+    already_said = any(remark.startswith(_SPEEDS) for remark in recording.remarks)
+    if ratio > 0 and not 1 / _ALIKE <= ratio <= _ALIKE and not already_said:
         yield (
             f"{_SPEEDS} {ratio:.3g} times what places and times say, by which it is judged: "
             "time steps, or units of speeds or places, may be wrong"

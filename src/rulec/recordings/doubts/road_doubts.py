@@ -47,7 +47,7 @@ def check_near(recording: Recording, path: Path | None) -> None:
     if not recording.lanelets:
         raise OTHER_NET.error(where, "the map has no lanes", help="give another map with --map")
     places = [
-        found for participant in recording.participants if len(found := _some_places(participant))
+        some for participant in recording.participants if len(some := _some_places(participant))
     ]
     lines = [shapely.LineString(lanelet.centre) for lanelet in recording.lanelets.values()]
     tree = shapely.STRtree(lines)
@@ -78,11 +78,11 @@ def road_doubts(lanelets: Mapping[str, Lanelet], tracks: Sequence[Track]) -> Ite
     moves = [_moves(track) for track in tracks]
     on, along = roads.shares(moves)
     if along < _HALF and len(tracks) >= _FEWEST_BODIES:
-        for what, change in _AXES.items():
+        for fault, change in _AXES.items():
             better = roads.shares([change(move) for move in moves])[1]
             if better > _MOST:
                 yield (
-                    f"{what}: then {better:.0%} of the places of vehicles that move would be on "
+                    f"{fault}: then {better:.0%} of the places of vehicles that move would be on "
                     f"lanes that lead their way, and {along:.0%} are as they are"
                 )
                 return

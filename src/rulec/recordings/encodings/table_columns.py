@@ -133,27 +133,27 @@ def named_columns(table: ColumnTable, kinds: Sequence[ColumnKind]) -> NamedColum
     there twice.
     """
     ours = {alias: kind for kind in kinds for alias in (kind.name, *kind.also)}
-    found: dict[str, str] = {}
+    heading_of: dict[str, str] = {}
     unread = []
     for name in table.names:
         kind = ours.get(name.strip().casefold())
         if kind is None:
             unread.append(name)
-        elif kind.name in found:
-            both = f"`{short(found[kind.name])}` and `{short(name)}`"
+        elif kind.name in heading_of:
+            both = f"`{short(heading_of[kind.name])}` and `{short(name)}`"
             why = f"its columns {both} are both `{kind.name}`"
             raise table.refused(why, help_text="keep one of them, or rename the other")
         else:
-            found[kind.name] = name
+            heading_of[kind.name] = name
     for kind in kinds:
-        if kind.required and kind.name not in found:
+        if kind.required and kind.name not in heading_of:
             raise _missing(table, kind, unread, [k.name for k in kinds if k.required])
     by_name = {kind.name: kind for kind in kinds}
-    texts = [name for ours_, name in found.items() if by_name[ours_].is_text]
-    numbers = [name for ours_, name in found.items() if not by_name[ours_].is_text]
+    texts = [name for ours_, name in heading_of.items() if by_name[ours_].is_text]
+    numbers = [name for ours_, name in heading_of.items() if not by_name[ours_].is_text]
     columns = table.read(numbers, texts)
     read: dict[str, Floats] = {}
-    for own, name in found.items():
+    for own, name in heading_of.items():
         kind = by_name[own]
         if not kind.is_text:
             read[own] = columns.numbers[name] * kind.also.get(name.strip().casefold(), 1.0)
@@ -162,7 +162,7 @@ def named_columns(table: ColumnTable, kinds: Sequence[ColumnKind]) -> NamedColum
     return NamedColumns(
         columns,
         read,
-        {own: columns.texts[name] for own, name in found.items() if by_name[own].is_text},
+        {own: columns.texts[name] for own, name in heading_of.items() if by_name[own].is_text},
         tuple(unread),
     )
 
@@ -195,7 +195,7 @@ def _with_unit(kind: ColumnKind, unread: Iterable[str]) -> str | None:
     """A heading with something behind the name, such as `x [m]`."""
     names = (kind.name, *kind.also)
     bare = ((name, re.match(r"\w*", name.strip().casefold())) for name in unread)
-    return next((name for name, found in bare if found and found[0] in names), None)
+    return next((name for name, match in bare if match and match[0] in names), None)
 
 
 def _check_full(columns: Columns, name: str, kind: ColumnKind) -> None:
@@ -220,14 +220,14 @@ def checked_numbers(values: Sequence[str], largest: float = LARGEST) -> tuple[Fl
     Truths are 1 and 0 where there is nothing else.
     """
     try:
-        found = np.fromiter(map(float, values), float, len(values))
+        numbers = np.fromiter(map(float, values), float, len(values))
     except ValueError:
         spelt = {value: _number(value) for value in set(values)}
         if {value.strip().casefold() for value in spelt} <= _FLAGS:
             spelt = {value: _flag(value) for value in spelt}
-        found = np.fromiter(map(spelt.__getitem__, values), float, len(values))
-    bad = ~(np.abs(found) < largest) & ~np.isnan(found)
-    return found, int(np.argmax(bad)) if bad.any() else None
+        numbers = np.fromiter(map(spelt.__getitem__, values), float, len(values))
+    bad = ~(np.abs(numbers) < largest) & ~np.isnan(numbers)
+    return numbers, int(np.argmax(bad)) if bad.any() else None
 
 
 def _number(text: str) -> float:

@@ -62,14 +62,14 @@ def open_table(path: Path, form: FileFormat, names: Sequence[str] = ()) -> Colum
     with opened(path) as file:
         beginning = file.read(_BEGINNING)
     if is_parquet(path.name, beginning):
-        found = parquet_names(path, refused)
+        column_names = parquet_names(path, refused)
 
         def read_parquet(numbers: Sequence[str], texts: Sequence[str]) -> Columns:
             wanted = [*numbers, *texts]
             values = parquet_columns(path, wanted, refused, MOST_ROWS)
             return columns_of(values, numbers, texts, refused)
 
-        return ColumnTable(_checked_names(found, refused), refused, read_parquet)
+        return ColumnTable(_checked_names(column_names, refused), refused, read_parquet)
     with _lines(path, form, refused) as stream:
         head = stream.readline(LONGEST_LINE)
     if not head.strip():
@@ -154,7 +154,7 @@ def _read(
     """The wanted columns of numbers and of texts, block by block."""
     numbers, texts = wanted
     at = {name: place for place, name in enumerate(names)}
-    found: dict[str, list[NDArray[Any]]] = {name: [] for name in (*numbers, *texts)}
+    parts_of: dict[str, list[NDArray[Any]]] = {name: [] for name in (*numbers, *texts)}
     codes: dict[str, dict[str, int]] = {name: {} for name in texts}
     lines: list[NDArray[int64]] = []
     count = 0
@@ -180,14 +180,14 @@ def _read(
             values, bad = checked_numbers(cells[at[name]], LARGEST_NUMBER)
             if bad is not None:
                 raise _no_number(name, cells[at[name]][bad], int(own[bad]), refused)
-            found[name].append(values)
+            parts_of[name].append(values)
         for name in texts if block else ():
             known = codes[name]
             column = (known.setdefault(cell, len(known)) for cell in cells[at[name]])
-            found[name].append(np.fromiter(column, int64, len(block)))
+            parts_of[name].append(np.fromiter(column, int64, len(block)))
     if not count:
         raise refused("it has a head, but no rows", line)
-    whole = {name: np.concatenate(parts) for name, parts in found.items()}
+    whole = {name: np.concatenate(parts) for name, parts in parts_of.items()}
     return Columns(
         refused,
         {name: whole[name] for name in numbers},
@@ -328,16 +328,16 @@ def _floats(name: str, column: NDArray[Any], refused: Any) -> NDArray[np.float64
         way_out = "give seconds, as pandas' `(t - t.min()).dt.total_seconds()` does"
         raise refused(why, help_text=way_out)
     if column.dtype.kind in "biuf":
-        found = column.astype(float)
-        bad = ~(np.abs(found) < LARGEST_NUMBER) & ~np.isnan(found)
+        floats = column.astype(float)
+        bad = ~(np.abs(floats) < LARGEST_NUMBER) & ~np.isnan(floats)
         place = int(np.argmax(bad)) if bad.any() else None
     else:
-        found, place = checked_numbers(
+        floats, place = checked_numbers(
             ["" if cell is None else str(cell) for cell in column.tolist()], LARGEST_NUMBER
         )
     if place is not None:
         raise _no_number(name, str(column[place]), place, refused)
-    return found
+    return floats
 
 
 def _texts(column: NDArray[Any]) -> Texts:

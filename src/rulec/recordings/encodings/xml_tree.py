@@ -117,10 +117,10 @@ def whole_tree(path: Path, form: XmlFormat, alike: Sequence[Alike]) -> Tree | No
         return None
     if not _begins_well(bytes(data[:_HEAD_BYTES]), form):
         return None
-    rest, found = without_alike(bytes(data), alike)
+    rest, runs = without_alike(bytes(data), alike)
     try:
         # The prolog, in which alone entities can be defined, has been looked at.
-        return _tree(ElementTree.fromstring(rest), path, form, found)
+        return _tree(ElementTree.fromstring(rest), path, form, runs)
     except (ElementTree.ParseError, LookupError, ValueError):
         return None
 
@@ -133,17 +133,17 @@ def without_alike(data: bytes, alike: Sequence[Alike]) -> tuple[bytes, list[Alik
     well-formed stays so.
     """
     parts: list[bytes] = []
-    found: list[AlikeElements] = []
+    runs: list[AlikeElements] = []
     at = 0
     for begin, first, last, elements in sorted(
-        (cut for one in alike for cut in _cuts(data, one)), key=itemgetter(0)
+        (cut for shape in alike for cut in _cuts(data, shape)), key=itemgetter(0)
     ):
         # Nothing is taken out of what has been taken out
         if begin > at:
-            parts += (data[at : begin - 1], b' %s"%d">' % (_MARK, len(found)), data[begin:first])
-            found.append(elements)
+            parts += (data[at : begin - 1], b' %s"%d">' % (_MARK, len(runs)), data[begin:first])
+            runs.append(elements)
             at = last
-    return b"".join((*parts, data[at:])), found
+    return b"".join((*parts, data[at:])), runs
 
 
 _Cut = tuple[int, int, int, AlikeElements]
@@ -186,10 +186,10 @@ def _elements(run: bytes, shapes: Sequence[_Shape]) -> AlikeElements | None:
     """The elements of a run, if all are of one of the shapes, and there is no other tag in it."""
     tags = run.count(b"<")
     for shape in shapes:
-        found = shape.pattern.findall(run)
-        if len(found) * shape.tags == tags:
-            columns = tuple(zip(*found, strict=True))
-            return AlikeElements(len(found), tuple(columns[place] for place in shape.order))
+        matches = shape.pattern.findall(run)
+        if len(matches) * shape.tags == tags:
+            columns = tuple(zip(*matches, strict=True))
+            return AlikeElements(len(matches), tuple(columns[place] for place in shape.order))
     return None
 
 

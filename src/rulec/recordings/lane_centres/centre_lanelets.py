@@ -97,7 +97,7 @@ def _sound_lanes(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:
             elif other in lanes and other not in passed:
                 yield from reached(other, onward, passed | {other})
 
-    found = {}
+    sound = {}
     for name in lanes:
         if name in there:
             lane, points = lanes[name], kept[name]
@@ -105,7 +105,7 @@ def _sound_lanes(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:
                 tuple(dict.fromkeys(reached(name, onward, frozenset({name}))))
                 for onward in (False, True)
             )
-            found[name] = replace(
+            sound[name] = replace(
                 lane,
                 centre=lane.centre[points],
                 follows=before,
@@ -113,7 +113,7 @@ def _sound_lanes(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:
                 left=_renumbered(lane.left, points, kept),
                 right=_renumbered(lane.right, points, kept),
             )
-    return found
+    return sound
 
 
 def _kept(centre: NDArray[float64]) -> list[int]:

@@ -72,19 +72,19 @@ def _crossed(lanes: Mapping[str, CentreLane]) -> dict[str, list[float]]:
     if not lines:
         return {}
     pairs = shapely.STRtree(lines).query(lines, predicate="crosses").T.tolist()
-    found: dict[str, list[float]] = defaultdict(list)
-    for one, other in pairs:
-        if one < other:
-            place = shapely.point_on_surface(shapely.intersection(lines[one], lines[other]))
+    crossings: dict[str, list[float]] = defaultdict(list)
+    for first, second in pairs:
+        if first < second:
+            place = shapely.point_on_surface(shapely.intersection(lines[first], lines[second]))
             (turn, z), (other_turn, other_z) = (
-                _at(cars[index].centre, place) for index in (one, other)
+                _at(cars[index].centre, place) for index in (first, second)
             )
             # Heights that are not known do not part lanes
             meets = not abs(z - other_z) > APART_M
             if meets and abs(np.arctan(np.tan(turn - other_turn))) > CROSSING_RAD:
-                for index in (one, other):
-                    found[cars[index].id].append(float(lines[index].project(place)))
-    return found
+                for index in (first, second):
+                    crossings[cars[index].id].append(float(lines[index].project(place)))
+    return crossings
 
 
 def _at(centre: Places3d, place: shapely.Point) -> tuple[float, float]:

@@ -90,17 +90,17 @@ def neighbours_of_pieces(
     lanes: Mapping[str, CentreLane], pieces: Mapping[str, tuple[LanePiece, ...]]
 ) -> dict[str, str]:
     """Piece -> the one left of it; each is left of one at most."""
-    found: dict[tuple[str, str], float] = {}
+    shares: dict[tuple[str, str], float] = {}
     for name, lane in lanes.items():
         for side, is_left in ((lane.left, True), (lane.right, False)):
             for part in side.neighbours:
                 for piece in pieces[name]:
                     for other, share in _shares(piece, part, pieces.get(part.lane, ())):
                         pair = (piece.id, other.id) if is_left else (other.id, piece.id)
-                        found[pair] = max(share, found.get(pair, 0.0))
+                        shares[pair] = max(share, shares.get(pair, 0.0))
     left_of: dict[str, str] = {}
     taken: set[str] = set()
-    for (right, left), _ in sorted(found.items(), key=lambda item: (-item[1], item[0])):
+    for (right, left), _ in sorted(shares.items(), key=lambda item: (-item[1], item[0])):
         if right not in left_of and left not in taken and left_of.get(left) != right:
             left_of[right] = left
             taken.add(left)

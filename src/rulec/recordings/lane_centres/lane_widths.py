@@ -73,17 +73,17 @@ def _by_side(
     lines: Mapping[str, shapely.LineString],
     centres: Mapping[str, shapely.LineString],
 ) -> Widths:
-    found = np.full(len(points), np.nan)
+    widths = np.full(len(points), np.nan)
     for part in side.boundaries:
         own = slice(part.start, part.end + 1)
         if part.line in lines:
-            found[own] = _sound(shapely.distance(points[own], lines[part.line]))
+            widths[own] = _sound(shapely.distance(points[own], lines[part.line]))
     for beside in side.neighbours:
         own = slice(beside.start, beside.end + 1)
         if beside.lane in centres:
             halves = _sound(shapely.distance(points[own], centres[beside.lane]) / 2)
-            found[own] = np.where(np.isnan(found[own]), halves, found[own])
-    return found
+            widths[own] = np.where(np.isnan(widths[own]), halves, widths[own])
+    return widths
 
 
 def at_their_lines(features: RoadFeatures) -> dict[str, CentreLane]:
@@ -164,5 +164,5 @@ def _filled(lane: CentreLane, known: Mapping[str, HalfWidths], side: int) -> Wid
 
 
 def _mean(values: Iterable[float]) -> float | None:
-    found = [value for value in values if not np.isnan(value)]
-    return float(np.mean(found)) if found else None
+    known = [value for value in values if not np.isnan(value)]
+    return float(np.mean(known)) if known else None

@@ -47,13 +47,13 @@ def first_ways(survey: Surveyed, rules: Mapping[str, LaneRules]) -> dict[str, fr
 
 def _ways(survey: Surveyed, names: Iterator[str]) -> frozenset[str]:
     """The lanelets in the junction that some lead into, or are."""
-    found: set[str] = set()
+    ways: set[str] = set()
     for name in names:
         entry = survey.entries.get(name)
         if entry is not None:
             inside = "intersection" in entry.types or _is_inside(survey, entry)
-            found.update([name] if inside else survey.topology.successors[name])
-    return frozenset(found)
+            ways.update([name] if inside else survey.topology.successors[name])
+    return frozenset(ways)
 
 
 def _is_inside(survey: Surveyed, entry: MapLanelet) -> bool:
@@ -68,7 +68,7 @@ def _before(survey: Surveyed, names: frozenset[str]) -> Iterator[str]:
 
 def _come_towards(survey: Surveyed, names: list[str]) -> dict[str, set[str]]:
     """Lanelet -> those that cross or join it, and begin in the opposite direction."""
-    found: dict[str, set[str]] = {name: set() for name in names}
+    towards: dict[str, set[str]] = {name: set() for name in names}
     all_lanes = list(lanes(survey.entries))
     tree = shapely.STRtree([shapely.LineString(entry.centre) for entry in all_lanes])
     count = 0
@@ -82,8 +82,8 @@ def _come_towards(survey: Surveyed, names: list[str]) -> dict[str, set[str]]:
             other = all_lanes[number]
             itself = other.id.removesuffix(REVERSED) == name.removesuffix(REVERSED)
             if not itself and _ahead(entry) @ _ahead(other) < _TOWARDS:
-                found[name].add(other.id)
-    return found
+                towards[name].add(other.id)
+    return towards
 
 
 def _ahead(entry: MapLanelet) -> np.ndarray[tuple[int], np.dtype[np.float64]]:

@@ -134,14 +134,14 @@ def mark(tags: _Tags, *, turned: bool, on_left: bool) -> LaneMark | None:
         return None
     left = on_left != turned
     own = _MARKS.get(tags.get("subtype", ""))
-    told = own and own[0 if left else 1]
+    drawn = own and own[0 if left else 1]
     may = _may_cross(tags, from_left=left)
     if may is None:
-        return told
+        return drawn
     by_tag: LaneMark = "broken" if may else "solid"
-    if told is None:
+    if drawn is None:
         return None if tags.get("subtype") else by_tag
-    return told if (told == "broken") == may else None
+    return drawn if (drawn == "broken") == may else None
 
 
 def _may_cross(tags: _Tags, *, from_left: bool) -> bool | None:

@@ -159,8 +159,8 @@ def _own_part(entry: MapLanelet, line: Points) -> Points:
     with np.errstate(all="ignore"):
         ends: Points = shapely.get_coordinates(shapely.shortest_line(bounds, whole))[1::2]
     # And it then may find no place on one of them
-    found = len(ends) == len(bounds) and np.hypot(*(ends[1] - ends[0])) > _SHORTEST_M
-    return ends if found else line
+    both_met = len(ends) == len(bounds) and np.hypot(*(ends[1] - ends[0])) > _SHORTEST_M
+    return ends if both_met else line
 
 
 def nearest_line(entry: MapLanelet, lines: list[Points]) -> Points | None:
@@ -240,11 +240,11 @@ def _drawn_stop_lines(survey: Surveyed, rules: Mapping[str, LaneRules]) -> None:
     tree, count = shapely.STRtree(middles), 0
     reached: dict[str, tuple[float, Points]] = {}
     for line in lines:
-        found = tree.query(shapely.LineString(line), predicate="dwithin", distance=_ON_LINE_M)
-        count += len(found)
+        crossed = tree.query(shapely.LineString(line), predicate="dwithin", distance=_ON_LINE_M)
+        count += len(crossed)
         if count > _MOST_CROSSED:
             raise survey.file.refused("too many of its lanelets lie on each other")
-        for number in found.tolist():
+        for number in crossed.tolist():
             entry, middle = open_lanes[number], middles[number]
             along = middle.project(shapely.Point(line.mean(axis=0)))
             known = reached.get(entry.id, (0.0, line))[0]

@@ -74,9 +74,9 @@ def side_of(entries: Mapping[str, MapLanelet], country: str) -> Side | None:
     Two lanes that lead opposite ways share their left bounds where traffic keeps right, their right
     ones where it keeps left. None where there are no such lanes, or both kinds.
     """
-    told = side_in(country)
-    if told is not None:
-        return told
+    of_country = side_in(country)
+    if of_country is not None:
+        return of_country
     lanes = [x for x in entries.values() if x.is_lane and not x.both_ways]
     lanes = [x for x in lanes if not x.types & _NOT_FOR_CARS]
     lefts, rights = {x.left_bound for x in lanes}, {x.right_bound for x in lanes}

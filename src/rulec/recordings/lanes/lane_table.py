@@ -223,7 +223,7 @@ class _LaneTable:
 
     def _check_references(self, lanelets: Mapping[str, Lanelet]) -> None:
         for lanelet in lanelets.values():
-            for what, names in (
+            for column, names in (
                 ("successors", lanelet.successors),
                 ("predecessors", lanelet.predecessors),
                 ("left_lane", (lanelet.left_of,) if lanelet.left_of else ()),
@@ -235,7 +235,7 @@ class _LaneTable:
                     if name not in lanelets:
                         row = int(np.argmax(self.lane.having(lanelet.id)))
                         why = (
-                            f"`{what}` of lane `{short(lanelet.id)}` has `{short(name)}`, "
+                            f"`{column}` of lane `{short(lanelet.id)}` has `{short(name)}`, "
                             "which is no lane"
                         )
                         help_text = did_you_mean(name, lanelets)

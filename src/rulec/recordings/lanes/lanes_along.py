@@ -70,14 +70,14 @@ def linked(lanelets: Mapping[str, Lanelet]) -> dict[str, Lanelet]:
         if lanelet.right_of is not None:
             left[lanelet.right_of] = lanelet.id
     return {
-        one.id: replace(
-            one,
-            successors=tuple(dict.fromkeys(after[one.id])),
-            predecessors=tuple(dict.fromkeys(before[one.id])),
-            left_of=one.left_of if one.left_of is not None else left.get(one.id),
-            right_of=one.right_of if one.right_of is not None else right.get(one.id),
+        lane.id: replace(
+            lane,
+            successors=tuple(dict.fromkeys(after[lane.id])),
+            predecessors=tuple(dict.fromkeys(before[lane.id])),
+            left_of=lane.left_of if lane.left_of is not None else left.get(lane.id),
+            right_of=lane.right_of if lane.right_of is not None else right.get(lane.id),
         )
-        for one in lanelets.values()
+        for lane in lanelets.values()
     }
 
 

@@ -18,5 +18,5 @@ def mended(recording: Recording, longest_hole_s: float = LONGEST_HOLE_S) -> Reco
     """
     if MENDED in recording.complete:
         return recording
-    found = without_short_holes(with_steady_headings(recording), longest_hole_s)
-    return replace(found, complete=found.complete | {MENDED})
+    repaired = without_short_holes(with_steady_headings(recording), longest_hole_s)
+    return replace(repaired, complete=repaired.complete | {MENDED})

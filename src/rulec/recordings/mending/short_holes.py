@@ -83,8 +83,8 @@ class _Known:
         moved = np.hypot(*np.diff(self.rows[around, :2], axis=0).T)
         speeds = moved / np.diff(self.steps[around]) / self.step_s
         in_hole = around.searchsorted(hole)
-        told = np.abs(self.rows[hole : hole + 2, 3]).max()
-        fastest = max(float(told), *np.delete(speeds, in_hole).tolist(), 0.0)
+        stated = np.abs(self.rows[hole : hole + 2, 3]).max()
+        fastest = max(float(stated), *np.delete(speeds, in_hole).tolist(), 0.0)
         turned = abs(wrapped(np.diff(self.rows[hole : hole + 2, 2]))[0])
         too_fast = speeds[in_hole] > fastest * _FASTER + _FASTER_MPS
         return bool(too_fast or turned > _LARGEST_TURN)
@@ -111,12 +111,12 @@ def _cubic(
     steps: NDArray[int64], places: NDArray[float64], wanted: NDArray[int64]
 ) -> NDArray[float64]:
     """Places on the polynomial through others, of the least degree."""
-    found = np.zeros((len(wanted), 2))
+    interpolated = np.zeros((len(wanted), 2))
     for k, step in enumerate(steps.tolist()):
         others = np.delete(steps, k)
         weight = np.prod((wanted[:, None] - others) / (step - others), axis=1)
-        found += weight[:, None] * places[k]
-    return found
+        interpolated += weight[:, None] * places[k]
+    return interpolated
 
 
 def _lamps(

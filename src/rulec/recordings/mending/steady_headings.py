@@ -80,11 +80,11 @@ def _steady(times: Floats, places: Floats, heading: Floats) -> Floats | None:
     ways = np.hypot(*np.diff(places, axis=0).T)
     if not _spins(apart, ways, heading).any():
         return None
-    found = _turned_back(times, places, heading, apart)
-    spins = _spins(apart, ways, found)
+    steadied = _turned_back(times, places, heading, apart)
+    spins = _spins(apart, ways, steadied)
     if spins.any():
-        found = _of_before_and_after(times, places, found, spins)
-    return None if np.array_equal(found, heading) else found
+        steadied = _of_before_and_after(times, places, steadied, spins)
+    return None if np.array_equal(steadied, heading) else steadied
 
 
 def _spins(apart: Floats, ways: Floats, heading: Floats) -> NDArray[bool_]:
@@ -99,7 +99,7 @@ def _turned_back(times: Floats, places: Floats, heading: Floats, apart: Floats) 
 
     At a track's ends only those beside others that last longer and lead forwards as much or more.
     """
-    found: Floats = heading.copy()
+    turned: Floats = heading.copy()
     whole = len(heading)
     flips = (np.abs(wrapped(np.diff(heading))) > _ROUND) & (apart <= _SOON_S)
     parts = list(pairwise([0, *(flips.nonzero()[0] + 1).tolist(), whole]))
@@ -107,15 +107,15 @@ def _turned_back(times: Floats, places: Floats, heading: Floats, apart: Floats) 
         if times[min(end, whole - 1)] - times[begin] >= _BRIEF_S or len(parts) == 1:
             continue
         if begin > 0 and end < whole:
-            wrong = abs(wrapped(found[begin : begin + 1] - found[begin - 1])[0]) > _ROUND
+            wrong = abs(wrapped(turned[begin : begin + 1] - turned[begin - 1])[0]) > _ROUND
         else:
             beside = parts[1] if begin == 0 else parts[number - 1]
             wrong = end - begin < beside[1] - beside[0] and (
                 _forwards(places, heading, (begin, end)) <= _forwards(places, heading, beside)
             )
         if wrong:
-            found[begin:end] = wrapped(found[begin:end] + np.pi)
-    return found
+            turned[begin:end] = wrapped(turned[begin:end] + np.pi)
+    return turned
 
 
 def _forwards(places: Floats, heading: Floats, part: tuple[int, int]) -> float:
@@ -132,20 +132,20 @@ def _of_before_and_after(
     """The headings with those of whom spins while it stands as they are before and after."""
     stands = _stand(times, places)
     edges = np.diff(stands.astype(int64), prepend=0, append=0)
-    found: Floats = heading.copy()
+    steadied: Floats = heading.copy()
     for begin, end in zip((edges > 0).nonzero()[0], (edges < 0).nonzero()[0], strict=True):
         # One that turns once, and stays so, may have been put right there
         if spins[begin : end - 1].sum() < 2:
             continue
         before = _mean(heading, times, slice(0, begin), float(times[begin]))
         after = _mean(heading, times, slice(end, None), float(times[end - 1]))
-        one = after if before is None else before
-        other = before if after is None else after
-        if one is None or other is None:
+        first = after if before is None else before
+        last = before if after is None else after
+        if first is None or last is None:
             continue
         share = np.linspace(0.0, 1.0, end - begin)
-        found[begin:end] = wrapped(one + share * wrapped(np.array([other - one])))
-    return found
+        steadied[begin:end] = wrapped(first + share * wrapped(np.array([last - first])))
+    return steadied
 
 
 def _stand(times: Floats, places: Floats) -> NDArray[bool_]:

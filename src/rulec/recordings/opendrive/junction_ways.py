@@ -55,16 +55,16 @@ def crossroads(
                     arms[after].add(start.road)
                 if before:
                     arms[before].add(end.road)
-    found: dict[str, str] = {}
+    junction_of: dict[str, str] = {}
     yields_to: dict[str, frozenset[str]] = {}
     for name, roads in within.items():
         headings = [_heading(pieces, key) for key in entering[name]]
         if len(arms[name]) >= _ARMS and _differ(headings):
-            found.update(dict.fromkeys(roads, name))
+            junction_of.update(dict.fromkeys(roads, name))
             junction = content.junctions.get(name)
             if junction is not None and junction.priorities:
                 yields_to.update(_rights(junction, roads))
-    return Crossroads(found, yields_to)
+    return Crossroads(junction_of, yields_to)
 
 
 def _heading(pieces: Mapping[str, Sequence[RoadPiece]], key: LaneKey) -> float:

@@ -66,11 +66,11 @@ class _Street:
     content: OpenDrive
     pieces: Mapping[str, Sequence[RoadPiece]]
     links: LaneLinks
-    found: dict[LaneKey, LaneFurniture] = field(default_factory=dict)
+    by_lane: dict[LaneKey, LaneFurniture] = field(default_factory=dict)
 
     def at(self, key: LaneKey) -> LaneFurniture:
         """What stands along a lane."""
-        return self.found.setdefault(key, LaneFurniture())
+        return self.by_lane.setdefault(key, LaneFurniture())
 
 
 def posted_on(content: OpenDrive) -> dict[str, list[Posted]]:
@@ -121,7 +121,7 @@ def lane_furniture(
         for thing in road.objects:
             if is_stop_line_object(thing):
                 _place_line(street, road, thing)
-    return street.found
+    return street.by_lane
 
 
 def _place_signal(

@@ -54,10 +54,11 @@ class _Links:
     pieces: Mapping[str, Sequence[RoadPiece]]
     joints: dict[tuple[_LaneEnd, _LaneEnd], None] = field(default_factory=dict)
 
-    def join(self, one: _LaneEnd, other: _LaneEnd) -> None:
+    def join(self, first: _LaneEnd, other: _LaneEnd) -> None:
         """Link ends of lanes, if both lanes are there."""
-        if all(end.lane in self.pieces[end.road][end.piece].section.lanes for end in (one, other)):
-            self.joints[one, other] = None
+        both = (first, other)
+        if all(end.lane in self.pieces[end.road][end.piece].section.lanes for end in both):
+            self.joints[first, other] = None
 
     def end_of(self, road: str, contact: ContactPoint, lane: int) -> _LaneEnd:
         """The end of a lane at an end of its road."""
@@ -84,15 +85,15 @@ def lane_links(content: OpenDrive, pieces: Mapping[str, Sequence[RoadPiece]]) ->
         if not pieces[start.road][start.piece].is_short:
             for end in ends:
                 before[end][start] = None
-    return LaneLinks(after, {key: tuple(found) for key, found in before.items()})
+    return LaneLinks(after, {key: tuple(lanes) for key, lanes in before.items()})
 
 
-def _ways(links: _Links, one: _LaneEnd, other: _LaneEnd) -> Iterator[tuple[LaneKey, LaneKey]]:
+def _ways(links: _Links, first: _LaneEnd, second: _LaneEnd) -> Iterator[tuple[LaneKey, LaneKey]]:
     """From a lane that is driven to its end to one that is driven away from its own."""
-    for there in _directions(links, one):
-        for onward in _directions(links, other):
-            if there == one.at_end and onward != other.at_end:
-                yield LaneKey(*one[:3], there), LaneKey(*other[:3], onward)
+    for there in _directions(links, first):
+        for onward in _directions(links, second):
+            if there == first.at_end and onward != second.at_end:
+                yield LaneKey(*first[:3], there), LaneKey(*second[:3], onward)
 
 
 def _directions(links: _Links, end: _LaneEnd) -> tuple[bool, ...]:

@@ -137,12 +137,12 @@ def _borders(
             if piece.is_short:
                 continue
             try:
-                found = lane_borders(piece)
+                borders_of = lane_borders(piece)
             except ValueError as problem:
                 road = piece.road
                 why = f"the road `{short(road.id)}` cannot be laid out: {problem}"
                 raise OPENDRIVE.refused(path, why, road.line) from None
-            for lane, lines in found.items():
+            for lane, lines in borders_of.items():
                 count += lines.shape[1]
                 wide = float(np.hypot(*(lines[1] - lines[0]).T).max()) > NARROWEST_M
                 if piece.section.lanes[lane].type in NO_LANE or not wide:
@@ -282,8 +282,8 @@ def _sides_shown(lanelets: Mapping[str, Lanelet]) -> set[Side]:
         near = {"predicate": "dwithin", "distance": _SAME_M}
         pairs = shapely.STRtree(ends).query(starts, **near).T
         if any(
-            one != other and shapely.dwithin(ends[one], starts[other], _SAME_M)
-            for one, other in pairs.tolist()
+            first != second and shapely.dwithin(ends[first], starts[second], _SAME_M)
+            for first, second in pairs.tolist()
         ):
             shown.add(side)
     return shown

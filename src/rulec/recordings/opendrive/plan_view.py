@@ -132,18 +132,18 @@ def _at_way(first: Numbers, second: Numbers, way: Numbers, whole: float | None) 
     else:
         beyond = np.zeros(len(way), dtype=bool)
     wanted = np.minimum(way * scale, reached[-1])
-    found = np.interp(wanted, reached, p)
+    parameter = np.interp(wanted, reached, p)
     for _ in range(_ROUNDS):
         # Newton's method, from where the piece that holds it begins
         row = np.clip(np.searchsorted(reached, wanted, side="right") - 1, 0, count - 1)
-        half = (found - p[row]) / 2
+        half = (parameter - p[row]) / 2
         inside = p[row][:, None] + half[:, None] * (1 + _NODES)
         length = reached[row] + half * (
             np.hypot(_slope(first, inside), _slope(second, inside)) @ _WEIGHTS
         )
-        here = np.hypot(_slope(first, found), _slope(second, found))
-        found = np.clip(found + (wanted - length) / np.maximum(here, 1e-9), 0.0, most)
-    return np.where(beyond, 1.0, found)
+        here = np.hypot(_slope(first, parameter), _slope(second, parameter))
+        parameter = np.clip(parameter + (wanted - length) / np.maximum(here, 1e-9), 0.0, most)
+    return np.where(beyond, 1.0, parameter)
 
 
 def _value(numbers: Numbers, p: Numbers) -> Numbers:

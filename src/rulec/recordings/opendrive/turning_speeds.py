@@ -20,7 +20,7 @@ def without_turning_speeds(
     No sign holds within a junction alone. So a way through it whose limit is below those of all
     roads before and after it has that of the road that leads there.
     """
-    found = dict(lanelets)
+    changed = dict(lanelets)
     count = 0
     for name in inside:
         own = lanelets[name]
@@ -32,9 +32,9 @@ def without_turning_speeds(
             continue
         lowest = min(limit for limit in before if limit is not None)
         if own.limit_mps < min(lowest, *(limit for limit in after if limit is not None)):
-            found[name] = replace(own, limit_mps=lowest)
+            changed[name] = replace(own, limit_mps=lowest)
             count += 1
-    return found, count
+    return changed, count
 
 
 def _limits(

@@ -59,14 +59,14 @@ class TraceLane(NamedTuple):
 
 def read_boundaries(messages: Mapping[str, Fields], file: WireFile) -> dict[str, Boundary]:
     """Boundaries by id, without those that are no line. Raises RulecError R0610."""
-    found = {}
+    boundaries = {}
     for key, fields in messages.items():
         points = (part(point, "position") for point in fields.get("boundary_line", ()))
         line = line_of(points, file)
         if len(line) > 1:
             kind = part(fields, "classification").get("type", "unknown")
-            found[key] = Boundary(line, _MARKS.get(kind))
-    return found
+            boundaries[key] = Boundary(line, _MARKS.get(kind))
+    return boundaries
 
 
 def line_of(vectors: Iterable[Fields], file: WireFile) -> Points:

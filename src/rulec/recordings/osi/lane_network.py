@@ -89,26 +89,26 @@ def lane_network(lanes: Sequence[TraceLane], boundaries: Mapping[str, Boundary])
     links = _links(known, shapes, {area.id for area in areas}, network)
     junctions = {}
     for area in areas:
-        ways = {f"{area.id}_{one}_{other}": (one, other) for one, other in area.pairs}
-        for name, (one, other) in ways.items():
-            if one in shapes and other in shapes and _is_near(shapes[one], shapes[other]):
-                shapes[name] = way_across(shapes[one], shapes[other])
+        ways = {f"{area.id}_{start}_{end}": (start, end) for start, end in area.pairs}
+        for name, (start, end) in ways.items():
+            if start in shapes and end in shapes and _is_near(shapes[start], shapes[end]):
+                shapes[name] = way_across(shapes[start], shapes[end])
                 known[name] = replace_id(area, name)
-                links += [(one, name), (name, other)]
+                links += [(start, name), (name, end)]
                 junctions[name] = area.id
                 network.across.append(name)
         network.of_lane[area.id] = tuple(name for name in ways if name in shapes)
     after, before = defaultdict[str, list[str]](list), defaultdict[str, list[str]](list)
-    for one, other in dict.fromkeys(links):
-        after[one].append(other)
-        before[other].append(one)
+    for start, end in dict.fromkeys(links):
+        after[start].append(end)
+        before[end].append(start)
     for name, lane in known.items():
         shape = shapes[name]
         network.of_lane.setdefault(name, (name,))
         beside = [_beside(name, ids, shapes) for ids in (lane.left_of, lane.right_of)]
         marks = [
-            _mark(own, _facing(known, other, left=left), boundaries)
-            for own, other, left in (
+            _mark(own, _facing(known, end, left=left), boundaries)
+            for own, end, left in (
                 (lane.left_bounds, lane.left_of, True),
                 (lane.right_bounds, lane.right_of, False),
             )
@@ -188,9 +188,9 @@ def _links(
             if other in areas:
                 continue
             ways = [
-                (one, two)
-                for one, two in ((name, other), (other, name))
-                if other in shapes and _meet(shapes[one], shapes[two])
+                (first, second)
+                for first, second in ((name, other), (other, name))
+                if other in shapes and _meet(shapes[first], shapes[second])
             ]
             links += ways
             if not ways:

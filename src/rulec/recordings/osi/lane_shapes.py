@@ -115,8 +115,8 @@ def lane_shape(
 
 def _side(line: _Line, parts: Iterable[Points]) -> tuple[NDArray[float64], NDArray[float64]]:
     """Places along a line and beside it of the boundaries of one side, in order."""
-    found = sorted((line.beside(points) for points in parts), key=lambda x: float(x[0].mean()))
-    along, left = (np.concatenate(rows) for rows in zip(*found, strict=True))
+    beside = sorted((line.beside(points) for points in parts), key=lambda x: float(x[0].mean()))
+    along, left = (np.concatenate(rows) for rows in zip(*beside, strict=True))
     order = np.argsort(along, kind="stable")
     return along[order], left[order]
 
@@ -142,10 +142,10 @@ def _widths(
         float(np.median(np.abs(side))) if side is not None else _half(line, beside, middles)
         for side, beside in ((left, lane.left_of), (right, lane.right_of))
     ]
-    told = [half for half in halves if half is not None]
-    usual = told[0] if told else USUAL_WIDTH_M / 2
+    known = [half for half in halves if half is not None]
+    usual = known[0] if known else USUAL_WIDTH_M / 2
     filled = [usual if half is None else half for half in halves]
-    return (filled[0], filled[1]), not told
+    return (filled[0], filled[1]), not known
 
 
 def _half(line: _Line, beside: Sequence[str], middles: Mapping[str, Points]) -> float | None:
@@ -165,7 +165,7 @@ def way_across(before: LaneShape, after: LaneShape) -> LaneShape:
     length = float(np.hypot(*(after.centre[0] - before.centre[-1])))
     at = np.linspace(0.0, 1.0, int(np.clip(length, 8, 64)) + 1)[:, None]
     ends = zip(before[:3], after[:3], strict=True)
-    left, right, centre = (_curve(one, other, at) for one, other in ends)
+    left, right, centre = (_curve(first, last, at) for first, last in ends)
     return LaneShape(left, right, centre)
 
 

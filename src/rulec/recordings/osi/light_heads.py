@@ -137,15 +137,15 @@ def _lit(
         for onward in known
     }
     whole = _combined(_towards(own, None)) if own else None
-    told = {way: light for way, light in by_way.items() if light is not None}
-    if not told:
+    light_of = {way: light for way, light in by_way.items() if light is not None}
+    if not light_of:
         return replace(lanelet, lights=() if whole is None else (whole,))
-    different = {id(x.colours): x for x in told.values()}
+    different = {id(x.colours): x for x in light_of.values()}
     lights = tuple(different.values())
-    same = len(told) == len(known) and all(x.colours == lights[0].colours for x in lights)
+    same = len(light_of) == len(known) and all(x.colours == lights[0].colours for x in lights)
     if same:
         return replace(lanelet, lights=lights[:1])
-    return replace(lanelet, lights=lights, lights_to=told)
+    return replace(lanelet, lights=lights, lights_to=light_of)
 
 
 def _direction(lanelet: Lanelet, onward: Lanelet) -> str:

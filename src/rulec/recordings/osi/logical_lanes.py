@@ -69,8 +69,8 @@ def _logical_lane(key: str, fields: Fields, file: WireFile) -> LogicalLane:
 
 
 def _others(fields: Fields, name: str) -> tuple[str, ...]:
-    found = (id_of(entry, "other_lane_id") for entry in fields.get(name, ()))
-    return tuple(filter(None, found))
+    ids = (id_of(entry, "other_lane_id") for entry in fields.get(name, ()))
+    return tuple(filter(None, ids))
 
 
 def _limit(fields: Fields, file: WireFile) -> float | None:
@@ -88,14 +88,14 @@ def logical_boundaries(
     messages: Mapping[str, Fields], physical: Mapping[str, Boundary], file: WireFile
 ) -> dict[str, Boundary]:
     """Boundaries of logical lanes, with the marks that lie on them. Raises RulecError R0610."""
-    found = {}
+    boundaries = {}
     for key, fields in messages.items():
         points = (part(point, "position") for point in fields.get("boundary_line", ()))
         line = line_of(points, file)
         marks = {physical[x].mark for x in ids_of(fields, "physical_boundary_id") if x in physical}
         if len(line) > 1:
-            found[key] = Boundary(line, marks.pop() if len(marks) == 1 else None)
-    return found
+            boundaries[key] = Boundary(line, marks.pop() if len(marks) == 1 else None)
+    return boundaries
 
 
 def with_logical(lanes: Sequence[TraceLane], logical: Sequence[LogicalLane]) -> list[TraceLane]:
@@ -104,14 +104,14 @@ def with_logical(lanes: Sequence[TraceLane], logical: Sequence[LogicalLane]) -> 
     for logical_lane in logical:
         for name in logical_lane.physical:
             of_lane.setdefault(name, []).append(logical_lane.lane)
-    told = []
+    completed = []
     for lane in lanes:
         own = of_lane.get(lane.id, [])
         limits = {x.limit_mps for x in own}
         types = frozenset.intersection(*(x.types for x in own)) if own else frozenset[str]()
         limit = limits.pop() if len(limits) == 1 else None
-        told.append(lane._replace(limit_mps=limit, types=types))
-    return told
+        completed.append(lane._replace(limit_mps=limit, types=types))
+    return completed
 
 
 def lanes_by_logical(logical: Sequence[LogicalLane]) -> dict[str, tuple[str, ...]]:

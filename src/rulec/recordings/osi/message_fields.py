@@ -17,16 +17,16 @@ Fields: TypeAlias = Mapping[str, Any]
 
 def fields_of(items: Iterable[WireField]) -> dict[str, Any]:
     """The fields of a message."""
-    found: dict[str, Any] = {}
+    fields: dict[str, Any] = {}
     for item in items:
         value: Any = item.value
         if isinstance(value, Message):
             value = fields_of(value.fields)
         if item.field.many:
-            found.setdefault(item.field.name, []).append(value)
+            fields.setdefault(item.field.name, []).append(value)
         else:
-            found[item.field.name] = value
-    return found
+            fields[item.field.name] = value
+    return fields
 
 
 def decoded(data: bytes, table: Table, file: WireFile) -> Fields:

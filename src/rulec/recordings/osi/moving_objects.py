@@ -152,20 +152,20 @@ def _kind_of(fields: Fields) -> str:
     vehicle = part(fields, "vehicle_classification")
     if kind == "animal" or "type" not in vehicle:
         return "unknown"
-    found = _KINDS.get(vehicle["type"], "unknown")
-    if vehicle.get("role") in _ON_CALL and found in _DRIVEN and vehicle["type"] != "trailer":
+    kind_name = _KINDS.get(vehicle["type"], "unknown")
+    if vehicle.get("role") in _ON_CALL and kind_name in _DRIVEN and vehicle["type"] != "trailer":
         return "priorityVehicle"
-    return found
+    return kind_name
 
 
 def _lamps(state: Fields) -> _Shown:
     """The lamps that a state tells of, and those of them that are lit."""
-    told: frozenset[Lamp] = frozenset()
+    known: frozenset[Lamp] = frozenset()
     lit: frozenset[Lamp] = frozenset()
     for name, lamps, by_value in _LAMPS:
         if state.get(name) in by_value:
-            told, lit = told | lamps, lit | by_value[state[name]]
-    return told, lit
+            known, lit = known | lamps, lit | by_value[state[name]]
+    return known, lit
 
 
 def participants(objects: Mapping[str, MovingObject], grid: TimeGrid) -> Iterator[Participant]:
@@ -179,7 +179,7 @@ def participants(objects: Mapping[str, MovingObject], grid: TimeGrid) -> Iterato
         )
         size = body.size or USUAL_SIZES.get(body.kind, USUAL_SIZE)
         track = Track(steps, rows, *size)
-        shows = frozenset().union(*(told for told, _ in body.shown.values()))
+        shows = frozenset().union(*(known for known, _ in body.shown.values()))
         lamps = _lamps_by_step(body, grid, shows)
         yield tracked(key, body.kind, track, lamps=lamps, shows=shows)
 

@@ -78,8 +78,8 @@ def _network(content: TraceContent, file: WireFile) -> LaneNetwork:
         lanes = with_logical(lanes, logical)
     else:
         lanes = [lane.lane for lane in logical]
-        found = messages["logical_lane_boundary"]
-        boundaries = logical_boundaries(found, boundaries, file)
+        logical_bounds = messages["logical_lane_boundary"]
+        boundaries = logical_boundaries(logical_bounds, boundaries, file)
     check_size(lanes, boundaries, file)
     network = lane_network(lanes, boundaries)
     for name, physical in lanes_by_logical(logical).items():

@@ -101,8 +101,8 @@ def _kind(path: Path, data: bytes) -> str:
     if len(hints) == 1:
         return hints.pop()
     for kind, table in (("SensorData", VIEWS), ("SensorView", TRUTHS)):
-        found = _probed(path, data, table)
-        truths = [x for view in found.get("view", [found]) for x in view.get("truth", ())]
+        fields = _probed(path, data, table)
+        truths = [x for view in fields.get("view", [fields]) for x in view.get("truth", ())]
         if any(_probed(path, truth, LIKE_TRUTH) for truth in truths):
             return kind
     return "GroundTruth"

@@ -90,12 +90,12 @@ class PickleMachine:
         del self.stack[start:]
         return values
 
-    def last(self, kind: type | tuple[type, ...], what: str) -> Any:
+    def last(self, kind: type | tuple[type, ...], container: str) -> Any:
         """The last value on the stack, which must be of a kind."""
         if len(self.stack) <= (self.marks[-1] if self.marks else 0):
             raise self.wrong("it takes a value where there is none")
         if type(self.stack[-1]) is not kind:
-            raise self.wrong(f"it adds to {called(self.stack[-1])} as to a {what}")
+            raise self.wrong(f"it adds to {called(self.stack[-1])} as to a {container}")
         return self.stack[-1]
 
 

@@ -55,11 +55,11 @@ _COLOURS = {
 def road_features(scenario: KeyedValue, known: DataSet, steps: Iterable[int]) -> RoadFeatures:
     """All of a scenario's road; ``steps`` are the time steps of its times."""
     features = RoadFeatures()
-    told = False
+    has_exits = False
     for name, entry in scenario.child("map_features").items():
         kind = entry.child("type").text()
         if kind.startswith("LANE"):
-            told |= "exit_lanes" in entry.value
+            has_exits |= "exit_lanes" in entry.value
             features.lanes[name] = _lane(name, kind, entry, known)
         elif kind.startswith(("ROAD_LINE", "ROAD_EDGE")):
             points = _points(entry, "polyline")
@@ -72,7 +72,7 @@ def road_features(scenario: KeyedValue, known: DataSet, steps: Iterable[int]) ->
             if len(corners) < _FEWEST_CORNERS:
                 raise entry.wrong(f"has fewer than {_FEWEST_CORNERS} corners")
             features.crosswalks[name] = corners
-    lanes = _in_line(features.lanes) if told else joined(features.lanes)
+    lanes = _in_line(features.lanes) if has_exits else joined(features.lanes)
     features = replace(features, lanes=lanes)
     _add_lights(features, scenario, list(steps))
     return features
@@ -170,8 +170,8 @@ def joined(lanes: Mapping[str, CentreLane]) -> dict[str, CentreLane]:
     pairs = shapely.STRtree(starts).query(ends, predicate="dwithin", distance=JOINED_M)
     after: dict[str, list[str]] = {}
     before: dict[str, list[str]] = {}
-    for one, other in sorted(pairs.T.tolist()):
-        own, following = there[one], there[other]
+    for end, start in sorted(pairs.T.tolist()):
+        own, following = there[end], there[start]
         turned = _heading(following, 0) - _heading(own, -2)
         if own is not following and abs(wrapped(turned)) < _TURNED_RAD:
             after.setdefault(own.id, []).append(following.id)

@@ -83,7 +83,7 @@ def read_scenarionet(path: Path) -> Recording:
         participants=bodies,
         form=f"ScenarioNet scenario{title}",
         side=side or known.side,
-        remarks=(*remarks.found, *gaps_remark(remarks.bridged)),
+        remarks=(*remarks.lines, *gaps_remark(remarks.bridged)),
         country=country or known.country,
         complete=ALL_JUNCTIONS | ({"STOP"} if known.whole_map else frozenset()),
         lacks=frozenset() if known.has_crosswalks else frozenset({CROSSWALK}),
@@ -96,7 +96,7 @@ class _Remarks:
     """What is found out of the tracks."""
 
     def __init__(self) -> None:
-        self.found: list[str] = []
+        self.lines: list[str] = []
         self.bridged = 0
 
 
@@ -161,12 +161,12 @@ def _ego(boxes: BoxTrack, known: DataSet, remarks: _Remarks) -> BoxTrack:
     """Ego with its length along it, and with its places in its middle."""
     length, width = np.median(boxes.sizes, axis=0).tolist()
     if length < width:
-        remarks.found.append(
+        remarks.lines.append(
             f"ego is {length:g} m long and {width:g} m wide in the file, and taken to be turned"
         )
         boxes = boxes._replace(sizes=boxes.sizes[:, ::-1])
     if known.ego_ahead_m:
-        remarks.found.append(
+        remarks.lines.append(
             f"ego's places are those of its rear axle, {known.ego_ahead_m:.2f} m behind its middle"
         )
         ahead = np.column_stack((np.cos(boxes.headings), np.sin(boxes.headings)))

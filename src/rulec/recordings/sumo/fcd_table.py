@@ -51,13 +51,13 @@ def read_fcd_table(path: Path) -> FloatingCarData:
         raise columns.wrong(int(np.argmax(np.isnan(times))), f"its column `{_TIME}` is empty here")
     moments, at = np.unique(np.round(times * MICROSECONDS).astype(int64), return_inverse=True)
     data = FloatingCarData(moments=moments.tolist())
-    found = [
+    tracks = [
         (rows[0], kind, key, rows)
         for kind in kinds
         for key, rows in columns.texts[f"{kind}_id"].groups()
         if key
     ]
-    for _, kind, key, rows in sorted(found, key=lambda entry: int(entry[0])):
+    for _, kind, key, rows in sorted(tracks, key=lambda entry: int(entry[0])):
         _add(data, columns, (kind, key), rows[np.argsort(at[rows], kind="stable")], at)
     return data
 
@@ -108,8 +108,8 @@ def _add(
             zip(at[known].tolist(), signals[known].astype(int).tolist(), strict=True)
         )
     data.tracks[key if key not in data.tracks else f"{element} {key}"] = track
-    for what, named in (("lane", lane), ("edge", edge)):
+    for network_part, named in (("lane", lane), ("edge", edge)):
         for code in np.unique(named.codes[rows]).tolist() if named else ():
             if named and named.names[code]:
                 row = int(rows[np.argmax(named.codes[rows] == code)])
-                data.on.setdefault(named.names[code], (what, int(columns.rows[row])))
+                data.on.setdefault(named.names[code], (network_part, int(columns.rows[row])))

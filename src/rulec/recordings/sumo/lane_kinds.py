@@ -106,13 +106,13 @@ def _that_stay(net: SumoNet, lanes: list[str], onward: _Lanes) -> list[str]:
 
 def _beside_each_other(net: SumoNet, lanes: list[str], onward: _Lanes) -> dict[str, str]:
     """The lanes to which these lead, one each, the farthest from the kerb; none if one has none."""
-    found: dict[str, str] = {}
+    target_of: dict[str, str] = {}
     for lane in sorted(lanes, key=lambda name: -net.lanes[name].index):
-        after = [end for end in onward.get(lane, []) if end not in found.values()]
+        after = [end for end in onward.get(lane, []) if end not in target_of.values()]
         if not after:
             return {}
-        found[lane] = max(after, key=lambda name: net.lanes[name].index)
-    return found
+        target_of[lane] = max(after, key=lambda name: net.lanes[name].index)
+    return target_of
 
 
 def _goes_on(net: SumoNet, edge: str, edges: _Lanes, onward: _Lanes) -> bool:

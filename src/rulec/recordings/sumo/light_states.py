@@ -36,9 +36,9 @@ def light_states_beside(path: Path, head: FcdHead) -> tuple[Path, ...]:
     for file in demand_beside(path, head):
         if root_of(file, _ADDITIONAL) == "additional":
             scan(file, _ADDITIONAL, begin)
-    found = {there for name in names if (there := named_beside(path, name)) is not None}
-    if found:
-        return tuple(sorted(found))
+    paths = {there for name in names if (there := named_beside(path, name)) is not None}
+    if paths:
+        return tuple(sorted(paths))
     only = [*path.parent.glob("*.tls.xml"), *path.parent.glob("*.tls.xml.gz")]
     return tuple(only) if len(only) == 1 else ()
 
@@ -49,7 +49,7 @@ def programmes_beside(path: Path, head: FcdHead) -> Mapping[str, SignalProgramme
     SUMO loads these files after the net, and what it loads last runs. A file that changes between
     programmes leaves its lights unknown.
     """
-    found: dict[str, SignalProgramme | None] = {}
+    replaced: dict[str, SignalProgramme | None] = {}
     for name in head.additional:
         file = named_beside(path, name)
         if file is None:
@@ -65,9 +65,9 @@ def programmes_beside(path: Path, head: FcdHead) -> Mapping[str, SignalProgramme
 
         scan(file, replace(_ADDITIONAL, root=root_of(file, _ADDITIONAL)), begin)
         lights.finish()
-        found.update({name: programmes[-1] for name, programmes in lights.programmes.items()})
-        found.update(dict.fromkeys(switched))
-    return found
+        replaced.update({name: programmes[-1] for name, programmes in lights.programmes.items()})
+        replaced.update(dict.fromkeys(switched))
+    return replaced
 
 
 def read_light_states(path: Path) -> Mapping[str, SignalProgramme]:

@@ -177,12 +177,12 @@ def _fit(kind: _Kind, lines: TextPlaces, marks: Places) -> NDArray[np.bool_]:
 
 def _kind(line: str) -> _Kind:
     """The kind of an element's line, as a parser understands it."""
-    found: list[tuple[str, list[str]]] = []
+    elements: list[tuple[str, list[str]]] = []
     parser = ParserCreate()
     parser.ordered_attributes = True
-    parser.StartElementHandler = lambda name, attributes: found.append((name, attributes))
+    parser.StartElementHandler = lambda name, attributes: elements.append((name, attributes))
     parser.Parse(line.encode(), True)
-    ((name, attributes),) = found
+    ((name, attributes),) = elements
     pieces, names = line.split('"'), attributes[::2]
     if "vehicle" in names or name not in BODIES or attributes[1::2] != pieces[1::2]:
         raise NotPlainError

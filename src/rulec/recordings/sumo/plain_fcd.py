@@ -178,15 +178,15 @@ class _Lines:
             raise NotPlainError
 
 
-def _add(data: FloatingCarData, found: Elements, moments: NDArray[intp]) -> None:
+def _add(data: FloatingCarData, new: Elements, moments: NDArray[intp]) -> None:
     """Add elements to tracks. Raises NotPlainError."""
-    order = np.argsort(found.whose.astype(np.uint32), kind="stable")
-    at, rows, named = moments[order], found.rows[order], found.named[order]
-    bounds = np.searchsorted(found.whose[order], np.arange(len(found.keys) + 1)).tolist()
-    for number, (key, start, end) in enumerate(zip(found.keys, bounds, bounds[1:], strict=False)):
-        own, name = at[start:end], found.names[named[start]]
+    order = np.argsort(new.whose.astype(np.uint32), kind="stable")
+    at, rows, named = moments[order], new.rows[order], new.named[order]
+    bounds = np.searchsorted(new.whose[order], np.arange(len(new.keys) + 1)).tolist()
+    for number, (key, start, end) in enumerate(zip(new.keys, bounds, bounds[1:], strict=False)):
+        own, name = at[start:end], new.names[named[start]]
         if key not in data.tracks:
-            data.tracks[key] = FcdTrack(name, found.types[number])
+            data.tracks[key] = FcdTrack(name, new.types[number])
         track = data.tracks[key]
         is_twice = not np.diff(own).all() or track.moments[-1:].tolist() == [own[0]]
         are_others = track.element != name or (named[start:end] != named[start]).any()
@@ -195,5 +195,5 @@ def _add(data: FloatingCarData, found: Elements, moments: NDArray[intp]) -> None
         track.moments.frombytes(own.tobytes())
         track.rows.frombytes(rows[start:end, :-1].tobytes())
         track.accelerations.frombytes(rows[start:end, -1].tobytes())
-    for number, bits in found.lamps.items():
-        data.tracks[found.keys[found.whose[number]]].lamps[int(moments[number])] = bits
+    for number, bits in new.lamps.items():
+        data.tracks[new.keys[new.whose[number]]].lamps[int(moments[number])] = bits

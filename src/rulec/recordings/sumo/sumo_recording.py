@@ -302,7 +302,7 @@ def _centres_along_way(
     straight piece. What moves across its heading more than along it, and farther than it drives,
     jumps to another lane in a step, or is slid there, with all its parts.
     """
-    found: NDArray[float64] = rows.copy()
+    centred: NDArray[float64] = rows.copy()
     for start, end in zip(starts, [*starts[1:], len(rows)], strict=True):
         x, y, angle, speed = rows[start:end].T
         heading = np.pi / 2 - np.radians(angle)
@@ -321,9 +321,9 @@ def _centres_along_way(
             - np.stack([np.interp(driven[1:] - back, driven, axis) for axis in places.T], 1)
             for back in (length / 2, length)
         )
-        found[start:end, :2] -= middle
-        found[start:end, 2] = np.arctan2(rear[:, 1], rear[:, 0])
-    return found
+        centred[start:end, :2] -= middle
+        centred[start:end, 2] = np.arctan2(rear[:, 1], rear[:, 0])
+    return centred
 
 
 def _centres(rows: NDArray[float64], length: float) -> NDArray[float64]:

@@ -91,14 +91,14 @@ def _maps(path: Path, scene: str) -> list[Path]:
     """Where the map may be: in the data set's folder ``maps``, or alone beside the tracks."""
     place = path.absolute().parent
     names = {f"{place.name}.osm", f"{scene}.osm"}
-    found = [
+    usual = [
         place.parents[up] / "maps" / name
         for up in (0, 1)
         for name in sorted(names)
         if up < len(place.parents)
     ]
     beside = sorted(place.glob("*.osm"))
-    return [*found, *(beside if len(beside) == 1 else [])]
+    return [*usual, *(beside if len(beside) == 1 else [])]
 
 
 def _recording(name: str, tables: Sequence[NamedColumns], roads: RoadMap) -> Recording:
@@ -127,8 +127,8 @@ def _recording(name: str, tables: Sequence[NamedColumns], roads: RoadMap) -> Rec
             )
         )
     side = side_in(country_in(name.removeprefix("DR_")))
-    told = roads if roads.side or side is None else replace(roads, side=side)
-    return track_recording(name, rows, told, form="INTERACTION tracks", remarks=remarks)
+    with_side = roads if roads.side or side is None else replace(roads, side=side)
+    return track_recording(name, rows, with_side, form="INTERACTION tracks", remarks=remarks)
 
 
 def _told_apart(table: NamedColumns) -> Texts:
@@ -138,6 +138,6 @@ def _told_apart(table: NamedColumns) -> Texts:
     count = np.maximum(np.bincount(track.codes, minlength=len(track.names)), 1)
     mean = np.bincount(track.codes, weights=speeds, minlength=len(track.names)) / count
     names = (*types.names, "pedestrian", "bicycle")
-    told = np.where(mean[track.codes] > _CYCLING_MPS, len(names) - 1, len(names) - 2)
-    codes = np.where(types.having(_EITHER), told, types.codes).astype(int64)
+    by_speed = np.where(mean[track.codes] > _CYCLING_MPS, len(names) - 1, len(names) - 2)
+    codes = np.where(types.having(_EITHER), by_speed, types.codes).astype(int64)
     return Texts(codes, names)

@@ -41,8 +41,8 @@ def roads_of(path: Path, map_path: Path | None, step_s: float, beside: Sequence[
 
     Raises RulecError R0614 if there is none, else as ``read_map``.
     """
-    found = map_path or next((file for file in beside if file.is_file()), None)
-    if found is None:
+    roads = map_path or next((file for file in beside if file.is_file()), None)
+    if roads is None:
         names = " or ".join(f"`{file.name}`" for file in _usual(beside))
         raise NET_MISSING.error(
             SourceLocation(str(path)),
@@ -50,7 +50,7 @@ def roads_of(path: Path, map_path: Path | None, step_s: float, beside: Sequence[
             help="give a map with --map: OpenDRIVE, Lanelet2, a net of SUMO's, or a table with the "
             f"columns `lane`, `x`, `y`{f'; {names} beside it would be found' if names else ''}",
         )
-    return read_map(found, step_s)
+    return read_map(roads, step_s)
 
 
 def _heading_on(lanelets: Iterable[Lanelet]) -> HeadingAt:
@@ -85,19 +85,19 @@ def track_recording(
     Raises RulecError R0610 for a row that makes no sense.
     """
     heading_at = _heading_on(roads.lanelets.values())
-    found = [read_tracks(rows, heading_at) for rows in tables]
-    said = [remark for part in found for remark in part.remarks]
+    tracks = [read_tracks(rows, heading_at) for rows in tables]
+    said = [remark for part in tracks for remark in part.remarks]
     recording = Recording(
         name=name,
         step_s=tables[0].times.step_s,
         lanelets=roads.lanelets,
-        participants=tuple(participant for part in found for participant in part.participants),
+        participants=tuple(participant for part in tracks for participant in part.participants),
         form=form,
         side=roads.side,
         remarks=tuple(dict.fromkeys(filter(None, (*remarks, *said, *roads.remarks)))),
         country=roads.country,
         complete=roads.complete,
-        ego=next((part.ego for part in found if part.ego), ""),
+        ego=next((part.ego for part in tracks if part.ego), ""),
     )
     return with_untold_neighbours(recording)
 

@@ -109,14 +109,14 @@ class _Reading:
         if self.rows.type is None:
             return USUAL_TYPE
         words = self.rows.type.names
-        told: Counter[str] = Counter()
+        rows_of: Counter[str] = Counter()
         for code, count in zip(
             *np.unique(self.rows.type.codes[own], return_counts=True), strict=True
         ):
             if words[code]:
-                told[self.types[code]] += int(count)
-        told = told or Counter([USUAL_TYPE])
-        (kind, _), *others = told.most_common()
+                rows_of[self.types[code]] += int(count)
+        rows_of = rows_of or Counter([USUAL_TYPE])
+        (kind, _), *others = rows_of.most_common()
         if others:
             self.of_several_types.append(f"`{short(name)}` ({', '.join([kind, *dict(others)])})")
         return kind
@@ -169,13 +169,13 @@ class _Reading:
     def _size(self, kind: str, own: NDArray[np.intp]) -> tuple[float, float]:
         """Length and width: those in the middle of what is stated, else the usual ones."""
         size = []
-        for what, column, usual in zip(
+        for dimension, column, usual in zip(
             ("length", "width"), (self.rows.length, self.rows.width), usual_size(kind), strict=True
         ):
             stated = np.zeros(0) if column is None else column[own]
             stated = stated[stated > 0]
             if not len(stated):
-                self.taken[f"{what} of a {kind} {usual:g} m"] += 1
+                self.taken[f"{dimension} of a {kind} {usual:g} m"] += 1
             size.append(float(np.median(stated)) if len(stated) else usual)
         return size[0], size[1]
 
@@ -250,7 +250,7 @@ class _Reading:
             more = f", and {len(several) - _NAMED} more" if len(several) > _NAMED else ""
             some = ", ".join(several[:_NAMED])
             yield f"tracks of several types are taken to be of the most frequent one: {some}{more}"
-        usual = [what for what, _ in self.taken.most_common()]
+        usual = [unstated for unstated, _ in self.taken.most_common()]
         if usual:
             more = f", and {len(usual) - _NAMED} more" if len(usual) > _NAMED else ""
             yield f"what is not stated is taken to be as usual: {', '.join(usual[:_NAMED])}{more}"

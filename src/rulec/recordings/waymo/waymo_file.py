@@ -47,11 +47,11 @@ def read_waymo(path: Path, scenario_id: str | None = None) -> Iterator[Recording
     """
     broken: list[RulecError] = []
     for record in tfrecords(path, WAYMO):
-        found = _read(record, path, scenario_id)
-        if isinstance(found, RulecError):
-            broken.append(found)
-        elif found is not None:
-            yield found
+        scenario = _read(record, path, scenario_id)
+        if isinstance(scenario, RulecError):
+            broken.append(scenario)
+        elif scenario is not None:
+            yield scenario
     if broken:
         raise RulecError(diagnostic for error in broken for diagnostic in error.diagnostics)
 

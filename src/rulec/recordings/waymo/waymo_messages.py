@@ -36,13 +36,13 @@ class CheckedMessage:
 
     def word(self, name: str, default: str = "unknown") -> str:
         """A word of an enumeration, or its default."""
-        found = self.values.get(name)
-        return str(found[0].value) if found else default
+        values = self.values.get(name)
+        return str(values[0].value) if values else default
 
     def is_true(self, name: str) -> bool:
         """A flag, which is false if it is missing."""
-        found = self.values.get(name)
-        return bool(found and found[0].value)
+        values = self.values.get(name)
+        return bool(values and values[0].value)
 
     def wholes(self, name: str) -> list[int]:
         """All whole numbers of a field."""
@@ -70,10 +70,10 @@ class CheckedMessage:
         return self.file.wrong(why, self.place, expected)
 
     def _only(self, name: str) -> float:
-        found = self.values.get(name)
-        value: Value = found[0].value if found else _NAN
+        values = self.values.get(name)
+        value: Value = values[0].value if values else _NAN
         if not isinstance(value, int | float) or not isfinite(value):
-            why = f"`{name}` is {value!r:.40}" if found else f"there is no `{name}`"
+            why = f"`{name}` is {value!r:.40}" if values else f"there is no `{name}`"
             raise self.wrong(why, "a number")
         return value
 

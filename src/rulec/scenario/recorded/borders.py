@@ -43,14 +43,14 @@ class Borders:
         """
         cells = self._cells
         if cells is None:
-            found: NDArray[intp] = self.places.searchsorted(s, "right") - 1
-            return np.maximum(found, 0)
+            numbers: NDArray[intp] = self.places.searchsorted(s, "right") - 1
+            return np.maximum(numbers, 0)
         with np.errstate(invalid="ignore"):
             own = ((s - cells.origin) * cells.per_m).astype(intp)
-        found = cells.before.take(own, mode="clip")
+        numbers = cells.before.take(own, mode="clip")
         for _ in range(cells.tried):
-            found += self._next.take(found) <= s
-        return found
+            numbers += self._next.take(numbers) <= s
+        return numbers
 
     @cached_property
     def _next(self) -> _Values:

@@ -261,11 +261,11 @@ def _beside(strip: _Strip, *, left: bool) -> list[_Beside]:
 
 def _bounds(strip: _Strip, lanes: Sequence[tuple[_Beside, bool]]) -> list[_Values]:
     """The left bounds of lanes or, where that is false, their right ones, on the grid."""
-    told = [
+    bounds_of = [
         [(k, lanelet.left if left else lanelet.right) for k, lanelet in enumerate(lane) if lanelet]
         for lane, left in lanes
     ]
-    numbers, bounds = zip(*(own for lane in told for own in lane), strict=True)
+    numbers, bounds = zip(*(own for lane in bounds_of for own in lane), strict=True)
     points, counts = densified_lines(bounds, _EVERY_M)
     # All places together, each near the piece of its lanelet
     piece = np.repeat(numbers, counts)
@@ -275,15 +275,15 @@ def _bounds(strip: _Strip, lanes: Sequence[tuple[_Beside, bool]]) -> list[_Value
     same = np.concatenate(([True], np.diff(strip.own_number) == 0, [True]))
     low, high = (np.where(goes_on, _MARGIN_M, 0.0) for goes_on in (same[piece], same[piece + 1]))
     kept = (places[:, 0] >= start - low) & (places[:, 0] <= end + high)
-    ends = np.cumsum([0, *counts])[np.cumsum([0, *map(len, told)])].tolist()
-    found = []
+    ends = np.cumsum([0, *counts])[np.cumsum([0, *map(len, bounds_of)])].tolist()
+    offsets = []
     for begins, stops in pairwise(ends):
         own = places[begins:stops][kept[begins:stops]]
         if not len(own):
             raise ValueError("a lane's bounds are nowhere beside its centre line")
         own = own[own[:, 0].argsort(kind="stable")]
-        found.append(np.interp(strip.grid, own[:, 0], own[:, 1]))
-    return found
+        offsets.append(np.interp(strip.grid, own[:, 0], own[:, 1]))
+    return offsets
 
 
 def outline_bounds(
@@ -299,12 +299,12 @@ def outline_bounds(
     that no body is torn apart where a road meets itself. ``expected``: for each middle about which
     ``s``, and how far from there, its foot is.
     """
-    found = (
+    middles = (
         line.coordinates_near(outlines.middles, *expected)
         if expected
         else line.coordinates(outlines.middles)
     )
-    around = found[:, 0]
+    around = middles[:, 0]
     if not outlines.regular:
         around, reach = (x.repeat(outlines.counts) for x in (around, outlines.reach))
         feet = line.coordinates_near(outlines.corners, around, reach)

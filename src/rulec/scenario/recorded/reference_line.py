@@ -94,34 +94,34 @@ class ReferenceLine:
 
     def coordinates(self, places: Points) -> Points:
         """Frenet coordinates ``s`` and ``d`` of places, a row each; NaN without a foot."""
-        found, sure = sure_feet(self.piece_fans, places)
+        coordinates, sure = sure_feet(self.piece_fans, places)
         left = (~sure).nonzero()[0]
         low = np.zeros(len(left), dtype=intp)
-        found[left] = self._nearest(places[left], low, low + len(self.arc) - 1)
-        return found
+        coordinates[left] = self._nearest(places[left], low, low + len(self.arc) - 1)
+        return coordinates
 
     def coordinates_near(self, places: Points, around: _Values, reach: _Values) -> Points:
         """Frenet coordinates of feet within ``reach`` of a given ``s`` each."""
         low, high = self._piece(around - reach), self._piece(around + reach)
         if len(places) < MANY:
             return self._nearest(places, low, high)
-        found, sure = sure_feet(self.piece_fans, places)
-        pieces = self._piece(found[:, 0])
+        coordinates, sure = sure_feet(self.piece_fans, places)
+        pieces = self._piece(coordinates[:, 0])
         left = (~sure | (pieces < low) | (pieces > high)).nonzero()[0]
-        found[left] = self._nearest(places[left], low[left], high[left])
-        return found
+        coordinates[left] = self._nearest(places[left], low[left], high[left])
+        return coordinates
 
     def coordinates_of_rows(self, places: Points, around: _Values, reach: _Values) -> Points:
         """The same of rows of as many places, with an ``s`` for each row; NaN for those of NaN.
 
         Axes: row, place, and x and y or ``s`` and ``d``.
         """
-        found, sure = sure_feet_near(self.piece_fans, places, around, reach)
+        coordinates, sure = sure_feet_near(self.piece_fans, places, around, reach)
         rows, columns = np.divmod((~sure).ravel().nonzero()[0], places.shape[1])
         rows, columns = (x[~np.isnan(around[rows])] for x in (rows, columns))
         own = around[rows], reach[rows]
-        found[rows, columns] = self.coordinates_near(places[rows, columns], *own)
-        return found
+        coordinates[rows, columns] = self.coordinates_near(places[rows, columns], *own)
+        return coordinates
 
     def surroundings(self, near_m: float, beyond_m: float) -> LineSurroundings:
         """Where places may be within ``near_m`` of the line, up to ``beyond_m`` beyond its ends."""
@@ -164,10 +164,10 @@ class ReferenceLine:
         distance = np.sqrt(np.square(along[at] - foot) + np.square(across))
         away = distance + np.where((own == 0) | (own == len(self.arc) - 1), _BESIDE_M, 0.0)
         best = _least_of_each(numbers, away)
-        found = np.full((len(places), 2), np.nan)
-        found[numbers[best], 0] = arc[at[best]] + foot[best]
-        found[numbers[best], 1] = np.copysign(distance[best], across[best])
-        return found
+        coordinates = np.full((len(places), 2), np.nan)
+        coordinates[numbers[best], 0] = arc[at[best]] + foot[best]
+        coordinates[numbers[best], 1] = np.copysign(distance[best], across[best])
+        return coordinates
 
 
 def _least_of_each(groups: NDArray[intp], values: _Values) -> NDArray[intp]:

@@ -43,8 +43,8 @@ class SceneOrigin:
         across = self._across(along, d) / np.hypot(1.0, slope)
         foot = line.start[piece] + ahead * (along - line.arc[piece])[:, None]
         left = np.stack((-ahead[:, 1], ahead[:, 0]), axis=1)
-        found = foot + left * across[:, None] - ahead * (across * slope)[:, None]
-        return found, np.arctan2(ahead[:, 1], ahead[:, 0]) + np.arctan(slope)
+        places = foot + left * across[:, None] - ahead * (across * slope)[:, None]
+        return places, np.arctan2(ahead[:, 1], ahead[:, 0]) + np.arctan(slope)
 
     def _across(self, along: _Values, d: _Values) -> _Values:
         """How far (m) left of the line straightened places are."""

@@ -109,14 +109,14 @@ def sure_feet_near(
     ``places`` are in rows of as many (axes: row, place, x and y), ``around`` and ``reach`` those
     of each row. With flags of the places that are found.
     """
-    found = np.full(places.shape, np.nan)
+    coordinates = np.full(places.shape, np.nan)
     sure = np.zeros(places.shape[:2], dtype=bool)
     step = max(1, _AT_ONCE // places.shape[1])
     for begin in range(0, len(places), step):
         part = slice(begin, begin + step)
         near = _Near(places[part], around[part], reach[part])
-        _find(fans, near, found[part], sure[part])
-    return found, sure
+        _find(fans, near, coordinates[part], sure[part])
+    return coordinates, sure
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -128,7 +128,7 @@ class _Near:
     reach: _Values
 
 
-def _find(fans: PieceFans, near: _Near, found: Points, sure: NDArray[bool_]) -> None:
+def _find(fans: PieceFans, near: _Near, coordinates: Points, sure: NDArray[bool_]) -> None:
     """Put the coordinates of the places of a few rows that are sure where they belong."""
     least, most = (fans.at(near.around + reach) for reach in (-near.reach, near.reach))
     width = int((most - least).max())
@@ -147,14 +147,14 @@ def _find(fans: PieceFans, near: _Near, found: Points, sure: NDArray[bool_]) -> 
     safe &= (pieces >= least) & (pieces <= most)
     s, d, inside = _on(fans, x, y, pieces)
     safe &= inside
-    np.copyto(found[..., 0].T, s, where=safe)
-    np.copyto(found[..., 1].T, d, where=safe)
+    np.copyto(coordinates[..., 0].T, s, where=safe)
+    np.copyto(coordinates[..., 1].T, d, where=safe)
     sure[:] = safe.T
 
 
 def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[bool_]]:
     """Frenet coordinates of the places whose only foot on the whole line is found, and flags."""
-    found = np.full(places.shape, np.nan)
+    coordinates = np.full(places.shape, np.nan)
     sure = np.zeros(len(places), dtype=bool)
     # Pieces beyond the ends of the line begin or end at its first and its last corner
     corners = fans.columns[2:4, 1:].T
@@ -164,7 +164,7 @@ def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[bool_]]:
     length = float(np.hypot(*chord))
     # Along a line that ends where it begins nothing is guessed
     if not length or (farthest >= room and len(places) < MANY):
-        return found, sure
+        return coordinates, sure
     ux, uy = (chord / length).tolist()
     first = float(fans.columns[7, 1])
     for begin in range(0, len(places), _AT_ONCE):
@@ -176,10 +176,10 @@ def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[bool_]]:
             pieces = fans.at(s)
             s, d, inside = _on(fans, x, y, pieces)
         safe = inside & (near | (np.abs(d) < fans.alone.take(pieces)))
-        np.copyto(found[part, 0], s, where=safe)
-        np.copyto(found[part, 1], d, where=safe)
+        np.copyto(coordinates[part, 0], s, where=safe)
+        np.copyto(coordinates[part, 1], d, where=safe)
         sure[part] = safe
-    return found, sure
+    return coordinates, sure
 
 
 def _on(

@@ -101,17 +101,17 @@ def read_table(path: Path, form: FileFormat, wanted: Wanted) -> ArrowTable:
         table = _read(arrow, data, path, form, wanted)
         table.validate(full=True)
         table = table.combine_chunks()
-        found: dict[str, Any] = {name: table.column(name) for name in table.column_names}
+        parts: dict[str, Any] = {name: table.column(name) for name in table.column_names}
         return ArrowTable(
             path=path,
             form=form,
             rows=table.num_rows,
             numbers=_converted(
-                wanted.numbers, found, lambda name, column: _numbers(name, column, arrow)
+                wanted.numbers, parts, lambda name, column: _numbers(name, column, arrow)
             ),
-            whole=_converted(wanted.whole, found, lambda name, column: _whole(name, column, arrow)),
-            texts=_converted(wanted.texts, found, lambda name, column: _texts(name, column, arrow)),
-            nested=_nested(wanted, found, arrow),
+            whole=_converted(wanted.whole, parts, lambda name, column: _whole(name, column, arrow)),
+            texts=_converted(wanted.texts, parts, lambda name, column: _texts(name, column, arrow)),
+            nested=_nested(wanted, parts, arrow),
             metadata=table.schema.metadata or {},
         )
     except OddMessageError:
@@ -205,12 +205,12 @@ def _present(names: Iterable[str], path: Path, form: FileFormat, wanted: Wanted)
 
 
 def _converted(
-    names: Iterable[str], found: Mapping[str, Any], convert: Callable[[str, Any], Any]
+    names: Iterable[str], columns: Mapping[str, Any], convert: Callable[[str, Any], Any]
 ) -> dict[str, Any]:
-    return {name: convert(name, found[name]) for name in names if name in found}
+    return {name: convert(name, columns[name]) for name in names if name in columns}
 
 
-def _nested(wanted: Wanted, found: Mapping[str, Any], arrow: Any) -> dict[str, NestedColumn]:
+def _nested(wanted: Wanted, columns: Mapping[str, Any], arrow: Any) -> dict[str, NestedColumn]:
     kinds = (
         (wanted.nested_numbers, _numbers),
         (wanted.nested_whole, _whole),
@@ -218,10 +218,10 @@ def _nested(wanted: Wanted, found: Mapping[str, Any], arrow: Any) -> dict[str, N
         (wanted.nested_bytes, _bytes),
     )
     return {
-        column.name: nested_column(column, found[column.name], arrow, read)
+        column.name: nested_column(column, columns[column.name], arrow, read)
         for nested, read in kinds
         for column in nested
-        if column.name in found
+        if column.name in columns
     }
 
 

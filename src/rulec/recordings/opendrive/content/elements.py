@@ -114,11 +114,11 @@ _Record = TypeVar("_Record", MarkRecord, RoadType, Speed)
 
 def record_at(records: Iterable[_Record], s: float, origin: float = 0.0) -> _Record | None:
     """What holds at a place of records in their order, whose starts count from ``origin``."""
-    found: _Record | None = None
+    latest: _Record | None = None
     for record in records:
         if origin + record.start <= s:
-            found = record
-    return found
+            latest = record
+    return latest
 
 
 @dataclass(frozen=True, slots=True)
