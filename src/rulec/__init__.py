@@ -220,8 +220,8 @@ def __getattr__(name: str) -> Any:
         return import_module("rulec.fleet")  # public, too
 
     # It is there from now on, and found without asking.
-    found = globals()[name] = getattr(import_module(module), name)
-    return found
+    public = globals()[name] = getattr(import_module(module), name)
+    return public
 
 
 def __dir__() -> Sequence[str]:

@@ -205,11 +205,11 @@ _DOCUMENTS = {
 
 def not_utf8(name: str, data: bytes, position: int) -> Diagnostic:
     way_out = "save the file as UTF-8"
-    what = next((words for mark, words in _DOCUMENTS.items() if data.startswith(mark)), "")
-    if what:
+    document = next((words for mark, words in _DOCUMENTS.items() if data.startswith(mark)), "")
+    if document:
         place = SourceLocation(name, 1, 1, 1, 1)
         return NOT_UTF8.at(
-            place, f"the file is {what}, no plain text", help="save it as plain text, in UTF-8"
+            place, f"the file is {document}, no plain text", help="save it as plain text, in UTF-8"
         )
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         place = SourceLocation(name, 1, 1, 1, 1)

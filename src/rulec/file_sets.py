@@ -166,12 +166,12 @@ def _left_to_do(manifest: Path) -> Mapping[str, tuple[str, int, int]]:
     try:
         with manifest.open("rb") as stream:
             status = os.fstat(stream.fileno())
-            found = msgspec.json.decode(stream.read(_MOST_BYTES), type=_Manifest)
+            listed = msgspec.json.decode(stream.read(_MOST_BYTES), type=_Manifest)
     except (OSError, ValueError, RecursionError):
         return {}
-    names = [name for name, *_ in found.files.values()]
-    fits = all(map(_PART.fullmatch, found.files)) and all(map(_is_name, names))
-    return found.files if fits and is_own(status) and found.inode == status.st_ino else {}
+    names = [name for name, *_ in listed.files.values()]
+    fits = all(map(_PART.fullmatch, listed.files)) and all(map(_is_name, names))
+    return listed.files if fits and is_own(status) and listed.inode == status.st_ino else {}
 
 
 class _Manifest(msgspec.Struct, forbid_unknown_fields=True):

@@ -58,10 +58,10 @@ _noted: ContextVar[dict[str, FileState] | None] = ContextVar("_noted", default=N
 @contextmanager
 def files_read() -> Iterator[dict[str, FileState]]:
     """What files are opened for reading in the block, and what they are like then."""
-    found: dict[str, FileState] = {}
-    token = _noted.set(found)
+    states: dict[str, FileState] = {}
+    token = _noted.set(states)
     try:
-        yield found
+        yield states
     finally:
         _noted.reset(token)
 
@@ -69,11 +69,11 @@ def files_read() -> Iterator[dict[str, FileState]]:
 def note_read(path: str | Path) -> FileState | None:
     """Say that a file counts as read here, perhaps before; what it is like, if it is there."""
     try:
-        found = file_state(path)
+        state = file_state(path)
     except OSError:
         return None
     noted = _noted.get()
-    return found if noted is None else noted.setdefault(str(path), found)
+    return state if noted is None else noted.setdefault(str(path), state)
 
 
 def file_state(path: str | Path) -> FileState:

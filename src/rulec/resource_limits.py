@@ -186,7 +186,7 @@ LIMITS: Final = {
 
 def settings_in(texts: Iterable[str]) -> dict[str, int]:
     """Limits by name from texts such as ``choices=5000000``. Raises RulecError R0719."""
-    found: dict[str, int] = {}
+    limits: dict[str, int] = {}
     for text in texts:
         name, _, value = text.partition("=")
         if name not in LIMITS:
@@ -198,8 +198,8 @@ def settings_in(texts: Iterable[str]) -> dict[str, int]:
                 f"the limit `{name}` is a whole number, not `{value}`",
                 help=f"write it as in `{name}={LIMITS[name].usual}`",
             )
-        found[name] = int(value)
-    return found
+        limits[name] = int(value)
+    return limits
 
 
 _NUMBER = re.compile(r"[0-9]{1,15}")

@@ -132,8 +132,8 @@ class Contest:
         # A trace has one value of each: the shortest one with any.
         every = product(*said)
         traces = (counterexample(self.forbidding, self._allowing, (*given, *x)) for x in every)
-        found = [trace for trace in traces if trace is not None]
-        return min(found, key=lambda trace: len(trace.states), default=None)
+        counterexamples = [trace for trace in traces if trace is not None]
+        return min(counterexamples, key=lambda trace: len(trace.states), default=None)
 
     def _word(self, alphabet: JointAlphabet) -> tuple[JointLetter, ...] | None:
         letters = alphabet.candidates
@@ -261,8 +261,8 @@ def shared_vocabulary(first: Vocabulary, second: Vocabulary) -> SharedVocabulary
 
 # All rules of two rulebooks ask for the same one; what is known of its axioms is kept beside it.
 @lru_cache(maxsize=8)
-def _shared_vocabulary(one: Itself[Vocabulary], other: Itself[Vocabulary]) -> SharedVocabulary:
-    first, second = one.item, other.item
+def _shared_vocabulary(own: Itself[Vocabulary], other: Itself[Vocabulary]) -> SharedVocabulary:
+    first, second = own.item, other.item
     types: dict[str, ObjectType] = dict(first.types)
     for name, kind in second.types.items():
         if types.setdefault(name, kind).parent != kind.parent:

@@ -58,7 +58,7 @@ def trace_table(trace: Trace, names: Set[str], vocabulary: Vocabulary) -> TraceT
     return TraceTable(tuple(zip(starts, ends, strict=True)), tuple(rows))
 
 
-def trace_note(what: str, trace: Trace, rules: Sequence[AnalyzedRule]) -> tuple[str, ...]:
+def trace_note(title: str, trace: Trace, rules: Sequence[AnalyzedRule]) -> tuple[str, ...]:
     """The note on a trace, as a literal in the words of these rules.
 
     ``{ behind(v); beside(v) and fog }``: what is not said has its default.
@@ -66,7 +66,7 @@ def trace_note(what: str, trace: Trace, rules: Sequence[AnalyzedRule]) -> tuple[
     names = frozenset(name for analyzed in rules for name in declarations_read(analyzed.rule))
     vocabulary = rules[0].rulebook.vocabulary
     states = "; ".join(_state(state, trace, names, vocabulary) for state in trace.states)
-    return (f"{what}: {{ {states} }}",)
+    return (f"{title}: {{ {states} }}",)
 
 
 def _state(state: State, trace: Trace, names: frozenset[str], vocabulary: Vocabulary) -> str:

@@ -96,9 +96,9 @@ def _chosen_drive(
             continue
         if isinstance(answer.answer, NotJudged):
             raise answer.answer.error
-        found = answer.drive, answer.answer
+        judged = answer.drive, answer.answer
         if trace and trace == answer.drive.arrays.id:
-            return found
+            return judged
         times = (
             answer.drive.time_s(violation.step)
             for violation in answer.answer.violations
@@ -106,7 +106,7 @@ def _chosen_drive(
         )
         violated_s = min(times, default=math.inf)
         if first is None or violated_s < first_s:
-            first, first_s = found, violated_s
+            first, first_s = judged, violated_s
     if first is None or trace:
         message = why if first is None else f"there is no drive `{trace}`"
         raise NOT_IN_RECORDING.error(SourceLocation(verdicts.recording.name), message)

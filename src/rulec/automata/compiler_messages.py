@@ -134,7 +134,7 @@ def not_confined(confined: Confinement) -> Diagnostic:
     """R0415: the worker can do more than its task needs."""
     left = {"write files (no Landlock)": confined.files}
     left["connect and run programs (no seccomp)"] = confined.connections
-    able = " and ".join(what for what, is_held in left.items() if not is_held)
+    able = " and ".join(deed for deed, is_held in left.items() if not is_held)
     return SPOT_NOT_CONFINED.at(
         None,
         f"RULEC_REQUIRE_CONFINED is set, but Spot's process could {able}",

@@ -61,16 +61,16 @@ class OutcomeMachine:
     def _never_left(self, outcome: int) -> frozenset[int]:
         """The states from which every word comes to this."""
         outputs, successors = self.outputs, self.successors
-        found = {state for state, row in enumerate(outputs) if row.count(outcome) == len(row)}
+        never_left = {state for state, row in enumerate(outputs) if row.count(outcome) == len(row)}
         before: dict[int, list[int]] = {}
-        for state in found:
+        for state in never_left:
             for target in set(successors[state]):
                 before.setdefault(target, []).append(state)
-        for left in (waiting := [target for target in before if target not in found]):
-            fresh = found.intersection(before.get(left, ()))
-            found -= fresh
+        for left in (waiting := [target for target in before if target not in never_left]):
+            fresh = never_left.intersection(before.get(left, ()))
+            never_left -= fresh
             waiting += fresh
-        return frozenset(found)
+        return frozenset(never_left)
 
     @cached_property
     def above(self) -> tuple[int, ...]:

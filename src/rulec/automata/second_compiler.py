@@ -65,7 +65,7 @@ def _with_certificates(books: Sequence[CompiledRulebook]) -> list[CompiledRulebo
                 for name in different
             ]
         )
-    known = {key: _digest(rule.machine) for (key, (rule, _)), one in pairs if isinstance(one, Done)}
+    known = {key: _digest(rule.machine) for (key, (rule, _)), job in pairs if isinstance(job, Done)}
     return [
         replace(book, rules=tuple([_with_certificate(rule, known) for rule in book.rules]))
         for book in books

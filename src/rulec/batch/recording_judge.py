@@ -248,16 +248,16 @@ class _RecordingJudge:
         table = ""
         if self._settings.text:
             table = recording_table.as_text(verdicts, judged.tally, self._settings.width)
-        found = None
+        findings = None
         if self._findings is not None:
-            found = replace(self._findings.whole(), rows=tuple(judged.rows))
+            findings = replace(self._findings.whole(), rows=tuple(judged.rows))
         return JudgedRecording(
             self._file,
             verdicts.recording.name,
             judged.tally,
             table,
             explained=tuple(judged.blocks),
-            found=found,
+            found=findings,
         )
 
     def _explained(self, result: DriveVerdict) -> list[Explanation]:

@@ -81,10 +81,10 @@ def in_order(
     pool = _Pool(work, left, min(jobs.processes, len(left)), lost)
     try:
         for number, task in enumerate(left):
-            for found in pool.results(number):
-                if isinstance(found, _Raised):
-                    raise found.error
-                yield task, found
+            for answer in pool.results(number):
+                if isinstance(answer, _Raised):
+                    raise answer.error
+                yield task, answer
             tell(here + number + 1)
     finally:
         pool.stop()
@@ -170,7 +170,7 @@ class _Pool(Generic[Task, Result]):
         """Give tasks to processes that have none, first those that are done again."""
         last = min(len(self._tasks), wanted + self._jobs * TASKS_AHEAD)
         while self._again or self._next < last:
-            worker = next((one for one in self._workers if one.number is None), None)
+            worker = next((each for each in self._workers if each.number is None), None)
             if worker is None:
                 if len(self._workers) == self._jobs:
                     return
@@ -232,12 +232,12 @@ class _Pool(Generic[Task, Result]):
 def _serve(
     work: Callable[[Task], Iterator[Result]],
     connection: Connection,
-    what: Recalled,
+    recalled: Recalled,
 ) -> None:
     """Do tasks until nobody is there to give any, recalling ``what`` those who started it do."""
     # What a task has begun, such as processes of its own, is ended with it.
     signal.signal(signal.SIGTERM, _leave)
-    with suppress(EOFError, OSError), recalling(what):
+    with suppress(EOFError, OSError), recalling(recalled):
         while True:
             task = connection.recv()
             try:

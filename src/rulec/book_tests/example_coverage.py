@@ -125,8 +125,8 @@ def coverage(run: ExampleRun) -> tuple[RuleCoverage, ...]:
         if outcomes or run.names(rule):
             known = axiom_instances(rule.variables, run.rulebook.axioms, run.rulebook.vocabulary)
             axioms = [outcome.formula for outcome in known]
-            one = _coverage(rule, compiled, outcomes, run.compiled, axioms)
-            covered.append(replace(one, inherited=rule.book not in ("", run.rulebook.name)))
+            of_rule = _coverage(rule, compiled, outcomes, run.compiled, axioms)
+            covered.append(replace(of_rule, inherited=rule.book not in ("", run.rulebook.name)))
     return tuple(covered)
 
 
@@ -200,8 +200,8 @@ class _RuleExamples:
     def untouched(self, side: LimitSide) -> UntouchedLimit | None:
         """The limit with an example that is close to it on a side, if that makes a difference."""
         machine = self._machine
-        found = deciding_edges(side, machine, lambda letter: self._unsettled[self._fixed(letter)])
-        for source, letter in itertools.islice(found, _MOST_TRIED):
+        edges = deciding_edges(side, machine, lambda letter: self._unsettled[self._fixed(letter)])
+        for source, letter in itertools.islice(edges, _MOST_TRIED):
             last = self._witness(letter)
             says = close_state(last.says, side, machine, self._vocabulary)
             if says is not None:

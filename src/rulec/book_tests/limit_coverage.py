@@ -135,6 +135,6 @@ def deciding_edges(
             if bool(true >> beyond & 1) is side.holds or machine.letters[beyond] == IMPOSSIBLE:
                 continue
             state = told_apart(here, machine.letters[beyond], sources(letter))
-            wanted = (can_be(machine, one, below_zero=negative) for one in (letter, beyond))
+            wanted = (can_be(machine, symbol, below_zero=negative) for symbol in (letter, beyond))
             if state is not None and all(wanted):
                 yield state, letter

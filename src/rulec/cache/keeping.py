@@ -31,9 +31,9 @@ def knows_shipped() -> bool:
 
 
 @contextmanager
-def recalling(what: Recalled) -> Iterator[None]:
+def recalling(recalled: Recalled) -> Iterator[None]:
     """Let trees and machines in the block come from these."""
-    token = _recalled.set(what)
+    token = _recalled.set(recalled)
     try:
         yield
     finally:

@@ -134,7 +134,7 @@ class _UnwrittenInit(_Unwritten):
     ) -> dict[str, object] | None:
         """What the fields get; None for arguments that are not the method's."""
         self._fields = self._fields or fields(self.cls)
-        places = [one.name for one in self._fields if one.init and one.kw_only is not True]
+        places = [item.name for item in self._fields if item.init and item.kw_only is not True]
         arguments = {**dict(zip(places, given, strict=False)), **named}
         if len(given) > len(places) or len(arguments) < len(given) + len(named):
             return None
@@ -204,12 +204,12 @@ def _function(name: str, parameters: Sequence[str], lines: Sequence[str]) -> str
     return "\n ".join([f"def {name}({', '.join(parameters)}):", *lines])
 
 
-def _refusing(cls: type, what: str, method: str) -> Callable[..., None]:
+def _refusing(cls: type, deed: str, method: str) -> Callable[..., None]:
     """What keeps a frozen object as it is; classes derived from it may have more attributes."""
 
     def refuse(self: object, name: str, *value: object) -> None:
         if type(self) is cls or any(field.name == name for field in fields(cls)):
-            raise FrozenInstanceError(f"cannot {what} field {name!r}")
+            raise FrozenInstanceError(f"cannot {deed} field {name!r}")
         getattr(super(cls, self), method)(name, *value)
 
     return refuse

@@ -93,10 +93,10 @@ def _gate(stream: IO[bytes], to: Output) -> Iterator[IO[bytes]]:
         yield stream
 
 
-def print_written(what: str, to: Output) -> None:
+def print_written(content: str, to: Output) -> None:
     """Say that a file has been written, unless it is standard output."""
     if to.is_file:
-        print_line(f"wrote {what}")
+        print_line(f"wrote {content}")
 
 
 def put_answer(text: str, to: Output) -> None:
@@ -135,11 +135,11 @@ def width_of(to: Output) -> int:
     return PAGE_WIDTH if to.is_file else page_width()
 
 
-def print_lost(deed: str, what: str, signal_number: int | None) -> None:
+def print_lost(deed: str, subject: str, signal_number: int | None) -> None:
     """Say that the process that, for one, ``judged`` something was stopped, and what follows."""
     by = "" if signal_number is None else f" by signal {signal_number}"
     print_remark(
-        f"rulec: the process that {deed} {what} was stopped{by}; another one does it again"
+        f"rulec: the process that {deed} {subject} was stopped{by}; another one does it again"
     )
 
 

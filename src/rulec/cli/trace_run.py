@@ -71,14 +71,14 @@ class TraceRun:
             rows: list[Mapping[str, object]] = []
             left, traces_before = self.to_explain, self.total.judged
             ids: set[str] | None = set()
-            for one, facts in self._answers(file, form, assumed):
-                ids = self._ids(ids, file, one)
-                answer = one[-1]
+            for judged, facts in self._answers(file, form, assumed):
+                ids = self._ids(ids, file, judged)
+                answer = judged[-1]
                 before = len(findings)
                 if isinstance(answer, NotJudged):
                     self._not_judged(file, answer, findings)
                 else:
-                    left -= self._judged(file, one, left, findings)
+                    left -= self._judged(file, judged, left, findings)
                 rows += self._rows(file, answer, facts, findings[before:])
             if self.to.wants_findings:
                 drives = self.total.judged - traces_before
@@ -111,7 +111,7 @@ class TraceRun:
         file: str,
         answer: Verdict | NotJudged,
         facts: DriveFacts | None,
-        found: Sequence[VerdictFinding],
+        findings: Sequence[VerdictFinding],
     ) -> Iterator[Mapping[str, object]]:
         """The rows of a trace, and of what was found of it, if they are wanted."""
         own = {"file": file, "vehicle": answer.trace or ""}
@@ -120,7 +120,7 @@ class TraceRun:
         if isinstance(answer, NotJudged):
             yield self.to.to_rows.of_nothing(own, answer.error.diagnostics[0].message)
         elif facts is not None:
-            yield from self.to.to_rows.of_trace(facts, answer, own, found)
+            yield from self.to.to_rows.of_trace(facts, answer, own, findings)
 
     def _not_judged(self, file: str, answer: NotJudged, findings: list[VerdictFinding]) -> None:
         self.total.not_judged += 1
@@ -200,12 +200,12 @@ class TraceRun:
         refused = 0
         with progress(f"judging {name}", size) as tell:
             for chunk in read_chunks(stream, name, form, together=self.engine is None):
-                for one, facts in self._in_chunk(assumed.of(chunk)):
-                    answer = one[-1]
+                for judged, facts in self._in_chunk(assumed.of(chunk)):
+                    answer = judged[-1]
                     refused = refused + 1 if isinstance(answer, NotJudged) else 0
                     if isinstance(answer, NotJudged):
                         REFUSED.within(refused, answer.error.diagnostics[0].place, name)
-                    yield one, facts
+                    yield judged, facts
                 if size is not None:
                     tell(stream.tell())
 
@@ -218,7 +218,7 @@ class TraceRun:
                 from rulec.monitoring.moments.drive_facts import facts_of_many
 
                 answers = list(answers)
-                verdicts = [one if isinstance(one, Verdict) else None for one in answers]
+                verdicts = [x if isinstance(x, Verdict) else None for x in answers]
                 facts = iter(facts_of_many(traces, verdicts, self.rules))
             for place, answer in enumerate(answers):
                 own = next(facts, None) if isinstance(answer, Verdict) else None

@@ -76,7 +76,7 @@ def reworded(problem: click.ClickException) -> str:
             return f"there is no option `{problem.option_name}` here; {others}"
         if problem.option_name in ("-r", "--rulebook") and "-r" not in known:
             names = {
-                one.name for one in problem.ctx.command.params if isinstance(one, click.Argument)
+                own.name for own in problem.ctx.command.params if isinstance(own, click.Argument)
             }
             if names & {"rulebook", "rulebooks", "sources"}:
                 path = problem.ctx.command_path
@@ -93,22 +93,22 @@ def reworded(problem: click.ClickException) -> str:
     if (
         param is not None
         and isinstance(kind, click.types.IntParamType)
-        and (found := _NO_NUMBER.match(problem.message))
+        and (match := _NO_NUMBER.match(problem.message))
     ):
-        return f"{_as_typed(param, problem)}: `{found['given']}` is no whole number"
+        return f"{_as_typed(param, problem)}: `{match['given']}` is no whole number"
     if (
         param is not None
         and isinstance(kind, click.IntRange | click.FloatRange)
-        and (found := _OUT_OF_RANGE.match(problem.message))
+        and (match := _OUT_OF_RANGE.match(problem.message))
     ):
         limits = f"from {kind.min} to {kind.max}" if kind.max is not None else f"{kind.min} or more"
-        return f"{_as_typed(param, problem)}: `{found['given']}` is out of range: it is {limits}"
+        return f"{_as_typed(param, problem)}: `{match['given']}` is out of range: it is {limits}"
     if (
         param is not None
         and isinstance(kind, click.Choice)
-        and (found := _NO_CHOICE.search(problem.message))
+        and (match := _NO_CHOICE.search(problem.message))
     ):
-        given, choices = found["given"], [str(choice) for choice in kind.choices]
+        given, choices = match["given"], [str(choice) for choice in kind.choices]
         whose = "" if param.param_type_name == "argument" else f"{_as_typed(param, problem)}: "
         meant = _OTHER_VALUES.get(given.casefold())
         near = meant if meant in choices else nearest_name(given, choices)
@@ -125,16 +125,16 @@ def reworded(problem: click.ClickException) -> str:
         )
     if isinstance(param, click.Option):
         return f"{_as_typed(param, problem)}: {problem.message}"
-    if found := _TOO_MUCH.match(message):
-        words = found["given"].split()
+    if match := _TOO_MUCH.match(message):
+        words = match["given"].split()
         many = "an argument" if len(words) == 1 else f"{len(words)} arguments"
-        return f"`{found['given']}` is {many} too many"
+        return f"`{match['given']}` is {many} too many"
     context = getattr(problem, "ctx", None)
-    if context is not None and (found := _NO_COMMAND.match(message)):
+    if context is not None and (match := _NO_COMMAND.match(message)):
         names = context.command.list_commands(context)
-        near = nearest_name(found["given"], names)
+        near = nearest_name(match["given"], names)
         way_out = f"did you mean `{near}`?" if near else f"it is one of {', '.join(names)}"
-        return f"`{context.command_path} {found['given']}` is no command; {way_out}"
+        return f"`{context.command_path} {match['given']}` is no command; {way_out}"
     return message
 
 

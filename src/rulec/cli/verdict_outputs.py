@@ -61,11 +61,11 @@ class VerdictOutputs:
         for write in self._lines:
             write(line)
 
-    def found(self, found: FoundInRecording) -> None:
+    def found(self, findings: FoundInRecording) -> None:
         """Take the findings of a recording, or of a file of traces. Raises RulecError."""
-        self._findings += len(found.findings)
+        self._findings += len(findings.findings)
         for writer, _ in self._writers:
-            writer.add(found)
+            writer.add(findings)
 
 
 @contextmanager
@@ -110,5 +110,5 @@ def verdict_outputs(
     if len(written) == len(to):
         for output in written:
             is_whole = output.form in ("text", "json")
-            what = "the answer" if is_whole else counted(outputs._findings, "finding")
-            print_line(f"wrote {what} to {output.path}")
+            content = "the answer" if is_whole else counted(outputs._findings, "finding")
+            print_line(f"wrote {content} to {output.path}")

@@ -197,14 +197,14 @@ def _kind(item: Declaration) -> str:
 def _about(item: Declaration) -> str:
     match item:
         case Signal():
-            what = "signal"
+            kind = "signal"
         case Enumeration():
-            what = f"one of {len(item.values)} values"
+            kind = f"one of {len(item.values)} values"
         case Quantity():
-            what = f"in {item.unit}"
+            kind = f"in {item.unit}"
     of = f" of each {item.parameters[0]}" if item.parameters else ""
     default = "" if default_of(item) is None else f", default {default_of(item)}".lower()
-    return in_comment(f"{item.name}{of}: {what}{default}")
+    return in_comment(f"{item.name}{of}: {kind}{default}")
 
 
 def default_of(item: Declaration) -> bool | float | str | None:
@@ -301,8 +301,8 @@ def _said(item: Declaration, *, defaults: bool) -> str:
 
 def _initialisers(layout: MonitorLayout) -> Iterator[str]:
     fields = layout.fields
-    for what, defaults in (("defaults", True), ("unknown", False)):
-        yield f"void rulec_input_{what}(rulec_input *input)"
+    for suffix, defaults in (("defaults", True), ("unknown", False)):
+        yield f"void rulec_input_{suffix}(rulec_input *input)"
         yield "{"
         yield "    input->n_objects = 0u;"
         yield "    input->objects = NULL;"
@@ -311,7 +311,7 @@ def _initialisers(layout: MonitorLayout) -> Iterator[str]:
         for item in fields.about(2):
             yield f"    input->{fields.identifiers[item.name]} = NULL;"
         yield "}\n"
-        yield f"void rulec_object_{what}(rulec_object *object, uint32_t id, uint8_t type)"
+        yield f"void rulec_object_{suffix}(rulec_object *object, uint32_t id, uint8_t type)"
         yield "{"
         yield "    object->id = id;"
         yield "    object->type = type;"

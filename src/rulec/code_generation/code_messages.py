@@ -22,11 +22,11 @@ NO_MONITOR_IN_C = Code(
 )
 
 
-def too_large(what: str, way_out: str = "") -> RulecError:
+def too_large(excess: str, way_out: str = "") -> RulecError:
     """The error (R0750) about what is too large, or not there."""
     return NO_MONITOR_IN_C.error(
         None,
-        f"there can be no monitor in C: {what}",
+        f"there can be no monitor in C: {excess}",
         help=way_out or "split the rule, or leave it out",
     )
 
@@ -116,10 +116,10 @@ MONITOR_DIFFERS = Code(
 )
 
 
-def differs(found: Sequence[str]) -> RulecError:
+def differs(differences: Sequence[str]) -> RulecError:
     """The error (R0753) about what differs."""
     return MONITOR_DIFFERS.error(
         None,
-        f"the monitor in C is not what its tables say: {'; '.join(found[:3])}",
+        f"the monitor in C is not what its tables say: {'; '.join(differences[:3])}",
         help="try another compiler (`CC`), and report this",
     )

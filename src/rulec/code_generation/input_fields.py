@@ -55,14 +55,14 @@ class InputFields:
     def constants(self) -> dict[tuple[str, str], str]:
         """The constants of types, of rules, and of values by the name of their enumeration."""
         identifiers = Identifiers(_OWN_CONSTANTS)
-        found = {}
-        for what, names in ((TYPE, self.types), (RULE, self.rules)):
-            found.update({(what, name): identifiers.of(what, name, upper=True) for name in names})
+        names_of = {}
+        for kind, names in ((TYPE, self.types), (RULE, self.rules)):
+            names_of.update({(kind, x): identifiers.of(kind, x, upper=True) for x in names})
         for item in self.read:
             if isinstance(item, Enumeration):
                 for value in item.values:
-                    found[item.name, value] = identifiers.of(item.name, value, upper=True)
-        return found
+                    names_of[item.name, value] = identifiers.of(item.name, value, upper=True)
+        return names_of
 
     def about(self, n_objects: int) -> Iterable[Declaration]:
         """The names about so many objects; 2 stands for more, too."""
@@ -94,10 +94,10 @@ def input_fields(rulebook: CompiledRulebook) -> InputFields:
             else:
                 names.update(name for _, term in read.terms for name in names_in(term))
     vocabulary = rulebook.vocabulary
-    found = tuple([item for name, item in vocabulary.declarations.items() if name in names])
-    for item in found:
+    fields = tuple([item for name, item in vocabulary.declarations.items() if name in names])
+    for item in fields:
         if isinstance(item, Enumeration) and len(item.values) > MOST_VALUES:
             raise too_large(f"`{item.name}` has {len(item.values)} values, at most {MOST_VALUES}")
     if len(vocabulary.types) > MOST_VALUES:
         raise too_large(f"there are {len(vocabulary.types)} types, at most {MOST_VALUES}")
-    return InputFields(vocabulary, found, tuple([rule.name for rule in rulebook.rules]))
+    return InputFields(vocabulary, fields, tuple([rule.name for rule in rulebook.rules]))

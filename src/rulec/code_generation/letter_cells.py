@@ -46,11 +46,11 @@ def letter_cells(
     table = np.array(letters, dtype=np.int64).reshape(tuple(reversed(sizes))).transpose()
     order = list(range(len(sizes)))
     orders = order, order[::-1]
-    first = [sorted(one, key=lambda read: read not in of_nobody) for one in orders]
-    shared = min((_cells(table, one) for one in first), key=len)
+    first = [sorted(read_order, key=lambda read: read not in of_nobody) for read_order in orders]
+    shared = min((_cells(table, read_order) for read_order in first), key=len)
     if len(shared) <= MOST_CELLS:
         return shared
-    return min((_cells(table, one) for one in orders), key=len)
+    return min((_cells(table, read_order) for read_order in orders), key=len)
 
 
 def _cells(table: NDArray[np.int64], order: Sequence[int]) -> Cells:

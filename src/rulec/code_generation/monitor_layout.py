@@ -174,7 +174,7 @@ def _seats(fields: InputFields, bounds: Mapping[str, int]) -> dict[str, tuple[in
         raise too_large(f"a bound on objects is from 1 to {MOST_SEATS}", "change `--objects`")
     usual = {kind: USUAL_SEATS for kind in kinds if _parent(kind, vocabulary) is None}
     bounds = usual | dict(bounds)
-    found: dict[str, tuple[int, int]] = {}
+    seats: dict[str, tuple[int, int]] = {}
     end = 0
     # A type's seats are followed by those of types below it, so that each has a stretch.
     for kind in sorted(
@@ -182,11 +182,11 @@ def _seats(fields: InputFields, bounds: Mapping[str, int]) -> dict[str, tuple[in
     ):
         parent = _parent(kind, vocabulary)
         if kind in bounds:
-            found[kind] = end, end + bounds[kind]
-            end = found[kind][1]
+            seats[kind] = end, end + bounds[kind]
+            end = seats[kind][1]
         else:
-            found[kind] = found[parent] if parent is not None else (0, 0)
-    return found
+            seats[kind] = seats[parent] if parent is not None else (0, 0)
+    return seats
 
 
 def _parent(kind: str, vocabulary: Vocabulary) -> str | None:
@@ -213,16 +213,16 @@ class _Placing:
 
     def rule(self, rule: CompiledRule) -> RuleLayout:
         """The layout of a rule."""
-        machine, what = rule.machine, f"rule `{rule.name}` has"
+        machine, subject = rule.machine, f"rule `{rule.name}` has"
         if len(rule.variables) > MOST_VARIABLES:
-            raise too_large(f"{what} {len(rule.variables)} variables, at most {MOST_VARIABLES}")
+            raise too_large(f"{subject} {len(rule.variables)} variables, at most {MOST_VARIABLES}")
         if len(machine.successors) > MOST_STATES:
-            raise too_large(f"{what} {len(machine.successors)} states, at most {MOST_STATES}")
+            raise too_large(f"{subject} {len(machine.successors)} states, at most {MOST_STATES}")
         reads = [self._placed(read, rule) for read in machine.reads]
         of_nobody = {number for number, (source, _) in enumerate(reads) if source == WORLD}
         cells = letter_cells(machine.letters, [read.size for read in machine.reads], of_nobody)
         if len(cells) >= LEAF or len(machine.successors[0]) >= LEAF - 1:
-            raise too_large(f"{what} too many letters that are not alike")
+            raise too_large(f"{subject} too many letters that are not alike")
         at = 1
         while at < len(cells):
             read = cells[at]

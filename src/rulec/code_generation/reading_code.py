@@ -121,7 +121,7 @@ class ReadingCode:
         kind = self._fields.types.index(count.type)
         counts = self._call("counts", self._input, each, self._whole(kind), body)
         lines = self._counting(counts) if alias is None else self._returning(counts)
-        return self._function("uint32_t", "count", {inner[one]: places[one] for one in free}, lines)
+        return self._function("uint32_t", "count", {inner[x]: places[x] for x in free}, lines)
 
     def _sum(self, read: NumberRead, places: Places) -> str:
         free = list(dict.fromkeys(name for _, term in read.terms for name in variables_of(term)))
@@ -137,7 +137,7 @@ class ReadingCode:
                 lines = self._returning(self._call("order", *pair, self._whole(sides)))
             case _:
                 lines = self._weighed(read, inner)
-        return self._function("uint16_t", "sum", {inner[one]: places[one] for one in free}, lines)
+        return self._function("uint16_t", "sum", {inner[x]: places[x] for x in free}, lines)
 
     def _weighed(self, read: NumberRead, places: Places) -> list[str]:
         values = [

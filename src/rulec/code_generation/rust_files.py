@@ -186,20 +186,20 @@ def _input(layout: MonitorLayout) -> Iterator[str]:
     yield "}"
     yield ""
     yield "impl Object {"
-    for what, defaults in (("defaults", True), ("unknown", False)):
+    for constructor, defaults in (("defaults", True), ("unknown", False)):
         yield f"    /// An object of which nothing is said{' but the defaults' * defaults}."
         yield "    #[must_use]"
-        yield f"    pub const fn {what}(id: u32, r#type: u8) -> Self {{"
+        yield f"    pub const fn {constructor}(id: u32, r#type: u8) -> Self {{"
         said = _all_said(own, layout, defaults=defaults)
         yield f"        Self {{ {', '.join(['id', 'r#type', *said])} }}"
         yield "    }"
     yield "}"
     yield ""
     yield "impl<'a> Input<'a> {"
-    for what, defaults in (("defaults", True), ("unknown", False)):
+    for constructor, defaults in (("defaults", True), ("unknown", False)):
         yield f"    /// A state of which nothing is said{' but the defaults' * defaults}."
         yield "    #[must_use]"
-        yield f"    pub const fn {what}(objects: &'a [Object]) -> Self {{"
+        yield f"    pub const fn {constructor}(objects: &'a [Object]) -> Self {{"
         said = _all_said(world, layout, defaults=defaults)
         said += [f"{fields.identifiers[item.name]}: None" for item in several]
         yield f"        Self {{ {', '.join(['objects', *said])} }}"

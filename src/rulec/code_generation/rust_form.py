@@ -53,20 +53,20 @@ def formed(lines: Iterable[str]) -> Iterator[str]:
             continue
         tail = text[-1] if text[-1] in ";," else ""
         text = text.removesuffix(tail)
-        found = _HEAD.fullmatch(text)
-        head, expression = found.groups() if found else ("", text)
+        match = _HEAD.fullmatch(text)
+        head, expression = match.groups() if match else ("", text)
         yield from _whole(indent, head, expression, tail)
 
 
 def _signature(indent: str, text: str) -> Iterator[str]:
     """The head of a function, its parameters on lines of their own if it is too long."""
-    found = re.fullmatch(r"((?:pub )?fn \w+)\((.*)\)( -> .*| \{)", text)
-    if found is None or len(indent) + len(text) <= _LINE:
+    match = re.fullmatch(r"((?:pub )?fn \w+)\((.*)\)( -> .*| \{)", text)
+    if match is None or len(indent) + len(text) <= _LINE:
         yield f"{indent}{text}"
         return
-    yield f"{indent}{found[1]}("
-    yield from (f"{indent}{_STEP}{part}," for part in _parts(found[2]))
-    yield f"{indent}){found[3]}"
+    yield f"{indent}{match[1]}("
+    yield from (f"{indent}{_STEP}{part}," for part in _parts(match[2]))
+    yield f"{indent}){match[3]}"
 
 
 def _whole(indent: str, head: str, expression: str, tail: str) -> Iterator[str]:
@@ -175,8 +175,8 @@ def _filled(parts: Sequence[str], indent: str) -> list[str]:
 
 def _listed(expression: str) -> _List | None:
     """A call, an array, a tuple or a structure's literal; None for all else."""
-    found = re.match(r"[&\w:#.]*( (?=\{))?", expression)
-    start = found.end() if found else 0
+    match = re.match(r"[&\w:#.]*( (?=\{))?", expression)
+    start = match.end() if match else 0
     if start == len(expression) or expression[start] not in _CLOSERS:
         return None
     bracket = expression[start]

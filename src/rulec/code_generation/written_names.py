@@ -82,22 +82,22 @@ def _letters(text: str) -> str:
 def in_comment(text: str) -> str:
     """A text on one line of a comment; characters that could do harm by their numbers."""
     shown = "".join(map(_shown, " ".join(text.split())))
-    return re.sub(_HARMFUL, lambda found: _number(found[0]), shown)
+    return re.sub(_HARMFUL, lambda match: _number(match[0]), shown)
 
 
 _HARMFUL = r"(?<=\*)/|(?<=/)[*/]|(?<=\?)\?|(?<=rulec)_|(?<=RULEC)_"
 """Ends and beginnings of comments, trigraphs, and names that get the monitor's own prefix."""
 
 
-def _shown(one: str) -> str:
-    if one.isascii():
-        return one if one.isprintable() and one != "\\" else _number(one)
-    plain = unicodedata.category(one) in _SHOWN
-    return one if plain and unicodedata.bidirectional(one) not in _RIGHT_TO_LEFT else _number(one)
+def _shown(sign: str) -> str:
+    if sign.isascii():
+        return sign if sign.isprintable() and sign != "\\" else _number(sign)
+    fits = unicodedata.category(sign) in _SHOWN
+    return sign if fits and unicodedata.bidirectional(sign) not in _RIGHT_TO_LEFT else _number(sign)
 
 
-def _number(one: str) -> str:
-    return f"<U+{ord(one):04X}>"
+def _number(sign: str) -> str:
+    return f"<U+{ord(sign):04X}>"
 
 
 def c_string(text: str) -> str:

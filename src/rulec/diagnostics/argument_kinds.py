@@ -158,7 +158,7 @@ def _checked_items(name: str, annotation: str, items: Iterator[Any]) -> Iterator
 
 def _unexpected(name: str, annotation: str, value: object) -> TypeError:
     kinds = _kinds(annotation)
-    items = [one for kind in kinds for own in kind.items for one in _kinds(own)]
+    items = [inner for kind in kinds for own in kind.items for inner in _kinds(own)]
     names = [kind.name for kind in (*kinds, *items)]
     ways = [WAYS_OUT[name] for name in names if name in WAYS_OUT]
     said = [kind.said for kind in kinds if kind.name not in _UNSAID]

@@ -10,7 +10,7 @@ from rulec.version import install_command
 
 def missing_package(
     code: Code,
-    what: str,
+    task: str,
     package: str,
     extra: str,
     place: SourceLocation | None = None,
@@ -20,6 +20,6 @@ def missing_package(
     """Say that ``what`` takes a package, which of rulec's extras has it, and what else to do."""
     return code.error(
         place,
-        f"{what} takes the package `{package}`, which is not installed",
+        f"{task} takes the package `{package}`, which is not installed",
         help=f"`{install_command(extra)}`" + (f", or {otherwise}" if otherwise else ""),
     )

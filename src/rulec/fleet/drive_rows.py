@@ -50,7 +50,7 @@ class DriveRows:
         answer: DriveVerdict | NoDrive,
         verdicts: RecordingVerdicts,
         file: str,
-        found: Sequence[VerdictFinding] | None = None,
+        findings: Sequence[VerdictFinding] | None = None,
     ) -> Iterator[Row]:
         """The rows of a drive of a recording, or of a vehicle that has none.
 
@@ -67,29 +67,29 @@ class DriveRows:
             named = {"vehicle": answer.ego, "ego": answer.ego}
             yield self.of_nothing({**own, **named}, answer.why)
         else:
-            if found is None:
-                found = DriveFindings(verdicts, file).add(answer)
-            yield from self._of_drive(answer, own, found)
+            if findings is None:
+                findings = DriveFindings(verdicts, file).add(answer)
+            yield from self._of_drive(answer, own, findings)
 
     def of_trace(
         self,
         facts: DriveFacts,
         verdict: Verdict,
         own: Row,
-        found: Sequence[VerdictFinding],
+        findings: Sequence[VerdictFinding],
     ) -> Iterator[Row]:
         """The rows of a trace, and of what was ``found``; ``own`` are columns that name it."""
         times = (0.0, round((facts.n_states - 1) * facts.step_s, 9))
         yield self._judged(own, verdict, facts, times)
         yield from self._rules(own, verdict, facts)
-        yield from self._findings(own, verdict, found)
+        yield from self._findings(own, verdict, findings)
 
     def of_nothing(self, own: Row, why: str) -> Row:
         """The row of what could not be judged: a file, a recording, a vehicle or a trace."""
         return {**self.shared, **own, "kind": "drive", "outcome": "not_judged", "because": why}
 
     def _of_drive(
-        self, result: DriveVerdict, own: Row, found: Sequence[VerdictFinding]
+        self, result: DriveVerdict, own: Row, findings: Sequence[VerdictFinding]
     ) -> Iterator[Row]:
         drive, verdict = result.drive, result.answer
         own = {**own, "vehicle": drive.arrays.id, "ego": drive.ego}
@@ -100,7 +100,7 @@ class DriveRows:
         facts = facts_of(drive.arrays, self.rules, verdict)
         yield {**self._judged(own, verdict, facts, times), "distance_m": driven_m(drive)}
         yield from self._rules(own, verdict, facts)
-        yield from self._findings(own, verdict, found)
+        yield from self._findings(own, verdict, findings)
 
     def _judged(
         self, own: Row, verdict: Verdict, facts: DriveFacts, times: tuple[float, float]
@@ -137,11 +137,11 @@ class DriveRows:
             yield row
 
     def _findings(
-        self, own: Row, verdict: Verdict, found: Sequence[VerdictFinding]
+        self, own: Row, verdict: Verdict, findings: Sequence[VerdictFinding]
     ) -> Iterator[Row]:
         """A row for each violation, with when it was lost, and for each that is open."""
         violations = iter(verdict.violations)
-        for finding in found:
+        for finding in findings:
             if finding.outcome == "not_judged":
                 continue  # its rule's row says so
             row: dict[str, Cell] = {name: getattr(finding, name) for name in OF_FINDINGS}

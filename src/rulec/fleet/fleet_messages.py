@@ -30,10 +30,10 @@ NO_DRIVES_TABLE = Code(
 )
 
 
-def cut_drive(what: str, why: str, keys: list[str]) -> RulecError:
+def cut_drive(drive: str, why: str, keys: list[str]) -> RulecError:
     return CUT_DRIVE.error(
         None,
-        f"{what} is cut: {why}",
+        f"{drive} is cut: {why}",
         help=f"group the rows by {named(keys)} first, so that each drive is in one table",
     )
 

@@ -66,7 +66,7 @@ class TraceTableJudge:
                 yield self.to_rows.of_nothing({**own, "vehicle": outline.name}, lacks)
                 cut.append(number)
         rest = without_rows(rows, [outlines[number] for number in cut])
-        whole = [one for number, one in enumerate(outlines) if number not in {*cut}]
+        whole = [whole_trace for number, whole_trace in enumerate(outlines) if number not in {*cut}]
         others = [name for name in (MAP, ROWS) if name in rest.column_names]
         yield from self._judged(rest.drop_columns(others), whole, own)
 

@@ -52,7 +52,7 @@ def instants_among(
             if looks_back:
                 # The past ends with the first instant.
                 mirrored = _reasons(part, length - 1 - instant, backward, ends=True)
-                reasons = [(one, length - 1 - b, length - 1 - a) for one, a, b in mirrored]
+                reasons = [(cause, length - 1 - b, length - 1 - a) for cause, a, b in mirrored]
             else:
                 reasons = list(_reasons(part, instant, onward, ends=semantics == "finite"))
                 if part.operator in _INVARIANT and part.bound is None:
@@ -75,20 +75,20 @@ class _Column:
 
     def next(self, value: bool, instant: int) -> int:
         """The next instant with this value; the number of instants if there is none."""
-        found = self._next.get(value)
-        if found is None:
-            found = self._next[value] = self._next_ones(value)
-        return found[min(instant, len(self.values))]
+        instants = self._next.get(value)
+        if instants is None:
+            instants = self._next[value] = self._next_ones(value)
+        return instants[min(instant, len(self.values))]
 
     def _next_ones(self, value: bool) -> list[int]:
         ahead = never = len(self.values)
-        found = [never]
+        instants = [never]
         for instant, own in zip(range(never - 1, -1, -1), reversed(self.values), strict=True):
             if own is value:
                 ahead = instant
-            found.append(ahead)
-        found.reverse()
-        return found
+            instants.append(ahead)
+        instants.reverse()
+        return instants
 
 
 class _Columns:

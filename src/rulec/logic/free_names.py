@@ -11,9 +11,9 @@ from rulec.logic import formula as ltl
 from rulec.logic.linear_comparison import comparison
 
 
-def variables_of(what: ltl.Formula | ltl.Term) -> Iterator[str]:
+def variables_of(part: ltl.Formula | ltl.Term) -> Iterator[str]:
     """The free variables from left to right, with repetitions."""
-    match what:
+    match part:
         case ltl.Atom(_, arguments) | ltl.QuantityTerm(_, arguments):
             yield from arguments
         case ltl.Same(left, right):
@@ -32,9 +32,9 @@ def variables_of(what: ltl.Formula | ltl.Term) -> Iterator[str]:
             return
 
 
-def names_in(what: ltl.Formula | ltl.Term) -> Iterator[str]:
+def names_in(part: ltl.Formula | ltl.Term) -> Iterator[str]:
     """The declarations that are read, from left to right, with repetitions."""
-    match what:
+    match part:
         case ltl.Atom(name) | ltl.QuantityTerm(name):
             yield name
         case ltl.Count(_, _, body):
@@ -82,7 +82,7 @@ def rename_variables(formula: ltl.Formula, names: Mapping[str, str]) -> ltl.Form
                 {_renamed_term(term, names): factor for factor, term in terms},
                 relation,
                 limit,
-                _ARGUMENT.sub(lambda found: found[1] + names.get(found[2], found[2]), text),
+                _ARGUMENT.sub(lambda match: match[1] + names.get(match[2], match[2]), text),
             )
         case ltl.Same(left, right):
             return ltl.Same(*_renamed((left, right), names))

@@ -141,61 +141,61 @@ class _Found:
         return _is_present(formula) and unsettled.isdisjoint(ltl.atoms_of(formula))
 
 
-def _present(formula: ltl.Formula, found: _Found) -> ltl.Formula:
+def _present(formula: ltl.Formula, past: _Found) -> ltl.Formula:
     if not isinstance(formula, ltl.Unary | ltl.Binary):
         return formula
-    operation = ltl.with_operands(formula, lambda operand: _present(operand, found))
+    operation = ltl.with_operands(formula, lambda operand: _present(operand, past))
     if operation.operator not in PAST:
         return operation
     span = range_of(operation)
     if isinstance(operation, ltl.Binary):
-        return _since(operation.left, operation.right, span, found)
+        return _since(operation.left, operation.right, span, past)
     inner = operation.operand
     if operation.operator in (ltl.UnaryOperator.WEAK_PREVIOUSLY, ltl.UnaryOperator.HISTORICALLY):
-        return ltl.Unary(NOT, _since(ltl.Constant(True), ltl.Unary(NOT, inner), span, found))
-    return _since(ltl.Constant(True), inner, span, found)
+        return ltl.Unary(NOT, _since(ltl.Constant(True), ltl.Unary(NOT, inner), span, past))
+    return _since(ltl.Constant(True), inner, span, past)
 
 
-def _since(left: ltl.Formula, right: ltl.Formula, span: Range, found: _Found) -> ltl.Formula:
-    if found.is_settled(left) and found.is_settled(right):
+def _since(left: ltl.Formula, right: ltl.Formula, span: Range, past: _Found) -> ltl.Formula:
+    if past.is_settled(left) and past.is_settled(right):
         # The same operator on the same operands needs no second register.
         key = (left, right, span)
-        if key not in found.registers:
-            found.registers[key] = Register(found.fresh("register"), left, right, span)
-        return found.registers[key].atom
-    return _unfolded(left, right, span, found)
+        if key not in past.registers:
+            past.registers[key] = Register(past.fresh("register"), left, right, span)
+        return past.registers[key].atom
+    return _unfolded(left, right, span, past)
 
 
-def _unfolded(left: ltl.Formula, right: ltl.Formula, span: Range, found: _Found) -> ltl.Formula:
+def _unfolded(left: ltl.Formula, right: ltl.Formula, span: Range, past: _Found) -> ltl.Formula:
     """``left since right`` in terms of the present and one instant ago.
 
     From the shortest range to the wanted one, each says by the one before what was one instant ago.
     """
     key = (left, right, span)
-    known = found.sinces.get(key)
+    known = past.sinces.get(key)
     if known is not None:
         return known
     low, high = span
     if high is None:
-        before = found.fresh("memory")
+        before = past.fresh("memory")
         now: ltl.Formula = ltl.Binary(OR, right, ltl.Binary(AND, left, before))
-        found.memories[now] = Memory(before, now)
+        past.memories[now] = Memory(before, now)
     else:
         now = right
         for _ in range(high - low):
-            now = ltl.Binary(OR, right, ltl.Binary(AND, left, _one_ago(now, found)))
+            now = ltl.Binary(OR, right, ltl.Binary(AND, left, _one_ago(now, past)))
     for _ in range(low):
-        now = ltl.Binary(AND, left, _one_ago(now, found))
-    found.sinces[key] = now
+        now = ltl.Binary(AND, left, _one_ago(now, past))
+    past.sinces[key] = now
     return now
 
 
-def _one_ago(formula: ltl.Formula, found: _Found) -> ltl.Formula:
-    if found.is_settled(formula):
-        return _since(ltl.Constant(True), formula, Range(1, 1), found)
-    if formula not in found.memories:
-        found.memories[formula] = Memory(found.fresh("memory"), formula)
-    return found.memories[formula].atom
+def _one_ago(formula: ltl.Formula, past: _Found) -> ltl.Formula:
+    if past.is_settled(formula):
+        return _since(ltl.Constant(True), formula, Range(1, 1), past)
+    if formula not in past.memories:
+        past.memories[formula] = Memory(past.fresh("memory"), formula)
+    return past.memories[formula].atom
 
 
 def _is_present(formula: ltl.Formula) -> bool:

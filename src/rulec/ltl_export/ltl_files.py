@@ -118,8 +118,8 @@ def meanings(rulebook: Rulebook, rules: Sequence[RuleTerms]) -> str:
     return json.dumps(document, indent=1, ensure_ascii=False) + "\n"
 
 
-def _meaning(one: Proposition) -> dict[str, str]:
-    return {"formula": one.formula, "says": one.says}
+def _meaning(proposition: Proposition) -> dict[str, str]:
+    return {"formula": proposition.formula, "says": proposition.says}
 
 
 def _head(rulebook: Rulebook, sign: str) -> list[str]:

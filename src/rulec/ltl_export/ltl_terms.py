@@ -159,19 +159,19 @@ def text_of(term: Term, syntax: Syntax) -> str:
     # With a stack of its own: bounds of hundreds of steps are as deep.
     left: list[Term | str] = [term]
     while left:
-        one = left.pop()
-        if isinstance(one, str):
-            parts.append(one)
+        piece = left.pop()
+        if isinstance(piece, str):
+            parts.append(piece)
             continue
         if not syntax.has_implication:
-            one = _by_negation(one)
-        sign = syntax.signs.get(one.sign, one.sign)
-        match one.operands:
+            piece = _by_negation(piece)
+        sign = syntax.signs.get(piece.sign, piece.sign)
+        match piece.operands:
             case ():
-                parts.append(sign if one == TRUE else syntax.proposition.format(sign))
+                parts.append(sign if piece == TRUE else syntax.proposition.format(sign))
             case (inner,):
                 # A binary operand brings its own parentheses.
-                left += [inner, sign if one.sign == "!" else f"{sign} "]
+                left += [inner, sign if piece.sign == "!" else f"{sign} "]
             case (first, second):
                 left += [")", second, f" {sign} ", first, "("]
     return "".join(parts)
@@ -193,11 +193,11 @@ def size_of(term: Term) -> int:
     known: dict[int, int] = {}
     stack = [term]
     while stack:
-        one = stack[-1]
-        missing = [inner for inner in one.operands if id(inner) not in known]
+        piece = stack[-1]
+        missing = [inner for inner in piece.operands if id(inner) not in known]
         if missing:
             stack += missing
             continue
         stack.pop()
-        known[id(one)] = len(one.sign) + 6 + sum(known[id(inner)] for inner in one.operands)
+        known[id(piece)] = len(piece.sign) + 6 + sum(known[id(inner)] for inner in piece.operands)
     return known[id(term)]

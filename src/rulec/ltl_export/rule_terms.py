@@ -107,7 +107,7 @@ def rule_terms(rulebook: Rulebook, lowered: RuleFormula, phrases: Mapping[str, s
         for memory in past.memories
     )
     defined = (terms.term_of(fold_constants(definition(memory))) for memory in past.memories)
-    found = RuleTerms(
+    of_rule = RuleTerms(
         rule,
         lowered.step_s,
         formula=terms.term_of(fold_constants(past.present)),
@@ -116,9 +116,10 @@ def rule_terms(rulebook: Rulebook, lowered: RuleFormula, phrases: Mapping[str, s
         propositions=known_as,
         past=ago,
     )
-    if sum(size_of(term) for term in (found.formula, found.facts, found.history)) > MOST_SIGNS:
+    sizes = map(size_of, (of_rule.formula, of_rule.facts, of_rule.history))
+    if sum(sizes) > MOST_SIGNS:
         raise too_long(rule, f"its text would have more than {MOST_SIGNS:,} signs")
-    return found
+    return of_rule
 
 
 def fresh_identifier(text: str, taken: set[str]) -> str:

@@ -108,13 +108,13 @@ class Counted:
             self._first = file, row
         first_file, first = self._first
         apart: Collection[str] = ("rulebook_hash",) if "rulebook" in self.by else ()
-        for name, what in _ALIKE.items():
+        for name, column in _ALIKE.items():
             own, other = getattr(row, name), getattr(first, name)
             if own != other and name not in apart:
                 values = own, other
                 if name == "rulebook_hash":
                     values = (f"{row.rulebook} ({own[:8]})", f"{first.rulebook} ({other[:8]})")
-                raise judged_otherwise(file, first_file, what, values)
+                raise judged_otherwise(file, first_file, column, values)
         self.judged_by.setdefault(row.rulebook_hash, row)
 
     def _drive(self, file: str, key: DriveKey, row: FindingRow) -> None:

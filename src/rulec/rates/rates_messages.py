@@ -55,12 +55,12 @@ def no_findings(file: str, why: str) -> RulecError:
     )
 
 
-def judged_otherwise(file: str, first: str, what: str, values: tuple[str, str]) -> RulecError:
+def judged_otherwise(file: str, first: str, column: str, values: tuple[str, str]) -> RulecError:
     own, other = [value or "none" for value in values]
     return JUDGED_OTHERWISE.error(
         SourceLocation(file),
-        f"the {what} differ from those of {first}: {own} here, {other} there",
-        help="judge all drives alike" + (", or add `--by rulebook`" if what == "rules" else ""),
+        f"the {column} differ from those of {first}: {own} here, {other} there",
+        help="judge all drives alike" + (", or add `--by rulebook`" if column == "rules" else ""),
     )
 
 

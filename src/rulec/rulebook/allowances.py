@@ -31,7 +31,7 @@ def _unfit(findings: Sequence[Diagnostic], source: Source) -> Iterator[Diagnosti
         diagnostic.severity == "error" for diagnostic in findings
     ):
         return
-    found = {
+    places = {
         (finding.place.line, finding.code)
         for finding in findings
         if finding.place is not None and finding.place.file == source.name
@@ -49,7 +49,7 @@ def _unfit(findings: Sequence[Diagnostic], source: Source) -> Iterator[Diagnosti
             )
         codes = re.findall(r"R\d{4}", match["codes"])
         for code in codes:
-            if (line, code) not in found and code.startswith(_OF_A_CHECK):
+            if (line, code) not in places and code.startswith(_OF_A_CHECK):
                 yield UNFIT_ALLOWANCE.at(
                     span,
                     f"there is no warning {code} on this line",

@@ -79,7 +79,7 @@ def read_query(
         parts = ((len(first + second), begin, len(formula)),)
         if head:
             parts = (*parts, (len(first), head.start(1), len(head[1])))
-        found = _resolved(program, trees, folders, at)
+        resolved = _resolved(program, trees, folders, at)
     except RulecError as error:
         places = AskedParts(asked, program, parts)
         # What is asked at each moment by itself is not for the first state only.
@@ -91,9 +91,9 @@ def read_query(
         raise RulecError(
             [places.said(_in_words(diagnostic)) for diagnostic in found_wrong]
         ) from None
-    own = next(rule for rule in found.rules if rule.name == _NAME)
-    named = replace(found.vocabulary, name=words)
-    return FormulaQuery(text.strip(), own, named, found.semantics, found.traffic)
+    own = next(rule for rule in resolved.rules if rule.name == _NAME)
+    named = replace(resolved.vocabulary, name=words)
+    return FormulaQuery(text.strip(), own, named, resolved.semantics, resolved.traffic)
 
 
 def _in_words(problem: Diagnostic) -> Diagnostic:

@@ -242,7 +242,7 @@ def _once(uses: Sequence[tree.UseLine]) -> list[tree.UseLine]:
 
 def said(
     trees: Trees,
-    found: Sequence[Diagnostic],
+    mistakes: Sequence[Diagnostic],
     source: Source,
     placed: Callable[[SourceLocation], SourceLocation] = lambda place: place,
 ) -> tuple[Diagnostic, ...]:
@@ -252,7 +252,7 @@ def said(
     words that nothing is called here. ``placed`` leads from places of the trees to those of what
     was found, where a text was edited since it was first parsed.
     """
-    findings = in_order(trees.name, judged_allowances(found, source))
+    findings = in_order(trees.name, judged_allowances(mistakes, source))
     read = [file.name.text for file in (*trees.books, *trees.vocabularies) if file.name]
     known = with_words_elsewhere(findings, read, trees.search_path)
     return with_provisions(known, trees.books, placed)

@@ -119,17 +119,17 @@ class ResolutionMemory:
 
     def _provisions(self, rule: tree.RuleItem, laid: Overlay) -> tuple[object, ...]:
         """The options, parameters and definitions that a rule uses, in a fixed order."""
-        found: dict[str, tuple[object, ...]] = {}
+        provisions: dict[str, tuple[object, ...]] = {}
         waiting = set(self._names_used(rule))
         while waiting:
             name = waiting.pop()
-            if name in found:
+            if name in provisions:
                 continue
             items = _items_behind(name, laid)
-            found[name] = (laid.options.get(name), *items)
+            provisions[name] = (laid.options.get(name), *items)
             for item in items:
-                waiting |= self._names_used(item) - found.keys()
-        return tuple(part for name in sorted(found) for part in found[name])
+                waiting |= self._names_used(item) - provisions.keys()
+        return tuple(part for name in sorted(provisions) for part in provisions[name])
 
     def _names_used(self, item: tree.Item) -> frozenset[str]:
         known = self._used.get(id(item))

@@ -207,7 +207,7 @@ def with_rules(
                 certainty=item.certainty,
             )
             for file, item in laid.provisions
-            if any(file is one for one in own)
+            if any(file is own_file for own_file in own)
             for entry in item.entries
         ),
     )

@@ -66,11 +66,11 @@ def _unknown_name(finding: Diagnostic) -> str:
 
 def _definitions(search_path: Sequence[Path]) -> dict[str, frozenset[str]]:
     """What each rulebook defines."""
-    found = {}
+    defined = {}
     for book in search.available_rulebooks(search_path):
         with suppress(RulecError):
-            found[book] = _defined_in(search.read_bytes(search.find_rulebook(book, search_path)))
-    return found
+            defined[book] = _defined_in(search.read_bytes(search.find_rulebook(book, search_path)))
+    return defined
 
 
 @lru_cache(maxsize=128)

@@ -40,8 +40,8 @@ def assemble_rule(
         if isinstance(part, tuple):
             first = first_given.setdefault(part[0], part)
             if first is not part and part[0] not in ("unless", "also"):
-                what = "in force" if part[0] == "in" else part[0]
-                mistakes.append(structure.given_twice(f"`{what}`", part[2], first[2]))
+                clause = "in force" if part[0] == "in" else part[0]
+                mistakes.append(structure.given_twice(f"`{clause}`", part[2], first[2]))
     unread = any(part is None or (isinstance(part, tuple) and part[1] is None) for part in parts)
     complete = complete and not unread
     if "require" not in first_given and complete and not head.override:

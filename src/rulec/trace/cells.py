@@ -79,14 +79,14 @@ class Cells:
 
     def least(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """The least of the cells' values in each column, infinity where there is none."""
-        found = np.full(self.shape[1], np.inf)
-        np.minimum.at(found, self.columns, values)
-        return found
+        least = np.full(self.shape[1], np.inf)
+        np.minimum.at(least, self.columns, values)
+        return least
 
     def laid(self, values: NDArray[Any], elsewhere: float = 0) -> NDArray[Any]:
         """The array with these values in the cells, and something else in all others."""
-        found = np.zeros(self.shape, dtype=values.dtype)
+        array = np.zeros(self.shape, dtype=values.dtype)
         if elsewhere:
-            found.fill(elsewhere)
-        found.ravel()[self.places] = values
-        return found
+            array.fill(elsewhere)
+        array.ravel()[self.places] = values
+        return array

@@ -95,8 +95,8 @@ class EndToEnd:
         edges = np.concatenate(((-1,), flags.ravel().nonzero()[0], (flags.size,)))
         lengths = edges[1:] - edges[:-1]
         lengths[0] -= 1
-        found = self._in_rows(edges[:-1].repeat(lengths), flags)
-        return np.maximum(found, self.first - 1, out=found)
+        latest = self._in_rows(edges[:-1].repeat(lengths), flags)
+        return np.maximum(latest, self.first - 1, out=latest)
 
     def next_state(self, flags: _Flags, beyond: int = 0) -> _Columns:
         """The first state from each on in which a flag holds.
@@ -107,10 +107,10 @@ class EndToEnd:
         lengths = edges[1:] - edges[:-1]
         # Behind the last flag none is before any end
         edges[-1] += self.n_states + 1
-        found = self._in_rows(edges[1:].repeat(lengths), flags)
+        states = self._in_rows(edges[1:].repeat(lengths), flags)
         if beyond:
-            return np.where(found < self.end, found, self.end + beyond)
-        return np.minimum(found, self.end, out=found)
+            return np.where(states < self.end, states, self.end + beyond)
+        return np.minimum(states, self.end, out=states)
 
     def _in_rows(self, places: NDArray[intp], flags: _Flags) -> _Columns:
         """Columns in each row, of places in all rows laid flat."""
@@ -157,19 +157,19 @@ class EndToEnd:
 
     def before(self, values: NDArray[Any]) -> NDArray[Any]:
         """The values one state before, in a drive's first state its own."""
-        found = np.empty_like(values)
-        found[..., 1:] = values[..., :-1]
-        found[..., self.begins] = values[..., self.begins]
-        return found
+        shifted = np.empty_like(values)
+        shifted[..., 1:] = values[..., :-1]
+        shifted[..., self.begins] = values[..., self.begins]
+        return shifted
 
     def after(self, values: NDArray[Any]) -> NDArray[Any]:
         """The values one state later, in a drive's last state its own."""
-        found = np.empty_like(values)
-        found[..., :-1] = values[..., 1:]
+        shifted = np.empty_like(values)
+        shifted[..., :-1] = values[..., 1:]
         last = self.begins[1:] - 1
-        found[..., last] = values[..., last]
-        found[..., -1] = values[..., -1]
-        return found
+        shifted[..., last] = values[..., last]
+        shifted[..., -1] = values[..., -1]
+        return shifted
 
     def enters(self, flags: _Flags) -> _Flags:
         """Flags of states in which a flag holds that did not one state before."""
@@ -194,20 +194,20 @@ class EndToEnd:
         sums = np.zeros((*flags.shape[:-1], self.n_states + 1), dtype=intp)
         flags.cumsum(axis=-1, out=sums[..., 1:])
         since = np.maximum(self.columns + 1 - steps, self.first)
-        found: _Columns = sums[..., 1:] - sums[..., since]
-        return found
+        counts: _Columns = sums[..., 1:] - sums[..., since]
+        return counts
 
     def each(self, function: Callable[[slice], NDArray[Any]], axis: int = -1) -> NDArray[Any]:
         """What a function finds for the columns of each drive, laid end to end."""
-        found = [function(columns) for columns in self.slices]
-        return found[0] if len(found) == 1 else np.concatenate(found, axis=axis)
+        results = [function(columns) for columns in self.slices]
+        return results[0] if len(results) == 1 else np.concatenate(results, axis=axis)
 
     def agreed(self, flags: Sequence[Any]) -> bool:
         """A flag that all drives share. Raises UnlikeDrivesError if they do not."""
-        found = {bool(flag) for flag in flags}
-        if len(found) > 1:
+        values = {bool(flag) for flag in flags}
+        if len(values) > 1:
             raise UnlikeDrivesError
-        return found.pop()
+        return values.pop()
 
     def spread(self, values: Sequence[Any] | NDArray[Any]) -> NDArray[Any]:
         """A value for each drive, in all its columns."""

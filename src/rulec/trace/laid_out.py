@@ -38,14 +38,14 @@ class LaidOut:
         """
         by_lane = values.transpose(2, 0, 1) if values.ndim > 2 else values[None]
         own = by_lane.take(self.rows, axis=1)
-        found = one_behind_the_other(own, self.ranges, self.columns)
+        part = one_behind_the_other(own, self.ranges, self.columns)
         none = values.dtype.type(np.nan if values.dtype.kind == "f" else 0)
         if self._are_long:
             for columns, gone in self._absent_in:
-                found[:, gone, columns] = none
+                part[:, gone, columns] = none
         elif self._are_absent:
-            np.copyto(found, none, where=self.absent)
-        own_part: NDArray[Any] = found.transpose(1, 2, 0) if values.ndim > 2 else found[0]
+            np.copyto(part, none, where=self.absent)
+        own_part: NDArray[Any] = part.transpose(1, 2, 0) if values.ndim > 2 else part[0]
         return own_part
 
     def of_rows(self, rows: NDArray[intp]) -> LaidOut:
@@ -56,10 +56,10 @@ class LaidOut:
         """Parts of arrays with one place of the third axis, by column; NaN as above."""
         n_rows, n_columns, _ = arrays[0].shape
         at = (places * n_rows + self.rows[:, None]) * n_columns + self.columns
-        found = [values.transpose(2, 0, 1).take(at) for values in arrays]
-        for own in found if self._are_absent else ():
+        parts = [values.transpose(2, 0, 1).take(at) for values in arrays]
+        for own in parts if self._are_absent else ():
             np.copyto(own, np.nan, where=self.absent)
-        return found
+        return parts
 
     @cached_property
     def columns(self) -> NDArray[intp]:

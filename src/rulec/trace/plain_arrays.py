@@ -127,19 +127,19 @@ def medians(
     """The median and the size of each of so many groups, NaN of an empty one."""
     sizes = np.bincount(groups, minlength=count)
     order, begins, rows = _in_rows(groups, values)
-    found = np.full(count, np.nan)
+    medians = np.full(count, np.nan)
     if rows is None:
         ordered = values[np.lexsort((values, groups))]
         own = sizes.nonzero()[0]
         low, high = begins + (sizes[own] - 1) // 2, begins + sizes[own] // 2
-        found[own] = (ordered[low] + ordered[high]) / 2
-        return found, sizes
+        medians[own] = (ordered[low] + ordered[high]) / 2
+        return medians, sizes
     if len(order):
         rows = np.sort(rows, axis=1)
         own = groups[order[begins]]
         numbers, middle = np.arange(len(own)), sizes[own]
-        found[own] = (rows[numbers, (middle - 1) // 2] + rows[numbers, middle // 2]) / 2
-    return found, sizes
+        medians[own] = (rows[numbers, (middle - 1) // 2] + rows[numbers, middle // 2]) / 2
+    return medians, sizes
 
 
 def medians_hold(
@@ -154,13 +154,13 @@ def medians_hold(
     """
     sizes = np.bincount(groups, minlength=count)
     twice = 2 * np.bincount(groups.take(holds(values).nonzero()[0]), minlength=count)
-    found = twice > sizes
+    hold = twice > sizes
     # Where it holds of one half the median is between that and the other one
     halves = (twice == sizes) & (sizes > 0)
     if halves.any():
         own = halves[groups].nonzero()[0]
-        found[halves] = holds(medians(groups[own], values[own], count)[0][halves])
-    return found
+        hold[halves] = holds(medians(groups[own], values[own], count)[0][halves])
+    return hold
 
 
 def _in_rows(

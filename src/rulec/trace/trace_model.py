@@ -175,9 +175,9 @@ def _check_kinds(trace: Trace) -> None:
         wrong = f"`ends` is complete or cut, not {brief(ends)}"
     elif told is not None and not isinstance(told, frozenset | tuple):
         wrong = f"`told` is a frozenset of names, not {type(told).__name__}"
-    for what, given in pairs:
+    for attribute, given in pairs:
         if type(given) is not dict and not isinstance(given, Mapping):
-            wrong = f"`{what}` is a dict by names of objects, not {type(given).__name__}"
+            wrong = f"`{attribute}` is a dict by names of objects, not {type(given).__name__}"
     if wrong:
         raise NOT_A_TRACE.error(trace.place, wrong)
 

@@ -199,9 +199,9 @@ def with_told_values(
 
     Values that are ``lacking`` could be told by other files than this one.
     """
-    told = set(names)
+    tellable = set(names)
     for name in UNTOLD_VALUES.keys() & names:
         item = vocabulary.declarations.get(name)
         if isinstance(item, Enumeration):
-            told |= {*item.values} - UNTOLD_VALUES[name] - lacking
-    return frozenset(told)
+            tellable |= {*item.values} - UNTOLD_VALUES[name] - lacking
+    return frozenset(tellable)

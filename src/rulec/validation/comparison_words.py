@@ -169,19 +169,19 @@ class _Reader:
         return _TOKEN.match(self._text, self._at)
 
     def _next(self) -> tuple[str, str, str, str]:
-        found = self._peek()
-        if found is None:
+        match = self._peek()
+        if match is None:
             raise UnprovableError(self._unread())
-        self._at = found.end()
-        number, unit, name, sign = (part or "" for part in found.groups())
+        self._at = match.end()
+        number, unit, name, sign = (part or "" for part in match.groups())
         return number, unit, name, sign
 
     def _sign(self, *signs: str) -> str:
-        found = self._peek()
-        if found is None or found[4] not in signs:
+        match = self._peek()
+        if match is None or match[4] not in signs:
             return ""
-        self._at = found.end()
-        return str(found[4])
+        self._at = match.end()
+        return str(match[4])
 
     def _sum(self) -> _Sum:
         whole = self._product()

@@ -70,13 +70,13 @@ def prove_cut_table(machine: FormulaMachine, entry: Mapping[str, Any], letters: 
 
 def _pasts(machine: FormulaMachine) -> list[Any]:
     """All that past parts can remember, whatever was before the first state."""
-    found = dict.fromkeys([machine.progression.start.memory])
-    for memory in (waiting := list(found)):
+    memories = dict.fromkeys([machine.progression.start.memory])
+    for memory in (waiting := list(memories)):
         for following in machine.progression.memories(memory):
-            if following not in found:
-                found[following] = None
+            if following not in memories:
+                memories[following] = None
                 waiting.append(following)
-        require(len(found) <= MOST_STATES, "its formula has too many pasts for this checker")
+        require(len(memories) <= MOST_STATES, "its formula has too many pasts for this checker")
     return waiting
 
 

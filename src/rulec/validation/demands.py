@@ -97,11 +97,11 @@ class Demands:
             self.algebra.count(1)
         return known
 
-    def _implies(self, one: int, other: int) -> bool:
+    def _implies(self, demand: int, other: int) -> bool:
         """Tell whether a demand implies another, as far as their ranges show."""
-        if one == other:
+        if demand == other:
             return True
-        first, second = self.parts[one], self.parts[other]
+        first, second = self.parts[demand], self.parts[other]
         if not (isinstance(first, Future) and isinstance(second, Future)):
             return False
         same = (first.dual, first.left, first.right) == (second.dual, second.left, second.right)
@@ -231,8 +231,8 @@ class Demands:
         raise UnprovableError(f"its tree has an operator that is none: {operator!a}")
 
 
-def _at_most(one: int | None, other: int | None) -> bool:
-    return other is None or (one is not None and one <= other)
+def _at_most(first: int | None, second: int | None) -> bool:
+    return second is None or (first is not None and first <= second)
 
 
 def _limits(operator: str, bound: Any, step: Fraction | None) -> tuple[int, int | None]:

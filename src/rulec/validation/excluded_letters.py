@@ -100,7 +100,7 @@ def _linked(instances: Sequence[Any]) -> list[list[Any]]:
 
 
 def _of_group(
-    letters: Letters, group: Sequence[Any], told: Sequence[Any], vocabulary: Mapping[str, Any]
+    letters: Letters, group: Sequence[Any], told_atoms: Sequence[Any], vocabulary: Mapping[str, Any]
 ) -> int:
     """The letters that go with some values of all that a group of facts speaks of."""
     atoms: dict[Any, list[Any]] = {}
@@ -118,17 +118,17 @@ def _of_group(
         prod(map(len, domains)) <= MOST_CASES,
         "its facts have more cases than this checker goes through",
     )
-    alike = {read.about: _alike(letters, read, told) for read in reads.values()}
-    found: set[tuple[int, ...]] = set()
+    alike = {read.about: _alike(letters, read, told_atoms) for read in reads.values()}
+    possible_sides: set[tuple[int, ...]] = set()
     for case in product(*domains):
         values = dict(zip(atoms, case, strict=True))
         sides = tuple(
             [alike[about][letters.digit(read, values[about])] for about, read in reads.items()]
         )
-        if sides not in found and all(_holds(instance, values) for instance in group):
-            found.add(sides)
+        if sides not in possible_sides and all(_holds(instance, values) for instance in group):
+            possible_sides.add(sides)
     possible = 0
-    for sides in found:
+    for sides in possible_sides:
         here = letters.everything
         for read, side in zip(reads.values(), sides, strict=True):
             digits = [digit for digit, own in enumerate(alike[read.about]) if own == side]
@@ -137,9 +137,9 @@ def _of_group(
     return possible
 
 
-def _alike(letters: Letters, read: DigitRead, told: Sequence[Any]) -> list[int]:
+def _alike(letters: Letters, read: DigitRead, atoms: Sequence[Any]) -> list[int]:
     """For each digit of a read the first one that the formula does not tell from it."""
-    own = [letters.of(atom) for atom in told if subject(atom) == read.about]
+    own = [letters.of(atom) for atom in atoms if subject(atom) == read.about]
     truths = [
         tuple([true >> digit * read.stride & 1 for true in own]) for digit in range(read.size)
     ]
@@ -154,7 +154,7 @@ def _values(atoms: Sequence[Any], read: Any, vocabulary: Mapping[str, Any]) -> l
     limits = {exact(atom["limit"]) for atom in atoms}
     limits |= {exact(item["limit"]) for item in (read["thresholds"] if read else ())}
     ordered = sorted(limits)
-    between = [(one + two) / 2 for one, two in pairwise(ordered)]
+    between = [(first + second) / 2 for first, second in pairwise(ordered)]
     return [ordered[0] - 1, *ordered, *between, ordered[-1] + 1]
 
 

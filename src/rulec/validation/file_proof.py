@@ -94,8 +94,8 @@ def proof_of(rule: Any, book: Mapping[str, Any]) -> RuleProof:
     except RecursionError:
         return RuleProof(name, step, "its formula is nested too deep for this checker")
     except (KeyError, TypeError, ValueError, AttributeError, IndexError) as problem:
-        what = type(problem).__name__.removesuffix("Error").lower()
-        return RuleProof(name, step, f"its entry is not as the format has it ({what} {problem})")
+        kind = type(problem).__name__.removesuffix("Error").lower()
+        return RuleProof(name, step, f"its entry is not as the format has it ({kind} {problem})")
     return RuleProof(name, step, "", agreed=bool(rule.get("certificate")))
 
 

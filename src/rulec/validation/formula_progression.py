@@ -154,7 +154,7 @@ class _Step:
         if past not in self._occasions:
             algebra, part = self._algebra, self._demands.past[past]
             left, right = self._value(part.left), self._value(part.right)
-            found: dict[Occasions, int] = {(): self._full}
+            remembered: dict[Occasions, int] = {(): self._full}
             news = [(0, right)]
             for age, function in self._memory[past]:
                 older = age + 1 if part.high is not None else min(age + 1, part.low)
@@ -162,9 +162,9 @@ class _Step:
                     still = algebra.combined(left, self.after(function), algebra.both)
                     news.append((older, still))
             for age, values in news:
-                found = algebra.combined(found, values, partial(_with_occasion, age))
+                remembered = algebra.combined(remembered, values, partial(_with_occasion, age))
             kept: dict[Occasions, int] = {}
-            for occasions, letters in found.items():
+            for occasions, letters in remembered.items():
                 normal = self._that_count(occasions, part.low, part.high)
                 kept[normal] = kept.get(normal, 0) | letters
             self._occasions[past] = kept
@@ -187,12 +187,12 @@ class _Step:
 
     def remembered(self) -> dict[tuple[Occasions, ...], int]:
         """What all past parts remember after this instant, by letters."""
-        found: dict[tuple[Occasions, ...], int] = {(): self._full}
+        by_memory: dict[tuple[Occasions, ...], int] = {(): self._full}
         for past in range(len(self._demands.past)):
-            found = self._algebra.combined(
-                found, self._occasions_of(past), lambda known, own: (*known, own)
+            by_memory = self._algebra.combined(
+                by_memory, self._occasions_of(past), lambda known, own: (*known, own)
             )
-        return found
+        return by_memory
 
 
 class _Repetition:
@@ -209,13 +209,13 @@ class _Repetition:
 
     def first(self, function: Function) -> int:
         """The letters for which a function of demands on the present instant is true."""
-        found = 0
+        true = 0
         for term in function:
             letters = self._full
             for literal in term:
                 letters &= self._value(literal)[0]
-            found |= letters
-        return found
+            true |= letters
+        return true
 
     def _value(self, number: int) -> list[int]:
         if number not in self._values:
@@ -232,7 +232,7 @@ class _Repetition:
                 return [letters]
             case Joined(conjoined, left, right):
                 pairs = _aligned(self._value(left), self._value(right), 0)
-                return [one & two if conjoined else one | two for one, two in pairs]
+                return [first & second if conjoined else first | second for first, second in pairs]
             case Future(True):
                 until = self._value(self._demands.negated(number))
                 return [self._full & ~letters for letters in until]
@@ -286,15 +286,15 @@ class _Repetition:
                 later = age + 1 if part.high is not None else min(age + 1, part.low)
                 if letters & left and (part.high is None or later <= part.high):
                     older[later] = older.get(later, 0) | letters & left
-            found = 0
+            holds_for = 0
             for age, letters in older.items():
                 if age >= part.low:
                     # Of occasions in reach the youngest stays longest.
-                    older[age] = letters & ~found
-                    found |= letters
+                    older[age] = letters & ~holds_for
+                    holds_for |= letters
             before, occasions = occasions, {age: each for age, each in older.items() if each}
             self._demands.algebra.count(len(older))
-            values.append(found)
+            values.append(holds_for)
             if at >= steady and occasions == before:
                 break
         return values

@@ -56,15 +56,13 @@ class FunctionAlgebra:
             terms: Iterable[frozenset[int]] = first | second
             if conjoined:
                 self.count(len(first) * len(second))
-                terms = {self._reduced(one | other) for one in first for other in second}
+                terms = {self._reduced(left | right) for left in first for right in second}
             self._known[key] = self._primes(terms)
         return self._known[key]
 
     def _reduced(self, term: frozenset[int]) -> frozenset[int]:
         """A conjunction without what follows from the rest of it."""
-        return frozenset(
-            [one for one in term if not any(two != one and self._implies(two, one) for two in term)]
-        )
+        return frozenset([x for x in term if not any(y != x and self._implies(y, x) for y in term)])
 
     def _primes(self, terms: Iterable[frozenset[int]]) -> Function:
         ordered = sorted(terms, key=lambda term: (len(term), sorted(term)))
@@ -79,7 +77,7 @@ class FunctionAlgebra:
         return frozenset(kept)
 
     def _follows(self, weaker: frozenset[int], stronger: frozenset[int]) -> bool:
-        return all(any(self._implies(two, one) for two in stronger) for one in weaker)
+        return all(any(self._implies(y, x) for y in stronger) for x in weaker)
 
     def combined(
         self,

@@ -55,12 +55,12 @@ def read_hoa(text: str, letters_of: Callable[[str], int], everything: int) -> Ho
 def _tokens(text: str) -> list[str]:
     tokens, at = [], 0
     while at < len(text):
-        found = _TOKEN.match(text, at)
-        require(found is not None, _NEITHER)
-        assert found is not None
-        if found["token"]:
-            tokens.append(found["token"])
-        at = found.end()
+        match = _TOKEN.match(text, at)
+        require(match is not None, _NEITHER)
+        assert match is not None
+        if match["token"]:
+            tokens.append(match["token"])
+        at = match.end()
     return tokens
 
 
@@ -125,34 +125,34 @@ class _Reader:
         return propositions[int(word)]
 
     def _or(self, atom: Callable[[], int]) -> int:
-        found = self._and(atom)
+        letters = self._and(atom)
         while self._tokens and self._here() == "|":
             self._next()
-            found |= self._and(atom)
-        return found
+            letters |= self._and(atom)
+        return letters
 
     def _and(self, atom: Callable[[], int]) -> int:
-        found = self._inner(atom)
+        letters = self._inner(atom)
         while self._tokens and self._here() == "&":
             self._next()
-            found &= self._inner(atom)
-        return found
+            letters &= self._inner(atom)
+        return letters
 
     def _inner(self, atom: Callable[[], int]) -> int:
         if self._here() != "(":
             return atom()
         self._take("(")
-        found = self._or(atom)
+        letters = self._or(atom)
         self._take(")")
-        return found
+        return letters
 
     def _marks(self) -> frozenset[int]:
-        found: set[int] = set()
+        marks: set[int] = set()
         if self._tokens and self._here() == "{":
             self._next()
             while (word := self._next()) != "}":
-                found.add(int(word))
-        return frozenset(found)
+                marks.add(int(word))
+        return frozenset(marks)
 
     def _here(self) -> str:
         return self._tokens[-1]

@@ -166,7 +166,7 @@ def _intervals(thresholds: Sequence[Any]) -> tuple[str, ...]:
     places = [(exact(item["limit"]), item["inclusive"]) for item in thresholds]
     known = all(type(inclusive) is bool for _, inclusive in places)
     order = [(limit, not inclusive) for limit, inclusive in places]
-    ascending = all(one < two for one, two in itertools.pairwise(order))
+    ascending = all(first < second for first, second in itertools.pairwise(order))
     require(known and ascending, "the thresholds of a number do not ascend")
     below = ["", *(f"{'at least' if own else 'more than'} {limit}" for limit, own in places)]
     above = [*(f"{'less than' if own else 'at most'} {limit}" for limit, own in places), ""]
@@ -220,7 +220,7 @@ def _samples(
         near = [each for each in near if each >= 0]
     else:
         ordered = sorted(set(near))
-        near += [(one + two) / 2 for one, two in itertools.pairwise(ordered)]
+        near += [(first + second) / 2 for first, second in itertools.pairwise(ordered)]
         near += [ordered[0] - 1, ordered[-1] + 1]
     return [
         each

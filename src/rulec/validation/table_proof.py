@@ -198,10 +198,10 @@ def led_to(good: set[Any], following: Mapping[Any, set[Any]]) -> set[Any]:
     for node, targets in following.items():
         for target in targets:
             before.setdefault(target, []).append(node)
-    found, waiting = set(good), list(good)
+    reaching, waiting = set(good), list(good)
     for node in waiting:
         for row in before.get(node, ()):
-            if row not in found:
-                found.add(row)
+            if row not in reaching:
+                reaching.add(row)
                 waiting.append(row)
-    return found
+    return reaching

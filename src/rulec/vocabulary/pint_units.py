@@ -50,16 +50,16 @@ def pint_unit(name: str) -> Unit | Refusal | None:
     if prefix and base_name in REFUSED:
         return Refusal(name, REFUSED[base_name].why, REFUSED[base_name].instead)
     try:
-        nothing, one, two = (
+        zero_units, single, double = (
             registry.Quantity(Fraction(n), name).to_root_units() for n in (0, 1, 2)
         )
     except Exception:
         # Each kind of scale fails in its own way: logarithms, for one, do not take fractions.
         return _no_multiple(name)
-    factor: Any = one.magnitude
-    if not isinstance(factor, Fraction) or nothing.magnitude or two.magnitude != 2 * factor:
+    factor: Any = single.magnitude
+    if not isinstance(factor, Fraction) or zero_units.magnitude or double.magnitude != 2 * factor:
         return _no_multiple(name)
-    return _exact(name, factor, dict(one.unit_items()))
+    return _exact(name, factor, dict(single.unit_items()))
 
 
 @lru_cache(maxsize=1)

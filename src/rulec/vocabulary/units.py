@@ -64,19 +64,19 @@ def _read(text: str) -> Unit | Refusal | None:
         match = _FACTOR.fullmatch(part)
         if match is None:
             return None
-        one = _named(match[1])
-        if one is None:
+        unit = _named(match[1])
+        if unit is None:
             return None
         power = int(match[2] or (match[3] or "1").translate(_FROM_RAISED))
         if abs(power) > _HIGHEST_POWER:
             why = f"powers of units go from -{_HIGHEST_POWER} to {_HIGHEST_POWER}"
-            one = Refusal(part, why, "write a smaller power")
-        if isinstance(one, Refusal):
-            refused = refused or one
+            unit = Refusal(part, why, "write a smaller power")
+        if isinstance(unit, Refusal):
+            refused = refused or unit
             continue
         signed = -power if place else power
-        dimension *= one.dimension**signed
-        factor *= one.factor**signed
+        dimension *= unit.dimension**signed
+        factor *= unit.factor**signed
     return refused or Unit(text, dimension, factor)
 
 

@@ -107,9 +107,9 @@ def _shortest(
 
     Mostly the plainest letters of all agree on that; only else it is searched for each value.
     """
-    found = _shortest_with(None, monitor, witnesses, accepted=accepted)
-    if found is None or len(set(map(witnesses.constants, found))) == 1:
-        return found
+    plainest = _shortest_with(None, monitor, witnesses, accepted=accepted)
+    if plainest is None or len(set(map(witnesses.constants, plainest))) == 1:
+        return plainest
     words = [
         _shortest_with(constants, monitor, witnesses, accepted=accepted)
         for constants in witnesses.all_constants()

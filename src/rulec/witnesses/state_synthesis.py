@@ -128,14 +128,14 @@ class NumberSolver:
     def solve(self, digits: Sequence[int]) -> dict[Term, Fraction] | None:
         """Numbers with these digits, or None."""
         for is_natural in (True, False):
-            found: dict[Term, Fraction] = {}
+            numbers: dict[Term, Fraction] = {}
             for number in range(len(self._parts)):
                 solution = self._part(number, digits, is_natural=is_natural)
                 if solution is None:
                     break
-                found |= solution
+                numbers |= solution
             else:
-                return {term: found[term] for term in reversed(self._terms)}
+                return {term: numbers[term] for term in reversed(self._terms)}
         return None
 
     def _part(

@@ -107,11 +107,11 @@ def references_in(cite: str) -> tuple[tuple[Reference, ...], tuple[str, ...]]:
     return tuple(references), tuple(unread)
 
 
-def _further(text: str, found: list[Reference]) -> Reference | None:
+def _further(text: str, references: list[Reference]) -> Reference | None:
     """Another part of the article before: `(d)`, or a number behind `s. 3`."""
-    if not found:
+    if not references:
         return None
-    before = found[-1]
+    before = references[-1]
     parts, end = _parts(text, 0)
     if parts and end == len(text):
         kinds = [kind for kind, _ in before.parts]

@@ -82,7 +82,7 @@ _SHOWN = 60
 def _difference(before: str, after: str) -> str:
     """The beginning of what is different, from a word's beginning on."""
     pairs = zip(before, after, strict=False)
-    same = next((at for at, (one, other) in enumerate(pairs) if one != other), None)
+    same = next((at for at, (old, new) in enumerate(pairs) if old != new), None)
     start = min(len(before), len(after)) if same is None else same
     start = before.rfind(" ", 0, start) + 1
     was, now = (text[start : start + _SHOWN] for text in (before, after))

@@ -131,10 +131,10 @@ _Head: TypeAlias = "tuple[int, int, tuple[str, str] | None]"
 
 
 def _plain_heads(text: str, shape: re.Pattern[str]) -> list[_Head]:
-    found = ((match.start(), match.end(), match["head"]) for match in shape.finditer(text))
+    matches = ((match.start(), match.end(), match["head"]) for match in shape.finditer(text))
     return [
         (start, end, named)
-        for start, end, head in found
+        for start, end, head in matches
         if (named := _named(head)) and (start == 0 or text.endswith("\n\n", 0, start))
     ]
 

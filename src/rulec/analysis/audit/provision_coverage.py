@@ -95,8 +95,8 @@ def _cited(rule: Rule, listed: Listed) -> Iterator[str]:
 
 def _year(number: str) -> str:
     """The year behind an article's number, as in `reg. 6 (1989)`; empty if there is none."""
-    found = re.search(r"\((?:19|20)\d\d\)$", number)
-    return found[0] if found else ""
+    match = re.search(r"\((?:19|20)\d\d\)$", number)
+    return match[0] if match else ""
 
 
 def _covering(cited: Reference, listed: Listed) -> list[str]:

@@ -171,9 +171,9 @@ def _classified(
         own = known[side.law] = len(representatives)
         representatives.append(side)
         relations[own, own] = "equal"
-        for number, found in enumerate(compared):
-            relations[own, number] = found
-            relations[number, own] = CONVERSE[found]
+        for number, relation in enumerate(compared):
+            relations[own, number] = relation
+            relations[number, own] = CONVERSE[relation]
     return {book: known[side.law] for book, side in sides.items()}, relations
 
 

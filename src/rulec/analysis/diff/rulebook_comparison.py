@@ -143,13 +143,13 @@ class RulebookDiff(Rows):
             {
                 "rule": rule.name,
                 "relation": relation,
-                "strength 1": one.strength if one else "",
-                "strength 2": two.strength if two else "",
-                "cite 1": cited_law(one.cite, one.inherited_from) if one else "",
-                "cite 2": cited_law(two.cite, two.inherited_from) if two else "",
+                "strength 1": left.strength if left else "",
+                "strength 2": right.strength if right else "",
+                "cite 1": cited_law(left.cite, left.inherited_from) if left else "",
+                "cite 2": cited_law(right.cite, right.inherited_from) if right else "",
             }
-            for relation, one, two in (*both, *first, *second)
-            if (rule := one or two)
+            for relation, left, right in (*both, *first, *second)
+            if (rule := left or right)
         ]
 
 

@@ -56,8 +56,8 @@ def conflicts(
         try:
             clash = answers.conflict([first, second])
         except UndecidedError as problem:
-            what = f"it can always be kept together with `{first}`"
-            yield undecided_diagnostic(rules[second], what, problem)
+            question = f"it can always be kept together with `{first}`"
+            yield undecided_diagnostic(rules[second], question, problem)
             continue
         if clash is not None:
             conflicting.append(frozenset((first, second)))

@@ -112,11 +112,11 @@ NOT_DECIDED = Code(
 )
 
 
-def undecided_diagnostic(rule: Rule, what: str, problem: UndecidedError) -> Diagnostic:
+def undecided_diagnostic(rule: Rule, question: str, problem: UndecidedError) -> Diagnostic:
     """The warning (R0807) that a question about a rule was left open."""
     return NOT_DECIDED.at(
         rule.span,
-        f"not decided of rule `{rule.name}` whether {what}: {problem}",
+        f"not decided of rule `{rule.name}` whether {question}: {problem}",
         help="say less in one rule; rules beside each other are looked at one by one",
         severity="warning",
     )

@@ -78,8 +78,8 @@ class RuleAnswers:
     def ask_ahead(self, questions: Iterable[Question], spread: Spread) -> None:
         """Have questions answered before they are asked."""
         each = list(dict.fromkeys(questions))
-        found = spread(partial(answers_to, self._rules), each)
-        for question, answer in found:
+        answers = spread(partial(answers_to, self._rules), each)
+        for question, answer in answers:
             self._known[question] = answer
             self._tell(len(self._known))
 
@@ -93,13 +93,13 @@ class RuleAnswers:
 
     def implied_by(self, name: str, others: Sequence[str]) -> tuple[str, ...]:
         """One or few of the others that forbid all that the rule forbids, if there are any."""
-        found: tuple[str, ...] = self._to(Question("implied", (name, *others)))
-        return found
+        names: tuple[str, ...] = self._to(Question("implied", (name, *others)))
+        return names
 
     def conflict(self, names: Sequence[str]) -> Conflict | None:
         """A shortest trace after which not all of these can be kept."""
-        found: Conflict | None = self._to(Question("conflict", tuple(names)))
-        return found
+        conflict: Conflict | None = self._to(Question("conflict", tuple(names)))
+        return conflict
 
     def compared(self, name: str, base: int) -> RuleComparison:
         """The rule compared with that of a base, given by its number."""

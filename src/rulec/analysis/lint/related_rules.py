@@ -36,8 +36,8 @@ class RelatedRules:
 
     def of(self, name: str) -> list[str]:
         """The others that a rule is related to, in order."""
-        found = {other for topic in self._topics[name] for other in self._about[topic]}
-        return sorted(found - {name}, key=self._place.__getitem__)
+        related = {other for topic in self._topics[name] for other in self._about[topic]}
+        return sorted(related - {name}, key=self._place.__getitem__)
 
     def pairs(self) -> Iterator[tuple[str, str]]:
         """The pairs of related rules, in order."""

@@ -38,13 +38,13 @@ def check_digest(data: bytes, file: str) -> None:
     """Refuse (R0410) a file with a digest that is not as it was written."""
     end = len(_BEFORE) + _DIGITS
     said, rest = data[len(_BEFORE) : end], memoryview(data)[end + len(_AFTER) :]
-    found = _digest(rest)
-    if said == found and data[end : end + len(_AFTER)] == _AFTER:
+    digest = _digest(rest)
+    if said == digest and data[end : end + len(_AFTER)] == _AFTER:
         return
     raise changed(
         file,
         f"this compiled rulebook is not as it was written: the SHA-256 of all that follows its "
-        f"second line is {found[:12].decode()}…, and that line says another",
+        f"second line is {digest[:12].decode()}…, and that line says another",
     )
 
 

@@ -31,10 +31,10 @@ def compiled_files(references: Sequence[str]) -> list[str]:
         places = sorted(glob(reference, recursive=True)) if is_pattern else [reference]  # noqa: PTH207
         for place in places:
             if os.path.isdir(place):  # noqa: PTH112 - Path raises on a null character
-                found = [str(path) for path in _below(place)]
-                if not found and not is_pattern:
+                files = [str(path) for path in _below(place)]
+                if not files and not is_pattern:
                     raise _nothing(reference, "there is no compiled rulebook in this folder")
-                paths |= dict.fromkeys(found)
+                paths |= dict.fromkeys(files)
             elif not is_pattern or _is_compiled(Path(place)):
                 paths[place] = None
         if is_pattern and not places:

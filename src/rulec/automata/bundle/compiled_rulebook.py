@@ -249,7 +249,7 @@ def alike(kind: type[model.Rulebook | model.Rule], source: object) -> dict[str, 
 
 
 def check_step(
-    rule: CompiledRule, step_s: Fraction, what: str = "this", place: SourceLocation | None = None
+    rule: CompiledRule, step_s: Fraction, subject: str = "this", place: SourceLocation | None = None
 ) -> None:
     """Refuse (R0507) another step than a rule's; ``what`` has it."""
     if rule.step_s is None or rule.step_s == step_s:
@@ -258,6 +258,6 @@ def check_step(
     raise OTHER_STEP.error(
         place,
         f"rule `{rule.name}` was compiled for steps of {number_in_words(rule.step_s)} s; "
-        f"{what} has steps of {step} s",
+        f"{subject} has steps of {step} s",
         help=f"compile its source with `--step {step}`",
     )

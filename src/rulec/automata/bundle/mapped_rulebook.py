@@ -105,10 +105,10 @@ def compilation_in(tables: MappedTables, given: Sequence[object] = ()) -> Compil
         end = place + numbers[place]
         made.append(_MAKE[numbers[place + 1]](*map(part, numbers[place + 2 : end])))
         place = end
-    found = made[-1]
-    if not isinstance(found, Compilation):
+    compilation = made[-1]
+    if not isinstance(compilation, Compilation):
         raise ValueError("it says nothing of a rulebook")
-    return found
+    return compilation
 
 
 def _value(value: Any, tables: MappedTables) -> object:

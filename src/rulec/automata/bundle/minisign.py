@@ -88,8 +88,8 @@ def has_signed(key: PublicKey, signature: DetachedSignature, data: bytes) -> boo
         (signature.of_comment, signature.signature + signature.comment.encode()),
     ]
     try:
-        for one, message in signed:
-            verifier.verify(one, message)
+        for signed_bytes, message in signed:
+            verifier.verify(signed_bytes, message)
     except InvalidSignature:
         return False
     return key.number == signature.number

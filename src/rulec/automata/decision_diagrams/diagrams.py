@@ -154,11 +154,11 @@ class Diagrams:
 
         ``known`` keeps what has been found, and has that of ``TRUE``: all letters.
         """
-        found = known.get(abs(function))
-        if found is None:
+        bits = known.get(abs(function))
+        if bits is None:
             name, low, high = self.parts(abs(function))
             true, everything = sets[name], known[TRUE]
-            found = known[abs(function)] = (true & self.bits(high, sets, known)) | (
+            bits = known[abs(function)] = (true & self.bits(high, sets, known)) | (
                 everything & ~true & self.bits(low, sets, known)
             )
-        return found if function > 0 else known[TRUE] & ~found
+        return bits if function > 0 else known[TRUE] & ~bits

@@ -92,7 +92,7 @@ class FormulaAutomata:
     def _always(self, operand: ltl.Formula) -> SymbolicAutomaton:
         for operator, polarity in ((_AND, True), (_OR, False)):
             match _without_negations(operand, polarity):
-                case ltl.Binary(found, left, right) if found is operator:
+                case ltl.Binary(connective, left, right) if connective is operator:
                     sides = [part if polarity else ltl.Unary(_NOT, part) for part in (left, right)]
                     first, second = [self.of(ltl.Unary(_ALWAYS, side)) for side in sides]
                     return joined(first, second, and_, self._diagrams)
@@ -106,7 +106,7 @@ class FormulaAutomata:
             # What has been asked up to the last breakpoint, and what since then.
             earlier = untils.split(untils.progressed(state[0]))
             since = untils.split(diagrams.both(untils.progressed(state[1]), function))
-            found: dict[tuple[tuple[int, int], int], int] = {}
+            edges: dict[tuple[tuple[int, int], int], int] = {}
             for first, letters in earlier.items():
                 for second, more in since.items():
                     met = diagrams.both(letters, more)
@@ -118,8 +118,8 @@ class FormulaAutomata:
                         key = (second, TRUE), 1
                     else:
                         key = (first, second), 0
-                    found[key] = diagrams.either(found.get(key, FALSE), met)
-            return [(target, marks, letters) for (target, marks), letters in found.items()]
+                    edges[key] = diagrams.either(edges.get(key, FALSE), met)
+            return [(target, marks, letters) for (target, marks), letters in edges.items()]
 
         _, rows = explored((TRUE, TRUE), step)
         return SymbolicAutomaton(tuple(rows), is_weak=False)

@@ -7,16 +7,17 @@ from collections.abc import Iterator, Sequence
 from rulec.automata.decision_diagrams.rule_automaton import RuleAutomaton
 
 
-def in_hoa(found: RuleAutomaton, name: str, remarks: Sequence[str]) -> str:
+def in_hoa(automaton: RuleAutomaton, name: str, remarks: Sequence[str]) -> str:
     """The automaton's text; ``remarks`` become comments.
 
     A finite word is one after which a further proposition is false.
     """
-    automaton = found.automaton
-    propositions = sorted([*found.names.values(), *([] if found.alive is None else [found.alive])])
-    rows = list(_rows(found, {text: str(place) for place, text in enumerate(propositions)}))
+    states = automaton.automaton
+    alive = [] if automaton.alive is None else [automaton.alive]
+    propositions = sorted([*automaton.names.values(), *alive])
+    rows = list(_rows(automaton, {text: str(place) for place, text in enumerate(propositions)}))
     acceptance = _acceptance(
-        automaton.n_marks, [bool(automaton.accepts(n)) for n in range(1 << automaton.n_marks)]
+        states.n_marks, [bool(states.accepts(n)) for n in range(1 << states.n_marks)]
     )
     is_buchi = acceptance == "Inf(0)"
     head = [
@@ -27,7 +28,7 @@ def in_hoa(found: RuleAutomaton, name: str, remarks: Sequence[str]) -> str:
         "Start: 0",
         " ".join(["AP:", str(len(propositions)), *map(_quoted, propositions)]),
         *(["acc-name: Buchi"] if is_buchi else []),
-        f"Acceptance: {automaton.n_marks} {acceptance}",
+        f"Acceptance: {states.n_marks} {acceptance}",
         "properties: trans-labels explicit-labels trans-acc deterministic complete",
         "--BODY--",
     ]
@@ -35,9 +36,9 @@ def in_hoa(found: RuleAutomaton, name: str, remarks: Sequence[str]) -> str:
     return "\n".join([*head, *body, "--END--"]) + "\n"
 
 
-def _rows(found: RuleAutomaton, numbers: dict[str, str]) -> Iterator[list[str]]:
+def _rows(rule_automaton: RuleAutomaton, numbers: dict[str, str]) -> Iterator[list[str]]:
     """The lines of each state's edges."""
-    automaton, alive = found.automaton, found.alive
+    automaton, alive = rule_automaton.automaton, rule_automaton.alive
     size = len(automaton.edges)
     lost, ended = size, size + 1
     for state, row in enumerate(automaton.edges):
@@ -45,7 +46,7 @@ def _rows(found: RuleAutomaton, numbers: dict[str, str]) -> Iterator[list[str]]:
         for (target, marks), letters in row.items():
             cubes = [
                 cube if alive is None else {**cube, alive: True}
-                for cube in found.diagrams.cubes(letters)
+                for cube in rule_automaton.diagrams.cubes(letters)
             ]
             lines.append(_line(cubes, numbers, target, marks))
         if alive is not None and automaton.ends_well is not None:

@@ -86,12 +86,12 @@ class PendingUntils:
                 known[function] = {self._reduced(function): TRUE}
             else:
                 letter = self._diagrams.variable(name)
-                found: dict[int, int] = {}
+                targets: dict[int, int] = {}
                 for side, part in ((letter, high), (-letter, low)):
                     for target, letters in self._split(part, known).items():
                         more = self._diagrams.both(side, letters)
-                        found[target] = self._diagrams.either(found.get(target, FALSE), more)
-                known[function] = found
+                        targets[target] = self._diagrams.either(targets.get(target, FALSE), more)
+                known[function] = targets
         return known[function]
 
     def ends_well(self, state: int) -> bool:
@@ -106,7 +106,7 @@ class PendingUntils:
         1 if one is demanded, -1 if one is forbidden. A function in which none is demanded is one of
         safety, one in which none is forbidden is one of co-safety.
         """
-        found: set[int] = set()
+        signs: set[int] = set()
         waiting = [(function, 1)]
         seen = set(waiting)
         for each, sign in waiting:
@@ -116,11 +116,11 @@ class PendingUntils:
                 if self._diagrams.either(-yes, no) == TRUE:
                     own = {-sign}
                 if self._untils[name].span.high is None:
-                    found |= own
-                more = {(self._unfolding(name), one) for one in own} - seen
+                    signs |= own
+                more = {(self._unfolding(name), own_sign) for own_sign in own} - seen
                 seen |= more
                 waiting += sorted(more)
-        return frozenset(found)
+        return frozenset(signs)
 
     def _until(self, left: int | None, right: int, span: Range) -> int:
         diagrams = self._diagrams

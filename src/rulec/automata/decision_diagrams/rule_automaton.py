@@ -104,26 +104,26 @@ def _always(letters: int, *, ends: bool) -> SymbolicAutomaton:
 
 
 def over_letters(
-    found: RuleAutomaton, reads: Sequence[Read | NumberRead]
+    source: RuleAutomaton, reads: Sequence[Read | NumberRead]
 ) -> tuple[DeterministicAutomaton, int]:
     """The automaton with sets of the letters of ``reads``, as bits, and the possible ones."""
     sets = {
-        found.names[atom]: letters for atom, letters in letters_with(reads, found.names).items()
+        source.names[atom]: letters for atom, letters in letters_with(reads, source.names).items()
     }
     everything = (1 << count_letters(reads)) - 1
     bits: dict[int, int] = {TRUE: everything}
-    automaton = found.automaton
+    automaton = source.automaton
     rows = [
         tuple(
             [
                 TableEdge(letters, target, marks)
                 for (target, marks), function in row.items()
-                if (letters := found.diagrams.bits(function, sets, bits))
+                if (letters := source.diagrams.bits(function, sets, bits))
             ]
         )
         for row in automaton.edges
     ]
-    possible = found.diagrams.bits(found.possible, sets, bits)
+    possible = source.diagrams.bits(source.possible, sets, bits)
     if automaton.ends_well is None:
         return DeterministicAutomaton(tuple(rows), 0, automaton.accepts), possible
     # Once a word has ended it stays in one of two more states.

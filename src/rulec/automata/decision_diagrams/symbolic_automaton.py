@@ -89,7 +89,7 @@ def joined(
     ends = left.ends_well is not None
 
     def step(state: tuple[int, int]) -> Iterable[tuple[tuple[int, int], int, int]]:
-        found: dict[tuple[tuple[int, int], int], int] = {}
+        edges: dict[tuple[tuple[int, int], int], int] = {}
         for (first, own), letters in left.edges[state[0]].items():
             for (second, others), more in right.edges[state[1]].items():
                 met = diagrams.both(letters, more)
@@ -98,8 +98,8 @@ def joined(
                     if are_weak:
                         marks = 0 if ends else int(connective(bool(own), bool(others)))
                     key = (first, second), marks
-                    found[key] = diagrams.either(found.get(key, FALSE), met)
-        return [(target, marks, letters) for (target, marks), letters in found.items()]
+                    edges[key] = diagrams.either(edges.get(key, FALSE), met)
+        return [(target, marks, letters) for (target, marks), letters in edges.items()]
 
     states, rows = explored((0, 0), step)
     if left.ends_well is not None and right.ends_well is not None:
@@ -179,11 +179,11 @@ def _blocks(automaton: SymbolicAutomaton, diagrams: Diagrams) -> list[int]:
 
 
 def _regrouped(row: Edges, blocks: Sequence[int], diagrams: Diagrams) -> dict[tuple[int, int], int]:
-    found: dict[tuple[int, int], int] = {}
+    regrouped: dict[tuple[int, int], int] = {}
     for (target, marks), letters in row.items():
         key = blocks[target], marks
-        found[key] = diagrams.either(found[key], letters) if key in found else letters
-    return found
+        regrouped[key] = diagrams.either(regrouped[key], letters) if key in regrouped else letters
+    return regrouped
 
 
 def with_registers(
@@ -209,11 +209,11 @@ def with_registers(
     def moves(values: tuple[int, ...]) -> list[tuple[int, dict[str, bool], tuple[int, ...]]]:
         """Steps of the registers: letters, what the registers say, and their next states."""
         if values not in known:
-            found: list[tuple[int, dict[str, bool], tuple[int, ...]]] = [(TRUE, {}, ())]
+            steps: list[tuple[int, dict[str, bool], tuple[int, ...]]] = [(TRUE, {}, ())]
             for value, name, (register, left, right) in zip(values, names, operands, strict=True):
-                found = [
+                steps = [
                     (met, {**said, name: bool(after & 1)}, (*others, after))
-                    for letters, said, others in found
+                    for letters, said, others in steps
                     for after, more in _steps(
                         register,
                         value,
@@ -222,13 +222,13 @@ def with_registers(
                     ).items()
                     if (met := diagrams.both(letters, more)) != FALSE
                 ]
-            known[values] = found
+            known[values] = steps
         return known[values]
 
     def step(
         state: tuple[int, tuple[int, ...]],
     ) -> Iterable[tuple[tuple[int, tuple[int, ...]], int, int]]:
-        found: dict[tuple[tuple[int, tuple[int, ...]], int], int] = {}
+        edges: dict[tuple[tuple[int, tuple[int, ...]], int], int] = {}
         if never_left[state[0]]:
             return [(state, marks, TRUE) for _, marks in automaton.edges[state[0]]]
         for letters, said, after in moves(state[1]):
@@ -236,8 +236,8 @@ def with_registers(
                 met = diagrams.both(diagrams.given(own, said), letters)
                 if met != FALSE:
                     key = (target, nothing if never_left[target] else after), marks
-                    found[key] = diagrams.either(found.get(key, FALSE), met)
-        return [(target, marks, letters) for (target, marks), letters in found.items()]
+                    edges[key] = diagrams.either(edges.get(key, FALSE), met)
+        return [(target, marks, letters) for (target, marks), letters in edges.items()]
 
     states, rows = explored((0, nothing), step)
     ends = automaton.ends_well
@@ -253,11 +253,11 @@ def _steps(
     register: Register, value: int, operands: tuple[int, int], diagrams: Diagrams
 ) -> dict[int, int]:
     """The register's next states, each with the letters that lead there."""
-    found: dict[int, int] = {}
+    letters_to: dict[int, int] = {}
     for is_left in (True, False):
         for is_right in (True, False):
             after = register.after(value, is_left, is_right)
             left, right = operands
             letters = diagrams.both(left if is_left else -left, right if is_right else -right)
-            found[after] = diagrams.either(found.get(after, FALSE), letters)
-    return found
+            letters_to[after] = diagrams.either(letters_to.get(after, FALSE), letters)
+    return letters_to

@@ -74,7 +74,7 @@ def _contradiction(group: AxiomGroup, compiler: Compiler) -> tuple[AxiomInstance
     return needed.instances
 
 
-def _is_right(machine: MealyMonitor, job: Job, found: Translated) -> bool:
+def _is_right(machine: MealyMonitor, job: Job, translated: Translated) -> bool:
     """Tell whether a machine judges words as its job's formula does.
 
     It is proved, for all words. Where that takes too long, the compiler compares its automaton with
@@ -90,9 +90,9 @@ def _is_right(machine: MealyMonitor, job: Job, found: Translated) -> bool:
             return False
     else:
         return True
-    if found.compare is not None:
-        found.compare()
-    return found.is_checked or agrees(machine, job.formula, job.semantics)
+    if translated.compare is not None:
+        translated.compare()
+    return translated.is_checked or agrees(machine, job.formula, job.semantics)
 
 
 def _prove(machine: MealyMonitor, job: Job) -> None:

@@ -26,13 +26,13 @@ _FILES = (*_WRITTEN, ".c", ".h", ".hpp", ".rs", ".csv", ".props", ".smv")
 
 
 def _bounds(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dict[str, int]:
-    found: dict[str, int] = {}
+    bounds: dict[str, int] = {}
     for value in values:
         kind, number = value.partition("=")[::2]
-        if not number.isdecimal() or len(number) > 9 or kind in found:
+        if not number.isdecimal() or len(number) > 9 or kind in bounds:
             raise click.BadParameter(f"`{value}` is not once TYPE=N, such as `vehicle=16`")
-        found[kind] = int(number)
-    return found
+        bounds[kind] = int(number)
+    return bounds
 
 
 @click.command(cls=Verb)
@@ -99,8 +99,8 @@ def command(
         name = "--objects" if objects else "--prove"
         raise click.UsageError(f"{name} is about monitors in C and Rust: add `--emit c`")
     if emit != "automata" and len(steps_s) > 1:
-        what = "LTL" if emit == "ltl" else "a monitor in C or Rust"
-        raise click.UsageError(f"{what} is for one step: give --step once")
+        target = "LTL" if emit == "ltl" else "a monitor in C or Rust"
+        raise click.UsageError(f"{target} is for one step: give --step once")
     if not output:
         raise click.UsageError("--output names no folder. For this one, write `-o .`")
     refuse_standard_output(output)

@@ -65,6 +65,6 @@ def command(
     with output_stream(to) as (stream, name):
         write_envelopes(maneuvers.graph, cheapest, stream, name, cast("Format", to.form))
     legal = shown_count(maneuvers.satisfying + maneuvers.open)
-    what = "satisfying or open" if maneuvers.open else "satisfying"
-    print_written(f"{len(cheapest):,} of {legal} {what} maneuvers to {to.path}", to)
+    outcome = "satisfying or open" if maneuvers.open else "satisfying"
+    print_written(f"{len(cheapest):,} of {legal} {outcome} maneuvers to {to.path}", to)
     return ExitStatus.OK if cheapest else ExitStatus.VIOLATED

@@ -114,23 +114,23 @@ def command(
     tally = moment_rows.MomentTally()
     complete = not inputs.problems
 
-    def found() -> Iterator[DriveMoments]:
+    def drives() -> Iterator[DriveMoments]:
         nonlocal complete
-        for one in _found(query, inputs.paths, egos, options):
-            if isinstance(one, RulecError):
+        for drive in _moments(query, inputs.paths, egos, options):
+            if isinstance(drive, RulecError):
                 complete = False
-                complaints.add(one)
+                complaints.add(drive)
                 continue
             if sure:
-                kept = [moment for moment in one.moments if moment.holds == "surely"]
-                one = replace(one, moments=kept)
-            tally.add(one)
-            yield one
+                kept = [moment for moment in drive.moments if moment.holds == "surely"]
+                drive = replace(drive, moments=kept)
+            tally.add(drive)
+            yield drive
 
     if to.form in ("text", "json", "jsonl"):
         as_lines = moment_rows.lines if to.form == "text" else moment_rows.json_lines
         with answer_lines(to) as write:
-            for drive in found():
+            for drive in drives():
                 for line in as_lines(drive):
                     write(line)
             if to.form == "text":
@@ -138,7 +138,7 @@ def command(
     else:
         with output_stream(to) as (stream, name):
             writer = RowWriter(to.form, stream, name, moment_rows.COLUMNS)
-            for drive in found():
+            for drive in drives():
                 writer.add(moment_rows.rows(drive))
             writer.close()
     print_written(to.path, to)
@@ -146,7 +146,7 @@ def command(
     return ExitStatus.after(answered=complete, failed=False)
 
 
-def _found(
+def _moments(
     query: FormulaQuery, paths: tuple[str, ...], egos: tuple[str, ...], options: dict[str, Any]
 ) -> Iterator[DriveMoments | RulecError]:
     """The moments of all drives of all files, and why some could not be read."""

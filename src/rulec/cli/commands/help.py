@@ -26,12 +26,12 @@ def command(context: click.Context, words: tuple[str, ...]) -> None:
     here = context.find_root()
     for word in words:
         known = here.command.list_commands(here) if isinstance(here.command, click.Group) else []
-        found = None
+        subcommand = None
         if isinstance(here.command, click.Group):
-            found = here.command.get_command(here, word)
-        if found is None:
+            subcommand = here.command.get_command(here, word)
+        if subcommand is None:
             near = nearest_name(word, known)
             way_out = f"did you mean `{near}`?" if near else "`rulec help` lists them"
             raise click.UsageError(f"there is no command `{word}`; {way_out}")
-        here = click.Context(found, here, word)
+        here = click.Context(subcommand, here, word)
     click.echo(here.get_help())

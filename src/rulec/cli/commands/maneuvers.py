@@ -154,15 +154,15 @@ def _inputs(scenarios: Sequence[str]) -> InputFiles:
     from rulec.scenario import available_scenarios
 
     known = available_scenarios()
-    found = [
+    inputs_of_each = [
         InputFiles((name,)) if name in known else input_files([name])
         for name in dict.fromkeys(scenarios)
     ]
-    for searched in (folder for inputs in found for folder in inputs.searched):
+    for searched in (folder for inputs in inputs_of_each for folder in inputs.searched):
         print_remark(f"rulec: {searched.in_words}")
     return InputFiles(
-        tuple(dict.fromkeys(path for inputs in found for path in inputs.paths)),
-        problems=tuple(problem for inputs in found for problem in inputs.problems),
+        tuple(dict.fromkeys(path for inputs in inputs_of_each for path in inputs.paths)),
+        problems=tuple(problem for inputs in inputs_of_each for problem in inputs.problems),
     )
 
 

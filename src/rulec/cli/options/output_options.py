@@ -96,7 +96,7 @@ class RenamedOption(click.Option):
 
 
 def input_format_option(
-    names: Sequence[str], what: str, former: Sequence[str] = ()
+    names: Sequence[str], content: str, former: Sequence[str] = ()
 ) -> Callable[[Decorated], Decorated]:
     """``--input-format NAME``, which had these ``former`` names."""
     return click.option(
@@ -106,13 +106,13 @@ def input_format_option(
         former=former,
         metavar="NAME",
         type=click.Choice(names),
-        help=f"The format of {what}.",
+        help=f"The format of {content}.",
     )
 
 
 def output_options(
     endings: Endings,
-    what: str,
+    content: str,
     *,
     required: bool = False,
     multiple: bool = False,
@@ -127,7 +127,7 @@ def output_options(
 
     Args:
         endings: the formats.
-        what: what is written, for the help.
+        content: what is written, for the help.
         required: it goes to a file; standard output has to be asked for.
         multiple: it may go to several files.
         former: what ``--output-format`` was called.
@@ -146,7 +146,7 @@ def output_options(
             multiple=True,
             metavar="FILE",
             type=click.Path(dir_okay=folders, allow_dash=True),
-            help=f"Write {what} to FILE, whose ending says the format; `-` is standard output."
+            help=f"Write {content} to FILE, whose ending says the format; `-` is standard output."
             + (" Several go to a folder, `DIR/`." if folders else "")
             + (" May be given several times." if multiple else "")
             + ("" if required else "  [default: standard output]"),
@@ -157,7 +157,7 @@ def output_options(
             cls=RenamedOption,
             former=former,
             type=click.Choice(list(endings)),
-            help=f"The format of {what}.  [default: what FILE ends with; {default} on standard "
+            help=f"The format of {content}.  [default: what FILE ends with; {default} on standard "
             "output]",
         ),
     ]

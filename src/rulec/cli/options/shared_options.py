@@ -248,7 +248,7 @@ def is_from(context: click.Context, field: str, source: ParameterSource) -> bool
     return context.get_parameter_source(field) is source
 
 
-def jobs_option(what: str) -> Callable[[Decorated], Decorated]:
+def jobs_option(task: str) -> Callable[[Decorated], Decorated]:
     """``-j N``, from which Jobs are made."""
     return click.option(
         "-j",
@@ -256,7 +256,7 @@ def jobs_option(what: str) -> Callable[[Decorated], Decorated]:
         callback=_jobs,
         envvar="RULEC_JOBS",
         metavar="N",
-        help=f"{what}, in processes of their own; 0 is as many as there are processors.  "
+        help=f"{task}, in processes of their own; 0 is as many as there are processors.  "
         "[default: RULEC_JOBS; else as many as there are processors, where it is worth it]",
     )
 

@@ -71,17 +71,17 @@ class CEngine:
         Raises RulecError as ``verify`` does; R0750 if it has too many objects for a monitor in C,
         R0752 if the compiler fails.
         """
-        found = None
+        violations = None
         check_trace(trace)
         # A bound that is no multiple of the step C would have no state for.
         fits = len(self.rulebook.rounded_to(trace.step_s)) == 1
         if fits and trace.ends == "complete" and trace.told is None:
             rulebook, is_partial = rulebook_for_checked(trace, self.rulebook)
             if not is_partial:
-                found = self._violations(trace, rulebook)
-        if found is None:
+                violations = self._violations(trace, rulebook)
+        if violations is None:
             return verify(trace, self.rulebook)
-        return Verdict(trace.id, tuple(found), engine="c")
+        return Verdict(trace.id, tuple(violations), engine="c")
 
     def _violations(self, trace: Trace, rulebook: CompiledRulebook) -> list[Violation] | None:
         """What a trace violates; None if C does not tell."""

@@ -227,11 +227,11 @@ def _input_of(
     given: Any = library.input_type()
     given.n_objects = len(names)
     given.objects = ctypes.cast(seated, ctypes.POINTER(library.object_type))
-    for one, name in zip(seated, names, strict=False):
-        one.id = ids.setdefault(name, len(ids) + 1)
-        one.type = fields.types.index(objects[name])
+    for seat, name in zip(seated, names, strict=False):
+        seat.id = ids.setdefault(name, len(ids) + 1)
+        seat.type = fields.types.index(objects[name])
         for item in fields.about(1):
-            setattr(one, fields.identifiers[item.name], _code(item, _said(state, item, [name])))
+            setattr(seat, fields.identifiers[item.name], _code(item, _said(state, item, [name])))
     for item in fields.about(0):
         setattr(given, fields.identifiers[item.name], _code(item, _said(state, item, [])))
     for item in fields.about(2):

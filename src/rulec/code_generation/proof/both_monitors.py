@@ -109,21 +109,21 @@ class BothMonitors:
     def _code(self, verdict: RunningVerdict) -> bytes:
         if verdict not in self._codes:
             both = best_of(verdict), worst_of(verdict)
-            self._codes[verdict] = bytes(VERDICTS.index(one) for one in both)
+            self._codes[verdict] = bytes(VERDICTS.index(outcome) for outcome in both)
         return self._codes[verdict]
 
-    def _compared(self, said: SoFar, found: CSaid, n_lost: int | None, where: str) -> str:
-        if n_lost is not None and found.violations != n_lost:
+    def _compared(self, said: SoFar, answer: CSaid, n_lost: int | None, where: str) -> str:
+        if n_lost is not None and answer.violations != n_lost:
             return f"the number of violations, {where}"
         for name in [name for name in said.rules if name not in self._vague]:
             expected = said.rules[name]
-            other = found.rules[name]
+            other = answer.rules[name]
             right = is_no_narrower(other, expected)
             if self._known and name not in self._weighing:
                 right = other == expected
             if not right:
                 return f"rule {name}, {expected} and {other}, {where}"
-        right = bool(self._vague) or is_no_narrower(found.verdict, said.verdict)
+        right = bool(self._vague) or is_no_narrower(answer.verdict, said.verdict)
         return "" if right else f"the rulebook, {where}"
 
 

@@ -88,15 +88,15 @@ def proof_of(library: CLibrary, n_states: int) -> Iterator[ProofPart]:
     )
 
 
-def _part(what: str, found: Iterator[str]) -> ProofPart:
+def _part(subject: str, differences: Iterator[str]) -> ProofPart:
     """Each thing compared is a text: empty, or how it differs."""
     n = 0
     different: list[str] = []
-    for text in found:
+    for text in differences:
         n += 1
         if text and len(different) < 5:
             different.append(text)
-    return ProofPart(what, n, tuple(different))
+    return ProofPart(subject, n, tuple(different))
 
 
 def _tables(library: CLibrary) -> Iterator[str]:
@@ -104,8 +104,8 @@ def _tables(library: CLibrary) -> Iterator[str]:
     for number, own in enumerate(library.layout.rules):
         cells, entries = ((ctypes.c_uint16 * len(column))() for column in (own.cells, own.entries))
         ask(number, cells, entries)
-        for what, found, laid in (("cell", cells, own.cells), ("entry", entries, own.entries)):
-            yield from _each(np.array(found) == np.array(laid), f"rule {own.rule.name}, {what}")
+        for kind, read_back, laid in (("cell", cells, own.cells), ("entry", entries, own.entries)):
+            yield from _each(np.array(read_back) == np.array(laid), f"rule {own.rule.name}, {kind}")
 
 
 def _letters(library: CLibrary) -> Iterator[str]:
@@ -113,11 +113,11 @@ def _letters(library: CLibrary) -> Iterator[str]:
     for number, own in enumerate(library.layout.rules):
         reads, sizes = _numbers(own)
         n = prod(sizes)
-        found = (ctypes.c_uint16 * n)()
-        ask(number, reads, (ctypes.c_uint32 * max(1, len(sizes)))(*sizes), len(sizes), found)
+        classes = (ctypes.c_uint16 * n)()
+        ask(number, reads, (ctypes.c_uint32 * max(1, len(sizes)))(*sizes), len(sizes), classes)
         expected = np.array(own.rule.machine.letters)
         expected[expected == IMPOSSIBLE] = EXCLUDED_CLASS
-        equal = np.array(found) == expected
+        equal = np.array(classes) == expected
         yield from _each(equal, f"rule {own.rule.name}, letter")
 
 
@@ -144,9 +144,9 @@ def _steps(library: CLibrary) -> Iterator[str]:
         yield from _each(equal, f"rule {own.rule.name}, pair of state and class")
 
 
-def _each(equal: Any, what: str) -> Iterator[str]:
+def _each(equal: Any, subject: str) -> Iterator[str]:
     for place, is_equal in enumerate(equal.tolist()):
-        yield "" if is_equal else f"{what} {place}"
+        yield "" if is_equal else f"{subject} {place}"
 
 
 def _numbers(own: RuleLayout) -> tuple[Any, list[int]]:
@@ -164,8 +164,8 @@ def _readings(library: CLibrary) -> Iterator[str]:
         given, who = _input(library, probe)
         ask(ctypes.byref(given), who, source, digits)
         low, more = digits[place] & 0xFF, digits[place] >> 8
-        found = ((1 << (more + 1)) - 1) << low
-        right = found == probe.digits if probe.is_sharp else found & probe.digits == probe.digits
+        read = ((1 << (more + 1)) - 1) << low
+        right = read == probe.digits if probe.is_sharp else read & probe.digits == probe.digits
         yield "" if right else f"rule {probe.rule}, read {probe.number}, of {probe.state}"
 
 

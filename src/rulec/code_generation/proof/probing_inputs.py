@@ -94,14 +94,14 @@ def _is_clear(read: NumberRead, total: Fraction) -> bool:
     )
 
 
-def weighs(what: Read | NumberRead | ltl.Count) -> bool:
+def weighs(part: Read | NumberRead | ltl.Count) -> bool:
     """Whether sums of several numbers decide, which are too near to a limit perhaps."""
-    match what:
+    match part:
         case Read():
             return False
         case NumberRead():
-            return len(what.terms) > 1 or any(map(weighs, _counts(what)))
-    sums = [atom for atom in ltl.atoms_of(what.body) if isinstance(atom, ltl.Comparison)]
+            return len(part.terms) > 1 or any(map(weighs, _counts(part)))
+    sums = [atom for atom in ltl.atoms_of(part.body) if isinstance(atom, ltl.Comparison)]
     return any(
         len(comparison.terms) > 1 or any(map(weighs, _counts(comparison))) for comparison in sums
     )
@@ -116,16 +116,16 @@ def nests(read: Read | NumberRead) -> bool:
     )
 
 
-def _counts(what: NumberRead | ltl.Comparison) -> list[ltl.Count]:
-    return [term for _, term in what.terms if isinstance(term, ltl.Count)]
+def _counts(comparison: NumberRead | ltl.Comparison) -> list[ltl.Count]:
+    return [term for _, term in comparison.terms if isinstance(term, ltl.Count)]
 
 
 def _counted(read: Read | NumberRead) -> list[str]:
     """The types of objects that a read counts."""
     if isinstance(read, Read):
         return []
-    found = [term.type for _, term in read.terms if isinstance(term, ltl.Count)]
-    return list(dict.fromkeys(found))
+    types = [term.type for _, term in read.terms if isinstance(term, ltl.Count)]
+    return list(dict.fromkeys(types))
 
 
 def _states(
@@ -214,13 +214,13 @@ def values_of(item: Declaration, layout: MonitorLayout) -> list[Any]:
 @lru_cache(maxsize=4)
 def _limits(layout: MonitorLayout) -> Mapping[str, tuple[float, ...]]:
     """By quantity the limits that rules compare it with by itself, and numbers beside them."""
-    found: dict[str, set[float]] = {}
+    limits: dict[str, set[float]] = {}
     for own in layout.rules:
         for read in own.rule.machine.reads:
             if isinstance(read, NumberRead) and (about := scale(read).quantity) is not None:
                 for floor in scale(read).floors:
-                    found.setdefault(about.name, set()).update({floor, nextafter(floor, -inf)})
-    return {name: tuple(sorted(numbers)) for name, numbers in found.items()}
+                    limits.setdefault(about.name, set()).update({floor, nextafter(floor, -inf)})
+    return {name: tuple(sorted(numbers)) for name, numbers in limits.items()}
 
 
 def _same(value: Any) -> Any:

@@ -123,8 +123,8 @@ def table_drives(layout: MonitorLayout, chance: Random, n_states: int) -> Iterat
     for own in layout.rules:
         rule, machine = own.rule, own.rule.machine
         witnesses = LetterWitnesses(rule, vocabulary)
-        found = [witnesses.plainest(by) for by in range(len(machine.successors[0]))]
-        letters = [letter for letter in found if letter is not None]
+        plainest = [witnesses.plainest(by) for by in range(len(machine.successors[0]))]
+        letters = [letter for letter in plainest if letter is not None]
         trace = witnesses.trace(letters)
         if trace.required:
             continue  # who is counted cannot be told

@@ -150,12 +150,12 @@ def _map(path: Path | None) -> str:
 
 def _read(manifest: Path) -> Mapping[str, Any]:
     try:
-        found = json.loads(manifest.read_bytes())
+        content = json.loads(manifest.read_bytes())
     except (OSError, ValueError, RecursionError):
-        found = None
-    if not isinstance(found, dict):
+        content = None
+    if not isinstance(content, dict):
         raise _damaged(manifest)
-    return found
+    return content
 
 
 def _damaged(manifest: Path) -> RulecError:

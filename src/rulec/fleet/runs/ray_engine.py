@@ -62,5 +62,5 @@ def _judged_by(
 def _judged(sent: bytes, units: Any) -> dict[str, list[bytes]]:
     """What each unit of a table comes to; the rulebook is read once in each process."""
     worker: UnitWorker = pickle.loads(sent)
-    found = (pickle.loads(unit) for unit in units.column("unit").to_pylist())
-    return {"tally": [pickle.dumps(worker.judged(unit)) for unit in found]}
+    work_units = (pickle.loads(unit) for unit in units.column("unit").to_pylist())
+    return {"tally": [pickle.dumps(worker.judged(unit)) for unit in work_units]}

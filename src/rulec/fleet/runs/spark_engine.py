@@ -45,8 +45,8 @@ def _judged_by(
 
     def judged(table: Any) -> Any:
         own = pickle.loads(sent)
-        found = (pickle.loads(unit) for unit in table.column("unit").to_pylist())
-        return pyarrow.table({"tally": [pickle.dumps(own.judged(unit)) for unit in found]})
+        work_units = (pickle.loads(unit) for unit in table.column("unit").to_pylist())
+        return pyarrow.table({"tally": [pickle.dumps(own.judged(unit)) for unit in work_units]})
 
     try:
         rows = [(number, pickle.dumps(unit)) for number, unit in enumerate(units)]

@@ -93,7 +93,7 @@ def _drives_of(unit: WorkUnit) -> _Drives:
     others, spread = (
         np.fromiter(keys, np.uint64, len(keys)) for keys in (unit.others, unit.spread)
     )
-    found: list[_Drives] = []
+    parts: list[_Drives] = []
     start = waiting = 0
     for number, piece in enumerate((unit.piece, *unit.further)):
         with opened_table(piece.path) as source:
@@ -107,12 +107,12 @@ def _drives_of(unit: WorkUnit) -> _Drives:
                 first = np.zeros(len(own), dtype=np.int64)
                 # What is written last stays.
                 first[batch.codes[::-1]] = np.arange(start, start + len(batch.codes))[::-1]
-                found.append(_Drives(batch.local_hashes()[own], rows[own], first[own]))
+                parts.append(_Drives(batch.local_hashes()[own], rows[own], first[own]))
                 start += len(batch.codes)
-                waiting += len(found[-1].hashes)
-                if waiting > max(_FEWEST_MERGED, 2 * len(found[0].hashes)):
-                    found, waiting = [_merged(found)], 0
-    drives = _merged(found)
+                waiting += len(parts[-1].hashes)
+                if waiting > max(_FEWEST_MERGED, 2 * len(parts[0].hashes)):
+                    parts, waiting = [_merged(parts)], 0
+    drives = _merged(parts)
     order = np.argsort(drives.first)
     return _Drives(drives.hashes[order], drives.rows[order], drives.first[order])
 
@@ -170,7 +170,7 @@ class _Reader:
 
     def _start(self, row: int) -> None:
         """Go to the row group that has a row."""
-        group = next(place for place, one in enumerate(self._groups) if row < one.stop)
+        group = next(place for place, rows in enumerate(self._groups) if row < rows.stop)
         self._rest = _read_from(self._groups, group)
 
 

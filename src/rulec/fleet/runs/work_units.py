@@ -62,12 +62,12 @@ def work_units(tables: Sequence[str], recordings: Sequence[str]) -> Iterator[Wor
     pieces: list[TablePiece] = []
     hashes: list[KeyHashes] = []
     for path in tables:
-        found = _pieces_or_reason(path)
-        if isinstance(found, RulecError):
-            yield found
+        pieces_of_table = _pieces_or_reason(path)
+        if isinstance(pieces_of_table, RulecError):
+            yield pieces_of_table
         else:
-            pieces += (piece for piece, _ in found)
-            hashes += (own for _, own in found)
+            pieces += (piece for piece, _ in pieces_of_table)
+            hashes += (own for _, own in pieces_of_table)
     yield from _units_of(pieces, hashes)
     yield from (WorkUnit(path) for path in recordings)
 
@@ -96,7 +96,7 @@ def _units_of(pieces: Sequence[TablePiece], hashes: Sequence[KeyHashes]) -> Iter
         yield WorkUnit(
             piece.path,
             piece,
-            tuple(pieces[one] for one in sorted(further.get(number, ()))),
+            tuple(pieces[number_] for number_ in sorted(further.get(number, ()))),
             spread=frozenset(spread.get(number, ())),
             others=frozenset(others.get(number, ())),
         )
@@ -113,16 +113,16 @@ def _pieces(path: str) -> Iterator[tuple[TablePiece, KeyHashes]]:
     """The pieces of a file with the keys in them. Raises RulecError R0710."""
     with opened_table(path) as source:
         groups: list[int] = []
-        found: list[KeyHashes] = []
+        hashes: list[KeyHashes] = []
         rows = 0
         for number in range(source.num_row_groups):
             groups.append(number)
             rows += source.metadata.row_group(number).num_rows
             # Nothing but keys is read here
-            found += (
+            hashes += (
                 batch.key_hashes() for batch in keyed_rows(source, [number], path, whole=False)
             )
             # A table without rows has no drives
-            if found and (rows >= MOST_ROWS or number + 1 == source.num_row_groups):
-                yield TablePiece(path, tuple(groups)), np.unique(np.concatenate(found))
-                groups, found, rows = [], [], 0
+            if hashes and (rows >= MOST_ROWS or number + 1 == source.num_row_groups):
+                yield TablePiece(path, tuple(groups)), np.unique(np.concatenate(hashes))
+                groups, hashes, rows = [], [], 0

@@ -96,9 +96,9 @@ def _beside_parent(rule: Rule, names: DocumentNames, known: KnownAnswers) -> str
     answer = known.parents.get(parent_key(rule, names))
     if answer is not None:
         with_what = "" if answer.relation in ("equal", "undecided") else ": see a trace"
-        told = "as strict as" if answer.relation == "equal" else f"{answer.relation} than"
-        told = "neither stricter nor laxer than" if answer.relation == "incomparable" else told
-        return f"{told} `{answer.parent}`{with_what}"
+        says = "as strict as" if answer.relation == "equal" else f"{answer.relation} than"
+        says = "neither stricter nor laxer than" if answer.relation == "incomparable" else says
+        return f"{says} `{answer.parent}`{with_what}"
     return f"stricter or laxer than `{parent.text if parent else 'its parent'}`?"
 
 

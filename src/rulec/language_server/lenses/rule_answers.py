@@ -67,8 +67,8 @@ def example_answer(book: Rulebook, rule: Rule) -> ExampleAnswer:
     compiled = _compiled(book, rule)
     run = run_rulebook_examples(replace(book, rules=(rule,)), compiled)
     seen = coverage(run) if rule.examples else ()
-    told = with_told_values(TELLABLE_WORDS[COMMONROAD], compiled.vocabulary)
-    audited = audit_source(compiled, COMMONROAD, told)
+    words = with_told_values(TELLABLE_WORDS[COMMONROAD], compiled.vocabulary)
+    audited = audit_source(compiled, COMMONROAD, words)
     return ExampleAnswer(
         sum(outcome.passed for outcome in run.outcomes),
         tuple(outcome.name for outcome in run.outcomes if not outcome.passed),

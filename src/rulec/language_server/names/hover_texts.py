@@ -22,9 +22,9 @@ from rulec.syntax import tree
 from rulec.syntax.tree_printer import print_formula
 
 
-def hover_text(names: DocumentNames, one: Occurrence) -> str:
+def hover_text(names: DocumentNames, occurrence: Occurrence) -> str:
     """What is known of a name."""
-    return "\n\n".join(filter(None, _parts(names, one.thing)))
+    return "\n\n".join(filter(None, _parts(names, occurrence.thing)))
 
 
 def _parts(names: DocumentNames, thing: NamedThing) -> Iterator[str]:
@@ -158,8 +158,8 @@ def _parameter(names: DocumentNames, thing: NamedThing) -> Iterator[str]:
 
 
 def _holds(value: Value, values: list[Value], day: str) -> bool:
-    good = [one for one in values if in_force(one.item.in_force, day)]
-    return value in good and value.level == max(one.level for one in good)
+    good = [candidate for candidate in values if in_force(candidate.item.in_force, day)]
+    return value in good and value.level == max(candidate.level for candidate in good)
 
 
 def _written(value: Value) -> str:

@@ -204,14 +204,14 @@ def _affected(
     changes: Changes, thing: NamedThing, name: str, names: DocumentNames, editor: EditorWorkspace
 ) -> list[str]:
     """The documents that are changed, and all others upon them with the old name or the new one."""
-    found = dict.fromkeys(changes)
+    uris = dict.fromkeys(changes)
     declared = os.path.realpath(thing.span.source.name)
     for named_thing in (thing, replace(thing, name=name)):
         for other in books_with(named_thing, names, editor):
             files = (*other.chain.books, *other.chain.vocabularies)
             if any(os.path.realpath(file.span.source.name) == declared for file in files):
-                found[uri_of(other.checked.path or other.checked.name)] = None
-    return list(found)
+                uris[uri_of(other.checked.path or other.checked.name)] = None
+    return list(uris)
 
 
 def _checked(editor: EditorWorkspace, document: Document) -> CheckedDocument:

@@ -73,11 +73,11 @@ def path_of(uri: str) -> Path | None:
     if not uri.startswith("file:"):
         return None
     try:
-        found = uris.to_fs_path(uri) or ""
-        os.fsencode(found)
+        path = uris.to_fs_path(uri) or ""
+        os.fsencode(path)
     except ValueError:  # the address is none, or has half a character in it
         return None
-    return Path(found) if found and "\0" not in found else None
+    return Path(path) if path and "\0" not in path else None
 
 
 def uri_of(file: str | Path) -> str:
@@ -177,15 +177,15 @@ class EditorWorkspace:
 
     def sources(self) -> list[str]:
         """The addresses of all sources in the workspace's folders, and of what is open."""
-        found = dict.fromkeys(self.documents)
-        known = {os.path.realpath(one.path) for one in self.documents.values() if one.path}
+        uris = dict.fromkeys(self.documents)
+        known = {os.path.realpath(entry.path) for entry in self.documents.values() if entry.path}
         for folder in self.folders:
             for path in sources_below(str(folder)).paths:
                 real = os.path.realpath(path)
                 if real not in known:
                     known.add(real)
-                    found[uri_of(path)] = None
-        return list(found)
+                    uris[uri_of(path)] = None
+        return list(uris)
 
     def is_read_only(self, file: str | Path) -> bool:
         """Tell whether a file is not the author's: outside of the workspace, or rulec's own."""
@@ -197,7 +197,7 @@ class EditorWorkspace:
         return not any(path.is_relative_to(os.path.realpath(folder)) for folder in self.folders)
 
     def _open_paths(self) -> Iterable[Path]:
-        return [one.path for one in self.documents.values() if one.path is not None]
+        return [entry.path for entry in self.documents.values() if entry.path is not None]
 
 
 def _checked_vocabulary(name: str, path: Path | None, parsed: ParsedText) -> CheckedDocument:

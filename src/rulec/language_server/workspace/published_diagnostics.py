@@ -15,11 +15,11 @@ SOURCE = "rulec"
 
 def by_file(findings: Iterable[Diagnostic], document: str) -> dict[str, list[Diagnostic]]:
     """Findings by the addresses of their files; what has none is about ``document``."""
-    found: dict[str, list[Diagnostic]] = {}
+    by_uri: dict[str, list[Diagnostic]] = {}
     for finding in findings:
         file = uri_of(finding.place.file) if finding.place is not None else document
-        found.setdefault(file, []).append(finding)
-    return found
+        by_uri.setdefault(file, []).append(finding)
+    return by_uri
 
 
 def once(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
@@ -80,12 +80,12 @@ def in_words(finding: Diagnostic) -> str:
     return "\n".join([message, *way_out, *(f"note: {note}" for note in finding.notes)])
 
 
-def union(found: Mapping[str, Mapping[str, list[Diagnostic]]], file: str) -> list[Diagnostic]:
+def union(by_document: Mapping[str, Mapping[str, list[Diagnostic]]], file: str) -> list[Diagnostic]:
     """What all checked documents have led to in a file: its own findings first."""
-    own = found.get(file, {}).get(file, [])
+    own = by_document.get(file, {}).get(file, [])
     others = [
         finding
-        for document, files in found.items()
+        for document, files in by_document.items()
         if document != file
         for finding in files.get(file, [])
     ]

@@ -42,23 +42,23 @@ def described_edits(
         yield from _into_the_braces(text, start, _end_of_clause(text, start))
     if help_text.startswith("move it before the `}`"):
         yield from _into_the_braces(text, start, len(text.rstrip()))
-    if found := re.search(r"looks like `(\w+)`", message):
-        yield from _in_other_letters(own, found[1], text)
-    if found := re.search(r"`(override rule) \w+`", help_text):
+    if match := re.search(r"looks like `(\w+)`", message):
+        yield from _in_other_letters(own, match[1], text)
+    if match := re.search(r"`(override rule) \w+`", help_text):
         begin = text.rfind("confirm rule", 0, start)
         if begin >= 0:
-            yield _one("Override the rule", begin, begin + len("confirm rule"), found[1])
+            yield _one("Override the rule", begin, begin + len("confirm rule"), match[1])
     if "leave this out" in help_text or help_text == "keep one of them":
         behind = _NEXT_CLAUSE.search(text, end)
         last = behind.start() if behind else len(text)
         yield _one(f"Leave out this `{own}`", len(text[:start].rstrip()), last, "")
-    if found := re.search(r"takes its words from it by `(use \w+)`", help_text):
+    if match := re.search(r"takes its words from it by `(use \w+)`", help_text):
         first = text.rfind("\n", 0, start) + 1
-        yield _one(f"Write `{found[1]}`", first, _line_end(text, start), found[1])
-    if found := _CHANGED_BY.search(help_text):
-        yield from _changing(found["head"], text, start)
-    if found := re.match(r"this state leaves open `([^`(]+)`,", message):
-        for said in (f"not {found[1]}", found[1]):
+        yield _one(f"Write `{match[1]}`", first, _line_end(text, start), match[1])
+    if match := _CHANGED_BY.search(help_text):
+        yield from _changing(match["head"], text, start)
+    if match := re.match(r"this state leaves open `([^`(]+)`,", message):
+        for said in (f"not {match[1]}", match[1]):
             yield _one(f"Say `{said}` in this state", end, end, f" and {said}")
     if " can mean " in message:
         for reading in re.findall(r"`([^`]+)`", message)[1:]:
@@ -73,8 +73,8 @@ def described_edits(
         near = [said for said in _NUMBER_WITH_UNIT.findall(help_text) if _is_near(said, was)]
         for number in near if begin >= 0 else ():
             yield _one(f"Write `{number}`", begin, begin + len(was), number)
-    if found := re.match(r"that month has (\d+) days", help_text):
-        last_day = re.sub(r"\d+$", found[1], own)
+    if match := re.match(r"that month has (\d+) days", help_text):
+        last_day = re.sub(r"\d+$", match[1], own)
         yield _one(f"Write `{last_day}`", start, end, last_day)
     if "`initially`" in help_text or "`at some point`" in help_text:
         yield from _another_scope(help_text, text, start, end)
@@ -83,8 +83,8 @@ def described_edits(
     if help_text.startswith("leave out `is …`"):
         begin = len(text[:start].rstrip()) - len("is")
         yield _one(f"Leave out `is {own}`", len(text[:begin].rstrip()), end, "")
-    if "give it a weight" in help_text and (found := re.search(r"\b0+(?:\.0*)?\b", own)):
-        yield _one("Write `1`", start + found.start(), start + found.end(), "1")
+    if "give it a weight" in help_text and (match := re.search(r"\b0+(?:\.0*)?\b", own)):
+        yield _one("Write `1`", start + match.start(), start + match.end(), "1")
     for said in re.findall(r"`([^`…]+)`", help_text):
         yield from _beginning_before(said, text, start, end)
 
@@ -141,7 +141,7 @@ def _into_the_braces(text: str, start: int, end: int) -> Iterator[Edit]:
 
 def _in_other_letters(own: str, like: str, text: str) -> Iterator[Edit]:
     """The name in the letters of the other one; where both are meant, a name of its own."""
-    where = [found.span() for found in re.finditer(rf"\b{re.escape(own)}\b", text)]
+    where = [match.span() for match in re.finditer(rf"\b{re.escape(own)}\b", text)]
     for name in (like, _free(like, text)):
         yield f"Write `{name}`", tuple(TextChange(*span, name) for span in where)
 
@@ -156,8 +156,8 @@ def _changing(head: str, text: str, start: int) -> Iterator[Edit]:
 
 def _another_scope(help_text: str, text: str, start: int, end: int) -> Iterator[Edit]:
     for scope in re.findall(r"`([a-z ]+)`", help_text):
-        if _SCOPE.fullmatch(scope) and (found := _SCOPE.search(text, start, end)):
-            yield _one(f"Write `{scope}`", *found.span(), scope)
+        if _SCOPE.fullmatch(scope) and (match := _SCOPE.search(text, start, end)):
+            yield _one(f"Write `{scope}`", *match.span(), scope)
 
 
 def _operator_outside(text: str, start: int, end: int) -> Iterator[Edit]:
@@ -177,5 +177,5 @@ def _beginning_before(said: str, text: str, start: int, end: int) -> Iterator[Ed
         declared = [*re.finditer(rf"\b{re.escape(first)}\s*\w+", text[:start])]
         if declared:
             yield _one(f"Write `{said}`", *declared[-1].span(), said)
-    elif space and (found := re.search(rf"\b{re.escape(first)}\s+$", text[:start])):
-        yield _one(f"Write `{said}`", found.start(), end, said)
+    elif space and (match := re.search(rf"\b{re.escape(first)}\s+$", text[:start])):
+        yield _one(f"Write `{said}`", match.start(), end, said)

@@ -144,13 +144,13 @@ def _files(word: str, names: DocumentNames, editor: EditorWorkspace) -> Iterator
         except RulecError:
             folders = []
         folders += [] if path is None else [path.parent, path.parent.parent]
-        found = (
+        available = (
             available_rulebooks(folders)
             if word == "extends"
             else [entry.name for entry in list_vocabularies(folders)]
         )
     own = names.file.name.text if names.file.name else ""
-    yield from _simple([name for name in found if name != own], _KINDS.File)
+    yield from _simple([name for name in available if name != own], _KINDS.File)
 
 
 def _scope(names: DocumentNames, piece: PieceAtCursor, offset: int) -> dict[str, str]:
@@ -168,7 +168,7 @@ def _scope(names: DocumentNames, piece: PieceAtCursor, offset: int) -> dict[str,
                 if start <= offset <= end:
                     scope |= {o.name.text: o.type.text for o in example.objects if o.type}
         case tree.DefineItem(parameters=parameters):
-            scope = {one.name.text: one.type.text if one.type else "" for one in parameters}
+            scope = {x.name.text: x.type.text if x.type else "" for x in parameters}
     # What has just been written may have no tree yet: `name: type` in what stands before.
     tokens = piece.tokens
     for number in range(len(tokens) - 2):
@@ -238,8 +238,8 @@ def _fitting(
     """Variables in scope for parameters of some types, each once: all ways of one parameter."""
     symbols = names.chain.names.symbols
     fits = [
-        [name for name, kind in scope.items() if not kind or not one or symbols.fits(kind, one)]
-        for one in types
+        [name for name, kind in scope.items() if not kind or not x or symbols.fits(kind, x)]
+        for x in types
     ]
     if len(fits) == 1:
         yield from ((name,) for name in fits[0])

@@ -43,11 +43,11 @@ def _lines(phrase: Phrase, place: tuple[int, str], end: str, semicolon: str) -> 
     for index, label_ in enumerate(labels):
         text = text.replace(label(index), label_)
     yield Line(depth, own, text if phrase.items else f"{text}{end}")
-    for index, (one, item) in enumerate(zip(labels, phrase.items, strict=True)):
+    for index, (label_of_item, item) in enumerate(zip(labels, phrase.items, strict=True)):
         left = len(labels) - index - 1
         joint = f" {phrase.joint}" if left == 1 and phrase.joint else ""
         after = f"{semicolon}{joint}" if left else end
-        yield from _lines(item, (depth + 1, one), after, semicolon)
+        yield from _lines(item, (depth + 1, label_of_item), after, semicolon)
 
 
 def _label(depth: int, index: int, above: str) -> str:

@@ -110,10 +110,10 @@ def counted(comparison: Comparison, count: Count, language: Language) -> str:
             return language.there_is.format(words.one, count.variable)
         case "=", Fraction(numerator=0):
             return language.there_is_no.format(words.none, count.variable)
-    one = comparison.limit == 1 and comparison.relation != "!="
+    is_one = comparison.limit == 1 and comparison.relation != "!="
     n = language.counted[comparison.relation].format(number_text(comparison.limit, language))
-    there = language.there_is if one else language.there_are
-    return there.format(f"{n} {words.noun if one else words.plural}", count.variable)
+    there = language.there_is if is_one else language.there_are
+    return there.format(f"{n} {words.noun if is_one else words.plural}", count.variable)
 
 
 def comparison_text(comparison: Comparison) -> str:

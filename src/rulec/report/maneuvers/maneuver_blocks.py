@@ -137,11 +137,11 @@ def _violation_line(maneuvers: Maneuvers, violation: Violation) -> str:
     return f"{_rule_title(maneuvers, violation)}: {_when_lost(maneuvers, violation)}"
 
 
-def _rule_title(maneuvers: Maneuvers, found: Violation | OpenVerdict) -> str:
-    rule = next(rule for rule in maneuvers.rules.rules if rule.name == found.rule)
+def _rule_title(maneuvers: Maneuvers, finding: Violation | OpenVerdict) -> str:
+    rule = next(rule for rule in maneuvers.rules.rules if rule.name == finding.rule)
     law = cited_law(rule.cite, rule.inherited_from)
     cite = f" [{law}]" if law else ""
-    bound = f" for {bound_objects(found.binding)}" if found.binding else ""
+    bound = f" for {bound_objects(finding.binding)}" if finding.binding else ""
     return f"{rule.strength} rule {rule.name}{cite}{bound}"
 
 

@@ -40,8 +40,8 @@ def as_text(counts: Sequence[ManeuverCounts]) -> str:
     rows = [("scenario", "by", "maneuvers", "satisfying", "open", "violating")]
     for count in counts:
         numbers = (count.satisfying, count.open, count.violating)
-        told = map(shown_count, numbers) if count.is_judged else ["not judged"] * len(numbers)
+        cells = map(shown_count, numbers) if count.is_judged else ["not judged"] * len(numbers)
         rows.append(
-            (visible(count.scenario), visible(count.rulebook), shown_count(count.maneuvers), *told)
+            (visible(count.scenario), visible(count.rulebook), shown_count(count.maneuvers), *cells)
         )
     return "\n".join(table_lines(rows, right=range(2, 6), ruled=[0]))

@@ -20,28 +20,28 @@ COLUMNS: Mapping[str, type] = {
 """The columns of tables of moments, with the types of their values; ``objects`` as ``v=car 1``."""
 
 
-def rows(found: DriveMoments) -> Iterator[dict[str, Any]]:
+def rows(drive: DriveMoments) -> Iterator[dict[str, Any]]:
     """A row for each moment."""
-    for moment in found.moments:
+    for moment in drive.moments:
         yield {
-            "file": found.file,
-            "recording": found.recording,
-            "vehicle": found.vehicle,
+            "file": drive.file,
+            "recording": drive.recording,
+            "vehicle": drive.vehicle,
             "objects": tuple([f"{name}={item}" for name, item in moment.objects.items()]),
             "holds": moment.holds,
-            "from_s": found.time_s(moment.first),
-            "to_s": found.time_s(moment.last),
+            "from_s": drive.time_s(moment.first),
+            "to_s": drive.time_s(moment.last),
             "first_state": moment.first,
             "last_state": moment.last,
         }
 
 
-def lines(found: DriveMoments) -> Iterator[str]:
+def lines(drive: DriveMoments) -> Iterator[str]:
     """A line for each moment."""
-    where = found.file
-    if found.recording and found.recording not in found.file:
-        where = f"{found.file}: {found.recording}"
-    for row, moment in zip(rows(found), found.moments, strict=True):
+    where = drive.file
+    if drive.recording and drive.recording not in drive.file:
+        where = f"{drive.file}: {drive.recording}"
+    for row, moment in zip(rows(drive), drive.moments, strict=True):
         objects = "".join(f" {name}={item}" for name, item in moment.objects.items())
         when = f"at {row['from_s']:g} s (state {moment.first})"
         if moment.last > moment.first:
@@ -49,7 +49,7 @@ def lines(found: DriveMoments) -> Iterator[str]:
                 f"{row['from_s']:g} to {row['to_s']:g} s (states {moment.first} to {moment.last})"
             )
         perhaps = "" if moment.holds == "surely" else ", perhaps"
-        yield visible(f"{where}: {found.vehicle}{objects}: {when}{perhaps}")
+        yield visible(f"{where}: {drive.vehicle}{objects}: {when}{perhaps}")
 
 
 class MomentLine(JsonDocument, frozen=True, kw_only=True):
@@ -69,9 +69,9 @@ class MomentLine(JsonDocument, frozen=True, kw_only=True):
     last_state: int
 
 
-def json_lines(found: DriveMoments) -> Iterator[str]:
+def json_lines(drive: DriveMoments) -> Iterator[str]:
     """A line of JSON for each moment."""
-    for row, moment in zip(rows(found), found.moments, strict=True):
+    for row, moment in zip(rows(drive), drive.moments, strict=True):
         yield as_line(MomentLine(**{**row, "objects": dict(moment.objects)}))
 
 
@@ -84,13 +84,13 @@ class MomentTally:
     drives: int = 0
     with_some: int = 0
 
-    def add(self, found: DriveMoments) -> None:
+    def add(self, drive: DriveMoments) -> None:
         """Count a drive."""
-        surely = sum(moment.holds == "surely" for moment in found.moments)
+        surely = sum(moment.holds == "surely" for moment in drive.moments)
         self.surely += surely
-        self.perhaps += len(found.moments) - surely
+        self.perhaps += len(drive.moments) - surely
         self.drives += 1
-        self.with_some += bool(found.moments)
+        self.with_some += bool(drive.moments)
 
     def as_text(self) -> str:
         """The line that ends the list."""

@@ -88,15 +88,15 @@ def scene_title(
     return f"{name}: maneuver {number} {by}; cost {maneuver.cost:.4g} 1/s{margin}"
 
 
-def graph_title(graph: NavigationGraph, found: Maneuvers | None, maneuvers: int) -> str:
+def graph_title(graph: NavigationGraph, judged: Maneuvers | None, maneuvers: int) -> str:
     """The scenario, the size of its graph, and the number of maneuvers."""
     counts = f"{graph.scenario.name}: {graph.nodes:,} nodes, {graph.edges:,} edges"
-    if found is None:
+    if judged is None:
         return f"{counts}, {shown_count(maneuvers)} maneuvers"
-    satisfying = f"{shown_count(maneuvers)} satisfying by {found.rules.name}"
-    if found.open:
-        satisfying += f", {shown_count(found.open)} open"
-    return f"{counts}, {shown_count(found.traces)} maneuvers, {satisfying}"
+    satisfying = f"{shown_count(maneuvers)} satisfying by {judged.rules.name}"
+    if judged.open:
+        satisfying += f", {shown_count(judged.open)} open"
+    return f"{counts}, {shown_count(judged.traces)} maneuvers, {satisfying}"
 
 
 def trace_title(verdict: Verdict, rules: CompiledRulebook, only: Sequence[str] = ()) -> str:

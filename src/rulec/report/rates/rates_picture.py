@@ -99,10 +99,10 @@ def _row(rate: Rate, y: float, place: Callable[[float], float]) -> Iterator[Mark
 
 
 def _bar(
-    interval: Interval, y: float, style: str, place: Callable[[float], float], what: str
+    interval: Interval, y: float, style: str, place: Callable[[float], float], title: str
 ) -> Iterator[Mark]:
     low, high = interval
-    tip = f"{what}: {number(low)} to {number(high)}"
+    tip = f"{title}: {number(low)} to {number(high)}"
     yield Polyline(((place(low), y), (place(high), y)), style, tip)
     for end in (low, high):
         yield Polyline(((place(end), y - 3), (place(end), y + 3)), style)

@@ -61,10 +61,10 @@ def listed_formats(order: Sequence[str]) -> tuple[ListedFormat, ...]:
 
 
 def _words_of(form: str, order: Sequence[str]) -> tuple[str, ...] | None:
-    told = TELLABLE_WORDS.get(form)
-    if told is None:
+    words = TELLABLE_WORDS.get(form)
+    if words is None:
         return None
-    return (*(word for word in order if word in told), *sorted(told - set(order)))
+    return (*(word for word in order if word in words), *sorted(words - set(order)))
 
 
 def as_text(listed: Sequence[ListedFormat], order: Sequence[str], *, words: bool) -> str:
@@ -120,10 +120,10 @@ def _word_table(
 ) -> tuple[list[ListedFormat], list[tuple[str, ...]]]:
     """The formats whose words are known, and for each word which of them tell it."""
     forms = [form for form in listed if form.words is not None]
-    told = [frozenset(form.words or ()) for form in forms]
-    beyond = sorted(frozenset().union(*told) - set(order))
+    words_of_forms = [frozenset(form.words or ()) for form in forms]
+    beyond = sorted(frozenset().union(*words_of_forms) - set(order))
     rows = [
-        (word, *(TELLS if word in words else TELLS_NOT for words in told))
+        (word, *(TELLS if word in words else TELLS_NOT for words in words_of_forms))
         for word in (*order, *beyond)
     ]
     return forms, rows

@@ -34,9 +34,9 @@ def render(diff: RulebookDiff, output_format: str) -> str:
 
 
 def _as_markdown(rulebook_diff: RulebookDiff) -> str:
-    one, other = rulebook_diff.first.name, rulebook_diff.second.name
+    first, second = rulebook_diff.first.name, rulebook_diff.second.name
     sentences = [diff_text.summary(rulebook_diff), *diff_text.sides(rulebook_diff)]
-    parts = [f"# {code(one)} compared to {code(other)}"]
+    parts = [f"# {code(first)} compared to {code(second)}"]
     parts += [f"{escaped(sentence)}." for sentence in sentences]
     parts += [
         part
@@ -45,8 +45,8 @@ def _as_markdown(rulebook_diff: RulebookDiff) -> str:
         for part in _pair(pair, rulebook_diff)
     ]
     for rules, has, lacks in (
-        (rulebook_diff.only_first, one, other),
-        (rulebook_diff.only_second, other, one),
+        (rulebook_diff.only_first, first, second),
+        (rulebook_diff.only_second, second, first),
     ):
         if rules:
             only = (
@@ -54,7 +54,7 @@ def _as_markdown(rulebook_diff: RulebookDiff) -> str:
                 f"{escaped(diff_text.only_why(one_sided, lacks))}"
                 + (f"; {escaped(diff_text.offered(one_sided))}" if offers else "")
                 for one_sided in rules
-                for offers in (bool(one_sided.alike) and has == one,)
+                for offers in (bool(one_sided.alike) and has == first,)
             )
             parts += [f"## Only in {code(has)}", "\n".join(only)]
     if rulebook_diff.settings:
@@ -62,7 +62,7 @@ def _as_markdown(rulebook_diff: RulebookDiff) -> str:
             [f"{setting.kind} {code(setting.name)}", code(setting.first), code(setting.second)]
             for setting in rulebook_diff.settings
         ]
-        parts += ["## Set otherwise", table(["", code(one), code(other)], rows)]
+        parts += ["## Set otherwise", table(["", code(first), code(second)], rows)]
     same = [code(pair.name) for pair in rulebook_diff.pairs if not diff_text.is_worth_a_block(pair)]
     if same:
         parts += ["## The same in both", ", ".join(same)]

@@ -35,7 +35,7 @@ COLOURS: dict[RuleRelation, str] = {
 
 def as_text(rulebook_diff: RulebookDiff) -> str:
     """Write differences first and agreements last."""
-    one, other = rulebook_diff.first.name, rulebook_diff.second.name
+    first, second = rulebook_diff.first.name, rulebook_diff.second.name
     blocks = [_head(rulebook_diff)]
     blocks += [
         "\n".join(_pair(pair, rulebook_diff))
@@ -45,14 +45,14 @@ def as_text(rulebook_diff: RulebookDiff) -> str:
     blocks += [
         _only(rules, has, lacks, from_first=rules is rulebook_diff.only_first)
         for rules, has, lacks in (
-            (rulebook_diff.only_first, one, other),
-            (rulebook_diff.only_second, other, one),
+            (rulebook_diff.only_first, first, second),
+            (rulebook_diff.only_second, second, first),
         )
         if rules
     ]
     if rulebook_diff.settings:
         written = [
-            f"  {pair.kind} {pair.name}: {pair.first} in {one}, {pair.second} in {other}"
+            f"  {pair.kind} {pair.name}: {pair.first} in {first}, {pair.second} in {second}"
             for pair in rulebook_diff.settings
         ]
         blocks.append("\n".join([styled("set otherwise", "bold"), *map(visible, written)]))
@@ -88,14 +88,14 @@ def sides(rulebook_diff: RulebookDiff) -> list[str]:
 
 def verdict(pair: RulePair, rulebook_diff: RulebookDiff) -> str:
     """The relation in words."""
-    one, other = rulebook_diff.first.name, rulebook_diff.second.name
+    first, second = rulebook_diff.first.name, rulebook_diff.second.name
     match pair.relation:
         case "equal":
             return "the same traces are forbidden"
         case "stricter":
-            return f"{one} is stricter: it forbids all that {other} forbids, and more"
+            return f"{first} is stricter: it forbids all that {second} forbids, and more"
         case "laxer":
-            return f"{one} is laxer: it allows all that {other} allows, and more"
+            return f"{first} is laxer: it allows all that {second} allows, and more"
         case "incomparable":
             return "each forbids something that the other allows"
         case _:
@@ -122,9 +122,9 @@ def _pair(pair: RulePair, rulebook_diff: RulebookDiff) -> Iterator[str]:
     types = about_types(pair, rulebook_diff)
     if types:
         yield f"  {visible(types)}"
-    one, other = rulebook_diff.first.name, rulebook_diff.second.name
-    for what, ours, theirs in pair.notes:
-        first, *rest = wrap(visible(f"{what}: {ours} in {one}, {theirs} in {other}"))
+    book, other = rulebook_diff.first.name, rulebook_diff.second.name
+    for part, ours, theirs in pair.notes:
+        first, *rest = wrap(visible(f"{part}: {ours} in {book}, {theirs} in {other}"))
         yield f"  {first}"
         yield from (f"    {line}" for line in rest)
     phrases = phrases_of(rulebook_diff.first)

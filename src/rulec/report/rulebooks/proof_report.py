@@ -59,9 +59,9 @@ def _text(proofs: Sequence[tuple[str, Sequence[RuleProof]]]) -> Iterator[str]:
     for name, own in proofs:
         for proof in own:
             at = "" if proof.step_s is None else f" at steps of {proof.step_s} s"
-            found = f"not proved, because {proof.because}" if proof.because else "proved"
-            found += ", two compilers agree" if proof.agreed else ""
-            yield visible(f"{name}: rule {proof.rule}{at}: {found}")
+            result = f"not proved, because {proof.because}" if proof.because else "proved"
+            result += ", two compilers agree" if proof.agreed else ""
+            yield visible(f"{name}: rule {proof.rule}{at}: {result}")
             for number, state in enumerate(proof.word):
                 read = ", ".join(f"{subject}: {value}" for subject, value in state.items())
                 yield visible(f"  state {number}: {read}")

@@ -93,7 +93,7 @@ def phrase_of(rule: Rule, vocabulary: Vocabulary, language: Language = ENGLISH) 
     return sentence(
         fold_constants(rule.required or rule.formula),
         [(variable.name, variable.type) for variable in rule.variables],
-        lambda one, other: vocabulary.is_subtype(one, other) or vocabulary.is_subtype(other, one),
+        lambda a, b: vocabulary.is_subtype(a, b) or vocabulary.is_subtype(b, a),
         language,
     )
 
@@ -164,9 +164,9 @@ def _untold(rule: Rule) -> str:
     # What recordings tell: for who asks about a rule alone.
     from rulec.extraction.tellable_words import TELLABLE_WORDS
 
-    told = frozenset[str]().union(*TELLABLE_WORDS.values())
+    tellable = frozenset[str]().union(*TELLABLE_WORDS.values())
     names = dict.fromkeys(names_in(rule.formula))
-    untold = [name for name in names if name not in told]
+    untold = [name for name in names if name not in tellable]
     if not untold or len(untold) == len(names):
         return ""
     return f"{', '.join(untold)}: by no format of recordings (rulec audit --source says which do)"

@@ -50,8 +50,8 @@ def as_junit(
         error.text = xml_text(render_diagnostics(problems, summary=False))
     if besides.short:
         suite = element(root, "testsuite", name="rulec", **_counts([], short=len(besides.short)))
-        for what, sentence in besides.short.items():
-            case = element(suite, "testcase", classname="rulec", name=what)
+        for threshold, sentence in besides.short.items():
+            case = element(suite, "testcase", classname="rulec", name=threshold)
             element(case, "failure", type="threshold", message=sentence)
     ElementTree.indent(root)
     written = ElementTree.tostring(root, encoding="unicode")

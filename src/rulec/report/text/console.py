@@ -98,7 +98,7 @@ _bar: _Bar | None = None
 
 
 @contextmanager
-def progress(what: str, total: float | None) -> Iterator[Callable[[float], None]]:
+def progress(task: str, total: float | None) -> Iterator[Callable[[float], None]]:
     """A progress bar on a terminal, nothing at all elsewhere.
 
     ``total`` is None if it is not known; then the bar has a count. Yields a function that is told
@@ -116,7 +116,7 @@ def progress(what: str, total: float | None) -> Iterator[Callable[[float], None]
     if total is None:
         columns = (*columns[:2], MofNCompleteColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as live:
-        _bar = _Bar(live, live.add_task(what, total=total))
+        _bar = _Bar(live, live.add_task(task, total=total))
         try:
             yield _bar.tell
         finally:

@@ -48,7 +48,7 @@ def _lines(text: str, width: int) -> Iterator[str]:
                 yield from (f"{INDENT}{line}" for line in rest)
             return
     opening = text.find("(")
-    if opening >= 0 and text.endswith(")") and all(not one for one in outside[opening + 1 : -1]):
+    if opening >= 0 and text.endswith(")") and not any(outside[opening + 1 : -1]):
         yield text[: opening + 1]
         for line in _lines(text[opening + 1 : -1], width - len(INDENT)):
             yield f"{INDENT}{line}"

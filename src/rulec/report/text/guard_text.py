@@ -65,7 +65,7 @@ class GuardWording:
                 for literal, loose in literals
             ]
             text = " and ".join(simple) or "true"
-            loose = len(literals) > 1 or any(one for _, one in literals)
+            loose = len(literals) > 1 or any(is_loose for _, is_loose in literals)
             texts.append(f"({text})" if loose and len(cubes) > 1 else text)
         return " or ".join(texts) or "false"
 

@@ -89,16 +89,16 @@ def spreadsheet_text(text: str) -> str:
     return f"'{text}" if text.startswith(_FORMULA) else text
 
 
-def _as_json(found: re.Match[str]) -> str:
-    return f"\\u{ord(found[0]):04x}"
+def _as_json(match: re.Match[str]) -> str:
+    return f"\\u{ord(match[0]):04x}"
 
 
-def _as_reference(found: re.Match[str]) -> str:
+def _as_reference(match: re.Match[str]) -> str:
     # XML has no reference for control characters, which therefore are shown as such.
-    code = ord(found[0])
-    return f"&#x{code:x};" if code > 0x9F and not 0xD800 <= code < 0xE000 else _as_escape(found)
+    code = ord(match[0])
+    return f"&#x{code:x};" if code > 0x9F and not 0xD800 <= code < 0xE000 else _as_escape(match)
 
 
-def _as_escape(found: re.Match[str]) -> str:
-    code = ord(found[0])
+def _as_escape(match: re.Match[str]) -> str:
+    code = ord(match[0])
     return f"\\x{code:02x}" if code < 256 else f"\\u{code:04x}"

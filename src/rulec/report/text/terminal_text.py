@@ -138,7 +138,7 @@ def broken(text: str, width: int, first: str = "", later: str = "") -> list[str]
         first: what the first line begins with.
         later: what the others begin with.
     """
-    joined = _KEPT_TOGETHER.sub(lambda found: found[0][:-1] + _JOINT, text)
+    joined = _KEPT_TOGETHER.sub(lambda match: match[0][:-1] + _JOINT, text)
     lines = wrap(joined, width, initial_indent=first, subsequent_indent=later)
     return [line.replace(_JOINT, " ") for line in lines]
 

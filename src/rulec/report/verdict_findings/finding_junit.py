@@ -28,18 +28,18 @@ class JUnitWriter:
         self._about = about
         stream.write(f'{HEAD}<testsuites name="rulec">\n'.encode())
 
-    def add(self, found: FoundInRecording) -> None:
+    def add(self, recording: FoundInRecording) -> None:
         """Write the suite of a recording."""
-        by_rule = found.by_rule
-        suite = element(None, "testsuite", name=found.title)
+        by_rule = recording.by_rule
+        suite = element(None, "testsuite", name=recording.title)
         name = self._about.rulebook.name
-        if found.failure:
-            case = element(suite, "testcase", classname=name, name="reading", file=found.file)
-            element(case, "error", type="not judged", message=found.failure)
+        if recording.failure:
+            case = element(suite, "testcase", classname=name, name="reading", file=recording.file)
+            element(case, "error", type="not judged", message=recording.failure)
         else:
             for rule in self._about.rules.values():
-                _case(suite, name, rule, by_rule.get(rule.name, ()), found)
-            lines = [f"{one.vehicle}: not judged: {one.because}" for one in by_rule.get("", ())]
+                _case(suite, name, rule, by_rule.get(rule.name, ()), recording)
+            lines = [f"{x.vehicle}: not judged: {x.because}" for x in by_rule.get("", ())]
             if lines:
                 element(suite, "system-out").text = xml_text("\n".join(lines))
         counts = {
@@ -61,9 +61,9 @@ def _case(
     rulebook: str,
     rule: CompiledRule,
     findings: Sequence[VerdictFinding],
-    found: FoundInRecording,
+    recording: FoundInRecording,
 ) -> None:
-    case = element(suite, "testcase", classname=rulebook, name=rule.name, file=found.file)
+    case = element(suite, "testcase", classname=rulebook, name=rule.name, file=recording.file)
     violated = [finding for finding in findings if finding.outcome == "violated"]
     others = [finding for finding in findings if finding.outcome == "open"]
     nowhere = [
@@ -72,8 +72,8 @@ def _case(
     lines = [finding.says for finding in violated]
     if violated and rule.strength == "hard":
         drives = len({finding.vehicle for finding in violated})
-        what = f"violated in {drives:,} of {found.drives:,} drives"
-        failure = element(case, "failure", type="hard rule", message=f"{what}: {lines[0]}")
+        share = f"violated in {drives:,} of {recording.drives:,} drives"
+        failure = element(case, "failure", type="hard rule", message=f"{share}: {lines[0]}")
         failure.text = xml_text("\n".join(lines))
         lines = []
     elif nowhere and not violated and not others:
@@ -81,8 +81,8 @@ def _case(
         element(case, "skipped", message=nowhere[0].because or f"not told: {words}")
     elif others and not violated:
         drives = len({finding.vehicle for finding in others})
-        what = f"open in {drives:,} of {found.drives:,} drives"
-        element(case, "skipped", message=f"{what}: {others[0].says}")
+        share = f"open in {drives:,} of {recording.drives:,} drives"
+        element(case, "skipped", message=f"{share}: {others[0].says}")
     lines += [finding.says for finding in others]
     if lines:
         element(case, "system-out").text = xml_text("\n".join(lines))

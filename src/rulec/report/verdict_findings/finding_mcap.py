@@ -46,7 +46,7 @@ class McapWriter:
         self._name = name
         self._found: FoundInRecording | None = None
 
-    def add(self, found: FoundInRecording) -> None:
+    def add(self, recording: FoundInRecording) -> None:
         """Keep the findings of the recording. Raises RulecError R0702 for a second one."""
         if self._found is not None:
             raise UNWRITABLE_FILE.error(
@@ -54,7 +54,7 @@ class McapWriter:
                 "MCAP has one time line, and there are several recordings to write into the file",
                 help="give one recording, or choose one with --scenario",
             )
-        self._found = found
+        self._found = recording
 
     def close(self) -> None:
         """Write the file."""

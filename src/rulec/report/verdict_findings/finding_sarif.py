@@ -44,10 +44,10 @@ class SarifWriter:
             '"results": ['
         )
 
-    def add(self, found: FoundInRecording) -> None:
+    def add(self, recording: FoundInRecording) -> None:
         """Write a result for each violation and each open verdict."""
-        self._complete &= not found.failure
-        for finding in found.findings:
+        self._complete &= not recording.failure
+        for finding in recording.findings:
             if finding.outcome == "not_judged":
                 self._notes.append(_notification(finding))
                 continue

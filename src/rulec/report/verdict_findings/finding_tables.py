@@ -26,13 +26,14 @@ class JsonLinesWriter:
         self._stream = stream
         self._columns = columns
 
-    def add(self, found: FoundInRecording) -> None:
+    def add(self, recording: FoundInRecording) -> None:
         """Write a line for each."""
         if self._columns is None:
-            lines = [as_json(finding) for finding in found.findings]
+            lines = [as_json(finding) for finding in recording.findings]
         else:
             rows = [
-                dict(zip(self._columns, row, strict=True)) for row in _rows(found, self._columns)
+                dict(zip(self._columns, row, strict=True))
+                for row in _rows(recording, self._columns)
             ]
             lines = [json.dumps({"version": 1, **row}, ensure_ascii=False) for row in rows]
         for line in lines:
@@ -51,9 +52,9 @@ class CsvWriter:
         self._columns = columns
         stream.write(csv_text([columns or COLUMNS]).encode())
 
-    def add(self, found: FoundInRecording) -> None:
+    def add(self, recording: FoundInRecording) -> None:
         """Write a row for each."""
-        self._stream.write(csv_text(_rows(found, self._columns)).encode())
+        self._stream.write(csv_text(_rows(recording, self._columns)).encode())
 
     def close(self) -> None:
         """Nothing comes at the end."""
@@ -76,13 +77,13 @@ class RowWriter:
         self._writer.close()
 
 
-def _rows(found: FoundInRecording, columns: Columns | None) -> Iterator[list[Any]]:
+def _rows(recording: FoundInRecording, columns: Columns | None) -> Iterator[list[Any]]:
     """The values of findings, or those of rows if there are columns."""
     if columns is None:
-        yield from ([getattr(finding, name) for name in COLUMNS] for finding in found.findings)
+        yield from ([getattr(finding, name) for name in COLUMNS] for finding in recording.findings)
     else:
         empty = [(name, EMPTY_CELLS.get(kind)) for name, kind in columns.items()]
-        yield from ([row.get(name, nothing) for name, nothing in empty] for row in found.rows)
+        yield from ([row.get(name, nothing) for name, nothing in empty] for row in recording.rows)
 
 
 class ParquetWriter:
@@ -95,9 +96,9 @@ class ParquetWriter:
         self._columns = columns
         self._found: list[list[Any]] = []
 
-    def add(self, found: FoundInRecording) -> None:
+    def add(self, recording: FoundInRecording) -> None:
         """Keep the findings."""
-        self._found += _rows(found, self._columns)
+        self._found += _rows(recording, self._columns)
 
     def close(self) -> None:
         """Write the table."""

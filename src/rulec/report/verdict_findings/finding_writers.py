@@ -24,7 +24,7 @@ ENDINGS: Mapping[str, tuple[str, ...]] = {
 class FindingWriter(Protocol):
     """Writes findings to a stream: recording by recording, and what comes at the end."""
 
-    def add(self, found: FoundInRecording) -> None:
+    def add(self, recording: FoundInRecording) -> None:
         """Take the findings of a recording. Raises RulecError."""
 
     def close(self) -> None:

@@ -39,11 +39,11 @@ class QualityCheckerWriter:
         self._issues = 0
         stream.write(f'{HEAD}<CheckerResults version="1.0.0">\n'.encode())
 
-    def add(self, found: FoundInRecording) -> None:
+    def add(self, recording: FoundInRecording) -> None:
         """Write the bundle of a recording."""
-        by_rule = found.by_rule
+        by_rule = recording.by_rule
         rulebook = self._about.rulebook
-        issues = sum(one.outcome != "not_judged" for one in found.findings)
+        issues = sum(finding.outcome != "not_judged" for finding in recording.findings)
         bundle = element(
             None,
             "CheckerBundle",
@@ -51,13 +51,13 @@ class QualityCheckerWriter:
             description=rulebook.title or rulebook.name,
             name=f"rulec {rulebook.name}",
             version=self._about.version,
-            summary=found.failure or f"{issues:,} issues in {found.drives:,} drives",
+            summary=recording.failure or f"{issues:,} issues in {recording.drives:,} drives",
         )
-        element(bundle, "Param", name="InputFile", value=found.file)
-        if found.recording:
-            element(bundle, "Param", name="Recording", value=found.recording)
+        element(bundle, "Param", name="InputFile", value=recording.file)
+        if recording.recording:
+            element(bundle, "Param", name="Recording", value=recording.recording)
         for rule in self._about.rules.values():
-            self._checker(bundle, rule, by_rule.get(rule.name, []), found.failure)
+            self._checker(bundle, rule, by_rule.get(rule.name, []), recording.failure)
         self._stream.write(written(bundle, 1))
 
     def close(self) -> None:
@@ -71,8 +71,8 @@ class QualityCheckerWriter:
         findings: Iterable[VerdictFinding],
         failure: str,
     ) -> None:
-        issues = [one for one in findings if one.outcome != "not_judged"]
-        left_out = next((one for one in findings if one.outcome == "not_judged"), None)
+        issues = [item for item in findings if item.outcome != "not_judged"]
+        left_out = next((item for item in findings if item.outcome == "not_judged"), None)
         skipped = left_out is not None and not left_out.vehicle and not issues
         law = cited_law(rule.cite, rule.inherited_from)
         checker = element(

@@ -172,10 +172,10 @@ class FoundInRecording:
     @property
     def by_rule(self) -> Mapping[str, Sequence[VerdictFinding]]:
         """The findings about each rule; those without one are at ``""``."""
-        found: dict[str, list[VerdictFinding]] = {}
+        by_rule: dict[str, list[VerdictFinding]] = {}
         for finding in self.findings:
-            found.setdefault(finding.rule, []).append(finding)
-        return found
+            by_rule.setdefault(finding.rule, []).append(finding)
+        return by_rule
 
     @property
     def failure(self) -> str:

@@ -21,7 +21,7 @@ def fewest_cases(outcomes: Sequence[ConditionalOutcome]) -> list[ConditionalOutc
         by_outcome.setdefault(outcome.outcome, []).append(frozenset(outcome.when.items()))
     order = sorted(by_outcome, key=lambda name: name != "violated")
     names = {name: place for place, name in enumerate(outcomes[0].when)} if outcomes else {}
-    values = {name: {one.when[name] for one in outcomes} for name in names}
+    values = {name: {outcome_.when[name] for outcome_ in outcomes} for name in names}
     return [
         ConditionalOutcome(dict(sorted(case, key=lambda pair: names[pair[0]])), name)
         for name in order
@@ -44,7 +44,7 @@ def _within(prime: Case, cases: Set[Case]) -> set[Case]:
 
 def _primes(cases: Set[Case], values: Mapping[str, Set[bool | str]]) -> list[Case]:
     """The cases with as few conditions as can be, in an order that is always the same."""
-    found: set[Case] = set()
+    primes: set[Case] = set()
     while cases:
         merged: set[Case] = set()
         used: set[Case] = set()
@@ -55,6 +55,6 @@ def _primes(cases: Set[Case], values: Mapping[str, Set[bool | str]]) -> list[Cas
                 if alike <= cases:
                     merged.add(without)
                     used |= alike
-        found |= cases - used
+        primes |= cases - used
         cases = merged
-    return sorted(found, key=lambda case: sorted((name, str(value)) for name, value in case))
+    return sorted(primes, key=lambda case: sorted((name, str(value)) for name, value in case))

@@ -97,7 +97,7 @@ def fitting(
             if columns_left < 0 and state not in needed:
                 break
             chosen.append(state)
-    return [places[one] for one in sorted(chosen)]
+    return [places[number] for number in sorted(chosen)]
 
 
 def width(columns: Sequence[Sequence[str]], states: Sequence[int], places: range) -> int:

@@ -188,8 +188,8 @@ def _left_out(explanation: Explanation, table: _Table) -> Iterator[str]:
     n_rows, n_states = len(table.titles), sum(len(places) for places in table.columns)
     of_rows, of_states = len(explanation.facts) + len(explanation.parts), len(explanation.states)
     words = [
-        f"{most - some} of {most} {what}"
-        for some, most, what in ((n_rows, of_rows, "rows"), (n_states, of_states, "states"))
+        f"{most - some} of {most} {kind}"
+        for some, most, kind in ((n_rows, of_rows, "rows"), (n_states, of_states, "states"))
         if some < most
     ]
     if words:

@@ -82,10 +82,10 @@ def check(
         if identity in files:
             continue
         files[identity] = str(path)
-        for names, found in zip(
+        for names, bare in zip(
             (uncited, untested), bare_rules(data.decode(errors="replace")), strict=True
         ):
-            names += found
+            names += bare
         for finding in _findings(path, data, search_path, at, recalls=recalls):
             findings.setdefault(_identity(finding), finding)
     return Checked(
@@ -129,13 +129,13 @@ def _meant(
             yield _STANDARD_INPUT
             continue
         try:
-            found = find_sources(reference, search_path, excluded)
+            sources = find_sources(reference, search_path, excluded)
         except RulecError as error:
             meant.refused += error.diagnostics
             continue
-        meant.refused += found.refused
-        meant.left_alone += found.left_alone
-        yield from found.paths
+        meant.refused += sources.refused
+        meant.left_alone += sources.left_alone
+        yield from sources.paths
 
 
 def rulebooks_meant(
@@ -155,11 +155,11 @@ def rulebooks_meant(
         if known or not (has_magic(reference) or os.path.isdir(reference)):  # noqa: PTH112
             names[reference] = None
             continue
-        found = find_sources(reference, search_path, excluded)
-        on_the_way.left_alone += found.left_alone
-        on_the_way.refused += found.refused
-        rulebooks = [path for path in found.paths if not is_vocabulary(path)]
-        if found.paths and not rulebooks:
+        sources = find_sources(reference, search_path, excluded)
+        on_the_way.left_alone += sources.left_alone
+        on_the_way.refused += sources.refused
+        rulebooks = [path for path in sources.paths if not is_vocabulary(path)]
+        if sources.paths and not rulebooks:
             on_the_way.refused.append(
                 NOTHING_LEFT.at(
                     SourceLocation(reference),
@@ -231,17 +231,17 @@ def find_sources(
 
 def _matching(pattern: str, excluded: Exclusion | None) -> FoundSources:
     """The sources that a pattern matches, and those in folders that it matches."""
-    found = FoundSources()
+    sources = FoundSources()
     # As the shell does it: what begins with a point has to be named so.
     for path in sorted(glob(pattern, recursive=True)):  # noqa: PTH207
         if os.path.isdir(path):  # noqa: PTH112
             below = sources_below(path, excluded)
-            found.paths += below.paths
-            found.left_alone += below.left_alone
+            sources.paths += below.paths
+            sources.left_alone += below.left_alone
         elif path.endswith(SUFFIX):
-            found.paths.append(Path(path))
-    if not found.paths:
-        found.refused.append(
+            sources.paths.append(Path(path))
+    if not sources.paths:
+        sources.refused.append(
             NOTHING_LEFT.at(
                 SourceLocation(pattern),
                 "no rulebook and no vocabulary is called like that",
@@ -249,4 +249,4 @@ def _matching(pattern: str, excluded: Exclusion | None) -> FoundSources:
                 "working folder",
             )
         )
-    return found
+    return sources

@@ -63,11 +63,11 @@ def not_as_locked() -> tuple[Diagnostic, ...]:
     return tuple(
         NOT_AS_LOCKED.at(
             SourceLocation(str(path)),
-            f"`{name}` {'is not what' if found else 'does not ship any more as it'} was locked",
+            f"`{name}` {'is not what' if digest else 'does not ship any more as it'} was locked",
             help="see what has changed (`rulec diff`, the changelog), then `rulec check --lock`",
         )
         for name, locked in _locked(path).items()
-        if (found := _digest(shipped / name)) != locked
+        if (digest := _digest(shipped / name)) != locked
     )
 
 

@@ -67,12 +67,12 @@ def object_as_relation(use: tree.AtomUse, scope: Scope) -> Diagnostic:
     """``v(w)`` where v is an object."""
     name = use.name.text
     variable = scope.variables[name]
-    what = (
+    role = (
         "is an object" if variable.actual == name else f"stands for the object `{variable.actual}`"
     )
     return NOT_BOOLEAN.at(
         use.span,
-        f"`{name}` {what} and cannot be said of another one",
+        f"`{name}` {role} and cannot be said of another one",
         expected="expected a signal, a value or a definition before `(`",
         help=f"write such as `near({name})`, or give the definition a relation for it",
         labels=(Label(variable.span.place, f"`{variable.actual}` comes from here"),),

@@ -118,8 +118,8 @@ NOT_A_MULTIPLE = Code(
 )
 
 
-def over_limit(limit: Limit, what: str, name: tree.Name) -> Diagnostic:
-    subject = f"the {what}{' of' if what == 'formula' else ''} `{name.text}`"
+def over_limit(limit: Limit, part: str, name: tree.Name) -> Diagnostic:
+    subject = f"the {part}{' of' if part == 'formula' else ''} `{name.text}`"
     if limit == "deep":
         return FORMULA_TOO_DEEP.at(
             name.span,
@@ -183,17 +183,17 @@ def unused_variable(
 ) -> Diagnostic:
     match owner:
         case tree.RuleItem(name=name):
-            what, where = f"formula of `{name.text}`", "in `require`"
+            part, where = f"formula of `{name.text}`", "in `require`"
             way_out = "leave the variable out, or speak of it"
         case tree.DefineItem(name=name):
-            what, where = f"definition of `{name.text}`", "behind `=`"
+            part, where = f"definition of `{name.text}`", "behind `=`"
             way_out = "leave it out, or speak of it"
         case _:
-            what, where = "formula", "behind it"
+            part, where = "formula", "behind it"
             way_out = "speak of it, or leave the variable out"
     return UNUSED_VARIABLE.at(
         variable.span,
-        f"the {what} says nothing about `{variable.name.text}`",
+        f"the {part} says nothing about `{variable.name.text}`",
         expected=f"not used {where}",
         help=way_out,
         severity="warning",

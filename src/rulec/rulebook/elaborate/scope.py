@@ -95,13 +95,13 @@ class Scope:
             self.mistakes.append(mistake)
 
     @contextmanager
-    def within_limits(self, what: str, name: tree.Name) -> Iterator[None]:
+    def within_limits(self, part: str, name: tree.Name) -> Iterator[None]:
         """Elaborate a whole expression; report it if it is too deep or too large."""
         self.constants.begin()
         try:
             yield
         except OverLimitError as error:
-            self.report(over_limit(error.limit, what, name))
+            self.report(over_limit(error.limit, part, name))
 
     def unused(
         self, variables: Iterable[tree.Parameter], owner: tree.RuleItem | tree.DefineItem

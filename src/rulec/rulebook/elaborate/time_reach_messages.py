@@ -54,10 +54,10 @@ def first_state_only(node: tree.Formula, reads: str, *, alone: bool) -> Diagnost
         wider = f"never {text[len(node.sign) :].lstrip()}"
     else:
         wider = f"always {text}" if bare else f"always ({text})"
-    what = "the rule asks" if alone else "this part of the rule asks"
+    asker = "the rule asks" if alone else "this part of the rule asks"
     return FIRST_STATE_ONLY.at(
         node.span,
-        f"{what} for `{reads}` in the first state only",
+        f"{asker} for `{reads}` in the first state only",
         expected="nothing here speaks of later states",
         help=f"write `{wider if len(wider) <= 60 else f'{wider[:59]}…'}` to speak of all states",
         severity="warning",

@@ -41,12 +41,12 @@ def rulebook_heads(search_path: Sequence[Path] = ()) -> list[tree.File]:
 def rulebooks_with_rule(name: str, search_path: Sequence[Path] = ()) -> list[str]:
     """The rulebooks in whose text a rule of this name stands; what they inherit does not."""
     rule = re.compile(rb"\brule\s+%b\b" % re.escape(name.encode(errors="replace")))
-    found = []
+    names = []
     for path in _rulebooks(search_path):
         with suppress(RulecError):
             if rule.search(search.read_bytes(path)):
-                found.append(path.stem)
-    return found
+                names.append(path.stem)
+    return names
 
 
 def list_vocabularies(search_path: Sequence[Path] = ()) -> list[Entry]:

@@ -136,13 +136,13 @@ def _expression(part: str) -> re.Pattern[str]:
 
 def _between_stars(signs: Sequence[str]) -> list[str]:
     """Regular expressions of what stands before, between and after the ``*``."""
-    found = [""]
+    patterns = [""]
     for sign in signs:
         if sign == "*":
-            found.append("")
+            patterns.append("")
         else:
-            found[-1] += _of_sign(sign)
-    return found
+            patterns[-1] += _of_sign(sign)
+    return patterns
 
 
 def _of_sign(sign: str) -> str:

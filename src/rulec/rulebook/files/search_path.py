@@ -53,9 +53,9 @@ def find_rulebook(reference: str | Path, search_path: Sequence[Path]) -> Path:
         path = Path(text)
         inside = path / f"{path.name}{SUFFIX}"
         return inside if _is_file(inside) else path
-    found = _by_name(text, search_path)
-    if found is not None:
-        return found
+    by_name = _by_name(text, search_path)
+    if by_name is not None:
+        return by_name
     known = available_rulebooks(search_path)
     way_out = meant_by(text, known, search_path)
     raise NAME_NOT_FOUND.error(
@@ -79,7 +79,7 @@ def meant_by(name: str, known: Sequence[str], search_path: Sequence[Path]) -> st
         return f"`{name}` is a vocabulary, in whose words rulebooks such as `de` are written"
     shipped = {path.stem for path in rules_files(rulebooks_folder())}
     # Of many names the first are shown: the reader's own are those that are not known anyway.
-    own_first = sorted(known, key=lambda one: one in shipped)
+    own_first = sorted(known, key=lambda known_name: known_name in shipped)
     beside = [
         f"./{path}" for path in sorted(Path().glob(f"*{SUFFIX}")) if _lead(path) == "rulebook"
     ]
@@ -187,15 +187,15 @@ _TITLE = re.compile(rb'^title[ \t]+"([^"\n]*)"', re.M)
 
 def _by_title(name: str, known: Sequence[str], search_path: Sequence[Path]) -> str:
     """The rulebooks whose title begins with a name, such as a country's; empty if there is none."""
-    found = []
+    titled = []
     for book in known:
         with suppress(RulecError):
             title = _TITLE.search(read_bytes(find_rulebook(book, search_path)))
             shown = title[1].decode("utf-8", "replace") if title else ""
             fits = len(name) > 3 and shown.casefold().startswith(name.casefold())
             if fits or name.casefold() in OWN_NAMES.get(book, ()):
-                found.append(f"`{book}` ({shown})")
-    return f"did you mean {' or '.join(found)}?" if found else ""
+                titled.append(f"`{book}` ({shown})")
+    return f"did you mean {' or '.join(titled)}?" if titled else ""
 
 
 def _not_found(

@@ -114,20 +114,20 @@ def _is_excluded(path: Path, own: IgnoreFile | None, *, is_folder: bool = False)
     return "excluded" if is_ignored(path, [own], is_folder=is_folder) else ""
 
 
-def _sort(path: Path, left: str, tree: Path, found: FoundSources) -> None:
+def _sort(path: Path, left: str, tree: Path, sources: FoundSources) -> None:
     """Put a file where it belongs, ``left`` being why it is left alone."""
     if left:
-        found.left_alone.append(LeftAlone(str(path), left))
+        sources.left_alone.append(LeftAlone(str(path), left))
         return
     try:
         refuse_no_source(path, tree=tree)
     except RulecError as error:
-        found.refused += error.diagnostics
+        sources.refused += error.diagnostics
         return
     if is_other_file(path):
-        found.left_alone.append(LeftAlone(str(path), "no rulebook and no vocabulary"))
+        sources.left_alone.append(LeftAlone(str(path), "no rulebook and no vocabulary"))
     else:
-        found.paths.append(path)
+        sources.paths.append(path)
 
 
 def is_other_file(path: Path) -> bool:

@@ -19,14 +19,14 @@ _NAME = re.compile(r"\b[^\W\d]\w*")
 
 def words_of_vocabularies(search_path: Sequence[Path] = ()) -> dict[str, frozenset[str]]:
     """The words that each vocabulary declares: types, signals, quantities, values."""
-    found = {}
+    words_of = {}
     for path in search.available_vocabularies(search_path):
         with suppress(RulecError):
             text = search.read_bytes(path).decode(errors="replace")
-            found[path.stem] = frozenset(_NAME.findall(_NO_WORDS.sub(" ", text))) - RESERVED
-    return found
+            words_of[path.stem] = frozenset(_NAME.findall(_NO_WORDS.sub(" ", text))) - RESERVED
+    return words_of
 
 
 def vocabularies_with(name: str, search_path: Sequence[Path] = ()) -> list[str]:
     """The vocabularies that declare a word."""
-    return [one for one, words in words_of_vocabularies(search_path).items() if name in words]
+    return [book for book, words in words_of_vocabularies(search_path).items() if name in words]

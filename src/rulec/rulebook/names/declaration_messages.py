@@ -159,10 +159,10 @@ def no_such_value(name: tree.Name, chosen: tree.Name, values: tuple[str, ...]) -
     )
 
 
-def twice(what: str, again: tree.Name, first: Span) -> Diagnostic:
+def twice(kind: str, again: tree.Name, first: Span) -> Diagnostic:
     return DECLARED_TWICE.at(
         again.span,
-        f"the {what} `{again.text}` is declared twice",
+        f"the {kind} `{again.text}` is declared twice",
         expected="declared again here",
         help="give it another name, or leave it out",
         labels=(Label(first.place, "first declared here"),),

@@ -42,14 +42,14 @@ class SymbolTable:
     shared: dict[tuple[Source, Source], list[str]] = field(default_factory=dict)
     """Names that two vocabularies declare: the earlier one, the later one, and which."""
 
-    def twice(self, what: str, again: tree.Name, first: Span) -> None:
+    def twice(self, kind: str, again: tree.Name, first: Span) -> None:
         """Note that something is declared twice."""
         files = first.source, again.span.source
         if files[0] != files[1] and set(files) <= self.of_vocabularies:
             self.shared.setdefault(files, []).append(again.text)
             self.uncertain.add(again.text)
         else:
-            self.mistakes.append(say.twice(what, again, first))
+            self.mistakes.append(say.twice(kind, again, first))
 
     def vocabulary(self, name: str) -> Vocabulary:
         """The declarations as data; only of use when there were no mistakes."""

@@ -241,13 +241,13 @@ def never_in_force(dates: tree.InForce) -> Diagnostic:
 def value_of_another_kind(item: tree.SetItem) -> Diagnostic:
     name = item.name.text
     if isinstance(item.value, bool):
-        what, expected = "a parameter, which is a number", "a number"
+        kind, expected = "a parameter, which is a number", "a number"
         way_out = "only an option is on or off"
     else:
-        what, expected = "an option, which is on or off", "`on` or `off`"
+        kind, expected = "an option, which is on or off", "`on` or `off`"
         way_out = f"write `set {name} = on` or `set {name} = off`"
     return NUMBER_OR_FORMULA.at(
-        item.span, f"`{name}` is {what}", expected=f"expected {expected}", help=way_out
+        item.span, f"`{name}` is {kind}", expected=f"expected {expected}", help=way_out
     )
 
 
@@ -297,10 +297,10 @@ def lost_exceptions(item: tree.RuleItem, gone: Sequence[tree.Unless]) -> Diagnos
     plain = [exception for exception in item.unless if not exception.also]
     first = plain[0].span
     texts = named([" ".join(unless.span.text.removeprefix("also").split()) for unless in gone])
-    what = "the inherited exception" if len(gone) == 1 else "the inherited exceptions"
+    exceptions = "the inherited exception" if len(gone) == 1 else "the inherited exceptions"
     return LOST_EXCEPTION.at(
         Span(first.source, first.start, first.start + len("unless")),
-        f"`{item.name.text}` loses {what} {texts}",
+        f"`{item.name.text}` loses {exceptions} {texts}",
         expected="this replaces what is inherited",
         help="write `also unless` to add to it, or repeat what stays; or say what the rule is now",
         labels=tuple(Label(unless.span.place, "lost here") for unless in gone),

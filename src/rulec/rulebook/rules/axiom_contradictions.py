@@ -39,8 +39,8 @@ def contradictions(
         while not may_hold([instance.formula for instance in rest], vocabulary):
             needed = _needed(rest, (), vocabulary)
             yield say.contradictory_facts(needed, variables)
-            told = {id(instance.fact) for instance in needed}
-            rest = [instance for instance in rest if id(instance.fact) not in told]
+            reported = {id(instance.fact) for instance in needed}
+            rest = [instance for instance in rest if id(instance.fact) not in reported]
 
 
 def all_contradictions(axioms: Sequence[Axiom], vocabulary: Vocabulary) -> list[Diagnostic]:
@@ -62,13 +62,13 @@ def impossible_triggers(
     """
     lasting = [axiom for axiom in axioms if not has_constant(axiom.formula)]
     groups = [*_groups(rule.variables, lasting, vocabulary)]
-    for what, trigger in _triggers(rule):
+    for role, trigger in _triggers(rule):
         about = {ltl.subject_of(atom) for atom in ltl.atoms_of(trigger)}
         related = [instance for group in groups if subjects_of(group) & about for instance in group]
         if may_hold([trigger, *(instance.formula for instance in related)], vocabulary):
             continue
         needed = _needed(related, (trigger,), vocabulary)
-        yield say.ruled_out(what, trigger, needed, span)
+        yield say.ruled_out(role, trigger, needed, span)
 
 
 def _groups(

@@ -69,14 +69,14 @@ def contradictory_facts(
 
 
 def ruled_out(
-    what: str, trigger: Formula, instances: Iterable[AxiomInstance], span: Span | None
+    role: str, trigger: Formula, instances: Iterable[AxiomInstance], span: Span | None
 ) -> Diagnostic:
     """R0363: what a rule waits for, which ``what`` names, is ruled out, perhaps by facts."""
     axioms = _facts_of(instances)
     many = "s" if len(axioms) > 1 else ""
     return IMPOSSIBLE_TRIGGER.at(
         span,
-        f"{what} can never be: `{formula_text(trigger)}`",
+        f"{role} can never be: `{formula_text(trigger)}`",
         expected=f"ruled out by the fact{many} {_in_words(axioms)}"
         if axioms
         else "no state can be so",

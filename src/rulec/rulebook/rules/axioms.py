@@ -194,7 +194,7 @@ def _deciding_names(formula: ltl.Formula) -> frozenset[str] | None:
                 parts += (left, right)
             case ltl.Atom():
                 pass
-            case ltl.Comparison(terms) if not any(isinstance(one, ltl.Count) for _, one in terms):
+            case ltl.Comparison(terms) if not any(isinstance(term, ltl.Count) for _, term in terms):
                 pass
             case _:
                 return None

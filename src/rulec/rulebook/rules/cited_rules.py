@@ -50,7 +50,7 @@ def _noted(finding: Diagnostic, rules: dict[str, list[tuple[int, int, str]]]) ->
     if place is None or place.line is None:
         return finding
     within = rules.get(place.file, [])
-    index = bisect_right(within, place.line, key=lambda one: one[0]) - 1
+    index = bisect_right(within, place.line, key=lambda entry: entry[0]) - 1
     if index < 0 or place.line > within[index][1]:
         return finding
     return replace(finding, notes=(*finding.notes, within[index][2]))

@@ -68,11 +68,11 @@ def denied(fact: tree.StateLiteral, atom: Atom, symbols: SymbolTable) -> Diagnos
     )
 
 
-def contradiction(fact: tree.StateLiteral, what: Atom | QuantityTerm, first: Span) -> Diagnostic:
-    if isinstance(what, Atom) and what.value is None:
-        message = f"`{what}` cannot be both true and false in one state"
+def contradiction(fact: tree.StateLiteral, term: Atom | QuantityTerm, first: Span) -> Diagnostic:
+    if isinstance(term, Atom) and term.value is None:
+        message = f"`{term}` cannot be both true and false in one state"
     else:
-        message = f"`{_subject(what)}` cannot have two values in one state"
+        message = f"`{_subject(term)}` cannot have two values in one state"
     return CONTRADICTORY_STATE.at(
         fact.span,
         message,
@@ -83,21 +83,21 @@ def contradiction(fact: tree.StateLiteral, what: Atom | QuantityTerm, first: Spa
 
 
 def left_open(
-    state: tree.ExampleState, what: Atom | QuantityTerm, symbols: SymbolTable
+    state: tree.ExampleState, term: Atom | QuantityTerm, symbols: SymbolTable
 ) -> Diagnostic:
-    item = symbols.items[what.name]
-    if isinstance(what, QuantityTerm):
-        ways = [f"`{term_text(what)} = … {symbols.unit_text(what.name)}`"]
+    item = symbols.items[term.name]
+    if isinstance(term, QuantityTerm):
+        ways = [f"`{term_text(term)} = … {symbols.unit_text(term.name)}`"]
     elif isinstance(item, Enumeration):
-        ways = [f"`{Atom(what.name, what.arguments, value)}`" for value in item.values]
+        ways = [f"`{Atom(term.name, term.arguments, value)}`" for value in item.values]
     else:
-        ways = [f"`{what}`", f"`not {what}`"]
+        ways = [f"`{term}`", f"`not {term}`"]
     return INCOMPLETE_STATE.at(
         state.span,
-        f"this state leaves open `{_subject(what)}`, which the formula needs",
+        f"this state leaves open `{_subject(term)}`, which the formula needs",
         expected=f"expected {any_of(ways)}",
         help="say it in this state, or give its declaration a default",
-        labels=(Label(symbols.spans[what.name].place, f"`{what.name}` has no default"),),
+        labels=(Label(symbols.spans[term.name].place, f"`{term.name}` has no default"),),
     )
 
 
@@ -112,14 +112,14 @@ def no_fact(use: tree.AtomUse, kind: str, declared: tree.Name) -> Diagnostic:
     )
 
 
-def without_number(fact: tree.StateLiteral, what: QuantityTerm, symbols: SymbolTable) -> Diagnostic:
-    unit = symbols.unit_text(what.name)
+def without_number(fact: tree.StateLiteral, term: QuantityTerm, symbols: SymbolTable) -> Diagnostic:
+    unit = symbols.unit_text(term.name)
     return NUMBER_OR_FORMULA.at(
         fact.span,
-        f"`{term_text(what)}` is a number (in {unit}) and cannot be true or false",
+        f"`{term_text(term)}` is a number (in {unit}) and cannot be true or false",
         expected="expected its value",
-        help=f"write `{term_text(what)} = 5 {unit}`",
-        labels=(Label(symbols.spans[what.name].place, f"`{what.name}` is declared here"),),
+        help=f"write `{term_text(term)} = 5 {unit}`",
+        labels=(Label(symbols.spans[term.name].place, f"`{term.name}` is declared here"),),
     )
 
 
@@ -134,30 +134,30 @@ def not_a_number(fact: tree.StateLiteral, atom: Atom, symbols: SymbolTable) -> D
 
 
 def other_dimension(
-    fact: tree.StateLiteral, what: QuantityTerm, given: NumberByCases, unit: Unit
+    fact: tree.StateLiteral, term: QuantityTerm, given: NumberByCases, unit: Unit
 ) -> Diagnostic:
     assert fact.value is not None, "only a value has a unit"
     given_kind = given.dimension.name if given.dimension else "number"
     given_unit = fact.value.span.text.rpartition(" ")[2]
     return MIXED_DIMENSIONS.at(
         fact.value.span,
-        f"`{term_text(what)}` is a {unit.dimension.name} and `{print_formula(fact.value)}` "
+        f"`{term_text(term)}` is a {unit.dimension.name} and `{print_formula(fact.value)}` "
         f"a {given_kind}",
         expected=f"expected a {unit.dimension.name}",
         help=hour_in_another_language(given_unit) or f"write it in {unit.text}",
     )
 
 
-def too_large(fact: tree.StateLiteral, what: QuantityTerm, unit: Unit) -> Diagnostic:
+def too_large(fact: tree.StateLiteral, term: QuantityTerm, unit: Unit) -> Diagnostic:
     assert fact.value is not None, "only a value can be too large"
     return NUMBER_TOO_LARGE.at(
         fact.value.span,
-        f"this number is too large for `{term_text(what)}`, which counts in {unit.text}",
+        f"this number is too large for `{term_text(term)}`, which counts in {unit.text}",
         help=f"write a number below 1e308 {unit.text}",
     )
 
 
-def _subject(what: Atom | QuantityTerm) -> str:
+def _subject(term: Atom | QuantityTerm) -> str:
     return (
-        term_text(what) if isinstance(what, QuantityTerm) else str(Atom(what.name, what.arguments))
+        term_text(term) if isinstance(term, QuantityTerm) else str(Atom(term.name, term.arguments))
     )

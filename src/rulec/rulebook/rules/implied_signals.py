@@ -49,11 +49,11 @@ def _implications(facts: Iterable[Formula], vocabulary: Vocabulary) -> Iterator[
 
 def _fits(cause: Atom, effect: Atom, vocabulary: Vocabulary) -> bool:
     """Whether both are signals that may change, and whoever has the one has the other."""
-    one, other = vocabulary.declarations[cause.name], vocabulary.declarations[effect.name]
+    first, second = vocabulary.declarations[cause.name], vocabulary.declarations[effect.name]
     return (
-        isinstance(one, Signal)
-        and isinstance(other, Signal)
-        and not (one.constant or other.constant)
+        isinstance(first, Signal)
+        and isinstance(second, Signal)
+        and not (first.constant or second.constant)
         and len(set(cause.arguments)) == len(cause.arguments)
-        and all(map(vocabulary.is_subtype, one.parameters, other.parameters))
+        and all(map(vocabulary.is_subtype, first.parameters, second.parameters))
     )

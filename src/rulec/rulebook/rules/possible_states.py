@@ -68,8 +68,8 @@ def _truth(formula: ltl.Formula, known: Mapping[object, object]) -> bool | _Open
             return value
         case ltl.Atom():
             subject = ltl.subject_of(formula)
-            found = known.get(subject)
-            return _Open(subject) if found is None else found == (formula.value or True)
+            known_value = known.get(subject)
+            return _Open(subject) if known_value is None else known_value == (formula.value or True)
         case ltl.Comparison(terms, relation, limit):
             number = known.get(terms)
             return _Open(terms) if number is None else stands(number, relation, limit)  # type: ignore[arg-type]
@@ -78,8 +78,8 @@ def _truth(formula: ltl.Formula, known: Mapping[object, object]) -> bool | _Open
         case ltl.Binary(operator, left, right) if operator in _OF_ONE_STATE:
             first, second = _truth(left, known), _truth(right, known)
             return _joined(operator, first, second)
-    found = known.get(formula)
-    return _Open(formula) if found is None else found is True
+    known_value = known.get(formula)
+    return _Open(formula) if known_value is None else known_value is True
 
 
 _OF_ONE_STATE = frozenset(

@@ -50,9 +50,9 @@ def encoded(file: tree.File, source: Source) -> list[Any]:
             return value
         raise TypeError(f"a {type(value).__name__}")
 
-    found = data_of(file)
-    assert isinstance(found, list)
-    return found
+    data = data_of(file)
+    assert isinstance(data, list)
+    return data
 
 
 def decoded(data: Any, source: Source) -> tree.File:

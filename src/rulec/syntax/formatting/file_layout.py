@@ -27,7 +27,7 @@ def align_marks(rows: Iterable[tuple[LaidOutLine | None, int]]) -> None:
         rows: consecutive rows, each with the column of its mark in the file; None for what has no
             mark and comes between two that have.
     """
-    for (_, marked), together in groupby(rows, key=lambda one: (one[1], one[0] is not None)):
+    for (_, marked), together in groupby(rows, key=lambda entry: (entry[1], entry[0] is not None)):
         same = [row for row, _ in together if row is not None]
         column = max((row.mark for row in same), default=0)
         if not marked or any(len(row.code) + column - row.mark > WIDTH for row in same):

@@ -114,7 +114,7 @@ def segments_of(window: Window) -> list[Segment]:
         text = window.text[group.begin - start : group.end - start]
         old = kept.get(number)
         if old is None or old.text != text or not old.is_clean or group.mistakes:
-            told = len(reader.mistakes)
+            n_before = len(reader.mistakes)
             parts = tuple(reader.part(pieces) for pieces in group.pieces)
             old = Segment(
                 text,
@@ -122,7 +122,7 @@ def segments_of(window: Window) -> list[Segment]:
                 start=group.begin,
                 parts=parts,
                 split=tuple(group.mistakes),
-                read=tuple(reader.mistakes[told:]),
+                read=tuple(reader.mistakes[n_before:]),
                 closes=bool(group.pieces) and isinstance(group.pieces[-1], RulePieces),
                 foreign=not text.isascii() and _has_foreign_word(tokens, group),
             )
@@ -136,7 +136,7 @@ def _groups(splitter: FileSplitter, window: Window) -> list[_Group]:
     groups: list[_Group] = []
     begin = window.start
     pieces: list[Piece | RulePieces] = []
-    told = behind = 0
+    n_assigned = behind = 0
     mistakes: list[Diagnostic] = []
     for part in splitter.split():
         if pieces:
@@ -145,10 +145,10 @@ def _groups(splitter: FileSplitter, window: Window) -> list[_Group]:
                 groups.append(_Group(begin, behind, pieces, mistakes))
                 begin, pieces, mistakes = behind, [], []
         pieces.append(part)
-        mistakes += splitter.mistakes[told:]
-        told = len(splitter.mistakes)
+        mistakes += splitter.mistakes[n_assigned:]
+        n_assigned = len(splitter.mistakes)
         behind = tokens[part.last - 1].end
-    mistakes += splitter.mistakes[told:]
+    mistakes += splitter.mistakes[n_assigned:]
     last = window.text.find("\n", max(0, behind - window.start)) + 1 + window.start
     if not pieces or last == window.start:
         last = end

@@ -77,8 +77,8 @@ def _holds_a_formula(scene: ParseContext) -> bool:
 
 def _inside(scene: ParseContext) -> str:
     text, before = scene.text, scene.text_before
-    if found := _RANGE.fullmatch(text):
-        return _both_ends(found[1], found[2], scene.text_behind)
+    if match := _RANGE.fullmatch(text):
+        return _both_ends(match[1], match[2], scene.text_behind)
     if scene.accepted == {"UNIT"}:
         if text == "," and scene.is_number(scene.at + 1):
             return scene.with_a_point()

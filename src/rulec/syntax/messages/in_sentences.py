@@ -43,8 +43,8 @@ def advise_on_sentence(scene: ParseContext) -> str:
         return f"for `{text}` write `{_COMPARING[text]}`"
     plural = len(before) > 2 and before.endswith("s") and before not in keywords.RESERVED
     if scene.is_number(scene.at - 2) and plural and text.isidentifier():
-        number, one = scene.text_at(scene.at - 2), before[:-1]
-        return f"how many is said by `count x: {one} ({text}(x)) >= {number}`"
+        number, singular = scene.text_at(scene.at - 2), before[:-1]
+        return f"how many is said by `count x: {singular} ({text}(x)) >= {number}`"
     return ""
 
 

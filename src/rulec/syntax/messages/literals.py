@@ -31,8 +31,8 @@ def why_not_a_day(text: str) -> str:
 
 def how_a_date_is_written(text: str) -> str:
     """The way out for what is no date in ISO 8601's form: in that form, where it is one."""
-    if found := _DAY_FIRST.match(text):
-        day, month, year = (int(part) for part in found.groups())
+    if match := _DAY_FIRST.match(text):
+        day, month, year = (int(part) for part in match.groups())
         written = f"{year:04}-{month:02}-{day:02}"
         if not why_not_a_day(written):
             return f"a date is written year-month-day: `{written}`"
@@ -41,10 +41,10 @@ def how_a_date_is_written(text: str) -> str:
 
 def how_hours_are_written(text: str) -> str:
     """The way out for ``8:30`` or ``8h30``, a time of day by the clock; empty for anything else."""
-    found = _BY_THE_CLOCK.fullmatch(text)
-    if found is None:
+    match = _BY_THE_CLOCK.fullmatch(text)
+    if match is None:
         return ""
-    hours, minutes = map(int, found.groups())
+    hours, minutes = map(int, match.groups())
     exact = minutes % 3 == 0
     number = f"{hours + minutes / 60:g} h" if exact else f"{hours} h + {minutes} min"
     return f"a time of day is a number of hours: write `{number}`"

@@ -72,12 +72,12 @@ MOST = 20
 
 def hidden_meaning(source: Source, tokens: Sequence[Token]) -> list[Diagnostic]:
     """Mistakes for what drives or reorders a line of a comment, warnings for names alike."""
-    found = []
+    diagnostics = []
     if HIDES.search(source.text):
-        found += [hidden_in_comment(place) for place in _hidden(source, tokens)]
+        diagnostics += [hidden_in_comment(place) for place in _hidden(source, tokens)]
     if not source.text.isascii():
-        found += _alike(source, tokens)
-    return found
+        diagnostics += _alike(source, tokens)
+    return diagnostics
 
 
 def _hidden(source: Source, tokens: Sequence[Token]) -> Iterator[Span]:

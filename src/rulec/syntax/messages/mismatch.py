@@ -105,14 +105,14 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
         return _reserved(span, token.text, scene)
     if piece.kind == "item" and at < 2 and first not in keywords.ITEM_WORDS:
         return _unknown_item(source, inside)
-    what = _BY_KIND.get(piece.kind) or _WHAT.get(first, "the declaration")
+    subject = _BY_KIND.get(piece.kind) or _WHAT.get(first, "the declaration")
     begins = at == (first == "require")
     if token is None:
-        message = f"{what} is empty" if begins else f"{what} ends too early"
+        message = f"{subject} is empty" if begins else f"{subject} ends too early"
     elif begins:
-        message = f"{what} cannot begin with `{_short(token.text)}`"
+        message = f"{subject} cannot begin with `{_short(token.text)}`"
     else:
-        message = f"{what} cannot go on with `{_short(token.text)}`"
+        message = f"{subject} cannot go on with `{_short(token.text)}`"
     return UNEXPECTED_WORD.at(
         span,
         message,

@@ -95,14 +95,14 @@ def no_cite(rule: str, head: Span) -> Diagnostic:
     )
 
 
-def given_twice(what: str, again: Span, first: Span) -> Diagnostic:
+def given_twice(clause: str, again: Span, first: Span) -> Diagnostic:
     return GIVEN_TWICE.at(
         again,
-        f"{what} is given twice",
+        f"{clause} is given twice",
         expected="given again here",
         # To leave out what is required would make another law of it.
         help="join them by `and`, or write a rule for each"
-        if what == "`require`"
+        if clause == "`require`"
         else "keep one of them",
         labels=(Label(first.place, "first given here"),),
     )
@@ -169,25 +169,25 @@ class StructureMessages:
         end = self.tokens[index].end
         return Span(self.source, end, end).place
 
-    def no_close(self, what: str, opened: int, index: int) -> Diagnostic:
+    def no_close(self, block: str, opened: int, index: int) -> Diagnostic:
         """The brace of ``what``, at ``opened``, should have been closed before ``index``."""
         at_end = index >= len(self.tokens)
         return UNBALANCED_BRACE.at(
             self.place(index),
-            f"the file ends before {what} does" if at_end else f"{what} does not end before this",
+            f"the file ends before {block} does" if at_end else f"{block} does not end before this",
             expected="expected `}`" if at_end else "expected `}` before this",
-            help=f"end {what} with `}}`",
-            labels=(Label(self.place(opened), f"{what} begins here"),),
+            help=f"end {block} with `}}`",
+            labels=(Label(self.place(opened), f"{block} begins here"),),
         )
 
-    def no_open(self, before: int, what: str, *, confirms: bool = False) -> Diagnostic:
+    def no_open(self, before: int, content: str, *, confirms: bool = False) -> Diagnostic:
         """A ``{`` is missing behind token ``before``, perhaps of a confirmation."""
         way_out = "write `{` before them"
         if confirms:
             way_out = 'write which provision confirms it, such as `{ cite "s. 12" }`'
         return UNBALANCED_BRACE.at(
             self._behind(before),
-            f"{what} stand between `{{` and `}}`, and the `{{` is missing",
+            f"{content} stand between `{{` and `}}`, and the `{{` is missing",
             expected="expected `{`",
             help=way_out,
         )

@@ -64,17 +64,17 @@ class AlikeLines:
     columns: Mapping[ColumnPath, Column]
 
 
-def placed_among(places: Mapping[int, int], found: AlikeLines, first: int) -> AlikeLines:
+def placed_among(places: Mapping[int, int], alike: AlikeLines, first: int) -> AlikeLines:
     """Lines with their places among items; one without a name is called by its number.
 
     ``first`` is the number of the first line.
     """
-    indices = found.lines.tolist()
+    indices = alike.lines.tolist()
     headings = [
         heading if heading.id else replace(heading, id=f"line {first + index}")
-        for index, heading in zip(indices, found.headings, strict=True)
+        for index, heading in zip(indices, alike.headings, strict=True)
     ]
-    return replace(found, lines=np.array([places[index] for index in indices]), headings=headings)
+    return replace(alike, lines=np.array([places[index] for index in indices]), headings=headings)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -145,9 +145,9 @@ def alike_lines(lines: Sequence[bytes], heading_of: HeadingReader) -> Iterator[A
         kind = heading.step_s, types, form.text, form.named, tuple(map(len, outline.between))
         kinds.setdefault(kind, []).append(outline)
     for outlines in kinds.values():
-        found = _together(outlines)
-        if found is not None:
-            yield found
+        together = _together(outlines)
+        if together is not None:
+            yield together
 
 
 def _outlined(
@@ -319,7 +319,7 @@ def _joined(outlines: Sequence[_Outline], comma: bytes) -> tuple[Bytes, Places, 
         parts += outline.states, comma
     whole = b"".join([*parts, b" " * PADDING])
     text = np.frombuffer(whole, np.uint8)
-    ends = PADDING + np.cumsum([len(one.states) + len(comma) for one in outlines])
+    ends = PADDING + np.cumsum([len(line.states) + len(comma) for line in outlines])
     return text, np.flatnonzero(text == ord(":")), ends
 
 

@@ -50,8 +50,8 @@ def bytes_from(text: Bytes, starts: Places, width: int) -> NDArray[np.bytes_]:
     """So many bytes from each place on, any where there are none; ``text`` has no null in it."""
     windows = np.ndarray((len(text) - width + 1,), f"S{width}", text, strides=(1,))
     # ``take`` would first write out all windows.
-    found: NDArray[np.bytes_] = windows[starts.clip(0, len(windows) - 1)]
-    return found
+    taken: NDArray[np.bytes_] = windows[starts.clip(0, len(windows) - 1)]
+    return taken
 
 
 def column_words(text: Bytes, starts: Places, ends: Places, before: int) -> Words:
@@ -89,9 +89,9 @@ def _numbers(text: Bytes, starts: Places, ends: Places, words: Words) -> ReadCol
     else:
         numbers, is_read = _decimals(text, starts, ends, is_negative)
     for place in np.flatnonzero(~is_read & (lengths <= _LONGEST_WRITTEN)).tolist():
-        found = _own(bytes(text[starts[place] : ends[place]]))
-        if found is not None:
-            numbers[place], is_read[place] = found, True
+        number = _own(bytes(text[starts[place] : ends[place]]))
+        if number is not None:
+            numbers[place], is_read[place] = number, True
     return ReadColumn(Numbers(numbers, is_read), is_read)
 
 

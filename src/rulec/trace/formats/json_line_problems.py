@@ -63,13 +63,13 @@ class Kind(Generic[Record]):
         return NOT_A_TRACE.error(place, message, help=help_text or self.example)
 
     def _refused(self, problem: Exception, line: bytes, place: SourceLocation) -> RulecError:
-        what = f"this is not a {self.name}"
+        this = f"this is not a {self.name}"
         if isinstance(problem, RecursionError):
-            return self.bad(f"{what}: it is nested too deep", place)
+            return self.bad(f"{this}: it is nested too deep", place)
         at = not_utf8(line)
         if at is not None:
             words = f"the byte 0x{line[at]:02x} is not UTF-8"
-            return self.bad(f"{what}: {words}", placed(place, line, at), "save the file in UTF-8")
+            return self.bad(f"{this}: {words}", placed(place, line, at), "save the file in UTF-8")
         if is_beginning(line):
             message = f"the line ends in the middle of a {self.name}: it has been cut short"
             return self.bad(message, placed(place, line, len(line) - 1))
@@ -97,7 +97,7 @@ class Kind(Generic[Record]):
         if choice is not None:
             choices = get_args(get_type_hints(self.structure)[choice[1]])
             help_text = " or ".join(f'`"{choice[1]}": "{value}"`' for value in choices)
-        return self.bad(f"{what}: {words}", place, help_text)
+        return self.bad(f"{this}: {words}", place, help_text)
 
 
 def rows_of_tracks(line: bytes, place: SourceLocation) -> RulecError | None:

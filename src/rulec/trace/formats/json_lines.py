@@ -82,7 +82,7 @@ def read_chunks(
                 return
         chunk: list[Trace | RulecError | None] = []
         large = {index for index, line in enumerate(lines) if _objects_in(line, most) > most}
-        alike = _alike([b"" if n in large else one for n, one in enumerate(lines)], together)
+        alike = _alike([b"" if n in large else whole for n, whole in enumerate(lines)], together)
         known = set(chain.from_iterable(alike_lines.lines.tolist() for alike_lines in alike))
         places: dict[int, int] = {}
         with no_garbage_collection():
@@ -178,16 +178,16 @@ class _Torn:
 
     def error(self, *, at_the_end: bool) -> RulecError:
         """Diagnostic, which depends on the lines that follow."""
-        what = f"the line ends in the middle of {json_line_problems.middle_of(self.line)}"
+        cut = f"the line ends in the middle of {json_line_problems.middle_of(self.line)}"
         place = placed(self.place, self.line, len(self.line) - 1)
         if self.goes_on:
             return _TRACE.bad(
-                f"{what} and goes on below: a trace is one line", place, json_line_problems.ONE_LINE
+                f"{cut} and goes on below: a trace is one line", place, json_line_problems.ONE_LINE
             )
         if at_the_end:
-            message = f"{what.replace('line', 'file', 1)}: it has been cut short"
+            message = f"{cut.replace('line', 'file', 1)}: it has been cut short"
             return _TRACE.bad(message, place, "write or copy the file again")
-        return _TRACE.bad(f"{what}: it has been cut short", place, "write it again, or delete it")
+        return _TRACE.bad(f"{cut}: it has been cut short", place, "write it again, or delete it")
 
 
 def _no_traces(first: bytes, place: SourceLocation) -> RulecError | None:

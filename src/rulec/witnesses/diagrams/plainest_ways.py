@@ -113,17 +113,15 @@ class WaySearch:
         whole, settled = parts.whole, parts.settled
         if not parts.keys:
             return {settled: (cost, chosen)}
-        found = self._walked(parts.keys, parts.around)
+        ways = self._walked(parts.keys, parts.around)
         if whole is not None:
             return {
                 whole(classes + settled): (cost + more, chosen + digits)
-                for classes, (more, digits) in found.items()
+                for classes, (more, digits) in ways.items()
             }
         if not chosen:
-            return found
-        return {
-            classes: (cost + more, chosen + digits) for classes, (more, digits) in found.items()
-        }
+            return ways
+        return {classes: (cost + more, chosen + digits) for classes, (more, digits) in ways.items()}
 
     def _parts(self, keys: Nodes, axioms: Nodes) -> _Parts:
         diagrams = self._diagrams

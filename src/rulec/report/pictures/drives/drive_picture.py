@@ -257,9 +257,9 @@ def _words(
         lines += [("strong", f"{when}  {violation.title}"), ("ink", violation.says)]
         lines += [("strong", f"measured: {text}") for text in violation.measured]
         lines += [("ink", f"with {', '.join(violation.told)}")] if violation.told else []
-    others = [one for one in scene.violations if one is not violation]
+    others = [own for own in scene.violations if own is not violation]
     lines += [
-        ("faint", f"{one.time_s:g} s  {one.rule}: {one.short}") for one in others[:_MOST_LISTED]
+        ("faint", f"{own.time_s:g} s  {own.rule}: {own.short}") for own in others[:_MOST_LISTED]
     ]
     if len(others) > _MOST_LISTED:
         lines.append(("faint", f"and {len(others) - _MOST_LISTED} more"))

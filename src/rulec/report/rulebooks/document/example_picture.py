@@ -151,7 +151,7 @@ def _other(state: _State, name: str, kind: str, vocabulary: Vocabulary) -> Itera
     elif vocabulary.is_subtype(kind, "vulnerable_user"):
         yield f'<rect class="person" x="{x - 3:g}" y="{y - 9:g}" width="6" height="18" rx="3"/>'
     else:
-        long = any(vocabulary.is_subtype(kind, one) for one in ("bus", "truck", "rail_vehicle"))
+        long = any(vocabulary.is_subtype(kind, x) for x in ("bus", "truck", "rail_vehicle"))
         yield from _vehicle(x, y, "other", down=state.value("oncoming", name) is True, long=long)
     yield f'<text class="name" x="{x:g}" y="{y + 4:g}">{escape(name[:4])}</text>'
     for word in _DISTANCES:

@@ -120,9 +120,9 @@ def cells_in(column: Any) -> NDArray[Any]:
     kind = array.type.value_type if types.is_dictionary(array.type) else array.type
     if types.is_string(kind) or types.is_large_string(kind):
         codes, values = codes_in(array)
-        found = np.empty(len(values) + 1, dtype=object)
-        found[:-1] = values  # the last one stays None
-        return found.take(codes, mode="wrap")
+        objects = np.empty(len(values) + 1, dtype=object)
+        objects[:-1] = values  # the last one stays None
+        return objects.take(codes, mode="wrap")
     if types.is_integer(array.type) or types.is_float64(array.type):
         numbers, given = numbers_in(array), given_in(array)
         return numbers if given.all() else np.where(given, numbers, np.nan)

@@ -292,25 +292,25 @@ def _whole(array: Any) -> blocks.Coded | None:
 
 
 def _n_digits(steps: NDArray[np.int64]) -> NDArray[np.int8]:
-    found, most = np.ones(len(steps), dtype=np.int8), int(steps.max(initial=0))
+    digits, most = np.ones(len(steps), dtype=np.int8), int(steps.max(initial=0))
     for power in range(1, len(str(most))):
-        found += steps >= 10**power
-    return found
+        digits += steps >= 10**power
+    return digits
 
 
 def _texts_read(array: Any, value: Callable[[str], PartialValue]) -> blocks.Column:
     """A column of texts, or of the numbers that they say."""
-    found = _one_text(array, value) or _numbers_said(array)
-    if found is not None:
-        return found
+    column = _one_text(array, value) or _numbers_said(array)
+    if column is not None:
+        return column
     texts = coded(array)
     return blocks.Coded(texts.codes, [value(text) if text else "" for text in texts.values])
 
 
 def _one_text(array: Any, value: Callable[[str], PartialValue]) -> blocks.Coded | None:
     """A column in which all texts are the same; None if they are not."""
-    found = one_in(array)
-    return None if found is None else blocks.Coded(found[0], [value(found[1])])
+    same = one_in(array)
+    return None if same is None else blocks.Coded(same[0], [value(same[1])])
 
 
 def _numbers_said(array: Any) -> blocks.Numbers | None:
@@ -321,10 +321,10 @@ def _numbers_said(array: Any) -> blocks.Numbers | None:
     if not given.any() or not _DIGIT.search(array[int(given.argmax())].as_py()):
         return None
     try:
-        found = cast_to(array, pyarrow.float64())
+        floats = cast_to(array, pyarrow.float64())
     except pyarrow.ArrowInvalid:  # of numbers there are some that Arrow does not read, such as `.5`
         return None
-    numbers = numbers_in(found)
+    numbers = numbers_in(floats)
     sizes = np.abs(np.where(given, numbers, 1.0))
     # Arrow reads `nan`; and what is written with an exponent may be nearer to 0 than any float.
     if not np.isfinite(sizes.max()):
@@ -336,7 +336,7 @@ def _numbers_said(array: Any) -> blocks.Numbers | None:
         places = pyarrow.Array.from_buffers(
             pyarrow.int64(), len(long), [None, pyarrow.py_buffer(long.astype(np.int64))]
         )
-        texts, again = array.take(places), cast_to(found.take(places), pyarrow.string())
+        texts, again = array.take(places), cast_to(floats.take(places), pyarrow.string())
         others = texts.filter(array_of_truths(~are_equal(texts, again))).to_pylist()
         if any(isinstance(number_written(text), WrittenNumber) for text in others):
             return None

@@ -100,9 +100,9 @@ def _pieces(
     number = 0
     try:
         for batch in source.iter_batches(_ROWS_AT_ONCE):
-            found = _first_no_text(batch)
-            if found is not None:
-                row, column = found
+            invalid = _first_no_text(batch)
+            if invalid is not None:
+                row, column = invalid
                 yield _rows_before(row, batch)
                 yield _no_utf8(
                     f"the column `{column}` has a text here", SourceLocation(file, number + row + 1)
@@ -117,8 +117,8 @@ def _pieces(
 def _first_no_text(batch: Any) -> tuple[int, str] | None:
     """The first row with a text that is not UTF-8, counted from 0, and its column."""
     columns = zip(batch.schema.names, batch.columns, strict=True)
-    found = [(_first_that_fails(column), name) for name, column in columns if not is_valid(column)]
-    return min(found, default=None)
+    wrong = [(_first_that_fails(column), name) for name, column in columns if not is_valid(column)]
+    return min(wrong, default=None)
 
 
 def is_valid(column: Any) -> bool:
@@ -153,8 +153,8 @@ def _rows_before(row: int, batch: Any) -> Any:
     return type(batch).from_arrays(columns, schema=batch.schema)
 
 
-def _no_utf8(what: str, place: SourceLocation) -> RulecError:
-    return problem(f"{what} that is not UTF-8", place, "write the file's texts in UTF-8")
+def _no_utf8(content: str, place: SourceLocation) -> RulecError:
+    return problem(f"{content} that is not UTF-8", place, "write the file's texts in UTF-8")
 
 
 def _no_parquet(stream: IO[bytes], file: str) -> RulecError | None:
@@ -164,9 +164,9 @@ def _no_parquet(stream: IO[bytes], file: str) -> RulecError | None:
     stream.seek(max(start, start + size - len(_MARK)))
     end = stream.read()
     stream.seek(start)
-    what = "the file cannot be read as Parquet"
+    refusal = "the file cannot be read as Parquet"
     if not size:
-        return problem(f"{what}: it is empty", SourceLocation(file), _AGAIN)
+        return problem(f"{refusal}: it is empty", SourceLocation(file), _AGAIN)
     if beginning != _MARK:
         result = packed(beginning)
         if result is not None:
@@ -174,17 +174,17 @@ def _no_parquet(stream: IO[bytes], file: str) -> RulecError | None:
                 f"this is no Parquet, but {result.noun}", SourceLocation(file), result.help
             )
         way_out = "if it is CSV, call it `.csv`; else name its format with `--input-format`"
-        return problem(f"{what}: it does not begin with `PAR1`", SourceLocation(file), way_out)
+        return problem(f"{refusal}: it does not begin with `PAR1`", SourceLocation(file), way_out)
     if end != _MARK or size == len(_MARK):
         why = "its table of contents, which comes last, is missing; it has been cut short"
-        return problem(f"{what}: {why}", SourceLocation(file), _AGAIN)
+        return problem(f"{refusal}: {why}", SourceLocation(file), _AGAIN)
     return None
 
 
-def _unreadable(what: str, reason: Exception, file: str) -> RulecError:
+def _unreadable(part: str, reason: Exception, file: str) -> RulecError:
     words = str(reason).split(".")[0]
     return problem(
-        f"{what} cannot be read as Parquet: it is damaged ({words})", SourceLocation(file), _AGAIN
+        f"{part} cannot be read as Parquet: it is damaged ({words})", SourceLocation(file), _AGAIN
     )
 
 
@@ -250,7 +250,7 @@ def arrow(file: str) -> tuple[Any, Any]:
     return pyarrow, parquet
 
 
-def without_arrow(what: str, file: str) -> RulecError:
+def without_arrow(task: str, file: str) -> RulecError:
     """What takes Arrow cannot be read or written here (R0706)."""
     place = SourceLocation(file)
-    return missing_package(PARQUET_UNAVAILABLE, what, "pyarrow", "parquet", place)
+    return missing_package(PARQUET_UNAVAILABLE, task, "pyarrow", "parquet", place)

@@ -125,7 +125,7 @@ def trace_outlines(table: Any) -> list[TraceOutline]:
         steps = np.where(given_in(array), numbers_in(array), -1)
     except (pyarrow.ArrowException, OverflowError):
         steps = None
-    found = []
+    outlines = []
     for start, stop in zip(starts, [*starts[1:], len(table)], strict=True):
         lacks, states = "", 0
         if steps is not None:
@@ -135,8 +135,8 @@ def trace_outlines(table: Any) -> list[TraceOutline]:
                 lacks = f"it begins with step {own[0]}"
             elif (gaps := np.diff(own) > 1).any():
                 lacks = f"step {own[np.argmax(gaps)] + 1} is missing"
-        found.append(TraceOutline(names[start].as_py(), start, stop - start, states, lacks))
-    return found
+        outlines.append(TraceOutline(names[start].as_py(), start, stop - start, states, lacks))
+    return outlines
 
 
 def without_rows(table: Any, outlines: Sequence[TraceOutline]) -> Any:
@@ -151,13 +151,13 @@ def without_rows(table: Any, outlines: Sequence[TraceOutline]) -> Any:
 
 def extent(table: Any) -> tuple[object, ...]:
     """The number of rows, and the least and greatest value of each column, in whatever order."""
-    found: list[object] = [len(table)]
+    extents: list[object] = [len(table)]
     for name in sorted(table.column_names):
         column = _plain(table.column(name))
         if not types.is_nested(column.type):
             least, greatest = compute.min_max(column).values()
-            found.append((name, least.as_py(), greatest.as_py()))
-    return tuple(found)
+            extents.append((name, least.as_py(), greatest.as_py()))
+    return tuple(extents)
 
 
 def key_texts(table: Any, keys: Sequence[str], between: str) -> tuple[NDArray[np.int64], list[str]]:
