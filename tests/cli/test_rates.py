@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 import pytest
 
 from rulec.cli.main import main
-from rulec.report.verdict_findings import found_in_drives, found_in_traces
+from rulec.report.verdict_findings import findings_of_drives, findings_of_traces
 from support.builders.recorded_cars import three_cars
 
 SHARED = {"rulebook": "de", "rulebook_hash": "abcdefgh1", "rulec": "1.0", "file": "a.xml"}
@@ -167,8 +167,8 @@ def test_with_exposure_nothing_is_looked_for_twice(tmp_path, monkeypatch, capsys
 
         monkeypatch.setattr(module, name, noting)
 
-    counted(found_in_traces, "explain")
-    counted(found_in_drives, "evidence_of")
+    counted(findings_of_traces, "explain")
+    counted(findings_of_drives, "evidence_of")
     (tmp_path / "lights.rules").write_text(BOOK)
     (tmp_path / "slow.rules").write_text(
         "rulebook slow use road hard rule r { require always speed < 1 km/h }"

@@ -11,7 +11,7 @@ from rulec.api.rulebook_compilation import machines
 from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.selection import RequestedDrives
 from rulec.extraction.violation_evidence import evidence_of
-from rulec.report.verdict_findings.found_in_drives import DriveFindings
+from rulec.report.verdict_findings.findings_of_drives import DriveFindings
 from rulec.report.verdicts import recording_json, verdict_report
 from support.builders.drive_verdicts import violated
 from support.builders.recordings import recording, straight, vehicle

@@ -18,7 +18,7 @@ from rulec.report.verdict_findings.mcap_file_writer import JsonChannel, TimedMes
 from rulec.report.verdict_findings.verdict_finding import (
     COLUMNS,
     FindingsOf,
-    FoundInRecording,
+    RecordingFindings,
     VerdictFinding,
 )
 
@@ -69,8 +69,8 @@ SLOW = of(
 DISTANCE = of("distance", strength="soft", vehicle="4", other=("3",), from_s=1.0, to_s=1.0)
 OPEN = of("distance", "open", strength="soft", vehicle="5", other=("3",), open_on=("gap",))
 UNTOLD = of("quiet", "not_judged", open_on=("wet",))
-FOUND = FoundInRecording("a b.xml", "A", 3, (SLOW, DISTANCE, OPEN, UNTOLD))
-BROKEN = FoundInRecording(
+FOUND = RecordingFindings("a b.xml", "A", 3, (SLOW, DISTANCE, OPEN, UNTOLD))
+BROKEN = RecordingFindings(
     "b.xml", "", 0, (VerdictFinding(file="b.xml", outcome="not_judged", because="it is empty"),)
 )
 
@@ -114,7 +114,7 @@ def test_csv_has_a_row_for_each_finding(rules):
 
 @pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@SUM(A1)", "'=1", "\t=1", "\r=1"])
 def test_no_cell_of_csv_is_a_formula(rules, text):
-    found = FoundInRecording("f", "A", 1, (of("slow", vehicle=text, other=(text, "x")),))
+    found = RecordingFindings("f", "A", 1, (of("slow", vehicle=text, other=(text, "x")),))
     head, row = csv.reader(io.StringIO(written(rules, "csv", found).decode(), newline=""))
     for cell in (row[head.index("vehicle")], row[head.index("other")]):
         assert cell[0] in "'\\"
@@ -153,7 +153,7 @@ def test_junit_fails_for_hard_rules_alone(rules):
 
 
 def test_a_rule_that_is_only_open_does_not_pass_in_junit(rules):
-    found = FoundInRecording("a b.xml", "A", 3, (OPEN,))
+    found = RecordingFindings("a b.xml", "A", 3, (OPEN,))
     suite = ElementTree.fromstring(written(rules, "junit", found)).find("testsuite")
     skipped = {case.get("name"): case.find("skipped") for case in suite}
     assert (skipped["slow"], skipped["quiet"], suite.get("skipped")) == (None, None, "1")
@@ -285,7 +285,7 @@ def test_messages_in_mcap_are_of_their_schemas(rules):
 
 
 def test_mcap_without_events_is_a_whole_file(rules):
-    assert messages(written(rules, "mcap", FoundInRecording("f", "A", 3, ()))) == {}
+    assert messages(written(rules, "mcap", RecordingFindings("f", "A", 3, ()))) == {}
     assert messages(written(rules, "mcap")) == {}
 
 
@@ -309,7 +309,7 @@ def test_messages_are_found_by_their_time():
 @pytest.mark.parametrize("form", ENDINGS)
 def test_hostile_names_do_no_harm(rules, form):
     evil = of("slow", vehicle=EVIL, other=(EVIL, "\ud800"), from_s=1.0, to_s=1.0, x=1.0, y=1.0)
-    content = written(rules, form, FoundInRecording(EVIL, EVIL, 1, (evil,)))
+    content = written(rules, form, RecordingFindings(EVIL, EVIL, 1, (evil,)))
     if form in ("parquet", "mcap"):
         assert content
         return

@@ -26,8 +26,8 @@ from rulec.report.verdicts.state_times import StateTimes
 
 if TYPE_CHECKING:
     from rulec.monitoring.explain.explanation import Explanation
-    from rulec.report.verdict_findings.found_in_drives import DriveFindings, FoundInDrives
-    from rulec.report.verdict_findings.verdict_finding import FoundInRecording, VerdictFinding
+    from rulec.report.verdict_findings.findings_of_drives import DriveFindings, GatheredFindings
+    from rulec.report.verdict_findings.verdict_finding import RecordingFindings, VerdictFinding
 
 RowMaker: TypeAlias = Callable[
     [DriveVerdict | NoDrive, RecordingVerdicts, str, "Sequence[VerdictFinding] | None"],
@@ -72,7 +72,7 @@ class JudgedRecording:
     tally: ViolationTally
     table: str
     explained: tuple[str, ...]
-    found: FoundInRecording | None
+    findings: RecordingFindings | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +147,7 @@ class _JudgedDrives:
     blocks: list[str] = field(default_factory=list)
     rows: list[Mapping[str, object]] = field(default_factory=list)
     pieces: list[Piece] = field(default_factory=list)
-    found: FoundInDrives | None = None
+    findings: GatheredFindings | None = None
     n_explained: int = 0
 
 
@@ -215,15 +215,15 @@ class _RecordingJudge:
         judged = self._judged
         for answer in self._verdicts.answers():
             judged.pieces += self._of_drive(answer)
-        judged.found = None if self._findings is None else self._findings.gathered
+        judged.findings = None if self._findings is None else self._findings.gathered
         return judged
 
     def _take(self, later: _JudgedDrives) -> None:
         self._judged.tally.include(later.tally)
         self._judged.blocks += later.blocks
         self._judged.rows += later.rows
-        if self._findings is not None and later.found is not None:
-            self._findings.gathered.include(later.found)
+        if self._findings is not None and later.findings is not None:
+            self._findings.gathered.include(later.findings)
 
     def _of_drive(self, answer: DriveVerdict | NoDrive) -> Iterator[Piece]:
         verdicts, judged = self._verdicts, self._judged
@@ -257,7 +257,7 @@ class _RecordingJudge:
             judged.tally,
             table,
             explained=tuple(judged.blocks),
-            found=findings,
+            findings=findings,
         )
 
     def _explained(self, result: DriveVerdict) -> list[Explanation]:
@@ -308,7 +308,7 @@ def _judged_part(
 
 def _findings(verdicts: RecordingVerdicts, file: str) -> DriveFindings:
     # Evidence and its findings, 20 ms: only where they are wanted.
-    from rulec.report.verdict_findings.found_in_drives import DriveFindings
+    from rulec.report.verdict_findings.findings_of_drives import DriveFindings
 
     return DriveFindings(verdicts, file)
 

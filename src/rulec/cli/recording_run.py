@@ -63,13 +63,13 @@ class RecordingRun:
             self.unread.append(file)
             if self.to.wants_findings:
                 # Findings, 20 ms: only where they are wanted.
-                from rulec.report.verdict_findings.found_in_drives import not_judged_file
+                from rulec.report.verdict_findings.findings_of_drives import not_judged_file
 
                 recording = not_judged_file(file, error, self.settings.rules.name)
                 if self.to.to_rows is not None:
                     row = self.to.to_rows.of_nothing({"file": file}, recording.failure)
                     recording = replace(recording, rows=(row,))
-                self.to.found(recording)
+                self.to.add(recording)
 
     def _aloud(self, files: Sequence[str], jobs: Jobs) -> Iterator[tuple[str, Piece]]:
         """The pieces of all files, and how far it is."""
@@ -110,8 +110,8 @@ class RecordingRun:
                 first = in_a_line(piece) if several else piece.table
                 last = [] if several else [summary(piece.tally)]
                 self.to.text("\n".join([first, *piece.explained, *last]))
-            if piece.found is not None:
-                self.to.found(piece.found)
+            if piece.findings is not None:
+                self.to.add(piece.findings)
         else:
             self.not_read(piece, file)
 

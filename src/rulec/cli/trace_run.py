@@ -21,7 +21,7 @@ from rulec.monitoring.batch.batch_verify import Items, rulebook_for, step_of, ve
 from rulec.monitoring.verdict import NotJudged, Verdict
 from rulec.report.findings.diagnostics_text import Complaints
 from rulec.report.text.console import page_width, progress
-from rulec.report.verdict_findings.verdict_finding import FoundInRecording, VerdictFinding
+from rulec.report.verdict_findings.verdict_finding import RecordingFindings, VerdictFinding
 from rulec.report.verdicts import verdict_report
 from rulec.report.verdicts.batch_table import BatchTally
 from rulec.report.verdicts.state_times import StateTimes
@@ -82,7 +82,7 @@ class TraceRun:
                 rows += self._rows(file, answer, facts, findings[before:])
             if self.to.wants_findings:
                 drives = self.total.judged - traces_before
-                self.to.found(FoundInRecording(file, "", drives, tuple(findings), tuple(rows)))
+                self.to.add(RecordingFindings(file, "", drives, tuple(findings), tuple(rows)))
         if self.total.judged or self.opened:
             self.to.text(verdict_report.summary(self.total.counts, self.total.not_judged))
         if self.engine is not None:
@@ -132,7 +132,7 @@ class TraceRun:
             self.to.line(verdict_json.not_judged_as_json(answer, self.rules.name))
         if self.to.wants_findings:
             # As above: only where they are wanted.
-            from rulec.report.verdict_findings.found_in_traces import not_judged_trace
+            from rulec.report.verdict_findings.findings_of_traces import not_judged_trace
 
             findings.append(not_judged_trace(file, answer, self.rules.name))
 
@@ -172,7 +172,7 @@ class TraceRun:
             self.to.text(text)
         if self.to.wants_findings:
             # As above: only where they are wanted.
-            from rulec.report.verdict_findings.found_in_traces import trace_findings
+            from rulec.report.verdict_findings.findings_of_traces import trace_findings
 
             findings += trace_findings(file, traces[place], verdict, used, explained)
         return len(explained)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
     from rulec.fleet.drive_rows import DriveRows
     from rulec.report.verdict_findings.finding_writers import FindingWriter
-    from rulec.report.verdict_findings.verdict_finding import FoundInRecording
+    from rulec.report.verdict_findings.verdict_finding import RecordingFindings
 
 FORMATS: Endings = {**endings_of("text", "json"), **ENDINGS}
 """Text, verdicts as a line of JSON for each trace or drive, or findings in many formats."""
@@ -61,7 +61,7 @@ class VerdictOutputs:
         for write in self._lines:
             write(line)
 
-    def found(self, findings: FoundInRecording) -> None:
+    def add(self, findings: RecordingFindings) -> None:
         """Take the findings of a recording, or of a file of traces. Raises RulecError."""
         self._findings += len(findings.findings)
         for writer, _ in self._writers:

@@ -15,7 +15,7 @@ from rulec.fleet.judged_by import JudgedBy
 from rulec.monitoring.moments.drive_facts import DriveFacts, facts_of
 from rulec.monitoring.moments.exposure import Exposure
 from rulec.monitoring.verdict import NotJudged, OutcomeName, Verdict
-from rulec.report.verdict_findings.found_in_drives import DriveFindings
+from rulec.report.verdict_findings.findings_of_drives import DriveFindings
 from rulec.report.verdict_findings.verdict_finding import COLUMNS as OF_FINDINGS
 from rulec.report.verdict_findings.verdict_finding import VerdictFinding, named_rule
 

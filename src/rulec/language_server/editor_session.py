@@ -41,7 +41,7 @@ class EditorSession(LanguageServer):
         super().__init__("rulec", __version__, kind, protocol_cls=StrictProtocol)
         self.status = 0
         self.editor = EditorWorkspace()
-        self.found: dict[str, dict[str, list[Diagnostic]]] = {}
+        self.findings: dict[str, dict[str, list[Diagnostic]]] = {}
         self.answers = KnownAnswers()
         self.waiting: list[asyncio.TimerHandle] = []
 
@@ -60,16 +60,16 @@ class EditorSession(LanguageServer):
             findings: Iterable[Diagnostic] = checked.findings
         except RulecError as error:  # the project's settings
             checked, findings = None, error.diagnostics
-        before = self.found.get(uri, {})
-        self.found[uri] = published.by_file(findings, uri)
-        for file in dict.fromkeys((uri, *before, *self.found[uri])):
+        before = self.findings.get(uri, {})
+        self.findings[uri] = published.by_file(findings, uri)
+        for file in dict.fromkeys((uri, *before, *self.findings[uri])):
             self.publish(file)
         return checked
 
     def publish(self, uri: str) -> None:
         """Send everything that has been found in a file."""
         document = self.editor.document(uri)
-        diagnostics = published.union(self.found, uri)
+        diagnostics = published.union(self.findings, uri)
         self.text_document_publish_diagnostics(
             lsp.PublishDiagnosticsParams(
                 uri,

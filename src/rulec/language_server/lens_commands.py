@@ -31,25 +31,25 @@ def add_commands(server: EditorSession) -> None:
     async def run(uri: str, rule: str) -> str:
         asked = _asked(server, uri, rule)
         if isinstance(asked, str):
-            return _told(server, asked)
+            return _shown(server, asked)
         answer = await _examples(server, asked)
-        return _told(server, answer if isinstance(answer, str) else answer.in_words(rule))
+        return _shown(server, answer if isinstance(answer, str) else answer.in_words(rule))
 
     @server.command(lenses.ENGLISH)
     async def in_english(uri: str, rule: str) -> str:
         asked = _asked(server, uri, rule)
         if isinstance(asked, str):
-            return _told(server, asked)
+            return _shown(server, asked)
         _, book, meant = asked
-        return _told(server, await asyncio.to_thread(english, book, meant))
+        return _shown(server, await asyncio.to_thread(english, book, meant))
 
     @server.command(lenses.COMPARE)
     async def compare(uri: str, rule: str) -> str:
         asked = _asked(server, uri, rule)
         if isinstance(asked, str):
-            return _told(server, asked)
+            return _shown(server, asked)
         if len(asked[0].chain.books) < 2:
-            return _told(server, "the rulebook extends no other")
+            return _shown(server, "the rulebook extends no other")
         names, book, meant = asked
         above = names.chain.books[-2].span.source.name
         try:
@@ -57,25 +57,25 @@ def add_commands(server: EditorSession) -> None:
                 parent = read_rulebook(above, (), book.at, book.traffic).rulebook
             answer = await asyncio.to_thread(parent_answer, book, parent, rule)
         except RulecError as error:
-            return _told(server, str(error))
+            return _shown(server, str(error))
         server.answers.keep_few()
         server.answers.parents[lenses.parent_key(meant, names)] = answer
         server.workspace_code_lens_refresh(None)
-        return _told(server, answer.text)
+        return _shown(server, answer.text)
 
     @server.command(lenses.INSERT)
     async def insert(uri: str, rule: str) -> str:
         asked = _asked(server, uri, rule)
         if isinstance(asked, str):
-            return _told(server, asked)
+            return _shown(server, asked)
         answer = await _examples(server, asked)
         if isinstance(answer, str):
-            return _told(server, answer)
+            return _shown(server, answer)
         names = asked[0]
         missing = answer.missing[0] if answer.missing else ""
         change = lenses.inserted_example(names, rule, missing) if missing else None
         if change is None:
-            return _told(server, f"{rule}: every edge is tested")
+            return _shown(server, f"{rule}: every edge is tested")
         edit = workspace_edit({uri: [change]}, server.editor)
         await server.workspace_apply_edit_async(lsp.ApplyWorkspaceEditParams(edit))
         return missing
@@ -113,6 +113,6 @@ async def _examples(server: EditorSession, asked: Asked) -> ExampleAnswer | str:
     return answer
 
 
-def _told(server: EditorSession, text: str) -> str:
+def _shown(server: EditorSession, text: str) -> str:
     server.window_show_message(lsp.ShowMessageParams(lsp.MessageType.Info, text))
     return text

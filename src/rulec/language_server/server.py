@@ -81,7 +81,7 @@ def _documents(server: EditorSession) -> None:
     def closed(params: lsp.DidCloseTextDocumentParams) -> None:
         uri = params.text_document.uri
         server.editor.close(uri)
-        for file in dict.fromkeys((uri, *server.found.pop(uri, {}))):
+        for file in dict.fromkeys((uri, *server.findings.pop(uri, {}))):
             server.publish(file)
         server.check_others_later(uri)
 

@@ -107,10 +107,10 @@ class _Step:
 
     def _value(self, number: int) -> dict[Function, int]:
         if number not in self._values:
-            self._values[number] = self._found(number)
+            self._values[number] = self._evaluated(number)
         return self._values[number]
 
-    def _found(self, number: int) -> dict[Function, int]:
+    def _evaluated(self, number: int) -> dict[Function, int]:
         algebra = self._algebra
         match self._demands.parts[number]:
             case Now(letters):
@@ -219,14 +219,14 @@ class _Repetition:
 
     def _value(self, number: int) -> list[int]:
         if number not in self._values:
-            value = self._found(number)
+            value = self._evaluated(number)
             self._demands.algebra.count(len(value))
             while len(value) > 1 and value[-1] == value[-2]:
                 value.pop()
             self._values[number] = value
         return self._values[number]
 
-    def _found(self, number: int) -> list[int]:
+    def _evaluated(self, number: int) -> list[int]:
         match self._demands.parts[number]:
             case Now(letters):
                 return [letters]

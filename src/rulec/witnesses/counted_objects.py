@@ -209,12 +209,12 @@ class CountedObjectKinds:
                 for place, rest in counted.asked
             ]
         )
-        if given not in counted.found:
+        if given not in counted.by_given:
             known: list[int | Fraction] = [0] * len(counted.reads)
             for (place, _), value in zip(counted.asked, given, strict=True):
                 known[place] = value
-            counted.found[given] = tuple(_first_of_each(counted, known, vocabulary))
-        return counted.found[given]
+            counted.by_given[given] = tuple(_first_of_each(counted, known, vocabulary))
+        return counted.by_given[given]
 
 
 @dataclass(frozen=True, slots=True)
@@ -233,7 +233,7 @@ class _CountedType:
     counted: Sequence[int]
     allowed: Sequence[int]
     asked: Sequence[tuple[int, Sequence[tuple[Fraction, Term]] | None]]
-    found: dict[object, tuple[CountedObject, ...]] = field(default_factory=dict)
+    by_given: dict[object, tuple[CountedObject, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

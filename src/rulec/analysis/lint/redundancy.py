@@ -66,7 +66,7 @@ class ForbiddenTraces:
 
     def __init__(self, analyzed: AnalyzedRule) -> None:
         self._analyzed = analyzed
-        self._found: list[Trace] = []
+        self._traces: list[Trace] = []
         # Who allows which of those found: rules as they are, for names are not theirs alone.
         self._allowed: dict[tuple[int, int], bool] = {}
         with suppress(UndecidedError):
@@ -77,7 +77,7 @@ class ForbiddenTraces:
 
         Raises UndecidedError.
         """
-        numbers = range(len(self._found))
+        numbers = range(len(self._traces))
         if any(all(self._allows(other, number) for other in others) for number in numbers):
             return True
         return self._search(others)
@@ -85,7 +85,7 @@ class ForbiddenTraces:
     def _search(self, others: Sequence[AnalyzedRule]) -> bool:
         trace = counterexample(self._analyzed, others)
         if trace is not None:
-            self._found.append(trace)
+            self._traces.append(trace)
         return trace is not None
 
     def _allows(self, other: AnalyzedRule, number: int) -> bool:
@@ -93,7 +93,7 @@ class ForbiddenTraces:
         if key not in self._allowed:
             vocabulary = self._analyzed.rulebook.vocabulary
             try:
-                self._allowed[key] = not other.violations(self._found[number], vocabulary)
+                self._allowed[key] = not other.violations(self._traces[number], vocabulary)
             except RulecError:
                 # The trace has another step, or objects to be counted that a fact rules out.
                 self._allowed[key] = False

@@ -10,7 +10,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.report.text.xml_text import HEAD, element, written, xml_text
 from rulec.report.verdict_findings.verdict_finding import (
     FindingsOf,
-    FoundInRecording,
+    RecordingFindings,
     VerdictFinding,
 )
 
@@ -28,7 +28,7 @@ class JUnitWriter:
         self._about = about
         stream.write(f'{HEAD}<testsuites name="rulec">\n'.encode())
 
-    def add(self, recording: FoundInRecording) -> None:
+    def add(self, recording: RecordingFindings) -> None:
         """Write the suite of a recording."""
         by_rule = recording.by_rule
         suite = element(None, "testsuite", name=recording.title)
@@ -61,7 +61,7 @@ def _case(
     rulebook: str,
     rule: CompiledRule,
     findings: Sequence[VerdictFinding],
-    recording: FoundInRecording,
+    recording: RecordingFindings,
 ) -> None:
     case = element(suite, "testcase", classname=rulebook, name=rule.name, file=recording.file)
     violated = [finding for finding in findings if finding.outcome == "violated"]

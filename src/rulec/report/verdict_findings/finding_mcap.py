@@ -16,7 +16,7 @@ from rulec.report.verdict_findings.mcap_file_writer import JsonChannel, TimedMes
 from rulec.report.verdict_findings.verdict_finding import (
     COLUMNS,
     FindingsOf,
-    FoundInRecording,
+    RecordingFindings,
     VerdictFinding,
     as_json,
 )
@@ -44,21 +44,21 @@ class McapWriter:
         self._stream = stream
         self._about = about
         self._name = name
-        self._found: FoundInRecording | None = None
+        self._recording: RecordingFindings | None = None
 
-    def add(self, recording: FoundInRecording) -> None:
+    def add(self, recording: RecordingFindings) -> None:
         """Keep the findings of the recording. Raises RulecError R0702 for a second one."""
-        if self._found is not None:
+        if self._recording is not None:
             raise UNWRITABLE_FILE.error(
                 SourceLocation(self._name),
                 "MCAP has one time line, and there are several recordings to write into the file",
                 help="give one recording, or choose one with --scenario",
             )
-        self._found = recording
+        self._recording = recording
 
     def close(self) -> None:
         """Write the file."""
-        recording = self._found or FoundInRecording("", "", 0, ())
+        recording = self._recording or RecordingFindings("", "", 0, ())
         not_judged = sorted(
             {finding.rule for finding in recording.findings if finding.outcome == "not_judged"}
         )

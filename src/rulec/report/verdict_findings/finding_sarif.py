@@ -13,7 +13,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.report.findings.sarif import SCHEMA, uri_of
 from rulec.report.verdict_findings.verdict_finding import (
     FindingsOf,
-    FoundInRecording,
+    RecordingFindings,
     VerdictFinding,
 )
 from rulec.rulebook.rulebook_model import cited_law
@@ -44,7 +44,7 @@ class SarifWriter:
             '"results": ['
         )
 
-    def add(self, recording: FoundInRecording) -> None:
+    def add(self, recording: RecordingFindings) -> None:
         """Write a result for each violation and each open verdict."""
         self._complete &= not recording.failure
         for finding in recording.findings:

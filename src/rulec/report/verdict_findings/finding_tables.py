@@ -10,7 +10,7 @@ from rulec.report.text.csv_text import csv_text
 from rulec.report.verdict_findings.verdict_finding import (
     COLUMNS,
     EMPTY_CELLS,
-    FoundInRecording,
+    RecordingFindings,
     as_json,
 )
 from rulec.trace.formats.arrow.parquet import arrow, write_parquet
@@ -26,7 +26,7 @@ class JsonLinesWriter:
         self._stream = stream
         self._columns = columns
 
-    def add(self, recording: FoundInRecording) -> None:
+    def add(self, recording: RecordingFindings) -> None:
         """Write a line for each."""
         if self._columns is None:
             lines = [as_json(finding) for finding in recording.findings]
@@ -52,7 +52,7 @@ class CsvWriter:
         self._columns = columns
         stream.write(csv_text([columns or COLUMNS]).encode())
 
-    def add(self, recording: FoundInRecording) -> None:
+    def add(self, recording: RecordingFindings) -> None:
         """Write a row for each."""
         self._stream.write(csv_text(_rows(recording, self._columns)).encode())
 
@@ -70,14 +70,14 @@ class RowWriter:
 
     def add(self, rows: Iterable[Mapping[str, object]]) -> None:
         """Write rows."""
-        self._writer.add(FoundInRecording("", "", 0, (), tuple(rows)))
+        self._writer.add(RecordingFindings("", "", 0, (), tuple(rows)))
 
     def close(self) -> None:
         """Write what comes at the end."""
         self._writer.close()
 
 
-def _rows(recording: FoundInRecording, columns: Columns | None) -> Iterator[list[Any]]:
+def _rows(recording: RecordingFindings, columns: Columns | None) -> Iterator[list[Any]]:
     """The values of findings, or those of rows if there are columns."""
     if columns is None:
         yield from ([getattr(finding, name) for name in COLUMNS] for finding in recording.findings)
@@ -94,15 +94,15 @@ class ParquetWriter:
         self._stream = stream
         self._name = name
         self._columns = columns
-        self._found: list[list[Any]] = []
+        self._all_rows: list[list[Any]] = []
 
-    def add(self, recording: FoundInRecording) -> None:
+    def add(self, recording: RecordingFindings) -> None:
         """Keep the findings."""
-        self._found += _rows(recording, self._columns)
+        self._all_rows += _rows(recording, self._columns)
 
     def close(self) -> None:
         """Write the table."""
-        rows = ([_plain(value) for value in row] for row in self._found)
+        rows = ([_plain(value) for value in row] for row in self._all_rows)
         write_parquet(rows, list((self._columns or COLUMNS).items()), self._stream, self._name)
 
 

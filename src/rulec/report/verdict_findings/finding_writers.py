@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import IO, TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from rulec.report.verdict_findings.verdict_finding import FindingsOf, FoundInRecording
+    from rulec.report.verdict_findings.verdict_finding import FindingsOf, RecordingFindings
 
 ENDINGS: Mapping[str, tuple[str, ...]] = {
     "jsonl": (".jsonl", ".ndjson"),
@@ -24,7 +24,7 @@ ENDINGS: Mapping[str, tuple[str, ...]] = {
 class FindingWriter(Protocol):
     """Writes findings to a stream: recording by recording, and what comes at the end."""
 
-    def add(self, recording: FoundInRecording) -> None:
+    def add(self, recording: RecordingFindings) -> None:
         """Take the findings of a recording. Raises RulecError."""
 
     def close(self) -> None:

@@ -15,7 +15,7 @@ from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.report.text.xml_text import HEAD, element, written
 from rulec.report.verdict_findings.verdict_finding import (
     FindingsOf,
-    FoundInRecording,
+    RecordingFindings,
     VerdictFinding,
 )
 from rulec.rulebook.rulebook_model import cited_law
@@ -39,7 +39,7 @@ class QualityCheckerWriter:
         self._issues = 0
         stream.write(f'{HEAD}<CheckerResults version="1.0.0">\n'.encode())
 
-    def add(self, recording: FoundInRecording) -> None:
+    def add(self, recording: RecordingFindings) -> None:
         """Write the bundle of a recording."""
         by_rule = recording.by_rule
         rulebook = self._about.rulebook

@@ -149,7 +149,7 @@ def as_json(finding: VerdictFinding) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class FoundInRecording:
+class RecordingFindings:
     """The findings of a recording, or of a file of traces, with the number of its ``drives``.
 
     Without drives, and with one finding without a rule, it could not be judged at all. ``rows`` are

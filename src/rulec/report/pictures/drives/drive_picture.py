@@ -256,7 +256,11 @@ def _words(
         when = f"{violation.time_s:g} s"
         lines += [("strong", f"{when}  {violation.title}"), ("ink", violation.says)]
         lines += [("strong", f"measured: {text}") for text in violation.measured]
-        lines += [("ink", f"with {', '.join(violation.told)}")] if violation.told else []
+        lines += (
+            [("ink", f"with {', '.join(violation.deciding_values)}")]
+            if violation.deciding_values
+            else []
+        )
     others = [own for own in scene.violations if own is not violation]
     lines += [
         ("faint", f"{own.time_s:g} s  {own.rule}: {own.short}") for own in others[:_MOST_LISTED]

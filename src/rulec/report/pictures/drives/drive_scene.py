@@ -105,9 +105,10 @@ class SceneViolation:
     """A violation at the ``state`` that decides it, the last if only the end does.
 
     ``short`` names the rule's strength, its article and the objects; ``against`` are these by the
-    ids of their participants. ``measured`` says by how much, a line for each comparison, ``told``
-    what else decides then; ``read`` is what the rule reads of these objects, ``decides`` which rows
-    of it, and ``narrowly`` by row and state how narrowly a signal was decided, where it is known.
+    ids of their participants. ``measured`` says by how much, a line for each comparison,
+    ``deciding_values`` what else decides then; ``read`` is what the rule reads of these objects,
+    ``decides`` which rows of it, and ``narrowly`` by row and state how narrowly a signal was
+    decided, where it is known.
     ``links`` are, by state, the nearest points of ego and the other one (x, y, x, y), NaN where one
     of them is missing; ``gaps`` the rulebook's own gap (m) to it, None where it has none.
     """
@@ -121,7 +122,7 @@ class SceneViolation:
     says: str
     against: tuple[str, ...]
     measured: tuple[str, ...]
-    told: tuple[str, ...]
+    deciding_values: tuple[str, ...]
     read: Ribbon
     decides: frozenset[str]
     narrowly: Mapping[str, tuple[str, ...]]

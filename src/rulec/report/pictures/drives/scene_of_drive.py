@@ -193,11 +193,11 @@ def _violation(
         state=state,
         time_s=drive.time_s(state),
         title=in_a_line(violation, rule, rules.name),
-        short=", ".join(filter(None, (rule.strength, rule.cite, _whom(violation)))),
+        short=", ".join(filter(None, (rule.strength, rule.cite, _objects_of(violation)))),
         says=rule.says,
         against=against,
         measured=tuple(map(str, explanation.margins())),
-        told=tuple(_told(explanation)),
+        deciding_values=tuple(_deciding_values(explanation)),
         read=ribbon(trace, only, Verdict(trace.id, (violation,)), objects),
         decides=frozenset(fact.text for fact in explanation.facts if fact.decides),
         narrowly={
@@ -210,13 +210,13 @@ def _violation(
     )
 
 
-def _whom(violation: Violation) -> str:
+def _objects_of(violation: Violation) -> str:
     objects = " and ".join(violation.binding.values())
     end = "decided by the end" if violation.step is None else ""
     return ", ".join(filter(None, (f"for {objects}" if objects else "", end)))
 
 
-def _told(explanation: Explanation) -> Iterator[str]:
+def _deciding_values(explanation: Explanation) -> Iterator[str]:
     """The values that decide, but for numbers: these are measured."""
     at = explanation.states.index(explanation.decisive)
     for fact in explanation.facts:

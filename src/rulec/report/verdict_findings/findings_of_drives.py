@@ -15,7 +15,7 @@ from rulec.extraction.violation_evidence import evidence_of
 from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.verdict import NotJudged, RuleNotJudged, Violation
 from rulec.report.verdict_findings.verdict_finding import (
-    FoundInRecording,
+    RecordingFindings,
     VerdictFinding,
     left_open,
     measured,
@@ -25,14 +25,14 @@ from rulec.report.verdict_findings.verdict_finding import (
 
 
 @dataclass
-class FoundInDrives:
+class GatheredFindings:
     """What was found of some drives: findings, rules that are not judged, how many were judged."""
 
     findings: list[VerdictFinding] = field(default_factory=list)
     not_judged: dict[str, dict[str, RuleNotJudged]] = field(default_factory=dict)
     judged: int = 0
 
-    def include(self, later: FoundInDrives) -> None:
+    def include(self, later: GatheredFindings) -> None:
         """Take what was found of later drives, too."""
         self.findings += later.findings
         self.judged += later.judged
@@ -46,7 +46,7 @@ class DriveFindings:
 
     verdicts: RecordingVerdicts
     file: str
-    gathered: FoundInDrives = field(default_factory=FoundInDrives)
+    gathered: GatheredFindings = field(default_factory=GatheredFindings)
 
     def add(
         self, result: DriveVerdict | NoDrive, explained: Sequence[Explanation] = ()
@@ -87,10 +87,10 @@ class DriveFindings:
         for rule in answer.not_judged:
             self.gathered.not_judged.setdefault(rule.rule, {})[drive.arrays.id] = rule
 
-    def whole(self) -> FoundInRecording:
+    def whole(self) -> RecordingFindings:
         """All findings; a rule that is judged in no drive is one finding."""
         drives = self.gathered.judged
-        return FoundInRecording(
+        return RecordingFindings(
             self.file,
             self.verdicts.recording.name,
             drives,
@@ -137,8 +137,8 @@ class DriveFindings:
         )
 
 
-def not_judged_file(file: str, error: RulecError, rulebook: str) -> FoundInRecording:
+def not_judged_file(file: str, error: RulecError, rulebook: str) -> RecordingFindings:
     """The finding that a file could not be judged."""
     why = error.diagnostics[0].message
     finding = VerdictFinding(file=file, rulebook=rulebook, outcome="not_judged", because=why)
-    return FoundInRecording(file, "", 0, (finding,))
+    return RecordingFindings(file, "", 0, (finding,))
