@@ -80,7 +80,7 @@ def eliminate_past(formula: ltl.Formula, *, registers: bool = True) -> WithoutPa
 
     Its bounds are in steps. Raises ValueError if not.
     """
-    result = _Found(registers)
+    result = _PastParts(registers)
     present = _present(formula, result)
     fresh: list[Register | Memory] = [*result.registers.values(), *result.memories.values()]
     needed: list[Register | Memory] = []
@@ -118,7 +118,7 @@ def definition(memory: Memory) -> ltl.Formula:
 
 
 @dataclass(slots=True)
-class _Found:
+class _PastParts:
     """The registers and memories of a formula so far, by content."""
 
     with_registers: bool
@@ -141,7 +141,7 @@ class _Found:
         return _is_present(formula) and unsettled.isdisjoint(ltl.atoms_of(formula))
 
 
-def _present(formula: ltl.Formula, past: _Found) -> ltl.Formula:
+def _present(formula: ltl.Formula, past: _PastParts) -> ltl.Formula:
     if not isinstance(formula, ltl.Unary | ltl.Binary):
         return formula
     operation = ltl.with_operands(formula, lambda operand: _present(operand, past))
@@ -156,7 +156,7 @@ def _present(formula: ltl.Formula, past: _Found) -> ltl.Formula:
     return _since(ltl.Constant(True), inner, span, past)
 
 
-def _since(left: ltl.Formula, right: ltl.Formula, span: Range, past: _Found) -> ltl.Formula:
+def _since(left: ltl.Formula, right: ltl.Formula, span: Range, past: _PastParts) -> ltl.Formula:
     if past.is_settled(left) and past.is_settled(right):
         # The same operator on the same operands needs no second register.
         key = (left, right, span)
@@ -166,7 +166,7 @@ def _since(left: ltl.Formula, right: ltl.Formula, span: Range, past: _Found) -> 
     return _unfolded(left, right, span, past)
 
 
-def _unfolded(left: ltl.Formula, right: ltl.Formula, span: Range, past: _Found) -> ltl.Formula:
+def _unfolded(left: ltl.Formula, right: ltl.Formula, span: Range, past: _PastParts) -> ltl.Formula:
     """``left since right`` in terms of the present and one instant ago.
 
     From the shortest range to the wanted one, each says by the one before what was one instant ago.
@@ -190,7 +190,7 @@ def _unfolded(left: ltl.Formula, right: ltl.Formula, span: Range, past: _Found) 
     return now
 
 
-def _one_ago(formula: ltl.Formula, past: _Found) -> ltl.Formula:
+def _one_ago(formula: ltl.Formula, past: _PastParts) -> ltl.Formula:
     if past.is_settled(formula):
         return _since(ltl.Constant(True), formula, Range(1, 1), past)
     if formula not in past.memories:

@@ -30,7 +30,7 @@ MAKERS = (
     *("automata/spot_bridge", "automata/decision_diagrams"),
     *(f"logic/{name}.py" for name in ("formula", "fold", "bounds", "past_registers", "semantics")),
     *(f"automata/worker/{name}.py" for name in ("job_answers", "machine_cache")),
-    *(f"automata/{name}.py" for name in ("alphabet", "axiom_instances", "compiler_jobs")),
+    *(f"automata/{name}.py" for name in ("alphabet", "compiler_jobs")),
     *(f"automata/{name}.py" for name in ("guards", "mealy_monitor", "tables", "thresholds")),
 )
 """The kind of what ships, and the code that it comes from."""
