@@ -17,13 +17,12 @@ from rulec.syntax.keywords import (
     RESERVED,
     UNARY_OPERATORS,
 )
+from rulec.syntax.messages.in_comparisons import RELATIONS, sign_in_words
 from rulec.syntax.messages.in_formulas import (
     AGGREGATES,
     IN_DIGITS,
-    RELATIONS,
     advise_on_aggregate,
     advise_on_formula,
-    sign_in_words,
 )
 from rulec.syntax.messages.in_items import (
     FORMS,
@@ -46,54 +45,52 @@ _RANGE: Final = re.compile(r"(\d+)[-–](\d+)")
 _WITHIN: Final = {"within": "eventually", "for": "always", "during": "always", "after": "next"}
 
 
-def advise_on_bound(scene: ParseContext) -> str:
+def advise_on_bound(ctx: ParseContext) -> str:
     """Inside brackets, and where a bound was meant to stand."""
-    if scene.opened("[", "]") is not None and not scene.operand:
-        return _inside(scene)
-    text, before = scene.text, scene.text_before
-    if text == "[" and scene.operand and _holds_a_formula(scene):
+    if ctx.opened("[", "]") is not None and not ctx.operand:
+        return _inside(ctx)
+    text, before = ctx.text, ctx.text_before
+    if text == "[" and ctx.operand and _holds_a_formula(ctx):
         return "a formula stands in parentheses, `(p or q)`; brackets hold bounds of time"
-    if text == "[" and scene.operand and before in _BOOLEAN:
+    if text == "[" and ctx.operand and before in _BOOLEAN:
         return "only operators over time take a bound, such as `always[<= 3 s]`"
-    if text == "[" and scene.operator and (near := did_you_mean(before, UNARY_OPERATORS)):
+    if text == "[" and ctx.operator and (near := did_you_mean(before, UNARY_OPERATORS)):
         return near
-    if text == "[" and (scene.operand or scene.operator):
+    if text == "[" and (ctx.operand or ctx.operator):
         return "a bound stands behind its operator, such as `always[<= 3 s] p`"
-    if scene.operand and before in OVER_TIME and text in _OPENINGS:
+    if ctx.operand and before in OVER_TIME and text in _OPENINGS:
         return f"a bound stands in brackets, such as `{before}[<= 3 s]`"
-    for word, at in ((text, scene.at + 1), (before, scene.at)):
-        if word in _WITHIN and scene.operator and scene.is_number(at):
-            amount = scene.source.text[scene.tokens[at].start : _end_of_amount(scene, at)]
+    for word, at in ((text, ctx.at + 1), (before, ctx.at)):
+        if word in _WITHIN and ctx.operator and ctx.is_number(at):
+            amount = ctx.source.text[ctx.tokens[at].start : _end_of_amount(ctx, at)]
             sign = "" if word == "after" else "<= "
             return f"write `{_WITHIN[word]}[{sign}{amount}] p`"
     return ""
 
 
-def _holds_a_formula(scene: ParseContext) -> bool:
+def _holds_a_formula(ctx: ParseContext) -> bool:
     """Tell whether what a bracket opens begins with no time."""
-    behind = scene.token(scene.at + 1)
+    behind = ctx.token(ctx.at + 1)
     return behind is not None and (behind.kind == "word" or behind.text in ("!", "("))
 
 
-def _inside(scene: ParseContext) -> str:
-    text, before = scene.text, scene.text_before
+def _inside(ctx: ParseContext) -> str:
+    text, before = ctx.text, ctx.text_before
     if match := _RANGE.fullmatch(text):
-        return _both_ends(match[1], match[2], scene.text_behind)
-    if scene.accepted == {"UNIT"}:
-        if text == "," and scene.is_number(scene.at + 1):
-            return scene.with_a_point()
+        return _both_ends(match[1], match[2], ctx.text_behind)
+    if ctx.accepted == {"UNIT"}:
+        if text == "," and ctx.is_number(ctx.at + 1):
+            return ctx.with_a_point()
         if text == "..":
-            return _both_ends(before, scene.text_behind, scene.text_at(scene.at + 2))
+            return _both_ends(before, ctx.text_behind, ctx.text_at(ctx.at + 2))
         return f"say what it counts: `{before} s` or `{before} steps`"
-    if (sign := sign_in_words(before, text)) and scene.is_number(scene.at + 1):
-        amount = scene.source.text[
-            scene.tokens[scene.at + 1].start : _end_of_amount(scene, scene.at + 1)
-        ]
+    if (sign := sign_in_words(before, text)) and ctx.is_number(ctx.at + 1):
+        amount = ctx.source.text[ctx.tokens[ctx.at + 1].start : _end_of_amount(ctx, ctx.at + 1)]
         return f"for `{before} {text}` write `[{sign} {amount}]`"
-    if before.casefold() in IN_DIGITS and scene.is_word():
+    if before.casefold() in IN_DIGITS and ctx.is_word():
         return f"write the number in digits: `{IN_DIGITS[before.casefold()]} {text}`"
-    if text in ("<=", ">=") and scene.is_number(scene.at - 2):
-        return f"the sign stands before the time: `[{text} {scene.text_at(scene.at - 2)} {before}]`"
+    if text in ("<=", ">=") and ctx.is_number(ctx.at - 2):
+        return f"the sign stands before the time: `[{text} {ctx.text_at(ctx.at - 2)} {before}]`"
     if before == "[" and text in ("<", "=<", ">", "=>"):
         sign = "<=" if "<" in text else ">="
         return f"a bound includes its end: write `[{sign} 3 s]`"
@@ -103,11 +100,11 @@ def _inside(scene: ParseContext) -> str:
         return "without a lower end write `[<= 3 s]`"
     if before == ".." and text == "]":
         return "without an upper end write `[>= 3 s]`"
-    if text == "-" and "NUMBER" in scene.accepted:
+    if text == "-" and "NUMBER" in ctx.accepted:
         return "a bound counts forward, or back for `once` and its family: it has no sign"
-    if "TO" in scene.accepted and text in _BETWEEN:
+    if "TO" in ctx.accepted and text in _BETWEEN:
         return "write `..` between the two ends, such as `[3 s .. 4 s]`"
-    if scene.accepted <= {"RSQB", "TO", "LPAR"} and text not in ("+", "*", "/", "-", ".."):
+    if ctx.accepted <= {"RSQB", "TO", "LPAR"} and text not in ("+", "*", "/", "-", ".."):
         return "close the bound with `]`"
     return _FORMS
 
@@ -119,43 +116,43 @@ def _both_ends(low: str, high: str, unit: str) -> str:
     return f"write the unit at both ends, and `..` between: `[{low} {unit} .. {high} {unit}]`"
 
 
-def _end_of_amount(scene: ParseContext, at: int) -> int:
-    unit = scene.token(at + 1)
-    return unit.end if unit and unit.kind == "word" and at + 2 > scene.at else scene.tokens[at].end
+def _end_of_amount(ctx: ParseContext, at: int) -> int:
+    unit = ctx.token(at + 1)
+    return unit.end if unit and unit.kind == "word" and at + 2 > ctx.at else ctx.tokens[at].end
 
 
 _SINGLE: Final = ("'", "“", "”", "„", "‘", "’", "«", "»")
 
 
-def advise(scene: ParseContext) -> str:
+def advise(ctx: ParseContext) -> str:
     """The way out, empty when there is none to suggest."""
-    return next(filter(None, (advice(scene) for advice in _IN_ORDER)), "")
+    return next(filter(None, (advice(ctx) for advice in _IN_ORDER)), "")
 
 
-def _quotes(scene: ParseContext) -> str:
-    token, before = scene.unexpected, scene.before
+def _quotes(ctx: ParseContext) -> str:
+    token, before = ctx.unexpected, ctx.before
     if token is None:
         return ""
-    grouped = scene.is_number(scene.at - 1) and scene.is_number(scene.at + 1)
-    if token.text[0] in "'’" and before is not None and before.kind == "word" and scene.touches():
-        later = "; what is so in the next state is written `next p`" if scene.operator else ""
+    grouped = ctx.is_number(ctx.at - 1) and ctx.is_number(ctx.at + 1)
+    if token.text[0] in "'’" and before is not None and before.kind == "word" and ctx.touches():
+        later = "; what is so in the next state is written `next p`" if ctx.operator else ""
         return f"a name has letters, digits and `_` only{later}"
-    if token.kind == "string" and scene.first == "fact" and scene.at == 1:
+    if token.kind == "string" and ctx.first == "fact" and ctx.at == 1:
         return "a fact has no label: write it above, as a remark that begins with `#`"
     if token.kind == "quoted" or (token.text in _SINGLE and not grouped):
-        name = token.text.strip("'") if token.kind == "quoted" else scene.text_behind
-        if scene.operand and name.isidentifier():
+        name = token.text.strip("'") if token.kind == "quoted" else ctx.text_behind
+        if ctx.operand and name.isidentifier():
             return f"write `{name}` without quotes"
         return 'texts stand in straight double quotes: "…"'
-    if scene.accepted == {"STRING"} and (token.kind != "symbol" or token.text == "§"):
+    if ctx.accepted == {"STRING"} and (token.kind != "symbol" or token.text == "§"):
         return 'put the text in double quotes: "…"'
-    if token.kind == "string" and "STRING" not in scene.accepted:
+    if token.kind == "string" and "STRING" not in ctx.accepted:
         inside = token.text[1:-1]
-        if scene.quantity and _QUANTITY.fullmatch(inside):
+        if ctx.quantity and _QUANTITY.fullmatch(inside):
             return f"write `{inside}` without quotes"
-        if inside in map(spelling, scene.accepted) or ("NAME" in scene.accepted and _names(inside)):
+        if inside in map(spelling, ctx.accepted) or ("NAME" in ctx.accepted and _names(inside)):
             return f"write `{inside}` without quotes"
-    if before is not None and before.kind == "string" and scene.is_word() and scene.touches():
+    if before is not None and before.kind == "string" and ctx.is_word() and ctx.touches():
         return 'a quote inside a text is written \\"'
     return ""
 
@@ -167,38 +164,38 @@ def _names(text: str) -> bool:
     return text.isidentifier() and text not in RESERVED
 
 
-def _comment(scene: ParseContext) -> str:
-    if scene.text == "§":
+def _comment(ctx: ParseContext) -> str:
+    if ctx.text == "§":
         return 'an article stands in its rule, such as `cite "§ 3"`; a remark begins with `#`'
-    return "a comment begins with `#`" if scene.text in ("//", "/*") else ""
+    return "a comment begins with `#`" if ctx.text in ("//", "/*") else ""
 
 
-def _name_of_two_words(scene: ParseContext) -> str:
-    is_name = scene.kind == "rule_head" and scene.text_at(scene.at - 2) == "rule"
-    if is_name and scene.is_word() and scene.text not in ITEM_WORDS | CLAUSE_WORDS:
-        words = [scene.text_before]
-        for token in scene.tokens[scene.at :]:
+def _name_of_two_words(ctx: ParseContext) -> str:
+    is_name = ctx.kind == "rule_head" and ctx.text_at(ctx.at - 2) == "rule"
+    if is_name and ctx.is_word() and ctx.text not in ITEM_WORDS | CLAUSE_WORDS:
+        words = [ctx.text_before]
+        for token in ctx.tokens[ctx.at :]:
             if token.kind != "word" or token.text in ("in", "weight"):
                 break
             words.append(token.text)
         return f"a name is one word: `{'_'.join(words)}`"
-    assigned = scene.at == 2 and scene.first in ("set", "param", "option", "define", "redefine")
-    if assigned and scene.is_word() and scene.text_at(scene.at + 1) in ("=", ":"):
-        return f"a name is one word: `{scene.text_before}_{scene.text}`"
+    assigned = ctx.at == 2 and ctx.first in ("set", "param", "option", "define", "redefine")
+    if assigned and ctx.is_word() and ctx.text_at(ctx.at + 1) in ("=", ":"):
+        return f"a name is one word: `{ctx.text_before}_{ctx.text}`"
     return ""
 
 
-def _misspelt_prefix(scene: ParseContext) -> str:
+def _misspelt_prefix(ctx: ParseContext) -> str:
     """At an operand behind a name that is much like a prefix: `alway not p`, `evry x: vehicle`."""
-    token, before = scene.unexpected, scene.before
-    if token is None or not scene.operator:
+    token, before = ctx.unexpected, ctx.before
+    if token is None or not ctx.operator:
         return ""
-    if scene.text_behind in _AFTER_STRENGTH and token.text not in RESERVED:
+    if ctx.text_behind in _AFTER_STRENGTH and token.text not in RESERVED:
         return did_you_mean(token.text, ("weak", "strong"), _MUCH_ALIKE)
     if before is None or before.kind != "word" or before.text in RESERVED:
         return ""
     words: tuple[str, ...] = ()
-    if scene.text_behind == ":":
+    if ctx.text_behind == ":":
         words = AGGREGATES
     elif token.kind == "number" or token.text in _OPERAND_WORDS:
         words = (*UNARY_OPERATORS, *(("weak",) if token.text in _AFTER_STRENGTH else ()))
@@ -213,20 +210,20 @@ _OPERAND_WORDS: Final = frozenset(
 )
 
 
-def _misspelt(scene: ParseContext) -> str:
-    token, before = scene.unexpected, scene.before
+def _misspelt(ctx: ParseContext) -> str:
+    token, before = ctx.unexpected, ctx.before
     if token is None or token.kind != "word" or token.text.casefold() in RESERVED:
         return ""
     if token.text.casefold() in ("infinite", "twice"):
         return ""  # they are much like `finite` and `since`, and mean something else
-    if before and scene.operator and (sign := sign_in_words(before.text, token.text)):
+    if before and ctx.operator and (sign := sign_in_words(before.text, token.text)):
         # Without a sign before it, it is about how many.
-        is_twice = scene.text_at(scene.at - 2) in RELATIONS
+        is_twice = ctx.text_at(ctx.at - 2) in RELATIONS
         return f"for `{before.text} {token.text}` write `{sign}`" if is_twice else ""
-    words = {word for word in map(spelling, scene.accepted) if word in RESERVED | CONTEXTUAL}
+    words = {word for word in map(spelling, ctx.accepted) if word in RESERVED | CONTEXTUAL}
     # One letter is a name, such as `f` behind `eventualy`, and no word misspelt.
     near = did_you_mean(token.text, words) if len(token.text) > 1 else ""
-    if near or before is None or before.text in RESERVED or not scene.operator:
+    if near or before is None or before.text in RESERVED or not ctx.operator:
         return near
     if before.text in _EARLIER:
         return "numbers of earlier states cannot be read; formulas can: `previously (speed > 0)`"
@@ -238,60 +235,60 @@ def _misspelt(scene: ParseContext) -> str:
 _EARLIER: Final = ("previous", "last", "prior", "earlier", "old")
 
 
-def _least(scene: ParseContext) -> str:
-    opened = scene.opened("(", ")")
-    function = "" if opened is None else scene.text_at(opened - 1)
-    if function not in ("min", "max") or scene.operand:
+def _least(ctx: ParseContext) -> str:
+    opened = ctx.opened("(", ")")
+    function = "" if opened is None else ctx.text_at(opened - 1)
+    if function not in ("min", "max") or ctx.operand:
         return ""
     word = "and" if function == "min" else "or"
     return f"there is no `{function}`: compare one after the other, `x <= a {word} x <= b`"
 
 
-def _name(scene: ParseContext) -> str:
-    token, before = scene.unexpected, scene.before
+def _name(ctx: ParseContext) -> str:
+    token, before = ctx.unexpected, ctx.before
     if token is None or before is None:
         return ""
-    named = "NAME" in scene.accepted and not scene.quantity and token.kind in ("number", "string")
-    hyphen = token.text == "-" and scene.touches() and "MINUS" not in scene.accepted
-    if scene.kind != "state" and (named or (hyphen and before.kind == "word")):
+    named = "NAME" in ctx.accepted and not ctx.quantity and token.kind in ("number", "string")
+    hyphen = token.text == "-" and ctx.touches() and "MINUS" not in ctx.accepted
+    if ctx.kind != "state" and (named or (hyphen and before.kind == "word")):
         rule = "names are made of letters, digits and `_`, and begin with a letter"
         name = re.sub(r"\W+", "_", token.text.casefold()).strip("_")
         if hyphen:
-            name = f"{before.text}_{scene.text_behind}" if scene.text_behind else ""
+            name = f"{before.text}_{ctx.text_behind}" if ctx.text_behind else ""
         is_text = (token.kind == "string" or hyphen) and name.isidentifier()
         if is_text and name not in RESERVED:
             return f"{rule}, such as `{name}`"
         return f"{rule}; its article is said by `cite`" if before.text == "rule" else rule
     words = (before.text, token.text) if before.kind == token.kind == "word" else ()
-    if scene.accepted == {"$END"} and words and not RESERVED.intersection(words):
-        lists = scene.first in ITEM_WORDS and scene.at == 2
+    if ctx.accepted == {"$END"} and words and not RESERVED.intersection(words):
+        lists = ctx.first in ITEM_WORDS and ctx.at == 2
         return f"a name is one word, such as `{'_'.join(words)}`" if lists else ""
     return ""
 
 
-def _punctuation(scene: ParseContext) -> str:
-    text = scene.text
-    begins = scene.at == 1 and scene.kind in ("clause", "item") and text in (":", "=", "-")
-    ends = "$END" in scene.accepted or scene.accepted == {"STRING"}
+def _punctuation(ctx: ParseContext) -> str:
+    text = ctx.text
+    begins = ctx.at == 1 and ctx.kind in ("clause", "item") and text in (":", "=", "-")
+    ends = "$END" in ctx.accepted or ctx.accepted == {"STRING"}
     if begins or (text in (";", ".", ",", ":", "=") and ends):
         return f"delete the `{text}`"
     return ""
 
 
-def _ending(scene: ParseContext) -> str:
-    last = scene.at == len(scene.tokens) - 1 and scene.text in (";", ".", ",")
-    return f"delete the `{scene.text}`" if last and "$END" in scene.accepted else ""
+def _ending(ctx: ParseContext) -> str:
+    last = ctx.at == len(ctx.tokens) - 1 and ctx.text in (";", ".", ",")
+    return f"delete the `{ctx.text}`" if last and "$END" in ctx.accepted else ""
 
 
-def _parentheses(scene: ParseContext) -> str:
-    if scene.unexpected is None and scene.operator and scene.opened("(", ")") is not None:
-        return _closed_before_a_clause(scene)
-    if scene.text != ")" or scene.operand or scene.quantity or scene.accepted == {"NAME"}:
+def _parentheses(ctx: ParseContext) -> str:
+    if ctx.unexpected is None and ctx.operator and ctx.opened("(", ")") is not None:
+        return _closed_before_a_clause(ctx)
+    if ctx.text != ")" or ctx.operand or ctx.quantity or ctx.accepted == {"NAME"}:
         return ""
-    if scene.opened("(", ")") is not None:
+    if ctx.opened("(", ")") is not None:
         return ""
-    if scene.first in ("unless", "when") and _left_open(scene.source.text[: scene.tokens[0].start]):
-        return f"it closes what is open before `{scene.first}`: see there"
+    if ctx.first in ("unless", "when") and _left_open(ctx.source.text[: ctx.tokens[0].start]):
+        return f"it closes what is open before `{ctx.first}`: see there"
     return "delete the `)`, or open it before"
 
 
@@ -301,9 +298,9 @@ def _left_open(before: str) -> bool:
     return clause.count("(") > clause.count(")")
 
 
-def _closed_before_a_clause(scene: ParseContext) -> str:
+def _closed_before_a_clause(ctx: ParseContext) -> str:
     """Advice on what is open where a clause begins: that word may have been meant for a formula."""
-    behind = scene.source.text[scene.tokens[-1].end :]
+    behind = ctx.source.text[ctx.tokens[-1].end :]
     word, *_ = (*behind.split(maxsplit=1), "")
     line = behind.lstrip().partition("\n")[0]
     # On a line of its own, and with no `)` more than it opens, it is a clause as it should be.
@@ -314,15 +311,15 @@ def _closed_before_a_clause(scene: ParseContext) -> str:
     return "close it with `)`"
 
 
-def _form(scene: ParseContext) -> str:
+def _form(ctx: ParseContext) -> str:
     """The form of the whole line, if no better advice is known."""
-    unfinished = scene.unexpected is None and scene.text_before == "="
-    formula = not unfinished and (scene.operand or scene.operator or scene.quantity)
-    return "" if formula or scene.kind != "item" else FORMS.get(scene.first, "")
+    unfinished = ctx.unexpected is None and ctx.text_before == "="
+    formula = not unfinished and (ctx.operand or ctx.operator or ctx.quantity)
+    return "" if formula or ctx.kind != "item" else FORMS.get(ctx.first, "")
 
 
-def _invisible(scene: ParseContext) -> str:
-    return DELETE_IT if is_invisible(scene.text) else ""
+def _invisible(ctx: ParseContext) -> str:
+    return DELETE_IT if is_invisible(ctx.text) else ""
 
 
 _IN_ORDER: tuple[Callable[[ParseContext], str], ...] = (

@@ -57,65 +57,62 @@ def other_word(word: str) -> str:
     return f"write `{form}`" if form else ""
 
 
-def advise_on_item(scene: ParseContext) -> str:
-    if scene.kind != "item":
+def advise_on_item(ctx: ParseContext) -> str:
+    if ctx.kind != "item":
         return ""
-    first, text = scene.first, scene.text
-    dates = advise_on_dates(scene)
+    first, text = ctx.first, ctx.text
+    dates = advise_on_dates(ctx)
     if dates:
         return dates
     asks = text in UNARY_OPERATORS or text in ("if", "every", "some", "no")
-    if asks and scene.accepted == {"$END"} and scene.unexpected and scene.unexpected.first:
+    if asks and ctx.accepted == {"$END"} and ctx.unexpected and ctx.unexpected.first:
         return "what must hold stands in a rule: `hard rule NAME { require … }`"
-    is_text = scene.unexpected is not None and scene.unexpected.kind == "string"
-    if first == "provisions" and "SEMICOLON" in scene.accepted and is_text:
+    is_text = ctx.unexpected is not None and ctx.unexpected.kind == "string"
+    if first == "provisions" and "SEMICOLON" in ctx.accepted and is_text:
         return "put a `;` between two articles"
     if first == "use" and text == ",":
         return "write a `use` line for each vocabulary"
-    if first == "fact" and text == ":" and scene.text_at(1) == "(":
+    if first == "fact" and text == ":" and ctx.text_at(1) == "(":
         return "leave the variables' types out: a fact is about all objects that fit its words"
-    if "ONE" in scene.accepted:
+    if "ONE" in ctx.accepted:
         return "the values stand behind `is one of`, such as `is one of a, b`"
-    listed = text in (";", "|", "or", "and") or scene.is_word()
-    if "COMMA" in scene.accepted and listed:
+    listed = text in (";", "|", "or", "and") or ctx.is_word()
+    if "COMMA" in ctx.accepted and listed:
         return "separate the names by `,`"
-    if scene.accepted == {"TRUE", "FALSE"}:
+    if ctx.accepted == {"TRUE", "FALSE"}:
         return "a signal is true or false: write `default true` or `default false`"
-    if scene.accepted == {"ON", "OFF"} and text in ("true", "false", "yes", "no"):
+    if ctx.accepted == {"ON", "OFF"} and text in ("true", "false", "yes", "no"):
         return f"write `{'on' if text in ('true', 'yes') else 'off'}`"
-    if first in ("option", "set") and text == "in" and scene.text_before in ("on", "off"):
+    if first in ("option", "set") and text == "in" and ctx.text_before in ("on", "off"):
         return "an option has no dates; a parameter and a rule may have them"
-    if first == "priority" and text == "<" and scene.text_behind:
-        return (
-            "the more important one stands first: "
-            f"write `{scene.text_behind} > {scene.text_before}`"
-        )
-    if scene.text_at(scene.at - 2) == "default" and scene.is_number(scene.at - 1):
-        return f"the number is in the quantity's own unit: `default {scene.text_before}`"
-    if "EQUALS" in scene.accepted and not scene.operator and text in _EQUALS:
+    if first == "priority" and text == "<" and ctx.text_behind:
+        return f"the more important one stands first: write `{ctx.text_behind} > {ctx.text_before}`"
+    if ctx.text_at(ctx.at - 2) == "default" and ctx.is_number(ctx.at - 1):
+        return f"the number is in the quantity's own unit: `default {ctx.text_before}`"
+    if "EQUALS" in ctx.accepted and not ctx.operator and text in _EQUALS:
         return f"write `=` for `{text}`"
-    if "EQUALS" in scene.accepted and not scene.operator and text == "{":
+    if "EQUALS" in ctx.accepted and not ctx.operator and text == "{":
         return f"write `=` before the formula, and no braces: `{first} NAME = formula`"
-    if "HARD" in scene.accepted or scene.operand or scene.operator or scene.quantity:
+    if "HARD" in ctx.accepted or ctx.operand or ctx.operator or ctx.quantity:
         return ""
     return FORMS.get(first, "")
 
 
-def advise_on_dates(scene: ParseContext) -> str:
+def advise_on_dates(ctx: ParseContext) -> str:
     """At ``in force from DATE until DATE``."""
-    if scene.accepted == {"DATE"} and scene.unexpected is not None:
-        return how_a_date_is_written(scene.source.text[scene.unexpected.start :][:16])
-    if scene.first not in _DATED and scene.kind != "clause":
+    if ctx.accepted == {"DATE"} and ctx.unexpected is not None:
+        return how_a_date_is_written(ctx.source.text[ctx.unexpected.start :][:16])
+    if ctx.first not in _DATED and ctx.kind != "clause":
         return ""
-    if scene.text in ("from", "force") and "IN" in scene.accepted:
+    if ctx.text in ("from", "force") and "IN" in ctx.accepted:
         return IN_FORCE
-    if scene.text in ("as", "since", "valid", "until") and "IN" in scene.accepted:
+    if ctx.text in ("as", "since", "valid", "until") and "IN" in ctx.accepted:
         return IN_FORCE
-    if "FORCE" in scene.accepted or (
-        scene.accepted <= {"FROM", "UNTIL", "$END"} and scene.accepted != {"$END"}
+    if "FORCE" in ctx.accepted or (
+        ctx.accepted <= {"FROM", "UNTIL", "$END"} and ctx.accepted != {"$END"}
     ):
         return IN_FORCE
-    if scene.accepted == {"$END"} and scene.text == "from":
+    if ctx.accepted == {"$END"} and ctx.text == "from":
         return IN_FORCE
     return ""
 
@@ -169,124 +166,120 @@ def other_clause(word: str, others: Container[str] = ()) -> str:
     return _OTHER_CLAUSES.get(word, "")
 
 
-def advise_on_rule_head(scene: ParseContext) -> str:
-    if scene.kind != "rule_head":
+def advise_on_rule_head(ctx: ParseContext) -> str:
+    if ctx.kind != "rule_head":
         return ""
-    text = scene.text
-    name = text if scene.is_word() and text not in RESERVED else "NAME"
-    if scene.at == 0 and text in _REMOVING:
-        return f'write `drop rule {scene.text_at(2) or "NAME"} because "…"`'
-    if scene.at == 0 and scene.text_at(1).isidentifier() and text == "rule":
-        return f"write `hard rule {scene.text_at(1)}`, or `soft rule` for one that may yield"
-    if scene.at == 0:
+    text = ctx.text
+    name = text if ctx.is_word() and text not in RESERVED else "NAME"
+    if ctx.at == 0 and text in _REMOVING:
+        return f'write `drop rule {ctx.text_at(2) or "NAME"} because "…"`'
+    if ctx.at == 0 and ctx.text_at(1).isidentifier() and text == "rule":
+        return f"write `hard rule {ctx.text_at(1)}`, or `soft rule` for one that may yield"
+    if ctx.at == 0:
         return "a rule begins with `hard rule` or `soft rule`"
-    if scene.text_before == "rule" and scene.accepted == {"NAME"}:
+    if ctx.text_before == "rule" and ctx.accepted == {"NAME"}:
         return "a rule has a name, which stands behind `rule`"
-    if scene.first == "confirm" and scene.at > 1:
+    if ctx.first == "confirm" and ctx.at > 1:
         return _CONFIRMATION
-    if text == "override" and scene.accepted == {"RULE"}:
-        return f"`override` comes first: `override {scene.first} rule`"
-    if "RULE" in scene.accepted:
-        return f"write `{' '.join(token.text for token in scene.tokens[: scene.at])} rule {name}`"
-    if (scene.text_before, text) == ("(", ")"):
+    if text == "override" and ctx.accepted == {"RULE"}:
+        return f"`override` comes first: `override {ctx.first} rule`"
+    if "RULE" in ctx.accepted:
+        return f"write `{' '.join(token.text for token in ctx.tokens[: ctx.at])} rule {name}`"
+    if (ctx.text_before, text) == ("(", ")"):
         return "a rule without variables has no parentheses"
-    if scene.accepted == {"COLON"}:
+    if ctx.accepted == {"COLON"}:
         return "a variable is written with its type, such as `v: vehicle`"
-    if scene.accepted >= {"COMMA", "RPAR"} and scene.is_word() and scene.text_behind == ":":
+    if ctx.accepted >= {"COMMA", "RPAR"} and ctx.is_word() and ctx.text_behind == ":":
         return "separate the variables by `,`"
-    if scene.unexpected is None and scene.text_before == "(":
+    if ctx.unexpected is None and ctx.text_before == "(":
         return "in parentheses stand a rule's variables; what it says stands between `{` and `}`"
-    if scene.unexpected is None and "RPAR" in scene.accepted:
+    if ctx.unexpected is None and "RPAR" in ctx.accepted:
         return "close the list of variables with `)`"
-    if text == "," and scene.text_before != ")" and "RPAR" not in scene.accepted:
+    if text == "," and ctx.text_before != ")" and "RPAR" not in ctx.accepted:
         return "a rule has one name: write a rule for each"
-    if text == ":" and "RPAR" not in scene.accepted:
+    if text == ":" and "RPAR" not in ctx.accepted:
         return "what a rule says stands between `{` and `}`"
-    return _HEAD if "RPAR" not in scene.accepted else ""
+    return _HEAD if "RPAR" not in ctx.accepted else ""
 
 
 _BEHIND_AT: Final = ("start", "end", "some", "least", "most")
 
 
-def advise_on_clause(scene: ParseContext) -> str:
-    if scene.kind == "example_head":
-        return _example_head(scene)
-    if scene.kind != "clause":
+def advise_on_clause(ctx: ParseContext) -> str:
+    if ctx.kind == "example_head":
+        return _example_head(ctx)
+    if ctx.kind != "clause":
         return ""
-    behind_text = scene.before is not None and scene.before.kind == "string"
-    said = scene.first in ("cite", "says", "source")
-    if said and behind_text and scene.accepted == {"$END"} and not scene.is_word():
+    behind_text = ctx.before is not None and ctx.before.kind == "string"
+    said = ctx.first in ("cite", "says", "source")
+    if said and behind_text and ctx.accepted == {"$END"} and not ctx.is_word():
         return "put all of it between one pair of quotes"
-    scoped = scene.first in ("unless", "also")
-    if scoped and scene.operator and scene.text == "always":
+    scoped = ctx.first in ("unless", "also")
+    if scoped and ctx.operator and ctx.text == "always":
         return "for the whole time write `throughout`, or nothing"
-    if scoped and scene.text in ("initially", "throughout", "at") and scene.operand:
+    if scoped and ctx.text in ("initially", "throughout", "at") and ctx.operand:
         return "the scope stands behind the formula, such as `unless p throughout`"
-    if scoped and scene.accepted >= SCOPES and scene.is_word():
+    if scoped and ctx.accepted >= SCOPES and ctx.is_word():
         return _SCOPE
-    if scene.operator and scene.text == "at" and scene.text_behind not in _BEHIND_AT:
-        state = scene.text_behind if scene.text_behind.isidentifier() else "q"
+    if ctx.operator and ctx.text == "at" and ctx.text_behind not in _BEHIND_AT:
+        state = ctx.text_behind if ctx.text_behind.isidentifier() else "q"
         return f"for `p at {state}` write `p and {state}`"
-    if scene.first == "when" and scene.operator and scene.text in ("throughout", "at"):
+    if ctx.first == "when" and ctx.operator and ctx.text in ("throughout", "at"):
         return "only an `unless` clause has a scope: a condition has to hold throughout"
-    if scene.first == "require" and scene.operator and scene.text in ("throughout", "at"):
+    if ctx.first == "require" and ctx.operator and ctx.text in ("throughout", "at"):
         return "only an `unless` clause has a scope; write `always p` for all of the time"
-    if scene.operator and scene.text in _NO_OPERATORS:
-        return other_clause(scene.text)
-    if scene.first == "certainty" and scene.text in _AS_REMEMBERED:
+    if ctx.operator and ctx.text in _NO_OPERATORS:
+        return other_clause(ctx.text)
+    if ctx.first == "certainty" and ctx.text in _AS_REMEMBERED:
         return "what was written from memory is `unverified`; `source` says in words where from"
-    if scene.first == "certainty":
+    if ctx.first == "certainty":
         return (
             "`verified` was read in the law itself, `secondary` elsewhere, else it is `unverified`"
         )
-    return advise_on_dates(scene) if scene.first == "in" else ""
+    return advise_on_dates(ctx) if ctx.first == "in" else ""
 
 
-def _example_head(scene: ParseContext) -> str:
-    if scene.accepted == {"COLON"}:
+def _example_head(ctx: ParseContext) -> str:
+    if ctx.accepted == {"COLON"}:
         return "an object is written with its type, such as `v: vehicle`"
-    if (
-        scene.unexpected is not None
-        and scene.unexpected.kind == "string"
-        and scene.text_before == ")"
-    ):
-        return f'the label stands before the objects: `{scene.first} "…" (v: vehicle)`'
-    if scene.is_word() and "STRING" in scene.accepted:
+    if ctx.unexpected is not None and ctx.unexpected.kind == "string" and ctx.text_before == ")":
+        return f'the label stands before the objects: `{ctx.first} "…" (v: vehicle)`'
+    if ctx.is_word() and "STRING" in ctx.accepted:
         return 'put the text in double quotes: "…"'
     return ""
 
 
-def advise_on_state(scene: ParseContext) -> str:
-    if scene.kind != "state":
+def advise_on_state(ctx: ParseContext) -> str:
+    if ctx.kind != "state":
         return ""
-    text = scene.text
-    if scene.unexpected is None and "NAME" in scene.accepted:
+    text = ctx.text
+    if ctx.unexpected is None and "NAME" in ctx.accepted:
         return "say what holds in this state; a `;` stands only between two states"
-    if text == "," and scene.is_number(scene.at - 1) and scene.is_number(scene.at + 1):
-        return scene.with_a_point()
+    if text == "," and ctx.is_number(ctx.at - 1) and ctx.is_number(ctx.at + 1):
+        return ctx.with_a_point()
     if text == ",":
         return "states are separated by `;`, the facts of one state by `and`"
     if text in ("or", "|", "||"):
         return "a state says what holds; for another possibility write another example"
-    if text in ("for", "during", "within", "x", "times") or scene.text_at(scene.at + 1) == "x":
+    if text in ("for", "during", "within", "x", "times") or ctx.text_at(ctx.at + 1) == "x":
         return "a state is one step long: write it as often as it lasts, with `;` between"
     if text in OPERATOR_WORDS | OPERATOR_LETTERS:
         return "a state holds atoms and `not` before a signal; no other operator"
-    if text == "=" and "not" in (scene.text_at(scene.at - 2), scene.text_at(0)):
+    if text == "=" and "not" in (ctx.text_at(ctx.at - 2), ctx.text_at(0)):
         return "a quantity has one value in a state; write `=` without `not`"
-    signal = scene.text_at(scene.at - 2)
-    if scene.text_before == "=" and text in ("true", "false") and signal.isidentifier():
+    signal = ctx.text_at(ctx.at - 2)
+    if ctx.text_before == "=" and text in ("true", "false") and signal.isidentifier():
         return f"write `{signal}` for true and `not {signal}` for false, without `=`"
-    if scene.text_before == "=" and text in ("true", "false"):
+    if ctx.text_before == "=" and text in ("true", "false"):
         return "what is true is said without `=`, such as `p(v)`, what is not as `not p(v)`"
-    if text in ("–", "−", "‑") and scene.is_number(scene.at + 1):
+    if text in ("–", "−", "‑") and ctx.is_number(ctx.at + 1):
         return "write `-`"
-    number = "NUMBER" in scene.accepted and "NAME" not in scene.accepted
+    number = "NUMBER" in ctx.accepted and "NAME" not in ctx.accepted
     sums = text in ("+", "-", "*", "/")
-    if scene.text_before == "=" and scene.is_word():
+    if ctx.text_before == "=" and ctx.is_word():
         return (
             f"a quantity gets a number, such as `speed = 50 km/h`; a value stands alone: `{text}`"
         )
-    if number or sums or text in _RELATIONS or scene.is_number(scene.at):
+    if number or sums or text in _RELATIONS or ctx.is_number(ctx.at):
         return "a state gives a quantity one value, such as `speed = 50 km/h`"
     return ""

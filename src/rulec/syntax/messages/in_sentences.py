@@ -24,32 +24,32 @@ _COMPARING: Final = {
 _SMALL_WORDS: Final = ("is", "at", "in", "on", "the", "a", "an", "not")
 
 
-def advise_on_sentence(scene: ParseContext) -> str:
+def advise_on_sentence(ctx: ParseContext) -> str:
     """Advice on words that a formula says otherwise, or not at all; empty if there is none."""
-    if not scene.operator or scene.unexpected is None:
+    if not ctx.operator or ctx.unexpected is None:
         return ""
-    text, before, behind = scene.text, scene.text_before, scene.text_behind
+    text, before, behind = ctx.text, ctx.text_before, ctx.text_behind
     if before in _OBLIGATIONS:
         return f"leave out `{before}`; what a formula says must hold"
     if text in _OBLIGATIONS and behind == "not":
         return f"for `{text} not p` write `never p`, such as `never (speed > 50 km/h)`"
     if text in _OBLIGATIONS:
         return f"leave out `{text}`: what a formula says must hold, such as `speed <= 50 km/h`"
-    if before in EGO and scene.is_word() and (said := _what_is_said(scene)):
+    if before in EGO and ctx.is_word() and (said := _what_is_said(ctx)):
         return f"what is ego's stands alone: write `{said}`"
     if text in _CONJUNCTIONS:
         return _CONJUNCTIONS[text]
     if text in _COMPARING and behind:
         return f"for `{text}` write `{_COMPARING[text]}`"
     plural = len(before) > 2 and before.endswith("s") and before not in keywords.RESERVED
-    if scene.is_number(scene.at - 2) and plural and text.isidentifier():
-        number, singular = scene.text_at(scene.at - 2), before[:-1]
+    if ctx.is_number(ctx.at - 2) and plural and text.isidentifier():
+        number, singular = ctx.text_at(ctx.at - 2), before[:-1]
         return f"how many is said by `count x: {singular} ({text}(x)) >= {number}`"
     return ""
 
 
-def _what_is_said(scene: ParseContext) -> str:
+def _what_is_said(ctx: ParseContext) -> str:
     """What is said of ego: `junction` of `ego is at the junction`."""
-    words = (token.text for token in scene.tokens[scene.at :])
+    words = (token.text for token in ctx.tokens[ctx.at :])
     said = next((word for word in words if word not in _SMALL_WORDS), "")
     return said if said.isidentifier() and said not in keywords.RESERVED else ""

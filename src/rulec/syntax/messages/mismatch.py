@@ -95,14 +95,14 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
     inside = tokens[piece.first : piece.last]
     at = bisect_left([token.end for token in inside], mismatch.position + 1)
     token = inside[at] if at < len(inside) else None
-    scene = ParseContext(source, piece.kind, inside, at, accepted)
-    first = scene.first
+    ctx = ParseContext(source, piece.kind, inside, at, accepted)
+    first = ctx.first
     end = span_of(source, tokens, piece).end
     span = Span(source, end, end) if token is None else _span(source, token)
     if token is not None and token.kind == "unterminated":
         return _unterminated(span)
-    if token is not None and _is_word_for_name(scene):
-        return _reserved(span, token.text, scene)
+    if token is not None and _is_word_for_name(ctx):
+        return _reserved(span, token.text, ctx)
     if piece.kind == "item" and at < 2 and first not in keywords.ITEM_WORDS:
         return _unknown_item(source, inside)
     subject = _BY_KIND.get(piece.kind) or _WHAT.get(first, "the declaration")
@@ -117,8 +117,8 @@ def explain(source: Source, tokens: list[Token], piece: Piece, mismatch: Mismatc
         span,
         message,
         expected=in_words(accepted),
-        help=advise(scene),
-        labels=_open_parenthesis(source, scene),
+        help=advise(ctx),
+        labels=_open_parenthesis(source, ctx),
     )
 
 
@@ -202,27 +202,27 @@ def _short(text: str) -> str:
     return text if len(text) <= 40 else f"{text[:39]}…"
 
 
-def _is_word_for_name(scene: ParseContext) -> bool:
-    token = scene.unexpected
+def _is_word_for_name(ctx: ParseContext) -> bool:
+    token = ctx.unexpected
     if token is None or token.kind != "word" or token.text not in keywords.RESERVED:
         return False
-    if "NAME" not in scene.accepted:
+    if "NAME" not in ctx.accepted:
         return False
-    if token.text in ("because", "rule") and scene.first in keywords.PROVISION_WORDS:
+    if token.text in ("because", "rule") and ctx.first in keywords.PROVISION_WORDS:
         return False  # the name before it is missing, or `rule` stands where it need not
-    if scene.operand or scene.quantity:
+    if ctx.operand or ctx.quantity:
         return token.text in keywords.ITEM_WORDS | keywords.CLAUSE_WORDS
-    return scene.kind != "state" or token.text in keywords.ITEM_WORDS | keywords.CLAUSE_WORDS
+    return ctx.kind != "state" or token.text in keywords.ITEM_WORDS | keywords.CLAUSE_WORDS
 
 
-def _reserved(span: Span, word: str, scene: ParseContext) -> Diagnostic:
+def _reserved(span: Span, word: str, ctx: ParseContext) -> Diagnostic:
     kind = "an operator" if word in keywords.OPERATOR_LETTERS else "a word of the language"
     another = f"choose another name, such as `{word.lower()}_1`"
-    if scene.kind == "rule_head" and word == "every" and scene.text_before in ("(", ","):
+    if ctx.kind == "rule_head" and word == "every" and ctx.text_before in ("(", ","):
         another = "leave `every` out: a rule holds for every one, as in `(v: vehicle)`"
-    if scene.kind == "rule_head" and word == "some" and scene.text_before in ("(", ","):
+    if ctx.kind == "rule_head" and word == "some" and ctx.text_before in ("(", ","):
         another = "a rule holds for every one; of some speaks its formula: `some v: vehicle (…)`"
-    if scene.operand and word in ("when", "unless"):
+    if ctx.operand and word in ("when", "unless"):
         other = "not p" if word == "unless" else "p"
         another = f"in a formula write `{other} implies q`; of a whole rule it is a clause"
     return RESERVED_WORD.at(
@@ -246,11 +246,11 @@ def _unterminated(span: Span) -> Diagnostic:
     )
 
 
-def _open_parenthesis(source: Source, scene: ParseContext) -> tuple[Label, ...]:
+def _open_parenthesis(source: Source, ctx: ParseContext) -> tuple[Label, ...]:
     signs = {"RPAR": ("(", ")"), "RSQB": ("[", "]")}
     for kind, (opening, closing) in signs.items():
-        opened = scene.opened(opening, closing) if kind in scene.accepted else None
-        if opened is not None and scene.kind in ("clause", "formula", "item", "rule_head"):
-            place = _span(source, scene.tokens[opened]).place
+        opened = ctx.opened(opening, closing) if kind in ctx.accepted else None
+        if opened is not None and ctx.kind in ("clause", "formula", "item", "rule_head"):
+            place = _span(source, ctx.tokens[opened]).place
             return (Label(place, "this is still open"),)
     return ()
