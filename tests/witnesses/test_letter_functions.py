@@ -35,9 +35,9 @@ from rulec.witnesses.object_universe import (
     EXTRA,
     Itself,
     ObjectUniverse,
+    applied_to,
     canonical_term,
     counts_in,
-    said_of,
 )
 from rulec.witnesses.undecided import UndecidedError
 from support.generators.random_reads import PLAIN_STATES, VOCABULARY, value
@@ -184,7 +184,7 @@ def test_bindings_are_all_choices_of_distinct_objects(objects, n_variables):
 def test_axioms_are_said_of_all_objects():
     axiom = Axiom((Variable("o", "thing"),), Atom("q", ("o",)))
     universe = ObjectUniverse(TWO, VOCABULARY, (axiom,))
-    said = [said_of(one, names) for one, names in universe.axiom_bindings()]
+    said = [applied_to(one, names) for one, names in universe.axiom_bindings()]
     assert said == [Atom("q", ("x",)), Atom("q", ("y",))]
 
 

@@ -193,13 +193,13 @@ class CachedSteps:
         if step not in self._answers:
             if len(self._answers) >= MOST_FILES:
                 self._answers.clear()
-            self._answers[step] = self._found(_File(self._question, step, self._given), compile_it)
+            self._answers[step] = self._load(_File(self._question, step, self._given), compile_it)
         answer = self._answers[step]
         if isinstance(answer, RulecError):
             raise answer
         return answer
 
-    def _found(
+    def _load(
         self, file: _File, compile_it: Callable[[], CompiledRulebook]
     ) -> CompiledRulebook | RulecError:
         text = self._text

@@ -248,7 +248,7 @@ def _coverage(
 ) -> RuleCoverage:
     machine = compiled.machine
     known = _RuleExamples(rule, machine, rulebook.vocabulary, axioms)
-    taken = {edge for outcome in outcomes for edge in _taken(machine, outcome.word)}
+    taken = {edge for outcome in outcomes for edge in _edges_taken(machine, outcome.word)}
     values = [
         (proposition, value)
         for proposition, possible in truth_values(
@@ -279,7 +279,7 @@ def _coverage(
     )
 
 
-def _taken(machine: MealyMonitor, word: Sequence[int]) -> Iterator[tuple[int, int]]:
+def _edges_taken(machine: MealyMonitor, word: Sequence[int]) -> Iterator[tuple[int, int]]:
     state = 0
     for symbol in word:
         yield state, symbol

@@ -49,7 +49,7 @@ def run() -> int:
 def _run() -> int:
     try:
         _prepare()
-        if sys.argv[1:] == ["--version"] and _said_version():
+        if sys.argv[1:] == ["--version"] and _printed_version():
             return 0
         # click and the diagnostics, 30 ms: not for `rulec --version`, and after signals are set.
         from rulec.cli.dataclass_methods import write_when_called
@@ -127,7 +127,7 @@ def _unraisable(problem: UnraisableHookArgs) -> None:
     Timer(0.01, signal.pthread_kill, (get_ident(), signal.SIGINT)).start()
 
 
-def _said_version() -> bool:
+def _printed_version() -> bool:
     """Print the version, without the imports of ``main``, and report success.
 
     What cannot be written is left to ``main``, which knows what to say of that.

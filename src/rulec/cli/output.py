@@ -172,9 +172,9 @@ def rulebooks_named(references: Sequence[str]) -> tuple[str, ...]:
     if not any(has_magic(reference) or os.path.isdir(reference) for reference in references):  # noqa: PTH112
         return tuple(references)
     # Sources below folders, 10 ms: not for --help.
-    from rulec.rulebook.batch.batch_check import rulebooks_meant
+    from rulec.rulebook.batch.batch_check import named_rulebooks
 
-    names, on_the_way = rulebooks_meant(references, search_path(), exclusion())
+    names, on_the_way = named_rulebooks(references, search_path(), exclusion())
     if on_the_way.refused:
         raise RulecError(on_the_way.refused)
     print_left_alone(on_the_way.left_alone, verbose=False)

@@ -278,12 +278,12 @@ def _matrix(item: Declaration, layout: MonitorLayout) -> Iterator[str]:
     parameters = ", ".join(f"size_t {name}" for name in names)
     yield f"static {_kind(item)} rulec_of_{field}(const rulec_input *in, {parameters})"
     yield "{"
-    yield f"    return (in->{field} != NULL) ? in->{field}[{place}] : {_said(item, defaults=True)};"
+    yield f"    return (in->{field} != NULL) ? in->{field}[{place}] : {_init(item, defaults=True)};"
     yield "}\n"
 
 
-def _said(item: Declaration, *, defaults: bool) -> str:
-    """What is said of a name of which nothing is said."""
+def _init(item: Declaration, *, defaults: bool) -> str:
+    """The initialiser of a field: the default of its name, or else unknown."""
     default = default_of(item) if defaults else None
     match item:
         case Quantity():
@@ -307,7 +307,7 @@ def _initialisers(layout: MonitorLayout) -> Iterator[str]:
         yield "    input->n_objects = 0u;"
         yield "    input->objects = NULL;"
         for item in fields.about(0):
-            yield f"    input->{fields.identifiers[item.name]} = {_said(item, defaults=defaults)};"
+            yield f"    input->{fields.identifiers[item.name]} = {_init(item, defaults=defaults)};"
         for item in fields.about(2):
             yield f"    input->{fields.identifiers[item.name]} = NULL;"
         yield "}\n"
@@ -316,5 +316,5 @@ def _initialisers(layout: MonitorLayout) -> Iterator[str]:
         yield "    object->id = id;"
         yield "    object->type = type;"
         for item in fields.about(1):
-            yield f"    object->{fields.identifiers[item.name]} = {_said(item, defaults=defaults)};"
+            yield f"    object->{fields.identifiers[item.name]} = {_init(item, defaults=defaults)};"
         yield "}\n"

@@ -190,7 +190,7 @@ def _input(layout: MonitorLayout) -> Iterator[str]:
         yield f"    /// An object of which nothing is said{' but the defaults' * defaults}."
         yield "    #[must_use]"
         yield f"    pub const fn {constructor}(id: u32, r#type: u8) -> Self {{"
-        said = _all_said(own, layout, defaults=defaults)
+        said = _inits(own, layout, defaults=defaults)
         yield f"        Self {{ {', '.join(['id', 'r#type', *said])} }}"
         yield "    }"
     yield "}"
@@ -200,7 +200,7 @@ def _input(layout: MonitorLayout) -> Iterator[str]:
         yield f"    /// A state of which nothing is said{' but the defaults' * defaults}."
         yield "    #[must_use]"
         yield f"    pub const fn {constructor}(objects: &'a [Object]) -> Self {{"
-        said = _all_said(world, layout, defaults=defaults)
+        said = _inits(world, layout, defaults=defaults)
         said += [f"{fields.identifiers[item.name]}: None" for item in several]
         yield f"        Self {{ {', '.join(['objects', *said])} }}"
         yield "    }"
@@ -226,12 +226,12 @@ def _field(item: Declaration, layout: MonitorLayout, kind: str) -> Iterator[str]
     yield f"    pub {layout.fields.identifiers[item.name]}: {kind},"
 
 
-def _all_said(items: Iterable[Declaration], layout: MonitorLayout, *, defaults: bool) -> list[str]:
-    fields = layout.fields
-    return [f"{fields.identifiers[item.name]}: {_said(item, defaults=defaults)}" for item in items]
+def _inits(items: Iterable[Declaration], layout: MonitorLayout, *, defaults: bool) -> list[str]:
+    names = layout.fields.identifiers
+    return [f"{names[item.name]}: {_init(item, defaults=defaults)}" for item in items]
 
 
-def _said(item: Declaration, *, defaults: bool) -> str:
+def _init(item: Declaration, *, defaults: bool) -> str:
     default = default_of(item) if defaults else None
     if isinstance(item, Quantity):
         known = isinstance(default, int | float) and isfinite(default)
@@ -253,7 +253,7 @@ def _matrix(item: Declaration, layout: MonitorLayout) -> Iterator[str]:
     parameters = ", ".join(f"{name}: usize" for name in names)
     yield f"fn of_{field}(input: &Input, {parameters}) -> {_kind(item)} {{"
     yield f"    match input.{field} {{"
-    yield f"        None => {_said(item, defaults=True)},"
+    yield f"        None => {_init(item, defaults=True)},"
     yield f"        Some(all) => all[{place}],"
     yield "    }"
     yield "}"

@@ -89,7 +89,7 @@ class TraceTableJudge:
                         yield to_rows.of_nothing(named, row)
                         continue
                     verdict, facts = row
-                    findings = self._found(traces, place, verdict, own)
+                    findings = self._findings(traces, place, verdict, own)
                     yield from to_rows.of_trace(facts, verdict, named, findings)
 
     def _with_facts(
@@ -104,7 +104,7 @@ class TraceTableJudge:
         facts = iter(facts_of_many(traces, verdicts, self.to_rows.rules))
         return [answer if isinstance(answer, str) else (answer, next(facts)) for answer in short]
 
-    def _found(
+    def _findings(
         self, traces: Items, place: int, verdict: Verdict, own: Mapping[str, str]
     ) -> list[VerdictFinding]:
         """What was found of a trace, which is made only if something was."""

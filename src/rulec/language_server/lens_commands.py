@@ -29,7 +29,7 @@ def add_commands(server: EditorSession) -> None:
 
     @server.command(lenses.RUN)
     async def run(uri: str, rule: str) -> str:
-        asked = _asked(server, uri, rule)
+        asked = _rule_asked_about(server, uri, rule)
         if isinstance(asked, str):
             return _shown(server, asked)
         answer = await _examples(server, asked)
@@ -37,7 +37,7 @@ def add_commands(server: EditorSession) -> None:
 
     @server.command(lenses.ENGLISH)
     async def in_english(uri: str, rule: str) -> str:
-        asked = _asked(server, uri, rule)
+        asked = _rule_asked_about(server, uri, rule)
         if isinstance(asked, str):
             return _shown(server, asked)
         _, book, meant = asked
@@ -45,7 +45,7 @@ def add_commands(server: EditorSession) -> None:
 
     @server.command(lenses.COMPARE)
     async def compare(uri: str, rule: str) -> str:
-        asked = _asked(server, uri, rule)
+        asked = _rule_asked_about(server, uri, rule)
         if isinstance(asked, str):
             return _shown(server, asked)
         if len(asked[0].chain.books) < 2:
@@ -65,7 +65,7 @@ def add_commands(server: EditorSession) -> None:
 
     @server.command(lenses.INSERT)
     async def insert(uri: str, rule: str) -> str:
-        asked = _asked(server, uri, rule)
+        asked = _rule_asked_about(server, uri, rule)
         if isinstance(asked, str):
             return _shown(server, asked)
         answer = await _examples(server, asked)
@@ -86,7 +86,7 @@ _MISTAKES = "the rulebook has mistakes, which have to be mended before"
 Asked = tuple[DocumentNames, Rulebook, Rule]
 
 
-def _asked(server: EditorSession, uri: str, name: str) -> Asked | str:
+def _rule_asked_about(server: EditorSession, uri: str, name: str) -> Asked | str:
     """A document, its rulebook and a rule of it, or why these cannot be had."""
     known = server.names(uri)
     if known is None:

@@ -97,7 +97,7 @@ class Terms:
         ended = Term("G", (_not(self._alive),))
         return Term("&", (self._alive, Term("U", (self._alive, ended))))
 
-    def _there(self, term: Term) -> Term:
+    def _while_alive(self, term: Term) -> Term:
         """The term, in a state of the word."""
         return term if self._alive is None else Term("&", (self._alive, term))
 
@@ -110,12 +110,12 @@ class Terms:
             return FALSE
         now = right
         if high is None:
-            meets = self._there(right)
+            meets = self._while_alive(right)
             now = Term("F", (meets,)) if left is None else Term("U", (left, meets))
         for _ in range(0 if high is None else high - low):
-            now = Term("|", (right, _and_later(left, Term("X", (self._there(now),)))))
+            now = Term("|", (right, _and_later(left, Term("X", (self._while_alive(now),)))))
         for _ in range(low):
-            now = _and_later(left, Term("X", (self._there(now),)))
+            now = _and_later(left, Term("X", (self._while_alive(now),)))
         return now
 
     def _release(self, left: Term | None, right: Term, span: Range) -> Term:

@@ -99,7 +99,7 @@ def rule_terms(rulebook: Rulebook, lowered: RuleFormula, phrases: Mapping[str, s
         names[atom] = fresh_identifier(str(atom), set(names.values()))
     terms = Terms(names, "alive" if rulebook.semantics == "finite" else None)
     known_as = tuple(
-        Proposition(names[proposition], str(proposition), _said(proposition, phrases))
+        Proposition(names[proposition], str(proposition), _in_words(proposition, phrases))
         for proposition in spoken_of
     )
     ago = tuple(
@@ -132,7 +132,7 @@ def fresh_identifier(text: str, taken: set[str]) -> str:
     return name if name not in taken else next(each for each in several if each not in taken)
 
 
-def _said(proposition: ltl.Proposition, phrases: Mapping[str, str]) -> str:
+def _in_words(proposition: ltl.Proposition, phrases: Mapping[str, str]) -> str:
     spoken = spoken_formula(proposition, phrases)
     if isinstance(spoken, ltl.Comparison):
         return comparison_clause(spoken, ENGLISH, holds=True)

@@ -16,7 +16,7 @@ from rulec.vocabulary.partial_values import UNKNOWN, Interval
 _Subject: TypeAlias = tuple[str, ...]
 """The objects that a value is about; none for the world."""
 
-_Said: TypeAlias = dict[_Subject, tuple[Any, int]]
+_Stated: TypeAlias = dict[_Subject, tuple[Any, int]]
 """What is known of a name by subject, and the first state that says so."""
 
 
@@ -34,19 +34,19 @@ def with_constants(
         # Mostly every state says the same, or says nothing.
         if any(state.get(name) != first for state in states):
             depth = len(vocabulary.declarations[name].parameters)
-            said = _said(name, depth, states, where, trace.place)
+            said = _stated_values(name, depth, states, where, trace.place)
             states = tuple(_filled(states, name, said, trace.present))
     return trace if states is trace.states else replace(trace, states=states)
 
 
-def _said(
+def _stated_values(
     name: str,
     depth: int,
     states: Sequence[State],
     where: Callable[[int], str],
     place: SourceLocation | None,
-) -> _Said:
-    said: _Said = {}
+) -> _Stated:
+    said: _Stated = {}
     before: object = None
     for number, state in enumerate(states):
         given = state.get(name)
@@ -107,7 +107,7 @@ def _agreed(first: Any, second: Any) -> Any:
 
 
 def _filled(
-    states: Sequence[State], name: str, said: _Said, present: Mapping[str, tuple[int, int]]
+    states: Sequence[State], name: str, said: _Stated, present: Mapping[str, tuple[int, int]]
 ) -> Iterator[State]:
     last = len(states) - 1
     for number, state in enumerate(states):

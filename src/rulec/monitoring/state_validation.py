@@ -109,7 +109,7 @@ def check_objects(
             raise UNKNOWN_OBJECT.error(
                 place,
                 f"object `{name}` is of type `{said}`, which `{vocabulary.name}` does not know",
-                help=_type_meant(said, vocabulary.types) or _suggest(said, vocabulary.types),
+                help=_similar_type(said, vocabulary.types) or _suggest(said, vocabulary.types),
             )
 
 
@@ -356,7 +356,7 @@ def _suggest(name: str, known: Iterable[str]) -> str:
     return did_you_mean(str(name), known) or (f"known: {named(known)}" if known else "")
 
 
-def _type_meant(kind: str, types: Iterable[str]) -> str:
+def _similar_type(kind: str, types: Iterable[str]) -> str:
     # Synonyms are read from a file: only for this message.
     from rulec.rulebook.vocabulary_phrases import synonyms_of_the_field
 

@@ -29,7 +29,7 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     that a rule depends on, with the trace's own place.
     """
     check_trace(trace)
-    with _told_at(trace.place):
+    with _errors_at(trace.place):
         roundings = rulebook.rounded_to(trace.step_s)
     if len(roundings) > 1:
         return agreed([verify(trace, rounded) for rounded in roundings])
@@ -111,12 +111,12 @@ def rulebook_for_step(
     step_s: float, rulebook: CompiledRulebook, place: SourceLocation | None = None
 ) -> CompiledRulebook:
     """Rulebook compiled for a trace's step (s); errors name its place."""
-    with _told_at(place):
+    with _errors_at(place):
         return rulebook.fitted_to(step_s)
 
 
 @contextmanager
-def _told_at(place: SourceLocation | None) -> Iterator[None]:
+def _errors_at(place: SourceLocation | None) -> Iterator[None]:
     try:
         yield
     except RulecError as error:

@@ -104,7 +104,7 @@ def read_recordings(source: RecordingSource) -> Iterator[Recording]:
     raise NOT_IN_RECORDING.error(
         SourceLocation(str(source.path)),
         f"there is no scenario `{source.scenario_id}` in the file",
-        help=did_you_mean(source.scenario_id, names) or f"choose {_some(names)}",
+        help=did_you_mean(source.scenario_id, names) or f"choose {_list(names)}",
     )
 
 
@@ -172,6 +172,6 @@ def check_readable(path: Path) -> None:
         parquet_names(path, lambda why, **more: RECORDING.refused(path, why, **more))
 
 
-def _some(names: list[str]) -> str:
+def _list(names: list[str]) -> str:
     more = len(names) - _MOST_NAMED
     return named(names[:_MOST_NAMED]) + (f", or one of {more:,} more" if more > 0 else "")

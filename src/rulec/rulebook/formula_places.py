@@ -19,7 +19,7 @@ class AskedParts:
     program: Source
     parts: tuple[tuple[int, int, int], ...]
 
-    def said(self, problem: Diagnostic) -> Diagnostic:
+    def relocated(self, problem: Diagnostic) -> Diagnostic:
         """The diagnostic, with no place where it is about what nobody has written."""
         place = problem.place and self._place(problem.place)
         moved = ((label, self._place(label.place)) for label in problem.labels)

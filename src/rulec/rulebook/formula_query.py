@@ -89,7 +89,7 @@ def read_query(
             if diagnostic.code != FIRST_STATE_ONLY.code
         ]
         raise RulecError(
-            [places.said(_in_words(diagnostic)) for diagnostic in found_wrong]
+            [places.relocated(_in_words(diagnostic)) for diagnostic in found_wrong]
         ) from None
     own = next(rule for rule in resolved.rules if rule.name == _NAME)
     named = replace(resolved.vocabulary, name=words)

@@ -128,7 +128,7 @@ def with_book(trees: Trees, source: Source, search_path: Sequence[Path] = ()) ->
     """The trees with one more rulebook, which extends the last, and what vocabularies it uses."""
     book, mistakes = parse(source)
     files = ReferencedFiles(search_path)
-    read = [files.vocabulary(use, None) for use in _once(book.uses)]
+    read = [files.vocabulary(use, None) for use in _distinct(book.uses)]
     return Trees(
         name=source.name,
         books=(*trees.books, book),
@@ -199,7 +199,7 @@ def trees_of(file: RulebookFile, own: tree.File, mistakes: Sequence[Diagnostic])
     files = ReferencedFiles(file.search_path)
     itself = Book(own, file.path)
     books = (*files.bases(itself), itself)
-    read = [files.vocabulary(use, book.path) for book in books for use in _once(book.file.uses)]
+    read = [files.vocabulary(use, book.path) for book in books for use in _distinct(book.file.uses)]
     return Trees(
         name=file.source.name,
         books=tuple(book.file for book in books),
@@ -226,21 +226,21 @@ def _resolved(trees: Trees, at: str, traffic: Traffic = "") -> tuple[Loaded | No
         at=day_of(trees, at),
         traffic=traffic,
     )
-    findings = said(trees, [*trees.mistakes, *meanings], trees.books[-1].span.source)
+    findings = reported(trees, [*trees.mistakes, *meanings], trees.books[-1].span.source)
     diagnosis = Diagnosis(findings, trees.dependencies)
     if rulebook is None or any(finding.severity == "error" for finding in findings):
         return None, diagnosis
     return Loaded(rulebook, findings, trees.books, trees.vocabularies), diagnosis
 
 
-def _once(uses: Sequence[tree.UseLine]) -> list[tree.UseLine]:
+def _distinct(uses: Sequence[tree.UseLine]) -> list[tree.UseLine]:
     first: dict[str, tree.UseLine] = {}
     for use in uses:
         first.setdefault(use.name.text, use)
     return list(first.values())
 
 
-def said(
+def reported(
     trees: Trees,
     mistakes: Sequence[Diagnostic],
     source: Source,

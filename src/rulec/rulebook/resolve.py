@@ -171,7 +171,7 @@ def with_rules(
             rules.append(rule.rule)
             contradictions += rule.contradictions
     good = [rule for rule in rules if rule is not None]
-    mistakes = _once([*mistakes, *contradictions])
+    mistakes = _distinct_mistakes([*mistakes, *contradictions])
     wrong = any(mistake.severity == "error" for mistake in mistakes)
     # A rulebook without rules is there to be extended.
     if whole and not wrong and laid.rules:
@@ -232,7 +232,7 @@ def _levels_of_broken_lines(books: Sequence[tree.File]) -> list[str]:
     return sorted({name for item in broken if item.word == "priority" for name in item.names})
 
 
-def _once(mistakes: Sequence[Diagnostic]) -> list[Diagnostic]:
+def _distinct_mistakes(mistakes: Sequence[Diagnostic]) -> list[Diagnostic]:
     first: dict[tuple[str, str, SourceLocation | None], Diagnostic] = {}
     for mistake in mistakes:
         first.setdefault((mistake.code, mistake.message, mistake.place), mistake)

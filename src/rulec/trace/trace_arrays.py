@@ -82,11 +82,11 @@ class TraceArrays:
         # Of each object's value the state that it is in
         starts = self.starts
         state_of = np.arange(starts[-1]) + (self.spans[:, 0] - starts[:-1]).repeat(np.diff(starts))
-        part = self._taken(states, stays[state_of], there, self.world.keys() | self.about.keys())
+        part = self._cut(states, stays[state_of], there, self.world.keys() | self.about.keys())
         spans = np.stack([first[there], last[there]], axis=1)
         return replace(part, n_states=len(chosen), spans=spans)
 
-    def _taken(self, states: Places, cells: Places, there: Flags, names: Set[str]) -> TraceArrays:
+    def _cut(self, states: Places, cells: Places, there: Flags, names: Set[str]) -> TraceArrays:
         """What names say in some states and, in ``cells``, of some objects."""
 
         def part(name: str, values: Array) -> Array:
@@ -119,13 +119,13 @@ class TraceArrays:
             *self.unknown.items(),
             *((name, low != high) for name, (low, high) in self.bounds.items()),
         ]
-        return any(bool((flags & self._said(name)).any()) for name, flags in partial)
+        return any(bool((flags & self._is_given(name)).any()) for name, flags in partial)
 
     def says(self, name: str) -> bool:
         """Whether some state says a name."""
-        return (name in self.world or name in self.about) and bool(self._said(name).any())
+        return (name in self.world or name in self.about) and bool(self._is_given(name).any())
 
-    def _said(self, name: str) -> Flags:
+    def _is_given(self, name: str) -> Flags:
         """Where a name is said."""
         column = self.world[name] if name in self.world else self.about[name]
         said = np.ones(len(column), dtype=bool)
@@ -138,12 +138,12 @@ class TraceArrays:
     def said_by(self, names: Set[str]) -> TraceArrays:
         """What is said by these names only."""
         every = np.ones(len(self.objects), dtype=bool)
-        return self._taken(slice(None), slice(None), every, names)
+        return self._cut(slice(None), slice(None), every, names)
 
     def part(self, names: Set[str], items: Set[str]) -> TraceArrays:
         """What is said by these names, of the world and of these objects."""
         kept = np.array([item in items for item in self.objects], dtype=bool)
-        return self._taken(slice(None), kept.repeat(np.diff(self.starts)), kept, names)
+        return self._cut(slice(None), kept.repeat(np.diff(self.starts)), kept, names)
 
     def trace(self) -> Trace:
         """The trace with its states."""

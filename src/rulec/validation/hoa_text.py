@@ -73,7 +73,7 @@ class _Reader:
         while (word := self._next()) != "--BODY--":
             require(word.endswith(":") and word not in head.keys() - _IGNORED, _NEITHER)
             head[word] = []
-            while not self._here().endswith(":") and self._here() != "--BODY--":
+            while not self._token().endswith(":") and self._token() != "--BODY--":
                 head[word].append(self._next())
         known = {"HOA:", "States:", "Start:", "AP:", "Acceptance:"}
         require(known <= head.keys() <= known | _IGNORED, _NEITHER)
@@ -88,7 +88,7 @@ class _Reader:
             state = int(self._next())
             require(state not in edges, _NEITHER)
             own, edges[state] = self._marks(), []
-            while self._here() == "[":
+            while self._token() == "[":
                 self._take("[")
                 label = self._or(lambda: self._label(propositions, everything))
                 self._take("]")
@@ -126,20 +126,20 @@ class _Reader:
 
     def _or(self, atom: Callable[[], int]) -> int:
         letters = self._and(atom)
-        while self._tokens and self._here() == "|":
+        while self._tokens and self._token() == "|":
             self._next()
             letters |= self._and(atom)
         return letters
 
     def _and(self, atom: Callable[[], int]) -> int:
         letters = self._inner(atom)
-        while self._tokens and self._here() == "&":
+        while self._tokens and self._token() == "&":
             self._next()
             letters &= self._inner(atom)
         return letters
 
     def _inner(self, atom: Callable[[], int]) -> int:
-        if self._here() != "(":
+        if self._token() != "(":
             return atom()
         self._take("(")
         letters = self._or(atom)
@@ -148,13 +148,13 @@ class _Reader:
 
     def _marks(self) -> frozenset[int]:
         marks: set[int] = set()
-        if self._tokens and self._here() == "{":
+        if self._tokens and self._token() == "{":
             self._next()
             while (word := self._next()) != "}":
                 marks.add(int(word))
         return frozenset(marks)
 
-    def _here(self) -> str:
+    def _token(self) -> str:
         return self._tokens[-1]
 
     def _next(self) -> str:

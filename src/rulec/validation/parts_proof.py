@@ -111,7 +111,7 @@ def _counted(phases: Sequence[Phase], exemptions: Sequence[tuple[str, Any]]) -> 
     require(not failing or (few and not bounded), "its exceptions are too many for this checker")
     if len(phases) == 2:
         return _any(
-            _left(
+            _remainder(
                 phases[0],
                 _all([_all([start, all_along]), *now]),
                 _all([phases[1][0], _all([end, all_along]), *(e for e in failing if e not in now)]),
@@ -132,7 +132,7 @@ def _counted(phases: Sequence[Phase], exemptions: Sequence[tuple[str, Any]]) -> 
         tree, own = phases[number]
         phase, is_last = _all([tree, all_along]), number == last - 1
         if not due:
-            return _left((phase, own), end if is_last else True, entered(number + 1, due))
+            return _remainder((phase, own), end if is_last else True, entered(number + 1, due))
         ways = []
         for now in _choices(due):
             rest = [part for part in due if part not in now]
@@ -153,7 +153,7 @@ def _choices(trees: Sequence[Any]) -> list[tuple[Any, ...]]:
     return [chosen for n in range(len(trees) + 1) for chosen in combinations(trees, n)]
 
 
-def _left(phase: Phase, at_last: Any, behind: Any) -> Any:
+def _remainder(phase: Phase, at_last: Any, behind: Any) -> Any:
     """The rest of a phase and the instant behind it; ``at_last`` holds in the phase's last one."""
     tree, bound = phase
     if at_last is True:

@@ -86,10 +86,10 @@ class FormulaMachine:
         if state not in self._moves:
             few = len(self._moves) < MOST_STATES
             require(few, f"its formula has more than {MOST_STATES} states for this checker")
-            self._moves[state] = list(self._found(state))
+            self._moves[state] = list(self._all_moves(state))
         return self._moves[state]
 
-    def _found(self, state: DemandState) -> Iterator[Move]:
+    def _all_moves(self, state: DemandState) -> Iterator[Move]:
         kept = 0 if self._ends else self.progression.kept_for_ever(state)
         for target, letters in self.progression.moves(state).items():
             if self._ends:

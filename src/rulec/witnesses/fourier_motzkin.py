@@ -63,7 +63,7 @@ def solve(
         # Those from below come first, as the numbers beside them are tried first.
         limits = sorted(
             [
-                (bound.coefficients[unknown], _rest(bound, solution), bound.strict)
+                (bound.coefficients[unknown], _remaining_limit(bound, solution), bound.strict)
                 for bound in bounds
             ],
             key=lambda limit: limit[0] > 0,
@@ -90,7 +90,7 @@ def solve(
     return solution
 
 
-def _rest(bound: LinearBound, solution: Mapping[Term, Fraction]) -> Fraction:
+def _remaining_limit(bound: LinearBound, solution: Mapping[Term, Fraction]) -> Fraction:
     """What the unknowns with a number leave of a limit."""
     left = bound.limit
     for name, factor in bound.coefficients.items():

@@ -50,7 +50,7 @@ def joint_reads(functions: Sequence[LetterFunction], vocabulary: Vocabulary) -> 
     reads = tuple(merged(together[subject], vocabulary) for subject in subjects)
     views = tuple(
         tuple(
-            JointDigits(place, _seen(read, reads[place], vocabulary))
+            JointDigits(place, _projected_digits(read, reads[place], vocabulary))
             for read in function.reads
             for place in [position[subject_of(read)]]
         )
@@ -108,7 +108,7 @@ def _scaled(read: NumberRead) -> tuple[list[Threshold], bool]:
     return thresholds, upward
 
 
-def _seen(
+def _projected_digits(
     read: Read | NumberRead, joint: Read | NumberRead, vocabulary: Vocabulary
 ) -> tuple[int, ...]:
     joint_digits = range(joint.size)

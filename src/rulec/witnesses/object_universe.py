@@ -64,7 +64,7 @@ class ObjectUniverse:
                 yield axiom, dict(zip(names, chosen, strict=True))
 
 
-def said_of(axiom: Axiom, names: Mapping[str, str]) -> ltl.Formula:
+def applied_to(axiom: Axiom, names: Mapping[str, str]) -> ltl.Formula:
     """An axiom, said of objects."""
     return rename_variables(_canonical(axiom.formula), names)
 

@@ -16,7 +16,7 @@ from rulec.logic.free_names import variables_of
 from rulec.rulebook.rulebook_model import Axiom
 from rulec.vocabulary import Vocabulary
 from rulec.witnesses.letter_functions import LetterFunction, Reads, axiom_function
-from rulec.witnesses.object_universe import Itself, ObjectUniverse, counts_in, said_of
+from rulec.witnesses.object_universe import Itself, ObjectUniverse, applied_to, counts_in
 from rulec.witnesses.state_synthesis import Subject, default_digit
 
 MOST_KEPT = 20_000
@@ -58,14 +58,14 @@ class SaidAxiom:
 
 def said_axioms(universe: ObjectUniverse) -> Iterator[SaidAxiom]:
     """The axioms, said of the universe's objects; those of one vocabulary are kept."""
-    known = _said(Itself(universe.vocabulary))
+    known = _known_instances(Itself(universe.vocabulary))
     if len(known) > MOST_KEPT:
         known.clear()
     for axiom, names in universe.axiom_bindings():
         key = id(axiom), *names.values()
         if key not in known:
             # It is kept beside it, so that no other one can have its number.
-            known[key] = axiom, SaidAxiom(said_of(axiom, names), universe.vocabulary)
+            known[key] = axiom, SaidAxiom(applied_to(axiom, names), universe.vocabulary)
         yield known[key][1]
 
 
@@ -96,7 +96,7 @@ def _about(
 
 
 @lru_cache(maxsize=8)
-def _said(_: Itself[Vocabulary]) -> dict[tuple[object, ...], tuple[Axiom, SaidAxiom]]:
+def _known_instances(_: Itself[Vocabulary]) -> dict[tuple[object, ...], tuple[Axiom, SaidAxiom]]:
     return {}
 
 

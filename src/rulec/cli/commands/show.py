@@ -61,7 +61,7 @@ def command(
     rule is shown in brief, a rulebook's only one in full. Of several RULEBOOKs, which may also be
     folders and patterns, the RULE is shown as it is in each, in JSON in a line for each.
     """
-    books, rule = _asked((rulebook, *others))
+    books, rule = _books_and_rule((rulebook, *others))
     if automaton is not None or to.form in ("dot", "svg"):
         if len(books) > 1:
             raise click.UsageError("an automaton is of one rule; give one RULEBOOK")
@@ -93,7 +93,7 @@ def _collected(problems: list[click.UsageError]) -> Iterator[None]:
         problems.append(problem)
 
 
-def _asked(arguments: Sequence[str]) -> tuple[tuple[str, ...], str | None]:
+def _books_and_rule(arguments: Sequence[str]) -> tuple[tuple[str, ...], str | None]:
     """The rulebooks and the rule that are asked for; the last argument may be a rule."""
     *before, last = arguments
     if not before and not _is_rulebook(last):

@@ -116,7 +116,7 @@ class CEngine:
         most = dict.fromkeys(roots, 1)
         for number in range(cast.n_states):
             there = Counter(
-                list(vocabulary.ancestors(cast.objects[item]))[-1] for item in _there(cast, number)
+                list(vocabulary.ancestors(cast.objects[item]))[-1] for item in _items(cast, number)
             )
             most = {root: max(n, there[root]) for root, n in most.items()}
         bounds = {root: 1 << (n - 1).bit_length() for root, n in most.items()}
@@ -132,7 +132,7 @@ class CEngine:
         return self._libraries[key]
 
 
-def _there(cast: Cast, number: int) -> Iterator[str]:
+def _items(cast: Cast, number: int) -> Iterator[str]:
     """Who is there in a state."""
     always = 0, cast.n_states - 1
     for item in cast.objects:
@@ -162,7 +162,7 @@ class _Run:
         self.is_whole = True
         kept = []
         for number, state in enumerate(states):
-            objects = {item: cast.objects[item] for item in _there(cast, number)}
+            objects = {item: cast.objects[item] for item in _items(cast, number)}
             if not is_all_known(library.layout, state, objects):
                 self.is_whole = False
                 return

@@ -172,7 +172,7 @@ class CMonitor:
     def step(self, state: State, objects: Mapping[str, str]) -> CSaid:
         """Take the next state."""
         library = self._library
-        return self.said_now(self.take(library.input_of(state, objects, self._ids)))
+        return self.last_answer(self.take(library.input_of(state, objects, self._ids)))
 
     def says(self, verdicts: bytes, n_violations: int | None = None) -> bool:
         """Whether the last step has said these verdicts, and so many violations.
@@ -184,7 +184,7 @@ class CMonitor:
         counted = n_violations is None or int.from_bytes(said[end:], "little") == n_violations
         return said.startswith(verdicts) and counted
 
-    def said_now(self, status: int) -> CSaid:
+    def last_answer(self, status: int) -> CSaid:
         """What the last step, which came to this status, has said."""
         said = self.said.raw
         names = [own.rule.name for own in self._library.layout.rules]
@@ -209,7 +209,7 @@ def is_all_known(layout: MonitorLayout, state: State, objects: Mapping[str, str]
         for kind in item.parameters:
             fitting = fitting_objects(kind, objects, vocabulary)
             places = [[*before, name] for before in places for name in fitting]
-        if any(_said(state, item, place) is None for place in places):
+        if any(_given(state, item, place) is None for place in places):
             return False
     return True
 
@@ -231,15 +231,15 @@ def _input_of(
         seat.id = ids.setdefault(name, len(ids) + 1)
         seat.type = fields.types.index(objects[name])
         for item in fields.about(1):
-            setattr(seat, fields.identifiers[item.name], _code(item, _said(state, item, [name])))
+            setattr(seat, fields.identifiers[item.name], _code(item, _given(state, item, [name])))
     for item in fields.about(0):
-        setattr(given, fields.identifiers[item.name], _code(item, _said(state, item, [])))
+        setattr(given, fields.identifiers[item.name], _code(item, _given(state, item, [])))
     for item in fields.about(2):
         places: list[list[str]] = [[]]
         for _ in item.parameters:
             places = [[*before, name] for before in places for name in names]
         kind: Any = _kind(item)
-        values = [_code(item, _said(state, item, place)) for place in places]
+        values = [_code(item, _given(state, item, place)) for place in places]
         setattr(given, fields.identifiers[item.name], (kind * max(1, len(values)))(*values))
     return given  # type: ignore[no-any-return]
 
@@ -248,7 +248,7 @@ def _kind(item: Declaration) -> Any:
     return ctypes.c_double if isinstance(item, Quantity) else ctypes.c_uint8
 
 
-def _said(state: State, item: Declaration, names: Sequence[str]) -> Any:
+def _given(state: State, item: Declaration, names: Sequence[str]) -> Any:
     value: Any = state.get(item.name)
     for name in names:
         if value is None or value is UNKNOWN:

@@ -94,7 +94,7 @@ class BothMonitors:
             if theirs.says(expected, n_lost):
                 yield "", said
             else:
-                yield self._compared(said, theirs.said_now(status), n_lost, str(state)), said
+                yield self._compared(said, theirs.last_answer(status), n_lost, str(state)), said
 
     def _input(self, state: State, objects: Mapping[str, str]) -> Any:
         """The state as C has it, prepared once as long as it comes again and again."""

@@ -61,10 +61,10 @@ def fleet_inputs(arguments: Sequence[str]) -> FleetInputs:
                 recordings[path] = None
             else:
                 problems.append(_why_not(path))
-    return FleetInputs(_once(tables), _once(recordings), tuple(problems))
+    return FleetInputs(_distinct_files(tables), _distinct_files(recordings), tuple(problems))
 
 
-def _once(paths: Iterable[str]) -> tuple[str, ...]:
+def _distinct_files(paths: Iterable[str]) -> tuple[str, ...]:
     """Each file once, however often it is meant, by the first of its paths."""
     first: dict[str, str] = {}
     for path in paths:

@@ -18,7 +18,7 @@ from rulec.rulebook.allowances import judged_allowances
 from rulec.rulebook.files.open_documents import shown
 from rulec.rulebook.files.search_path import read_bytes
 from rulec.rulebook.files.source_walk import sources_below
-from rulec.rulebook.loader import RulebookFile, Trees, in_order, said, trees_of
+from rulec.rulebook.loader import RulebookFile, Trees, in_order, reported, trees_of
 from rulec.rulebook.resolution_memory import ResolutionMemory, ResolvedTrees
 from rulec.rulebook.resolve import names_of, resolve_vocabulary
 from rulec.settings import search_path
@@ -157,7 +157,7 @@ class EditorWorkspace:
                 return CheckedDocument(name, path, parsed, None, error.diagnostics)
             resolved = document.memory.resolved(trees)
         diagnostics = [*parsed.mistakes, *map(parsed.in_text, resolved.findings)]
-        findings = said(trees, diagnostics, source, parsed.placed)
+        findings = reported(trees, diagnostics, source, parsed.placed)
         return CheckedDocument(name, path, parsed, resolved, findings)
 
     def rest(self) -> None:

@@ -22,7 +22,7 @@ def by_file(findings: Iterable[Diagnostic], document: str) -> dict[str, list[Dia
     return by_uri
 
 
-def once(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
+def distinct(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Findings without those that another document has led to, too."""
     first: dict[tuple[object, ...], Diagnostic] = {}
     for finding in findings:
@@ -89,4 +89,4 @@ def union(by_document: Mapping[str, Mapping[str, list[Diagnostic]]], file: str) 
         if document != file
         for finding in files.get(file, [])
     ]
-    return once([*own, *others])
+    return distinct([*own, *others])

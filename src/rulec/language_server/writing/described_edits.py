@@ -37,7 +37,7 @@ def described_edits(
     """
     help_text, message, own = finding.help, finding.message, text[start:end]
     if "`rulebook NAME`" in help_text and stem.isidentifier():
-        yield _one(f"Begin with `rulebook {stem}`", 0, 0, f"rulebook {stem}\n")
+        yield _edit(f"Begin with `rulebook {stem}`", 0, 0, f"rulebook {stem}\n")
     if "between the `{` and the `}` of their rule" in help_text:
         yield from _into_the_braces(text, start, _end_of_clause(text, start))
     if help_text.startswith("move it before the `}`"):
@@ -47,44 +47,44 @@ def described_edits(
     if match := re.search(r"`(override rule) \w+`", help_text):
         begin = text.rfind("confirm rule", 0, start)
         if begin >= 0:
-            yield _one("Override the rule", begin, begin + len("confirm rule"), match[1])
+            yield _edit("Override the rule", begin, begin + len("confirm rule"), match[1])
     if "leave this out" in help_text or help_text == "keep one of them":
         behind = _NEXT_CLAUSE.search(text, end)
         last = behind.start() if behind else len(text)
-        yield _one(f"Leave out this `{own}`", len(text[:start].rstrip()), last, "")
+        yield _edit(f"Leave out this `{own}`", len(text[:start].rstrip()), last, "")
     if match := re.search(r"takes its words from it by `(use \w+)`", help_text):
         first = text.rfind("\n", 0, start) + 1
-        yield _one(f"Write `{match[1]}`", first, _line_end(text, start), match[1])
+        yield _edit(f"Write `{match[1]}`", first, _line_end(text, start), match[1])
     if match := _CHANGED_BY.search(help_text):
         yield from _changing(match["head"], text, start)
     if match := re.match(r"this state leaves open `([^`(]+)`,", message):
         for said in (f"not {match[1]}", match[1]):
-            yield _one(f"Say `{said}` in this state", end, end, f" and {said}")
+            yield _edit(f"Say `{said}` in this state", end, end, f" and {said}")
     if " can mean " in message:
         for reading in re.findall(r"`([^`]+)`", message)[1:]:
-            yield _one(f"Write `{reading}`", start, end, reading)
+            yield _edit(f"Write `{reading}`", start, end, reading)
     if help_text.startswith("exchange the") and (ends := _TWO_ENDS.search(own)):
         (low, low_end), (high, high_end) = ends.span(1), ends.span(2)
         turned = own[:low] + ends[2] + own[low_end:high] + ends[1] + own[high_end:]
-        yield _one(f"Write `{turned}`", start, end, turned)
+        yield _edit(f"Write `{turned}`", start, end, turned)
     if help_text.startswith("the nearest multiple"):
         was = message.split("`")[1]
         begin = text.find(was, start, end)
         near = [said for said in _NUMBER_WITH_UNIT.findall(help_text) if _is_near(said, was)]
         for number in near if begin >= 0 else ():
-            yield _one(f"Write `{number}`", begin, begin + len(was), number)
+            yield _edit(f"Write `{number}`", begin, begin + len(was), number)
     if match := re.match(r"that month has (\d+) days", help_text):
         last_day = re.sub(r"\d+$", match[1], own)
-        yield _one(f"Write `{last_day}`", start, end, last_day)
+        yield _edit(f"Write `{last_day}`", start, end, last_day)
     if "`initially`" in help_text or "`at some point`" in help_text:
         yield from _another_scope(help_text, text, start, end)
     if help_text.startswith("put the operator around it"):
         yield from _operator_outside(text, start, end)
     if help_text.startswith("leave out `is …`"):
         begin = len(text[:start].rstrip()) - len("is")
-        yield _one(f"Leave out `is {own}`", len(text[:begin].rstrip()), end, "")
+        yield _edit(f"Leave out `is {own}`", len(text[:begin].rstrip()), end, "")
     if "give it a weight" in help_text and (match := re.search(r"\b0+(?:\.0*)?\b", own)):
-        yield _one("Write `1`", start + match.start(), start + match.end(), "1")
+        yield _edit("Write `1`", start + match.start(), start + match.end(), "1")
     for said in re.findall(r"`([^`…]+)`", help_text):
         yield from _beginning_before(said, text, start, end)
 
@@ -99,10 +99,10 @@ def another_name(finding: Diagnostic, text: str, start: int, end: int) -> Iterat
     """A name that nothing else has, where the help asks for one."""
     if "another name" in finding.help or "a name of its own" in finding.help:
         name = _free(text[start:end], text)
-        yield _one(f"Call it `{name}`", start, end, name)
+        yield _edit(f"Call it `{name}`", start, end, name)
 
 
-def _one(title: str, start: int, end: int, text: str) -> Edit:
+def _edit(title: str, start: int, end: int, text: str) -> Edit:
     return title, (TextChange(start, end, text),)
 
 
@@ -135,8 +135,8 @@ def _into_the_braces(text: str, start: int, end: int) -> Iterator[Edit]:
     brace = text.rfind("}", 0, start)
     if brace >= 0:
         inside = f"{text[brace + 1 : end].rstrip()}\n}}"
-        yield _one("Put it inside the braces", brace, end, inside)
-        yield _one("Leave out the `}` before it", brace, brace + 1, "")
+        yield _edit("Put it inside the braces", brace, end, inside)
+        yield _edit("Leave out the `}` before it", brace, brace + 1, "")
 
 
 def _in_other_letters(own: str, like: str, text: str) -> Iterator[Edit]:
@@ -151,13 +151,13 @@ def _changing(head: str, text: str, start: int) -> Iterator[Edit]:
     first = text.rfind("\n", 0, start) + 1
     equals = text.find("=", start, _line_end(text, start))
     if equals >= 0:
-        yield _one(f"Write `{head} = …`", first, equals, f"{head} ")
+        yield _edit(f"Write `{head} = …`", first, equals, f"{head} ")
 
 
 def _another_scope(help_text: str, text: str, start: int, end: int) -> Iterator[Edit]:
     for scope in re.findall(r"`([a-z ]+)`", help_text):
         if _SCOPE.fullmatch(scope) and (match := _SCOPE.search(text, start, end)):
-            yield _one(f"Write `{scope}`", *match.span(), scope)
+            yield _edit(f"Write `{scope}`", *match.span(), scope)
 
 
 def _operator_outside(text: str, start: int, end: int) -> Iterator[Edit]:
@@ -166,7 +166,7 @@ def _operator_outside(text: str, start: int, end: int) -> Iterator[Edit]:
     if quantified and operator:
         said = operator[0].strip()
         moved = f"{said} {quantified[0]}{text[operator.end() : end]}"
-        yield _one(f"Put `{said}` around it", quantified.start(), end, moved)
+        yield _edit(f"Put `{said}` around it", quantified.start(), end, moved)
 
 
 def _beginning_before(said: str, text: str, start: int, end: int) -> Iterator[Edit]:
@@ -176,6 +176,6 @@ def _beginning_before(said: str, text: str, start: int, end: int) -> Iterator[Ed
         # As it is declared in the head of its rule
         declared = [*re.finditer(rf"\b{re.escape(first)}\s*\w+", text[:start])]
         if declared:
-            yield _one(f"Write `{said}`", *declared[-1].span(), said)
+            yield _edit(f"Write `{said}`", *declared[-1].span(), said)
     elif space and (match := re.search(rf"\b{re.escape(first)}\s+$", text[:start])):
-        yield _one(f"Write `{said}`", match.start(), end, said)
+        yield _edit(f"Write `{said}`", match.start(), end, said)

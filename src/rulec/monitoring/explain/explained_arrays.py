@@ -176,9 +176,9 @@ class _Views(Sequence[StateView]):
 
     def given(self, index: int) -> StateView:
         """A state as it is given, whose values may be unknown."""
-        return self._both(index)[1]
+        return self._view_pair(index)[1]
 
-    def _both(self, index: int) -> tuple[StateView, StateView]:
+    def _view_pair(self, index: int) -> tuple[StateView, StateView]:
         if index not in self._made:
             self.look_at({index})
         return self._made[index]
@@ -195,4 +195,4 @@ class _Views(Sequence[StateView]):
     def __getitem__(self, index: int | slice) -> StateView | tuple[StateView, ...]:
         if isinstance(index, slice):
             return tuple([self[k] for k in range(*index.indices(len(self)))])
-        return self._both(index)[0]
+        return self._view_pair(index)[0]

@@ -171,7 +171,7 @@ class Dependence:
                         return True if all_followed else None
                     pairs = undecided
                     if most is not None and len(pairs) > most:
-                        pairs, all_followed = frozenset(_some(pairs, most)), False
+                        pairs, all_followed = frozenset(_most_promising(pairs, most)), False
                 after = runs.after(pairs, choices)
                 if after == pairs:
                     break  # the same again, however often
@@ -190,6 +190,6 @@ class Dependence:
         return stretches
 
 
-def _some(pairs: Pairs, number: int) -> list[tuple[int, int]]:
+def _most_promising(pairs: Pairs, number: int) -> list[tuple[int, int]]:
     """Some pairs, those with the most second states."""
     return sorted(pairs, key=lambda pair: (-pair[1].bit_count(), pair[0]))[:number]

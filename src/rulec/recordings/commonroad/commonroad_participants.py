@@ -66,7 +66,7 @@ def _stated_error(states: Sequence[State]) -> recorded.StatedError | None:
     return recorded.StatedError(float(place), float(speed)) if place or speed else None
 
 
-def read_thing(tree: Tree) -> recorded.Participant:
+def read_environment_obstacle(tree: Tree) -> recorded.Participant:
     """Something that covers an area for ever: an ``environmentObstacle``."""
     outlines = {0: corners(geometry(read_area(tree.child("shape"))))}
     return recorded.Participant(tree.id(), read_type(tree), True, {}, outlines)

@@ -107,7 +107,7 @@ _TRAJECTORY: Table = {1: Field("trajectory", {2: Field("state", _STATE, many=Tru
 _PHANTOM: Table = {1: Field("@id", "uint"), 2: Field("", _PREDICTED)}
 
 
-def _thing(types: Words) -> Table:
+def _environment_obstacle(types: Words) -> Table:
     return {1: Field("@id", "uint"), 2: Field("type", types), 3: Field("shape", _AREA)}
 
 
@@ -234,7 +234,7 @@ SINGLE: Table = {
     7: Field("intersection", _intersection(_INCOMING_2020), many=True),
     8: Field("staticObstacle", _standing(_AREA), many=True),
     9: Field("dynamicObstacle", _moving(_AREA), many=True),
-    10: Field("environmentObstacle", _thing(_OBSTACLES), many=True),
+    10: Field("environmentObstacle", _environment_obstacle(_OBSTACLES), many=True),
     11: Field("phantomObstacle", _PHANTOM, many=True),
     12: Field("planningProblem", _PROBLEM, many=True),
 }
@@ -312,7 +312,7 @@ MAP: Table = {
     ),
     7: Field("trafficSign", _SIGN, many=True),
     9: Field("intersection", _intersection(_INCOMING), many=True),
-    10: Field("environmentObstacle", _thing(_THINGS), many=True),
+    10: Field("environmentObstacle", _environment_obstacle(_THINGS), many=True),
 }
 """The part with the road; what lights show is in the traffic's."""
 

@@ -13,8 +13,8 @@ from rulec.recordings.adjacency import with_neighbours
 from rulec.recordings.commonroad.commonroad_lanelets import LaneletEntry, complete, read_lanelet
 from rulec.recordings.commonroad.commonroad_participants import (
     read_body,
+    read_environment_obstacle,
     read_phantom,
-    read_thing,
     without_constant_indicators,
 )
 from rulec.recordings.commonroad.commonroad_surroundings import (
@@ -125,7 +125,7 @@ def add(content: Content, tree: Tree) -> None:
 _KINDS: Mapping[str, Callable[[Tree, TimeExtent], recording.Participant]] = {
     "staticObstacle": lambda tree, extent: read_body(tree, extent, standing=True),
     "dynamicObstacle": lambda tree, extent: read_body(tree, extent, standing=False),
-    "environmentObstacle": lambda tree, _: read_thing(tree),
+    "environmentObstacle": lambda tree, _: read_environment_obstacle(tree),
     "phantomObstacle": read_phantom,
 }
 

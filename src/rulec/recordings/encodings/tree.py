@@ -100,7 +100,7 @@ class Tree:
         except ValueError:
             value = LARGEST
         if not abs(value) < LARGEST or len(text) == LONGEST_TEXT:
-            raise self.wrong(_said(key or self.name, text), f"a number below {LARGEST:.0e}")
+            raise self.wrong(_quoted(key or self.name, text), f"a number below {LARGEST:.0e}")
         return value if abs(value) > SMALLEST else 0.0
 
     def whole(self) -> int:
@@ -110,13 +110,13 @@ class Tree:
         except ValueError:
             value = int(LARGEST)
         if not abs(value) < LARGEST or len(self.text) == LONGEST_TEXT:
-            raise self.wrong(_said(self.name, self.text), f"a whole number below {LARGEST:.0e}")
+            raise self.wrong(_quoted(self.name, self.text), f"a whole number below {LARGEST:.0e}")
         return value
 
     def one_of(self, words: Collection[str]) -> str:
         """The text, which must be one of some words."""
         if self.word not in words:
-            raise self.wrong(_said(self.name, self.text), f"one of {', '.join(sorted(words))}")
+            raise self.wrong(_quoted(self.name, self.text), f"one of {', '.join(sorted(words))}")
         return self.word
 
     @property
@@ -130,5 +130,5 @@ class Tree:
         return self.form.refused(self.path, why, self.place, expected=expected)
 
 
-def _said(name: str, text: str) -> str:
+def _quoted(name: str, text: str) -> str:
     return f"`{name}` is `{short(text.strip())}`" if text.strip() else f"`{name}` is empty"

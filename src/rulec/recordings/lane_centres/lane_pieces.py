@@ -71,10 +71,10 @@ def _ends(lane: CentreLane, along: NDArray[float64]) -> Iterator[int]:
 def _beside(lane: CentreLane, index: int) -> Iterator[tuple[str, int]]:
     for part in (*lane.left.neighbours, *lane.right.neighbours):
         if part.start < index < part.end:
-            yield part.lane, _there(part, index)
+            yield part.lane, _point_beside(part, index)
 
 
-def _there(part: NeighbourPart, index: int) -> int:
+def _point_beside(part: NeighbourPart, index: int) -> int:
     """The point of a neighbour's centre that is beside one of the lane's own."""
     share = (index - part.start) / max(part.end - part.start, 1)
     return round(part.other_start + share * (part.other_end - part.other_start))
@@ -115,7 +115,7 @@ def _shares(
     own = (end - start) / (piece.end - piece.start)
     if own < WHOLE:
         return
-    low, high = sorted((_there(part, start), _there(part, end)))
+    low, high = sorted((_point_beside(part, start), _point_beside(part, end)))
     for other in others:
         both = min(other.end, high) - max(other.start, low)
         share = both / (other.end - other.start)

@@ -47,7 +47,7 @@ def lane_types(tags: _Tags) -> frozenset[str]:
     types = set(_SUBTYPES.get(subtype, ()))
     allowed = _participants(tags)
     if allowed is not None and subtype not in _BY_SUBTYPE:
-        types = types - {"busLane", "bicycleLane", "sidewalk"} | set(_for_whom(allowed))
+        types = types - {"busLane", "bicycleLane", "sidewalk"} | set(_types_for(allowed))
     types.update(filter(None, [_PLACES.get(tags.get("location", ""))]))
     if tags.get("turn_direction") or tags.get("intersection_area"):
         types.add("intersection")
@@ -61,7 +61,7 @@ def _participants(tags: _Tags) -> set[str] | None:
     return {who for who, word in named.items() if word in _TRUE} if named else None
 
 
-def _for_whom(allowed: set[str]) -> Iterator[str]:
+def _types_for(allowed: set[str]) -> Iterator[str]:
     motorized = {who for who in allowed if who.partition(":")[0] == "vehicle"}
     if motorized and motorized <= _BUSES:
         yield "busLane" if "vehicle:bus" in motorized else "restricted_area"

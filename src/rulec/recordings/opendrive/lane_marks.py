@@ -36,7 +36,7 @@ _UNKNOWN = None, None
 Marks = tuple["LaneMark | None", "LaneMark | None"]
 
 
-def seen(mark: MarkRecord | None) -> Marks:
+def marks_of(mark: MarkRecord | None) -> Marks:
     """A mark as seen from the inner lane, or from the left, and from the other one.
 
     Of lines of another kind it counts whether lanes may be changed across them.
@@ -58,8 +58,8 @@ def mark_beside(section: LaneSection, lane: int, s: float, *, left: bool) -> Lan
     """The mark at a lane's border towards greater ``t`` (``left``) or smaller, as it sees it."""
     away = left == (lane > 0)
     if away:
-        return seen(mark_at(section, lane, s))[0]
+        return marks_of(mark_at(section, lane, s))[0]
     inner = lane - 1 if lane > 0 else lane + 1
-    marks = seen(mark_at(section, inner, s))
+    marks = marks_of(mark_at(section, inner, s))
     # The centre lane's are from the left to the right
     return marks[0] if inner == 0 and lane > 0 else marks[1]

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from rulec.recordings.opendrive.content.elements import Lane, LaneSection, MapRoad
-from rulec.recordings.opendrive.lane_marks import seen
+from rulec.recordings.opendrive.lane_marks import marks_of
 from rulec.recordings.opendrive.lane_types import BOTH_WAYS
 
 SHORTEST_M = 1.0
@@ -70,7 +70,7 @@ def _changes(section: LaneSection) -> Iterator[float]:
     for lane in section.lanes.values():
         before = None
         for mark in lane.marks:
-            if (own := seen(mark)) != before:
+            if (own := marks_of(mark)) != before:
                 yield section.start + mark.start
             before = own
         yield from (section.start + speed.start for speed in lane.speeds)

@@ -131,36 +131,36 @@ def _remarks(content: TraceContent, grid: TimeGrid) -> Iterator[str]:
         yield f"{content.skipped:,} messages have the time of the one before and are left out"
     sizes = [key for key, body in content.objects.items() if body.size is None]
     if sizes:
-        yield f"sizes that are not said are taken to be usual: of {_some(sizes)}"
+        yield f"sizes that are not said are taken to be usual: of {_list(sizes)}"
     lost = [bulb.id for bulb in content.bulbs.values() if not bulb.lanes]
     if lost:
-        yield f"traffic lights are assigned to no lane, and left out: {_some(lost)}"
+        yield f"traffic lights are assigned to no lane, and left out: {_list(lost)}"
     if content.changing_signs:
-        yield f"signs that change are left out: {_some(sorted(content.changing_signs))}"
+        yield f"signs that change are left out: {_list(sorted(content.changing_signs))}"
 
 
 def _network_remarks(network: LaneNetwork) -> Iterator[str]:
     if network.assumed:
         yield (
             "lanes without boundaries are taken to be as wide as is usual: "
-            + _some(network.assumed)
+            + _list(network.assumed)
         )
     if network.undirected:
         yield (
             "traffic is taken to run as the points of lanes do where that is not said: "
-            + _some(network.undirected)
+            + _list(network.undirected)
         )
     if network.across:
         yield (
             "ways across areas of intersections are taken to be curves from lane to lane: "
-            + _some(network.across)
+            + _list(network.across)
         )
     if network.shapeless:
-        yield f"lanes with neither a middle nor boundaries are left out: {_some(network.shapeless)}"
+        yield f"lanes with neither a middle nor boundaries are left out: {_list(network.shapeless)}"
     if network.apart:
-        yield f"lanes that are said to follow each other and do not meet: {_some(network.apart)}"
+        yield f"lanes that are said to follow each other and do not meet: {_list(network.apart)}"
 
 
-def _some(names: list[str]) -> str:
+def _list(names: list[str]) -> str:
     more = len(names) - _NAMED
     return ", ".join(names[:_NAMED]) + (f", and {more:,} more" if more > 0 else "")

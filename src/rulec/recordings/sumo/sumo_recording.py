@@ -171,19 +171,19 @@ def _participants(
 def _remarks(unknown: Iterable[str], net: SumoNet) -> Iterator[str]:
     guessed = sorted(unknown)
     if guessed:
-        yield f"types that no file describes are taken to be as usual: {_some(guessed)}"
+        yield f"types that no file describes are taken to be as usual: {_list(guessed)}"
     lights = [f"`{short(name)}`" for name in net.unknown_lights()]
     if lights:
-        yield f"the programmes of these traffic lights are not known: {_some(lights)}"
+        yield f"the programmes of these traffic lights are not known: {_list(lights)}"
 
 
 def _left_out(data: FloatingCarData) -> Iterator[str]:
     if data.head.leaves_out:
-        options = _some([f"--{name}" for name in data.head.leaves_out])
+        options = _list([f"--{name}" for name in data.head.leaves_out])
         yield f"only a part of the traffic is in the data, by {options}: who else drives is unknown"
 
 
-def _some(names: list[str]) -> str:
+def _list(names: list[str]) -> str:
     more = len(names) - _NAMED
     return ", ".join(names[:_NAMED] + ([f"{more} more"] if more > 0 else []))
 

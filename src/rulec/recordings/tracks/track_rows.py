@@ -99,7 +99,7 @@ class _Reading:
         for name, own in rows.track.groups(steps):
             twice = np.diff(steps[own]) == 0
             if twice.any():
-                raise self._twice(name, own, int(np.argmax(twice)))
+                raise self._repeated_row(name, own, int(np.argmax(twice)))
             participants += self._participants(name, own)
         participants.sort(key=lambda participant: id_order(participant.id))
         return ReadTracks(tuple(participants), self.ego, tuple(self._remarks()))
@@ -121,7 +121,7 @@ class _Reading:
             self.of_several_types.append(f"`{short(name)}` ({', '.join([kind, *dict(others)])})")
         return kind
 
-    def _twice(self, name: str, own: NDArray[np.intp], at: int) -> RulecError:
+    def _repeated_row(self, name: str, own: NDArray[np.intp], at: int) -> RulecError:
         first, second = sorted(own[at : at + 2].tolist())
         rows = self.rows
         when = rows.times.steps[second] * rows.times.step_s + rows.times.start_s

@@ -132,13 +132,13 @@ def _segments(row: RibbonRow, axis: _Axis, y: float) -> Iterator[Mark]:
             continue
         left, right = axis.x(run.first), axis.x(run.last + 1)
         text = in_words(run.value)
-        tip = f"{row.title}: {text}, {_when(run, axis)}"
+        tip = f"{row.title}: {text}, {_time_span(run, axis)}"
         yield canvas.filled((left, y + 2, right, y + _ROW - 2), value_style(row, run.value), tip)
         if canvas.text_width([text]) + 6 <= right - left:
             yield LabelText(text, ((left + right) / 2, y + _ROW / 2), "middle", "name")
 
 
-def _when(run: ValueRun, axis: _Axis) -> str:
+def _time_span(run: ValueRun, axis: _Axis) -> str:
     return f"{run.first * axis.step_s:g} s to {(run.last + 1) * axis.step_s:g} s"
 
 
@@ -148,7 +148,7 @@ def _unknown(row: RibbonRow, run: ValueRun, axis: _Axis, y: float) -> Iterator[M
         return
     left, right = axis.x(run.first), axis.x(run.last + 1)
     box = (left, y + 2, right, y + _ROW - 2)
-    yield canvas.filled(box, "unknown", f"{row.title}: unknown, {_when(run, axis)}")
+    yield canvas.filled(box, "unknown", f"{row.title}: unknown, {_time_span(run, axis)}")
     height = box[3] - box[1]
     for n in range(1, int((right - left + height) / 6) + 1):
         foot = left + 6.0 * n

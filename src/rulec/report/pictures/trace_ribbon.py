@@ -98,7 +98,7 @@ def ribbon(
                 and set(violation.binding.values()).issuperset(objects)
                 for violation in violations
             )
-            if matters or (asked and any(_said(state, name, objects) for state in trace.states)):
+            if matters or (asked and any(_is_said(state, name, objects) for state in trace.states)):
                 rows.append(row)
             else:
                 left_out += 1
@@ -160,7 +160,7 @@ def _known(value: PartialValue | None) -> Value | None:
     return value if isinstance(value, bool | int | float | str) else None
 
 
-def _said(state: State, name: str, objects: Sequence[str]) -> bool:
+def _is_said(state: State, name: str, objects: Sequence[str]) -> bool:
     value: Any = state.get(name)
     for item in objects:
         value = value.get(item) if isinstance(value, Mapping) else value

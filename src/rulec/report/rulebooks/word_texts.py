@@ -113,7 +113,7 @@ def as_text(word: FoundWord) -> str:
     """What is known of a word, for a terminal."""
     text = _known(word)
     paragraphs = [
-        f"{word.name}: a word of {_where(word)}",
+        f"{word.name}: a word of {_file_of(word)}",
         *(visible(sentence) for sentence in text.sentences),
     ]
     head, *rest = (fill(paragraph, 80, break_on_hyphens=False) for paragraph in paragraphs)
@@ -123,7 +123,7 @@ def as_text(word: FoundWord) -> str:
 def as_markdown(word: FoundWord) -> str:
     """What is known of a word, as Markdown."""
     text = _known(word)
-    head = f"# {markdown.escaped(word.name)}: a word of {_where(word)}"
+    head = f"# {markdown.escaped(word.name)}: a word of {_file_of(word)}"
     return "\n\n".join([head, *as_paragraphs(text)])
 
 
@@ -142,7 +142,7 @@ def _data(word: FoundWord) -> WordData:
     text = _known(word)
     return WordData(
         word=word.name,
-        declared_in=_where(word).replace("`", "").removeprefix("the "),
+        declared_in=_file_of(word).replace("`", "").removeprefix("the "),
         declaration=text.declaration,
         says=text.sentences,
     )
@@ -154,7 +154,7 @@ def _known(word: FoundWord) -> WordText:
     return word_text(word.name, word.symbols, recorded=tells_words(word.vocabularies))
 
 
-def _where(word: FoundWord) -> str:
+def _file_of(word: FoundWord) -> str:
     return f"the {word.file.kind} `{word.file.name.text if word.file.name else ''}`"
 
 

@@ -69,7 +69,7 @@ class VerdictFinding:
         who = self.vehicle or "every vehicle"
         if self.outcome == "violated":
             narrow = f": {self.measure}" if self.measure else ""
-            return f"{who} violates {title}{about}{when(self)}{narrow}"
+            return f"{who} violates {title}{about}{time_in_words(self)}{narrow}"
         on = f": depends on {', '.join(self.open_on)}" if self.open_on else ""
         why = f" ({self.because})" if self.because else ""
         if self.outcome == "open":
@@ -110,7 +110,7 @@ def not_judged(rule: RuleNotJudged) -> dict[str, Any]:
     return {"outcome": "not_judged", "open_on": tuple(rule.untold), "because": rule.why}
 
 
-def when(finding: VerdictFinding) -> str:
+def time_in_words(finding: VerdictFinding) -> str:
     """When it is decided, and from when to when it lasts, in words."""
     if finding.from_s is None:
         return ""

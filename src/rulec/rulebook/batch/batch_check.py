@@ -72,7 +72,7 @@ def check(
     unread = meant.refused
     uncited: list[str] = []
     untested: list[str] = []
-    for path in _meant(references, search_path, excluded, meant):
+    for path in _named_sources(references, search_path, excluded, meant):
         try:
             data = standard_input() if path is _STANDARD_INPUT else search.read_bytes(path)
         except RulecError as error:
@@ -118,7 +118,7 @@ def _findings(
     return diagnosis.findings
 
 
-def _meant(
+def _named_sources(
     references: Iterable[str],
     search_path: Sequence[Path],
     excluded: Exclusion | None,
@@ -138,7 +138,7 @@ def _meant(
         yield from sources.paths
 
 
-def rulebooks_meant(
+def named_rulebooks(
     references: Iterable[str],
     search_path: Sequence[Path] = (),
     excluded: Exclusion | None = None,

@@ -177,7 +177,7 @@ def nothing_to(
     )
 
 
-def own(name: tree.Name, kind: str, verb: str, known: tree.Name) -> Diagnostic:
+def not_inherited(name: tree.Name, kind: str, verb: str, known: tree.Name) -> Diagnostic:
     """A change of something of the same rulebook, such as by ``set`` or ``override``."""
     article = "an" if kind == "option" else "a"
     return NOT_INHERITED.at(

@@ -226,7 +226,7 @@ class Overlay:
         """Tell whether an option, parameter or definition is inherited; else report."""
         own = self._is_own(name)
         if own:
-            self.mistakes.append(say.own(name, kind, verb, self.declared_at[name.text]))
+            self.mistakes.append(say.not_inherited(name, kind, verb, self.declared_at[name.text]))
         return not own
 
     def _changes(self, name: tree.Name, kind: str, verb: str) -> bool:
@@ -285,7 +285,7 @@ class Overlay:
             inherited = [value for value, by in entries if by.changed or by.book is not file]
             self._nothing(name, "rule", verb, inherited, file)
         elif known.book is file:
-            self.mistakes.append(say.own(name, "rule", verb, known.item.name))
+            self.mistakes.append(say.not_inherited(name, "rule", verb, known.item.name))
         else:
             return True
         return False

@@ -299,7 +299,7 @@ def _together(outlines: Sequence[_Outline]) -> AlikeLines | None:
         return None
     kept = np.flatnonzero(is_whole).tolist()
     if len(kept) < len(outlines):
-        columns = {path: _taken(column, is_whole[line_of]) for path, column in columns.items()}
+        columns = {path: _rows_of(column, is_whole[line_of]) for path, column in columns.items()}
     return AlikeLines(
         lines=np.array([outlines[place].line for place in kept]),
         lengths=lengths[kept],
@@ -323,7 +323,7 @@ def _joined(outlines: Sequence[_Outline], comma: bytes) -> tuple[Bytes, Places, 
     return text, np.flatnonzero(text == ord(":")), ends
 
 
-def _taken(column: Column, rows: NDArray[np.bool_]) -> Column:
+def _rows_of(column: Column, rows: NDArray[np.bool_]) -> Column:
     if isinstance(column, Coded):
         return Coded(column.codes[rows], column.values)
     return Numbers(column.numbers[rows], column.given[rows])

@@ -224,7 +224,7 @@ def _outlined_trace(block: Block, outline: BlockPresence, place: int) -> Trace |
     steps, names = outline.step[rows].tolist(), outline.objects_of(place)
     items, others = outline.item[rows].tolist(), outline.other[rows].tolist()
     states: list[dict[str, Any]] = [{} for _ in range(int(outline.length[place]))]
-    for name, where, values in _said_in(block, start, stop):
+    for name, where, values in _values_in_rows(block, start, stop):
         for row, value in zip(where.tolist(), values, strict=True):
             of, last = states[steps[row]], name
             if items[row] != NOBODY:
@@ -252,7 +252,7 @@ def _outlined_trace(block: Block, outline: BlockPresence, place: int) -> Trace |
     )
 
 
-def _said_in(
+def _values_in_rows(
     block: Block, start: int, stop: int
 ) -> Iterator[tuple[str, Rows, Sequence[PartialValue]]]:
     """What is said of each name in rows, counted from the first one."""

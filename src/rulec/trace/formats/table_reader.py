@@ -333,9 +333,9 @@ class _Building:
         for key in before:
             inner = inner.setdefault(key, {})
             if not isinstance(inner, dict):
-                raise self._twice(name, path, number)
+                raise self._repeated_column(name, path, number)
         if last in inner:
-            raise self._twice(name, path, number)
+            raise self._repeated_column(name, path, number)
         inner[last] = value
 
     def _interval(self, name: str, low: Any, high: Any, number: int) -> Interval:
@@ -357,7 +357,7 @@ class _Building:
         except ValueError as wrong:
             raise self._problem(str(wrong), number) from None
 
-    def _twice(self, name: str, path: Sequence[str], number: int) -> RulecError:
+    def _repeated_column(self, name: str, path: Sequence[str], number: int) -> RulecError:
         about = f" for `{', '.join(path)}`" if path else ""
         near = nearest_name(name, (column for column in OWN if column not in self.table.at))
         way_out = "" if near is None else f"if `{name}` is `{near}`, call it so"

@@ -197,7 +197,7 @@ def rows_of(trace: Trace, columns: Sequence[str]) -> Iterator[list[Any]]:
             return [*start, item, kind, other, *about, *values]
 
         yield row()
-        there = [item for item in trace.objects if _is_there(item, step, trace)]
+        there = [item for item in trace.objects if _is_present(item, step, trace)]
         for item in there:
             yield row(item)
         for item in there:
@@ -214,7 +214,7 @@ def _beside(item: str, state: State) -> set[str]:
     return {other for value in about if isinstance(value, Mapping) for other in value}
 
 
-def _is_there(item: str, step: int, trace: Trace) -> bool:
+def _is_present(item: str, step: int, trace: Trace) -> bool:
     first, last = trace.present.get(item, (0, len(trace.states) - 1))
     return first <= step <= last
 

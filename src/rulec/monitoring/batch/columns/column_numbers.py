@@ -182,7 +182,7 @@ def alike_places(columns: Iterable[NDArray[Any]], n_places: int) -> NDArray[np.i
     return group_of
 
 
-def said_by(
+def partial_values(
     values: Array,
     upper: Array | None,
     unknown: NDArray[np.bool_] | None,

@@ -129,7 +129,7 @@ class ColumnReader:
             if self._vocabulary.is_subtype(kind, count.type):
                 inner = {**bound, count.variable: name}
                 truth = self._truth(count.body, inner)
-                there = self._there(name)
+                there = self._presence(name)
                 total += truth.true & there
                 undecided.append((inner, there & ~(truth.true | truth.false)))
         return total, undecided
@@ -142,7 +142,7 @@ class ColumnReader:
                     return NotGivenError(read.name, items)
         return NotGivenError(next(names_in(count)), ())
 
-    def _there(self, name: str) -> Mask:
+    def _presence(self, name: str) -> Mask:
         if name not in self.columns.present:
             return np.True_
         first, last = self.columns.present[name]

@@ -67,7 +67,7 @@ def contradicted(linked_facts: Sequence[LinkedFacts], reader: StackReader) -> se
         _contradicted_states(group, reader, spots, objects)
         for together in linked_facts
         if not together.are_kept(reader)
-        for group, spots, objects in _asked(together.facts, reader.stack)
+        for group, spots, objects in _facts_at_spots(together.facts, reader.stack)
     ]
     if not places:
         return set()
@@ -90,7 +90,7 @@ def linked(facts: Sequence[CompiledAxiom]) -> Iterator[LinkedFacts]:
 _Asked = tuple[Sequence[CompiledAxiom], Spots, Mapping[str, str]]
 
 
-def _asked(together: Sequence[CompiledAxiom], stack: Stack) -> Iterator[_Asked]:
+def _facts_at_spots(together: Sequence[CompiledAxiom], stack: Stack) -> Iterator[_Asked]:
     """Facts that all hold at some spots, and the object that they are about, if any, by type."""
     if not together[0].variables:
         yield together, Spots(np.arange(stack.n_states), {}, whole=True), {}

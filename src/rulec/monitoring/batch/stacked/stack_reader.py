@@ -18,7 +18,7 @@ from rulec.monitoring.batch.columns.column_numbers import (
     Mask,
     comparison_sides,
     numbers_between,
-    said_by,
+    partial_values,
 )
 from rulec.monitoring.batch.columns.column_reader import KLEENE_COLUMNS, UNKNOWN, Truth, known
 from rulec.monitoring.batch.stacked.met_values import MetValues
@@ -200,9 +200,9 @@ class StackReader:
         values = column.values if column.values.dtype != bool else column.values.view(np.uint8)
         if column.unknown is not None:
             values = np.where(column.unknown, np.asarray(n_values, dtype=values.dtype), values)
-        return self._taken(values, read.variables, spots)
+        return self._at(values, read.variables, spots)
 
-    def _taken(self, values: Array, variables: Sequence[str], spots: Spots) -> Array:
+    def _at(self, values: Array, variables: Sequence[str], spots: Spots) -> Array:
         """A column's values at the spots."""
         if spots.whole and (variables or not spots.cells):
             return values
@@ -224,11 +224,11 @@ class StackReader:
                 return 0.0, 0.0, np.True_
             number = float(default)
             return number, number, None
-        low = self._taken(column.values, term.arguments, spots)
-        high = low if column.upper is None else self._taken(column.upper, term.arguments, spots)
+        low = self._at(column.values, term.arguments, spots)
+        high = low if column.upper is None else self._at(column.upper, term.arguments, spots)
         if column.unknown is None:
             return low, high, None
-        return low, high, self._taken(column.unknown, term.arguments, spots)
+        return low, high, self._at(column.unknown, term.arguments, spots)
 
     def _counted(self, read: StackedRead, number: NumberRead, spots: Spots) -> Numbers:
         """The numbers of a count, everywhere: of who is there, or of whom a variable names."""
@@ -239,7 +239,7 @@ class StackReader:
         most: Array
         if read.counts_itself:
             truth = self.truth(count.body, spots, read.variables[0])
-            suits = self._taken(stack.of_type(count.type)[stack.object_of], read.variables, spots)
+            suits = self._at(stack.of_type(count.type)[stack.object_of], read.variables, spots)
             least = (suits & truth.true).astype(np.uint8)
             most = (suits & ~truth.false).astype(np.uint8)
         else:
@@ -296,7 +296,7 @@ class StackReader:
         elif met and not met & (met - 1):
             values, dark = np.intp(met.bit_length() - 1), None
         else:
-            values = self._taken(column.values, arguments, spots)
+            values = self._at(column.values, arguments, spots)
             dark = column.unknown
         if isinstance(declaration, Enumeration):
             assert atom.value is not None, "the rulebook has been checked"
@@ -305,7 +305,7 @@ class StackReader:
             holds = np.asarray(values, dtype=bool)
         if dark is None:
             return known(holds)
-        here = self._taken(dark, arguments, spots)
+        here = self._at(dark, arguments, spots)
         return Truth(holds & ~here, ~holds & ~here)
 
     def values_at(
@@ -317,7 +317,7 @@ class StackReader:
         if column is None:
             return [declaration.default] * len(spots.states)
         where = spots.cells[variables[0]] if variables else spots.states
-        return said_by(
+        return partial_values(
             column.values[where],
             None if column.upper is None else column.upper[where],
             None if column.unknown is None else column.unknown[where],

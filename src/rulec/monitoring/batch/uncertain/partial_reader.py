@@ -12,7 +12,7 @@ from rulec.automata.thresholds import exact, scale
 from rulec.logic import formula as ltl
 from rulec.logic.free_names import reads_in
 from rulec.logic.kleene import ObjectBinding
-from rulec.monitoring.batch.columns.column_numbers import Mask, numbers_between, said_by
+from rulec.monitoring.batch.columns.column_numbers import Mask, numbers_between, partial_values
 from rulec.monitoring.batch.columns.column_reader import UNKNOWN as UNKNOWN_TRUTH
 from rulec.monitoring.batch.columns.column_reader import ColumnReader, NotGivenError, Truth
 from rulec.monitoring.uncertainty.number_regions import NumberRegions
@@ -134,7 +134,7 @@ class PartialReader(ColumnReader):
         if key not in columns.values:
             return [declaration.default] * len(places)
         upper, unknown = columns.upper.get(key), columns.unknown.get(key)
-        return said_by(
+        return partial_values(
             columns.values[key][places],
             None if upper is None else upper[places],
             None if unknown is None else unknown[places],

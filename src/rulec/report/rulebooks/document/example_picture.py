@@ -122,7 +122,7 @@ def _frame(state: _State, objects: Mapping[str, str], vocabulary: Vocabulary) ->
         style = light.removeprefix("flashing_").removesuffix("_light").removesuffix("_cross")
         yield f'<circle class="light {style}" cx="{WIDTH - 12}" cy="28" r="5"/>'
     for name, kind in objects.items():
-        yield from _other(state, name, kind, vocabulary)
+        yield from _other_object(state, name, kind, vocabulary)
     yield from _vehicle(middle, HEIGHT / 2, "ego", down=state.has("reversing"))
     if state.has("lane_change", "straddling"):
         yield f'<path class="arrow" d="M{middle + 9:g} 60l10 -12m0 6v-6h-6"/>'
@@ -131,7 +131,7 @@ def _frame(state: _State, objects: Mapping[str, str], vocabulary: Vocabulary) ->
         yield f'<text x="{middle:g}" y="{HEIGHT / 2 + 24:g}">{escape(text)}</text>'
 
 
-def _other(state: _State, name: str, kind: str, vocabulary: Vocabulary) -> Iterator[str]:
+def _other_object(state: _State, name: str, kind: str, vocabulary: Vocabulary) -> Iterator[str]:
     """An object at its place; nothing if that is not said."""
     if not vocabulary.is_subtype(kind, "road_user") or "station" not in vocabulary.declarations:
         return
