@@ -125,12 +125,12 @@ class Contest:
             return synthesize_trace(alphabet.states_of(word), universe, step, shows)
         except ChangingConstantsError as changing:
             reads = [alphabet.read_of(name) for name in changing.names]
-            said = [_said_of_constant(read, universe.vocabulary) for read in reads if read]
+            axioms = [_said_of_constant(read, universe.vocabulary) for read in reads if read]
             # What has one value already, and changes all the same, would be asked for ever
-            if None in reads or not set(given).isdisjoint(chain.from_iterable(said)):
+            if None in reads or not set(given).isdisjoint(chain.from_iterable(axioms)):
                 raise
         # A trace has one value of each: the shortest one with any.
-        every = product(*said)
+        every = product(*axioms)
         traces = (counterexample(self.forbidding, self._allowing, (*given, *x)) for x in every)
         counterexamples = [trace for trace in traces if trace is not None]
         return min(counterexamples, key=lambda trace: len(trace.states), default=None)

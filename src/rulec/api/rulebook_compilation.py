@@ -46,11 +46,11 @@ def machines(
     if not recalls or not isinstance(rules, str | Path) or Path(rules).suffix == ".json":
         return compile_rulebook(rules, search_path, warn, at=at, any_step=True)
     from rulec.automata.bundle.required_signature import refuse_source
-    from rulec.automata.compiled_cache import asked, recalled
+    from rulec.automata.compiled_cache import question_of, recalled
 
     refuse_source(rules)
 
-    question = asked(rules, search_path, at)
+    question = question_of(rules, search_path, at)
     known = None if question is None else recalled(question)
     if known is None:
         from rulec.pipeline import compile_source

@@ -56,7 +56,7 @@ class CompiledQuestion:
     stamp: str
 
 
-def asked(
+def question_of(
     reference: str | Path, search_path: Sequence[str | Path], at: str
 ) -> CompiledQuestion | None:
     """The key of a rulebook; None if there is no cache.
@@ -229,8 +229,8 @@ class CachedSteps:
             from rulec.automata.step_compilation import StepCompiler
             from rulec.rulebook.loader import read_rulebook
 
-            asked = self._question
-            book = read_rulebook(asked.source, asked.search_path, asked.at).rulebook
+            question = self._question
+            book = read_rulebook(question.source, question.search_path, question.at).rulebook
             self._steps = StepCompiler(book)
         return self._steps
 

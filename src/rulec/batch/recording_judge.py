@@ -317,5 +317,5 @@ def in_a_line(judged: JudgedRecording) -> str:
     """A recording of many: how its drives came out, and what was violated how often."""
     where = f"{judged.file}: {judged.name}" if judged.name not in judged.file else judged.file
     counts = recording_table.summary(judged.tally)
-    violated = ", ".join(f"{rule} {len(who)}" for rule, who in judged.tally.first_s.items())
+    violated = ", ".join(f"{rule} {len(drives)}" for rule, drives in judged.tally.first_s.items())
     return visible(f"{where}: {counts}" + (f" ({violated})" if violated else ""))

@@ -232,12 +232,12 @@ class _Pool(Generic[Task, Result]):
 def _serve(
     work: Callable[[Task], Iterator[Result]],
     connection: Connection,
-    recalled: Recalled,
+    cached: Recalled,
 ) -> None:
-    """Do tasks until nobody is there to give any, recalling ``what`` those who started it do."""
+    """Do tasks until none is given any more, with what the parent process has ``cached``."""
     # What a task has begun, such as processes of its own, is ended with it.
     signal.signal(signal.SIGTERM, _leave)
-    with suppress(EOFError, OSError), recalling(recalled):
+    with suppress(EOFError, OSError), recalling(cached):
         while True:
             task = connection.recv()
             try:

@@ -31,9 +31,9 @@ def knows_shipped() -> bool:
 
 
 @contextmanager
-def recalling(recalled: Recalled) -> Iterator[None]:
+def recalling(cached: Recalled) -> Iterator[None]:
     """Let trees and machines in the block come from these."""
-    token = _recalled.set(recalled)
+    token = _recalled.set(cached)
     try:
         yield
     finally:

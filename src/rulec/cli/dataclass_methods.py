@@ -178,8 +178,8 @@ def _init_text(cls: type, names: dict[str, object], *, frozen: bool) -> str:
 
 
 def _repr_text(cls: type, _: dict[str, object]) -> str:
-    said = ", ".join(f"{field.name}={{self.{field.name}!r}}" for field in fields(cls) if field.repr)
-    return _function("__repr__", ["self"], [f"return f'{{self.__class__.__qualname__}}({said})'"])
+    text = ", ".join(f"{field.name}={{self.{field.name}!r}}" for field in fields(cls) if field.repr)
+    return _function("__repr__", ["self"], [f"return f'{{self.__class__.__qualname__}}({text})'"])
 
 
 def _eq_text(cls: type, _: dict[str, object]) -> str:

@@ -221,13 +221,13 @@ def _say_misuse(problem: click.ClickException) -> None:
 
     color = wants_color(sys.stderr)
     text = _visible(reworded(problem))
-    said = f"{styled('error', 'bold red', color)}: {text}"
+    message = f"{styled('error', 'bold red', color)}: {text}"
     context = getattr(problem, "ctx", None)
     if context is not None:
         help_of = context.command_path.replace("rulec", "rulec help", 1)
         usage = " ".join(context.command.collect_usage_pieces(context))
         if isinstance(problem, click.UsageError):
-            said += "".join(f"\n  = help: {way_out}" for way_out in ways_out(problem))
-        said += f"\n  = usage: {context.command_path} {usage}\n  = help: `{help_of}` says more"
+            message += "".join(f"\n  = help: {way_out}" for way_out in ways_out(problem))
+        message += f"\n  = usage: {context.command_path} {usage}\n  = help: `{help_of}` says more"
     with suppress(OSError):
-        click.echo(said, err=True, color=color)
+        click.echo(message, err=True, color=color)

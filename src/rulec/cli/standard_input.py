@@ -96,12 +96,12 @@ def refuse_twice(context: click.Context) -> None:
         click.UsageError: it would.
     """
     arguments: Sequence[str] = context.find_root().obj or ()
-    asked = [
+    readers = [
         own
         for before, own in zip(("", *arguments), arguments, strict=False)
         if (own == STANDARD_INPUT and before not in _OUTPUTS) or own in ("-r-", "--rulebook=-")
     ]
-    if len(asked) > 1:
+    if len(readers) > 1:
         raise click.UsageError("`-` is standard input, which is one thing; give a file for another")
 
 

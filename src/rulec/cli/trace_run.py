@@ -97,13 +97,13 @@ class TraceRun:
             ids.add(verdict.trace)
             return ids
         trace = traces[place]
-        said = SAME_ID.at(
+        warning = SAME_ID.at(
             trace.place if isinstance(trace, Trace) else None,
             f"another trace of `{file}` has the id `{verdict.trace}`, too",
             help="give each trace an id of its own: verdicts and findings name it by that alone",
             severity="warning",
         )
-        self.complaints.add(RulecError(said))
+        self.complaints.add(RulecError(warning))
         return None
 
     def _rows(

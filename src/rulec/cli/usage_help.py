@@ -85,8 +85,8 @@ def reworded(problem: click.ClickException) -> str:
         # Without their dashes, which all have and which say nothing of what is meant.
         by_name = {option.lstrip("-"): option for option in known}
         near = nearest_name(problem.option_name.lstrip("-"), by_name)
-        meant = fitting[0] if fitting else by_name.get(near or "")
-        way_out = f"; did you mean `{meant}`?" if meant else ""
+        likely = fitting[0] if fitting else by_name.get(near or "")
+        way_out = f"; did you mean `{likely}`?" if likely else ""
         return f"there is no option `{problem.option_name}`{way_out}"
     param = problem.param if isinstance(problem, click.BadParameter) else None
     kind = None if param is None else param.type
@@ -109,12 +109,12 @@ def reworded(problem: click.ClickException) -> str:
         and (match := _NO_CHOICE.search(problem.message))
     ):
         given, choices = match["given"], [str(choice) for choice in kind.choices]
-        whose = "" if param.param_type_name == "argument" else f"{_as_typed(param, problem)}: "
-        meant = _OTHER_VALUES.get(given.casefold())
-        near = meant if meant in choices else nearest_name(given, choices)
+        subject = "" if param.param_type_name == "argument" else f"{_as_typed(param, problem)}: "
+        likely = _OTHER_VALUES.get(given.casefold())
+        near = likely if likely in choices else nearest_name(given, choices)
         every = f"it is one of {', '.join(choices)}"
         way_out = f"did you mean `{near}`? ({every})" if near else every
-        return f"{whose}there is no `{given}`; {way_out}"
+        return f"{subject}there is no `{given}`; {way_out}"
     if isinstance(problem, click.BadOptionUsage) and message.endswith("requires an argument."):
         return f"{problem.option_name} is given without a value"
     if isinstance(problem, click.MissingParameter):
@@ -154,7 +154,7 @@ def ways_out(problem: click.UsageError) -> Iterator[str]:
         return
     missing = problem.param if isinstance(problem, click.MissingParameter) else None
     if missing is not None and missing.name in ("rulebook", "rulebooks"):
-        yield from _rulebook_meant(context) or (
+        yield from _rulebook_hint(context) or (
             "`rulec list rulebooks` shows which there are, such as `de`",
         )
         return
@@ -172,20 +172,20 @@ def ways_out(problem: click.UsageError) -> Iterator[str]:
     yield from sources
 
 
-def _rulebook_meant(context: click.Context) -> tuple[str, ...]:
+def _rulebook_hint(context: click.Context) -> tuple[str, ...]:
     """The argument that may be the rulebook, given without ``-r``."""
     # Looking for files and its messages, 3 ms: only where something is wrong.
     from rulec.rulebook.files.search_path import available_rulebooks
 
     given: tuple[str, ...] = context.find_root().obj or ()
-    meant = [word for word in given[1:] if word.endswith(".rules") or word in available_rulebooks()]
-    return tuple(f"a rulebook is given by `-r {name}`" for name in meant[:1])
+    names = [word for word in given[1:] if word.endswith(".rules") or word in available_rulebooks()]
+    return tuple(f"a rulebook is given by `-r {name}`" for name in names[:1])
 
 
 def unknown_verb(name: str) -> str:
     """What is said of a verb that there is not."""
-    meant = _OTHER_WORDS.get(name.casefold()) or nearest_name(name, VERBS)
-    way_out = f"did you mean `{meant}`?" if meant else "`rulec help` lists them"
+    verb = _OTHER_WORDS.get(name.casefold()) or nearest_name(name, VERBS)
+    way_out = f"did you mean `{verb}`?" if verb else "`rulec help` lists them"
     # Looking for files and its messages, 3 ms: only where something is wrong.
     from rulec.rulebook.files.search_path import available_rulebooks
 

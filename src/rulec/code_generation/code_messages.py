@@ -88,17 +88,17 @@ def no_rust_compiler() -> RulecError:
     )
 
 
-def compiler_failed(command: str, said: str, status: int | None = None) -> RulecError:
+def compiler_failed(command: str, output: str, status: int | None = None) -> RulecError:
     """The error (R0752) about a compiler that has failed, with what it said, or its status."""
     # A message has one line.
-    first = "; ".join(line.strip() for line in said.strip().splitlines()[:5] if line.strip())
+    first = "; ".join(line.strip() for line in output.strip().splitlines()[:5] if line.strip())
     if not first:
         ended = "ended" if status is None else f"ended with status {status}"
         first = f"it {ended if status is None or status >= 0 else f'was ended by signal {-status}'}"
         first += " and said nothing"
     is_rust = command.startswith("rustc")
     another = "name another compiler in `CC`"
-    if is_rust and "rustup" in said:
+    if is_rust and "rustup" in output:
         another = "rustup has no such compiler here: `rustup default stable` installs one"
     elif is_rust:
         another = "update Rust by `rustup update`"

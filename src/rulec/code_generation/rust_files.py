@@ -190,8 +190,8 @@ def _input(layout: MonitorLayout) -> Iterator[str]:
         yield f"    /// An object of which nothing is said{' but the defaults' * defaults}."
         yield "    #[must_use]"
         yield f"    pub const fn {constructor}(id: u32, r#type: u8) -> Self {{"
-        said = _inits(own, layout, defaults=defaults)
-        yield f"        Self {{ {', '.join(['id', 'r#type', *said])} }}"
+        inits = _inits(own, layout, defaults=defaults)
+        yield f"        Self {{ {', '.join(['id', 'r#type', *inits])} }}"
         yield "    }"
     yield "}"
     yield ""
@@ -200,9 +200,9 @@ def _input(layout: MonitorLayout) -> Iterator[str]:
         yield f"    /// A state of which nothing is said{' but the defaults' * defaults}."
         yield "    #[must_use]"
         yield f"    pub const fn {constructor}(objects: &'a [Object]) -> Self {{"
-        said = _inits(world, layout, defaults=defaults)
-        said += [f"{fields.identifiers[item.name]}: None" for item in several]
-        yield f"        Self {{ {', '.join(['objects', *said])} }}"
+        inits = _inits(world, layout, defaults=defaults)
+        inits += [f"{fields.identifiers[item.name]}: None" for item in several]
+        yield f"        Self {{ {', '.join(['objects', *inits])} }}"
         yield "    }"
     yield "}"
     yield ""

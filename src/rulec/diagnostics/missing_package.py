@@ -17,7 +17,7 @@ def missing_package(
     *,
     otherwise: str = "",
 ) -> RulecError:
-    """Say that ``what`` takes a package, which of rulec's extras has it, and what else to do."""
+    """Say that a ``task`` takes a package, which of rulec's extras has it, and what else to do."""
     return code.error(
         place,
         f"{task} takes the package `{package}`, which is not installed",

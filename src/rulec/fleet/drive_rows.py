@@ -54,7 +54,7 @@ class DriveRows:
     ) -> Iterator[Row]:
         """The rows of a drive of a recording, or of a vehicle that has none.
 
-        What was ``found`` of the drive is looked for only if that has not been done before.
+        Its ``findings`` are made here if they are not given.
         """
         recording = verdicts.recording
         own = {
@@ -78,7 +78,7 @@ class DriveRows:
         own: Row,
         findings: Sequence[VerdictFinding],
     ) -> Iterator[Row]:
-        """The rows of a trace, and of what was ``found``; ``own`` are columns that name it."""
+        """The rows of a trace, and of its ``findings``; ``own`` are columns that name it."""
         times = (0.0, round((facts.n_states - 1) * facts.step_s, 9))
         yield self._judged(own, verdict, facts, times)
         yield from self._rules(own, verdict, facts)

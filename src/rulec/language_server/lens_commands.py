@@ -29,28 +29,28 @@ def add_commands(server: EditorSession) -> None:
 
     @server.command(lenses.RUN)
     async def run(uri: str, rule: str) -> str:
-        asked = _rule_asked_about(server, uri, rule)
-        if isinstance(asked, str):
-            return _shown(server, asked)
-        answer = await _examples(server, asked)
+        subject = _rule_asked_about(server, uri, rule)
+        if isinstance(subject, str):
+            return _shown(server, subject)
+        answer = await _examples(server, subject)
         return _shown(server, answer if isinstance(answer, str) else answer.in_words(rule))
 
     @server.command(lenses.ENGLISH)
     async def in_english(uri: str, rule: str) -> str:
-        asked = _rule_asked_about(server, uri, rule)
-        if isinstance(asked, str):
-            return _shown(server, asked)
-        _, book, meant = asked
-        return _shown(server, await asyncio.to_thread(english, book, meant))
+        subject = _rule_asked_about(server, uri, rule)
+        if isinstance(subject, str):
+            return _shown(server, subject)
+        _, book, of_rule = subject
+        return _shown(server, await asyncio.to_thread(english, book, of_rule))
 
     @server.command(lenses.COMPARE)
     async def compare(uri: str, rule: str) -> str:
-        asked = _rule_asked_about(server, uri, rule)
-        if isinstance(asked, str):
-            return _shown(server, asked)
-        if len(asked[0].chain.books) < 2:
+        subject = _rule_asked_about(server, uri, rule)
+        if isinstance(subject, str):
+            return _shown(server, subject)
+        if len(subject[0].chain.books) < 2:
             return _shown(server, "the rulebook extends no other")
-        names, book, meant = asked
+        names, book, of_rule = subject
         above = names.chain.books[-2].span.source.name
         try:
             with server.editor.as_shown():
@@ -59,19 +59,19 @@ def add_commands(server: EditorSession) -> None:
         except RulecError as error:
             return _shown(server, str(error))
         server.answers.keep_few()
-        server.answers.parents[lenses.parent_key(meant, names)] = answer
+        server.answers.parents[lenses.parent_key(of_rule, names)] = answer
         server.workspace_code_lens_refresh(None)
         return _shown(server, answer.text)
 
     @server.command(lenses.INSERT)
     async def insert(uri: str, rule: str) -> str:
-        asked = _rule_asked_about(server, uri, rule)
-        if isinstance(asked, str):
-            return _shown(server, asked)
-        answer = await _examples(server, asked)
+        subject = _rule_asked_about(server, uri, rule)
+        if isinstance(subject, str):
+            return _shown(server, subject)
+        answer = await _examples(server, subject)
         if isinstance(answer, str):
             return _shown(server, answer)
-        names = asked[0]
+        names = subject[0]
         missing = answer.missing[0] if answer.missing else ""
         change = lenses.inserted_example(names, rule, missing) if missing else None
         if change is None:
@@ -83,10 +83,10 @@ def add_commands(server: EditorSession) -> None:
 
 _MISTAKES = "the rulebook has mistakes, which have to be mended before"
 
-Asked = tuple[DocumentNames, Rulebook, Rule]
+RuleInDocument = tuple[DocumentNames, Rulebook, Rule]
 
 
-def _rule_asked_about(server: EditorSession, uri: str, name: str) -> Asked | str:
+def _rule_asked_about(server: EditorSession, uri: str, name: str) -> RuleInDocument | str:
     """A document, its rulebook and a rule of it, or why these cannot be had."""
     known = server.names(uri)
     if known is None:
@@ -101,8 +101,8 @@ def _rule_asked_about(server: EditorSession, uri: str, name: str) -> Asked | str
     return names, resolved.rulebook, rule
 
 
-async def _examples(server: EditorSession, asked: Asked) -> ExampleAnswer | str:
-    _, book, rule = asked
+async def _examples(server: EditorSession, subject: RuleInDocument) -> ExampleAnswer | str:
+    _, book, rule = subject
     try:
         answer = await asyncio.to_thread(example_answer, book, rule)
     except RulecError as error:

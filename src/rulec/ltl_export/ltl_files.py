@@ -83,10 +83,10 @@ def nuxmv_modules(rulebook: Rulebook, rules: Sequence[RuleTerms]) -> str:
         if terms.past:
             lines += ["VAR", *(f"  {each.name} : boolean;" for each in terms.past)]
         assumed = [term for term in (terms.facts, terms.history) if term != TRUE]
-        said = terms.formula
+        whole = terms.formula
         for term in reversed(assumed):
-            said = Term("->", (term, said))
-        lines.append(f"LTLSPEC NAME {name}_is_kept := {text_of(said, NUXMV)};")
+            whole = Term("->", (term, whole))
+        lines.append(f"LTLSPEC NAME {name}_is_kept := {text_of(whole, NUXMV)};")
         given = [f"{name}_{each}" for each in own]
         main += [f"  {each} : boolean;" for each in given]
         main.append(f"  {name}_here : {name}({', '.join(given)});")

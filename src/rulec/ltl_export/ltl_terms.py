@@ -50,8 +50,8 @@ NUXMV = Syntax({"R": "V", "true": "TRUE"})
 
 def conjunction(terms: Sequence[Term]) -> Term:
     """All of them that say something; true if there are none."""
-    said = [term for term in terms if term != TRUE]
-    return reduce(lambda left, right: Term("&", (left, right)), said) if said else TRUE
+    kept = [term for term in terms if term != TRUE]
+    return reduce(lambda left, right: Term("&", (left, right)), kept) if kept else TRUE
 
 
 class Terms:

@@ -34,8 +34,8 @@ def with_constants(
         # Mostly every state says the same, or says nothing.
         if any(state.get(name) != first for state in states):
             depth = len(vocabulary.declarations[name].parameters)
-            said = _stated_values(name, depth, states, where, trace.place)
-            states = tuple(_filled(states, name, said, trace.present))
+            values = _stated_values(name, depth, states, where, trace.place)
+            states = tuple(_filled(states, name, values, trace.present))
     return trace if states is trace.states else replace(trace, states=states)
 
 
@@ -46,7 +46,7 @@ def _stated_values(
     where: Callable[[int], str],
     place: SourceLocation | None,
 ) -> _Stated:
-    said: _Stated = {}
+    stated: _Stated = {}
     before: object = None
     for number, state in enumerate(states):
         given = state.get(name)
@@ -54,7 +54,7 @@ def _stated_values(
             continue
         before = given
         for subject, value in values_in(given, depth):
-            known = said.get(subject)
+            known = stated.get(subject)
             merged = value if known is None else _agreed(known[0], value)
             if merged is None and known is not None:
                 earlier = f"{where(known[1])} says {display(known[0])}"
@@ -62,8 +62,8 @@ def _stated_values(
                     name, subject, f"{where(number)} says {display(value)}, {earlier}", place
                 )
             if known is None or merged != known[0]:
-                said[subject] = merged, number
-    return said
+                stated[subject] = merged, number
+    return stated
 
 
 def values_in(given: Any, depth: int) -> Iterator[tuple[_Subject, Any]]:
@@ -107,12 +107,12 @@ def _agreed(first: Any, second: Any) -> Any:
 
 
 def _filled(
-    states: Sequence[State], name: str, said: _Stated, present: Mapping[str, tuple[int, int]]
+    states: Sequence[State], name: str, stated: _Stated, present: Mapping[str, tuple[int, int]]
 ) -> Iterator[State]:
     last = len(states) - 1
     for number, state in enumerate(states):
         filled: Any = state.get(name)
-        for subject, (value, _) in said.items():
+        for subject, (value, _) in stated.items():
             stretches = (present.get(item, (0, last)) for item in subject)
             if all(begins <= number <= ends for begins, ends in stretches):
                 filled = put(filled, subject, value)

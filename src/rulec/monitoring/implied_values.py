@@ -61,16 +61,16 @@ def with_implied_signals(state: State, vocabulary: Vocabulary) -> State:
     return state if filled == state else filled
 
 
-def _true_of(said: Any, depth: int) -> list[tuple[str, ...]]:
+def _true_of(given: Any, depth: int) -> list[tuple[str, ...]]:
     """The objects of which a signal is true."""
-    if depth == 1 and type(said) is dict:
-        return [(item,) for item, value in said.items() if value is True]
-    return [items for items, value in values_in(said, depth) if value is True]
+    if depth == 1 and type(given) is dict:
+        return [(item,) for item, value in given.items() if value is True]
+    return [items for items, value in values_in(given, depth) if value is True]
 
 
-def _mentions(said: Any, items: tuple[str, ...]) -> bool:
+def _mentions(value: Any, items: tuple[str, ...]) -> bool:
     for item in items:
-        if said is UNKNOWN:
+        if value is UNKNOWN:
             return True
-        said = said.get(item) if isinstance(said, Mapping) else None
-    return said is not None
+        value = value.get(item) if isinstance(value, Mapping) else None
+    return value is not None

@@ -361,9 +361,9 @@ def _similar_type(kind: str, types: Iterable[str]) -> str:
     from rulec.rulebook.vocabulary_phrases import synonyms_of_the_field
 
     others = synonyms_of_the_field()
-    said = kind.casefold()
-    meant = (name for name in types if said in others.get(name, ()))
-    return next((f"did you mean `{name}`?" for name in meant), "")
+    plain = kind.casefold()
+    similar = (name for name in types if plain in others.get(name, ()))
+    return next((f"did you mean `{name}`?" for name in similar), "")
 
 
 def _unknown_name(name: str, vocabulary: Vocabulary, known: Iterable[str]) -> str:

@@ -28,8 +28,8 @@ class BuildingChecks:
 
     def wrong(self, why: str, expected: str = "", help_text: str = "") -> None:
         """Note a mistake."""
-        said = f"{self.about}: {why}"
-        self.problems.append(NOT_BUILT.at(None, said, expected=expected, help=help_text))
+        message = f"{self.about}: {why}"
+        self.problems.append(NOT_BUILT.at(None, message, expected=expected, help=help_text))
 
     def raise_problems(self) -> None:
         """Raise RulecError R0617 if anything is wrong."""

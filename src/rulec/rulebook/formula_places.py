@@ -34,9 +34,9 @@ class AskedParts:
             return place
         lines = self.program.text.split("\n")
         start = sum(len(line) + 1 for line in lines[: place.line - 1]) + place.column - 1
-        for begin, asked, length in self.parts:
+        for begin, at_text, length in self.parts:
             if begin <= start <= begin + length:
-                shift = asked - begin
+                shift = at_text - begin
                 end = start + max((place.end_column or 0) - place.column, 0)
                 if place.end_line != place.line:
                     end = begin + length

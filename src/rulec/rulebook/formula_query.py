@@ -58,7 +58,7 @@ def read_query(
     head = _HEAD.match(text)
     begin = head.end() if head else 0
     formula = text[begin:]
-    asked = Source(_SAID, text)
+    query = Source(_SAID, text)
     folders = [Path(folder) for folder in search_path]
     program = Source(_SAID, formula)
     parts: tuple[tuple[int, int, int], ...] = ((0, begin, len(formula)),)
@@ -81,7 +81,7 @@ def read_query(
             parts = (*parts, (len(first), head.start(1), len(head[1])))
         resolved = _resolved(program, trees, folders, at)
     except RulecError as error:
-        places = AskedParts(asked, program, parts)
+        places = AskedParts(query, program, parts)
         # What is asked at each moment by itself is not for the first state only.
         found_wrong = [
             diagnostic
@@ -122,7 +122,7 @@ def _word(vocabulary: str, folders: Sequence[Path]) -> str:
 def _resolved(program: Source, trees: Trees | None, folders: Sequence[Path], at: str) -> Rulebook:
     if trees is None:
         return parse_rulebook(program.text, program.name, folders, at)
-    asked = with_book(trees, program, folders)
+    extended = with_book(trees, program, folders)
     # The law is that of the rulebook's day.
     law = trees.books[-1].law
-    return resolve_trees(asked, at or (law.as_of if law else "")).rulebook
+    return resolve_trees(extended, at or (law.as_of if law else "")).rulebook

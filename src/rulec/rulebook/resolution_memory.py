@@ -193,9 +193,9 @@ def _with_rules_of(trees: Trees, names: BookNames) -> BookNames:
 
 def _by_rule(books: Iterable[tree.File]) -> dict[str, list[object]]:
     """What is said of each rule, by its name."""
-    said: dict[str, list[object]] = {}
+    items: dict[str, list[object]] = {}
     for book in books:
         for item in book.items:
             if isinstance(item, tree.RuleItem | tree.SoftenItem | tree.DropItem | tree.SilentItem):
-                said.setdefault(item.name.text, []).append(item)
-    return said
+                items.setdefault(item.name.text, []).append(item)
+    return items

@@ -127,19 +127,19 @@ def medians(
     """The median and the size of each of so many groups, NaN of an empty one."""
     sizes = np.bincount(groups, minlength=count)
     order, begins, rows = _in_rows(groups, values)
-    medians = np.full(count, np.nan)
+    middles = np.full(count, np.nan)
     if rows is None:
         ordered = values[np.lexsort((values, groups))]
         own = sizes.nonzero()[0]
         low, high = begins + (sizes[own] - 1) // 2, begins + sizes[own] // 2
-        medians[own] = (ordered[low] + ordered[high]) / 2
-        return medians, sizes
+        middles[own] = (ordered[low] + ordered[high]) / 2
+        return middles, sizes
     if len(order):
         rows = np.sort(rows, axis=1)
         own = groups[order[begins]]
         numbers, middle = np.arange(len(own)), sizes[own]
-        medians[own] = (rows[numbers, (middle - 1) // 2] + rows[numbers, middle // 2]) / 2
-    return medians, sizes
+        middles[own] = (rows[numbers, (middle - 1) // 2] + rows[numbers, middle // 2]) / 2
+    return middles, sizes
 
 
 def medians_hold(

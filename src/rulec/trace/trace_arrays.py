@@ -128,12 +128,12 @@ class TraceArrays:
     def _is_given(self, name: str) -> Flags:
         """Where a name is said."""
         column = self.world[name] if name in self.world else self.about[name]
-        said = np.ones(len(column), dtype=bool)
+        given = np.ones(len(column), dtype=bool)
         if name in self.absent:
-            said &= ~self.absent[name]
+            given &= ~self.absent[name]
         if name in self.about and name in self.only:
-            said &= self.only[name].repeat(np.diff(self.starts))
-        return said
+            given &= self.only[name].repeat(np.diff(self.starts))
+        return given
 
     def said_by(self, names: Set[str]) -> TraceArrays:
         """What is said by these names only."""

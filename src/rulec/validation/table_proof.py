@@ -142,10 +142,10 @@ def prove_table(
         for symbol, move, common in by_class[state]:
             target = move.target, table.following[row][symbol]
             if table.outputs[row][symbol] is not move.kept:
-                said, meant = ("kept", "violated")[move.kept], ("violated", "kept")[move.kept]
+                wrong, right = ("kept", "violated")[move.kept], ("violated", "kept")[move.kept]
                 word = [*_word(came, pair), _lowest(common)]
                 raise UnprovableError(
-                    f"a trace of {_states(len(word))} is {said} by its table, {meant} by its tree",
+                    f"a trace of {_states(len(word))} is {wrong} by its table, {right} by its tree",
                     [letters.described(letter) for letter in word],
                 )
             if target not in came:

@@ -194,9 +194,9 @@ class CountedObjectKinds:
             axiom.holds_by_default and known.reached.isdisjoint(axiom.subjects) for axiom in own
         ):
             return known  # they are about what nothing asks
-        said = (*known.said, *own)
+        axioms = (*known.said, *own)
         vocabulary = Itself(self.universe.vocabulary)
-        return _fitting_type(known.counted.type, known.places, known.bodies, said, vocabulary)
+        return _fitting_type(known.counted.type, known.places, known.bodies, axioms, vocabulary)
 
     def _of_type(self, counted: _CountedType, state: JointState) -> tuple[CountedObject, ...]:
         vocabulary = self.universe.vocabulary
@@ -224,7 +224,7 @@ class _CountedType:
     Letters are those of ``reads``; sets of them are the bits of integers. ``counted`` has for each
     count those in which it counts, ``allowed`` for each axiom those in which it holds. A state is
     ``asked`` for the digits of reads that are not about the object, and for the sum of such terms
-    in those that are. Objects ``found`` are kept by what a state gives.
+    in those that are. Objects are kept in ``by_given``, by what a state gives.
     """
 
     type: str
@@ -258,16 +258,16 @@ def _fitting_type(
     kind: str,
     places: tuple[int, ...],
     bodies: tuple[Formula, ...],
-    said: tuple[SaidAxiom, ...],
+    axioms: tuple[SaidAxiom, ...],
     vocabulary: Itself[Vocabulary],
 ) -> _FittingType:
     read = [reads_of(body, vocabulary.item) for body in bodies]
     # Others would multiply the states to go through, and its words in them have their defaults.
-    relevant = relevant_axioms(said, read)
+    relevant = relevant_axioms(axioms, read)
     about = (*bodies, *(axiom.formula for axiom in relevant))
     counted = _counted_type(kind, places, about, vocabulary)
     reached = frozenset().union(*map(subjects_read, read), *(axiom.subjects for axiom in relevant))
-    return _FittingType(counted, places, bodies, said=said, reached=reached)
+    return _FittingType(counted, places, bodies, said=axioms, reached=reached)
 
 
 # Universes of a few objects and one vocabulary have the same additional ones.

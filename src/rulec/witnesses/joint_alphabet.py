@@ -105,13 +105,13 @@ class JointAlphabet:
         usual._defaults, usual._digits = [*self._defaults], [*self._digits]
         reads = list(self._joint.reads)
         levels = {subject_of(read): level for level, read in enumerate(reads)}
-        for said in said_axioms(replace(self._universe, axioms=tuple(axioms))):
-            (own,) = said.function.reads
+        for instance in said_axioms(replace(self._universe, axioms=tuple(axioms))):
+            (own,) = instance.function.reads
             level = levels.get(subject_of(own))
             default = None if level is None else self._defaults[level]
-            if level is None or default is None or not said.holds_by_default:
+            if level is None or default is None or not instance.holds_by_default:
                 # What nothing reads is as usual, but what only sums read is not known.
-                usual.is_exact &= said.holds_by_default and said.subjects.isdisjoint(
+                usual.is_exact &= instance.holds_by_default and instance.subjects.isdisjoint(
                     subjects_read(self._joint.reads)
                 )
                 continue

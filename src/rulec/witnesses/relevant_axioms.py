@@ -77,14 +77,14 @@ def axioms_about(name: str, kind: str, universe: ObjectUniverse) -> tuple[SaidAx
         if len(known) > MOST_KEPT:
             known.clear()
         with_it = replace(universe, objects={**universe.objects, name: kind})
-        said = tuple(
+        instances = tuple(
             [
                 axiom
                 for axiom in said_axioms(with_it)
                 if not axiom.is_counting and name in axiom.objects
             ]
         )
-        known[key] = universe.axioms, said
+        known[key] = universe.axioms, instances
     return known[key][1]
 
 

@@ -98,7 +98,7 @@ def _changing_constants(
     """
     declarations = universe.vocabulary.declarations
     constants = set(universe.vocabulary.constants)
-    said = {
+    values_of = {
         subject: tuple(
             dict.fromkeys(
                 values.get(subject, default_value(declarations[subject[0]])) for values in placed
@@ -107,7 +107,7 @@ def _changing_constants(
         for subject in dict.fromkeys(subject for values in placed for subject in values)
         if subject[0] in constants
     }
-    return {subject: values for subject, values in said.items() if len(values) > 1}
+    return {subject: values for subject, values in values_of.items() if len(values) > 1}
 
 
 def _settled(

@@ -124,7 +124,7 @@ def test_a_violation_is_measured(scene):
     (violation,) = scene.violations
     assert (violation.rule, violation.state, violation.time_s) == ("following_distance", 3, 1.5)
     assert violation.measured == ("gap(9) 20.00±0.05 m < 21.5±0.4 m, by at least 1.1 m",)
-    assert violation.told == ("station(9) behind", "lateral(9) same_lane")
+    assert violation.deciding_values == ("station(9) behind", "lateral(9) same_lane")
     assert violation.against == ("9",)
     assert violation.short == "hard, § 4(1), for 9"
     assert violation.gap_text(3) == "20.0 m"

@@ -93,8 +93,8 @@ def references_in(cite: str) -> tuple[tuple[Reference, ...], tuple[str, ...]]:
         if match is None:
             unread.append(piece)
             continue
-        said = [name for name in _LABELS if match[name]]
-        kind, label = (said[0], f"{match[said[0]]} ") if said else (kind, label)
+        labels = [name for name in _LABELS if match[name]]
+        kind, label = (labels[0], f"{match[labels[0]]} ") if labels else (kind, label)
         if kind is None and not match[0][:1].isalnum():
             unread.append(piece)
             continue

@@ -169,10 +169,10 @@ def audit(
 def audit_changes(now: Audit, before: Audit) -> AuditChanges:
     """The findings that came or went between two audits, without notes."""
 
-    def only_in(audit: Audit, other_audit: Audit) -> tuple[AuditFinding, ...]:
-        known = {(finding.kind, finding.name) for finding in other_audit.findings}
+    def only_in(first: Audit, second: Audit) -> tuple[AuditFinding, ...]:
+        known = {(finding.kind, finding.name) for finding in second.findings}
         return tuple(
-            finding for finding in audit.findings if (finding.kind, finding.name) not in known
+            finding for finding in first.findings if (finding.kind, finding.name) not in known
         )
 
     return AuditChanges(only_in(now, before), only_in(before, now))

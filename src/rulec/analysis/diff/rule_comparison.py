@@ -157,15 +157,15 @@ def diverse_witnesses(contest: Contest, first: Trace, most: int) -> tuple[Trace,
     traces = [first]
     shown = [non_default_names(first, vocabulary)]
     waiting = deque(frozenset([name]) for name in sorted(shown[0]))
-    asked: set[frozenset[str]] = set()
+    tried: set[frozenset[str]] = set()
     hopeless: list[frozenset[str]] = []
-    while waiting and len(traces) < most and len(asked) < MOST_SEARCHES:
+    while waiting and len(traces) < most and len(tried) < MOST_SEARCHES:
         defaulted = waiting.popleft()
-        if defaulted in asked:
+        if defaulted in tried:
             continue
         known = next((names for names in shown if not names & defaulted), None)
         if known is None:
-            asked.add(defaulted)
+            tried.add(defaulted)
             if any(names <= defaulted for names in hopeless):
                 continue  # there is no trace without less than that either
             try:
@@ -184,10 +184,10 @@ def diverse_witnesses(contest: Contest, first: Trace, most: int) -> tuple[Trace,
 
 def non_default_names(trace: Trace, vocabulary: Vocabulary) -> frozenset[str]:
     """The declarations whose value in some state differs from their default."""
-    said = frozenset[str]().union(*trace.states)
+    names = frozenset[str]().union(*trace.states)
     return frozenset(
         name
-        for (name, items), declaration in subjects_of(vocabulary, trace.objects, said)
+        for (name, items), declaration in subjects_of(vocabulary, trace.objects, names)
         if declaration.default is not None
         if any(
             value_in(state, name, items, declaration) != declaration.default

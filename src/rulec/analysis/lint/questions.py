@@ -98,8 +98,8 @@ class RuleAnswers:
 
     def conflict(self, names: Sequence[str]) -> Conflict | None:
         """A shortest trace after which not all of these can be kept."""
-        conflict: Conflict | None = self._to(Question("conflict", tuple(names)))
-        return conflict
+        answer: Conflict | None = self._to(Question("conflict", tuple(names)))
+        return answer
 
     def compared(self, name: str, base: int) -> RuleComparison:
         """The rule compared with that of a base, given by its number."""

@@ -56,10 +56,10 @@ def rulebook_findings(
         for rule in book.rules
         for number, antecedent in enumerate(antecedents(rule))
     }
-    asked = {name: occurrence(*condition, name) for name, condition in conditions.items()}
+    occurrences = {name: occurrence(*condition, name) for name, condition in conditions.items()}
     inherited = [{rule.name: rule for rule in base.rules if rule.name in by_name} for base in bases]
     own, *of_bases = compile_shared(
-        [book, *bases], _at_one_step([{**by_name, **asked}, *inherited])
+        [book, *bases], _at_one_step([{**by_name, **occurrences}, *inherited])
     )
     related = RelatedRules(list(by_name), own, book.name)
     answers = RuleAnswers(ComparedRules(own, of_bases), tell)
@@ -109,8 +109,8 @@ def _likely(
     related: RelatedRules,
 ) -> Iterator[Question]:
     """What will be asked if nothing is found, which is as good as all that is."""
-    asked = [name for own_ones in occurring.values() for _, name in own_ones]
-    for name in (*asked, *rules):
+    names = [name for own_ones in occurring.values() for _, name in own_ones]
+    for name in (*names, *rules):
         yield Question("kept", (name,))
     for name in rules:
         yield Question("violated", (name,))

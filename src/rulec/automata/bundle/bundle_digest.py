@@ -37,9 +37,9 @@ def has_digest(data: bytes) -> bool:
 def check_digest(data: bytes, file: str) -> None:
     """Refuse (R0410) a file with a digest that is not as it was written."""
     end = len(_BEFORE) + _DIGITS
-    said, rest = data[len(_BEFORE) : end], memoryview(data)[end + len(_AFTER) :]
+    stated, rest = data[len(_BEFORE) : end], memoryview(data)[end + len(_AFTER) :]
     digest = _digest(rest)
-    if said == digest and data[end : end + len(_AFTER)] == _AFTER:
+    if stated == digest and data[end : end + len(_AFTER)] == _AFTER:
         return
     raise changed(
         file,

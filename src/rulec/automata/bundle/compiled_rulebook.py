@@ -251,7 +251,7 @@ def alike(kind: type[model.Rulebook | model.Rule], source: object) -> dict[str, 
 def check_step(
     rule: CompiledRule, step_s: Fraction, subject: str = "this", place: SourceLocation | None = None
 ) -> None:
-    """Refuse (R0507) another step than a rule's; ``what`` has it."""
+    """Refuse (R0507) another step than a rule's; ``subject`` has it."""
     if rule.step_s is None or rule.step_s == step_s:
         return
     step = number_in_words(step_s)

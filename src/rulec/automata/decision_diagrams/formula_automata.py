@@ -64,8 +64,8 @@ class FormulaAutomata:
         untils = self._untils
 
         def step(state: int | None) -> Iterable[tuple[int, int, int]]:
-            asked = function if state is None else untils.progressed(state)
-            for target, letters in untils.split(asked).items():
+            demand = function if state is None else untils.progressed(state)
+            for target, letters in untils.split(demand).items():
                 kept = target != FALSE if is_safety else target == TRUE
                 yield target, int(kept and not self._ends), letters
 

@@ -129,10 +129,10 @@ class PendingUntils:
             return FALSE
         if high is not None and 0 < low < high and left == TRUE:
             # Instant by instant, so that ranges that overlap are seen to ask for the same.
-            asked = FALSE
+            needs = FALSE
             for distance in range(low, high + 1):
-                asked = diagrams.either(asked, self._until(left, right, Range(distance, distance)))
-            return asked
+                needs = diagrams.either(needs, self._until(left, right, Range(distance, distance)))
+            return needs
         now = right if low == 0 else FALSE
         if high == 0:
             return now

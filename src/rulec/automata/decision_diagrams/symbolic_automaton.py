@@ -212,12 +212,12 @@ def with_registers(
             steps: list[tuple[int, dict[str, bool], tuple[int, ...]]] = [(TRUE, {}, ())]
             for value, name, (register, left, right) in zip(values, names, operands, strict=True):
                 steps = [
-                    (met, {**said, name: bool(after & 1)}, (*others, after))
-                    for letters, said, others in steps
+                    (met, {**values_of, name: bool(after & 1)}, (*others, after))
+                    for letters, values_of, others in steps
                     for after, more in _steps(
                         register,
                         value,
-                        (diagrams.given(left, said), diagrams.given(right, said)),
+                        (diagrams.given(left, values_of), diagrams.given(right, values_of)),
                         diagrams,
                     ).items()
                     if (met := diagrams.both(letters, more)) != FALSE
@@ -231,9 +231,9 @@ def with_registers(
         edges: dict[tuple[tuple[int, tuple[int, ...]], int], int] = {}
         if never_left[state[0]]:
             return [(state, marks, TRUE) for _, marks in automaton.edges[state[0]]]
-        for letters, said, after in moves(state[1]):
+        for letters, values_of, after in moves(state[1]):
             for (target, marks), own in automaton.edges[state[0]].items():
-                met = diagrams.both(diagrams.given(own, said), letters)
+                met = diagrams.both(diagrams.given(own, values_of), letters)
                 if met != FALSE:
                     key = (target, nothing if never_left[target] else after), marks
                     edges[key] = diagrams.either(edges.get(key, FALSE), met)

@@ -157,11 +157,11 @@ class Obligations:
             return buddy.bddfalse if strong else buddy.bddtrue
         if high is not None and 0 < low < high and left == (_TRUE if strong else _FALSE):
             # Instant by instant, so that ranges that overlap are seen to ask for the same.
-            asked = buddy.bddfalse if strong else buddy.bddtrue
+            demand = buddy.bddfalse if strong else buddy.bddtrue
             for distance in range(low, high + 1):
                 there = self._unfolded(_obligation._replace(span=Range(distance, distance)))
-                asked = asked | there if strong else asked & there
-            return asked
+                demand = demand | there if strong else demand & there
+            return demand
         now = self._now(right, True) if low == 0 else buddy.bddfalse if strong else buddy.bddtrue
         if low == 0 and high == 0:
             return now

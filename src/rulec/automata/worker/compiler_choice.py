@@ -16,12 +16,12 @@ SPOT, DIAGRAMS = "spot", "diagrams"
 
 def choice() -> str:
     """The compiler that is asked for; empty for the usual one. Raises RulecError R0416."""
-    asked = os.environ.get(VARIABLE, "")
-    if asked not in ("", SPOT, DIAGRAMS):
+    name = os.environ.get(VARIABLE, "")
+    if name not in ("", SPOT, DIAGRAMS):
         raise NO_COMPILER.error(
             None,
-            f"{VARIABLE} is `{asked}`, and there is no such compiler",
-            help=did_you_mean(asked, [SPOT, DIAGRAMS])
+            f"{VARIABLE} is `{name}`, and there is no such compiler",
+            help=did_you_mean(name, [SPOT, DIAGRAMS])
             or f"it is `{SPOT}` or `{DIAGRAMS}`; unset, it is Spot where that is installed",
         )
-    return asked
+    return name

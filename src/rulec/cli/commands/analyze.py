@@ -74,8 +74,8 @@ def command(
                 continue
             with progress(f"analyzing {rulebook}", None) as tell:
                 spread = spreading(jobs, rulebook, partial(print_lost, "analyzed", rulebook))
-                said = _patience(rulebook, tell)
-                diagnostics = open_session(at).analyze(rulebook, on_progress=said, spread=spread)
+                tells = _patience(rulebook, tell)
+                diagnostics = open_session(at).analyze(rulebook, on_progress=tells, spread=spread)
             findings += diagnostics
             read = read_rulebook(rulebook, search_path(), at)
             question.remember([asdict(finding) for finding in diagnostics], read.paths)

@@ -106,18 +106,18 @@ def command(
 
 
 def _nothing_found(done: Checked) -> str:
-    said = [
+    lines = [
         f"{counted(len(done.files), 'file')} checked, nothing found; `rulec test` runs the examples"
     ]
     for rules, lack in ((done.uncited, "cites no provision"), (done.untested, "has no example")):
         if rules:
             many = lack.replace("cites", "cite").replace("has", "have")
-            said.append(
+            lines.append(
                 f"rule {named(rules)} {lack}"
                 if len(rules) == 1
                 else f"{len(rules)} rules {many}: {named(rules)}"
             )
-    return "\n".join(said)
+    return "\n".join(lines)
 
 
 def _checked(sources: tuple[str, ...], at: str, *, recalls: bool) -> Checked:

@@ -99,8 +99,8 @@ def command(
             raise click.UsageError("--pair is for two rulebooks, not for --all")
         if witness is not None:
             raise click.UsageError("--witness is for two rulebooks, not for --all")
-        asked = AllPairs(tuple(patterns), step_s, at, to.form)
-        return _compared(rulebooks, asked, to, recalls=not no_cache)
+        pairs = AllPairs(tuple(patterns), step_s, at, to.form)
+        return _compared(rulebooks, pairs, to, recalls=not no_cache)
     if len(rulebooks) != 2:
         books = " ".join(rulebooks)
         raise click.UsageError(
@@ -131,7 +131,7 @@ def command(
 
 def _difference(
     rulebooks: Sequence[str],
-    asked: TwoBooks,
+    question: TwoBooks,
     at: str,
     warned: list[Diagnostic],
 ) -> RulebookDiff:
@@ -144,18 +144,18 @@ def _difference(
         warned.extend(diagnostics)
 
     named = []
-    if asked.paired or asked.patterns:
+    if question.paired or question.patterns:
         named = [load_rulebook(name, search_path(), at) for name in rulebooks]
-        _refuse_unmatched(asked.patterns, named)
+        _refuse_unmatched(question.patterns, named)
     with progress("comparing", None) as tell:
         first, second = rulebooks
         return rulec.Session(search_path(), at, warn).diff(
             first,
             second,
-            patterns=asked.patterns,
-            step_s=asked.step_s,
-            witnesses=asked.n_witnesses,
-            paired=_pairs(asked.paired, named),
+            patterns=question.patterns,
+            step_s=question.step_s,
+            witnesses=question.n_witnesses,
+            paired=_pairs(question.paired, named),
             on_progress=tell,
         )
 
@@ -194,7 +194,7 @@ class AllPairs(NamedTuple):
     form: str
 
 
-def _compared(rulebooks: Sequence[str], asked: AllPairs, to: Output, *, recalls: bool) -> int:
+def _compared(rulebooks: Sequence[str], pairs: AllPairs, to: Output, *, recalls: bool) -> int:
     """Write the overview of these rulebooks, or of all, and return the status."""
     # Files and what is known of them, 10 ms: not for two.
     from rulec.rulebook.batch.answer_cache import AnswerQuestion
@@ -203,10 +203,10 @@ def _compared(rulebooks: Sequence[str], asked: AllPairs, to: Output, *, recalls:
     folders = search_path()
     names = list(dict.fromkeys(rulebooks or available_rulebooks(folders)))
     every = "" if rulebooks else "all"
-    question = AnswerQuestion(("diff", every, *map(str, asked), "", *names), folders)
+    question = AnswerQuestion(("diff", every, *map(str, pairs), "", *names), folders)
     known = question.recall() if recalls else None
     if known is None:
-        text, alone, is_complete, is_uniform, paths = _matrix(names, asked, is_all=not rulebooks)
+        text, alone, is_complete, is_uniform, paths = _matrix(names, pairs, is_all=not rulebooks)
         known = text, alone, is_complete, is_uniform
         if is_complete:
             question.remember(known, paths)
@@ -221,7 +221,7 @@ def _compared(rulebooks: Sequence[str], asked: AllPairs, to: Output, *, recalls:
 
 
 def _matrix(
-    names: Sequence[str], asked: AllPairs, *, is_all: bool
+    names: Sequence[str], pairs: AllPairs, *, is_all: bool
 ) -> tuple[str | None, list[str], bool, bool, list[str]]:
     """The overview, who was left out, whether it is complete and uniform, and the files read.
 
@@ -235,9 +235,9 @@ def _matrix(
     read = []
     for name in names:
         with errors_told():
-            read.append(read_rulebook(name, search_path(), asked.at))
+            read.append(read_rulebook(name, search_path(), pairs.at))
     books = [loaded.rulebook for loaded in read]
-    _refuse_unmatched(asked.patterns, books)
+    _refuse_unmatched(pairs.patterns, books)
     # Treaties before those that build upon them, so that theirs is law A.
     books.sort(key=lambda book: len(book.extends))
     alone = []
@@ -247,11 +247,11 @@ def _matrix(
         books = [book for book in books if book.name not in alone]
     if len(books) < 2:
         return None, [], False, False, []
-    with progress("comparing", steps(books, asked.patterns)) as tell:
-        matrix = comparison_matrix(books, asked.patterns, asked.step_s, tell)
+    with progress("comparing", steps(books, pairs.patterns)) as tell:
+        matrix = comparison_matrix(books, pairs.patterns, pairs.step_s, tell)
     is_complete = len(read) == len(names) and matrix.is_complete
     paths = [path for loaded in read for path in loaded.paths]
-    text = matrix_report.render(matrix, asked.form)
+    text = matrix_report.render(matrix, pairs.form)
     return text, alone, is_complete, matrix.is_uniform, paths
 
 

@@ -39,24 +39,24 @@ def command(names: tuple[str, ...], every: bool, to: Output) -> None:
     """
     if every == bool(names):
         raise click.UsageError("give a code, or --all")
-    codes = {name: code_registry.code_named(name.upper()) for name in names}
-    words = {name: _words(name) for name, code in codes.items() if code is None}
-    asked = [code for code in codes.values() if code is not None]
-    asked = list(dict.fromkeys(asked)) if names else [*code_registry.all_codes().values()]
+    by_name = {name: code_registry.code_named(name.upper()) for name in names}
+    words = {name: _words(name) for name, code in by_name.items() if code is None}
+    codes = [code for code in by_name.values() if code is not None]
+    codes = list(dict.fromkeys(codes)) if names else [*code_registry.all_codes().values()]
     found_words = [word for words_of_name in words.values() for word in words_of_name]
     match to.form:
         case "json":
-            text = _as_json(asked, found_words)
+            text = _as_json(codes, found_words)
         case "markdown" if every:
             text = code_registry.as_page()
         case "markdown":
             pages = [
                 f"# {code.code}: {code.title}\n\n{code_registry.as_markdown(code)}"
-                for code in asked
+                for code in codes
             ]
             text = "\n\n".join([*pages, *_texts(found_words, "markdown")])
         case _:
-            text = "\n\n\n".join([*map(code_registry.as_text, asked), *_texts(found_words, "text")])
+            text = "\n\n\n".join([*map(code_registry.as_text, codes), *_texts(found_words, "text")])
     put_answer(text, to)
 
 

@@ -116,7 +116,7 @@ def command(
         from rulec.planning.trace_history import read_past
 
         past = read_past(after)
-    asked = ManeuverQuestions(*(options.pop(field) for field in ManeuverQuestions.__slots__))
+    questions = ManeuverQuestions(*(options.pop(field) for field in ManeuverQuestions.__slots__))
     counts: list[ManeuverCounts] = []
     failed = False
     for problem in inputs.problems:
@@ -129,7 +129,7 @@ def command(
                 scene = scenario_options.read_scene(path, own)
                 with placed_at(SourceLocation(path)):
                     maneuvers = rulec.find_maneuvers(scene, rules, after=past, **reading, **own)
-                    shown = asked.answered(maneuvers, to.form)
+                    shown = questions.answered(maneuvers, to.form)
                 seconds = time.perf_counter() - begin
                 begin += seconds
                 write(_shown(maneuvers, shown, seconds, to.form, several=several))

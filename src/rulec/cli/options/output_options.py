@@ -212,19 +212,19 @@ def chosen_format(
         for form, suffixes in endings.items()
     }
     longest = max(fitting.values())
-    said = [form for form, length in fitting.items() if length == longest > 0]
+    by_ending = [form for form, length in fitting.items() if length == longest > 0]
     is_stream = path == STANDARD_OUTPUT or _is_device(Path(path)) or Output(path, "").is_folder
     if named is not None:
-        if said and named not in said and not is_stream:
+        if by_ending and named not in by_ending and not is_stream:
             raise click.UsageError(
-                f"`{path}` says by its ending that it is {said[0]}, and not {named}. Give it "
+                f"`{path}` says by its ending that it is {by_ending[0]}, and not {named}. Give it "
                 f"another ending, such as {endings[named][0]}, or leave out the format."
             )
         return named
     if is_stream:
         return next(iter(endings))
-    if said:
-        return said[0]
+    if by_ending:
+        return by_ending[0]
     known = ", ".join(dict.fromkeys(suffix for ending in endings.values() for suffix in ending))
     raise click.UsageError(
         f"`{path}` does not say by its ending what to write. Let it end in one of {known}, or "

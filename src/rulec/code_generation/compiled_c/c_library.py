@@ -65,9 +65,9 @@ def loaded(library: Path, command: str) -> ctypes.CDLL:
     try:
         return ctypes.CDLL(str(library))
     except OSError as problem:
-        said = str(problem).replace(f"{library.parent}/", "")
+        reason = str(problem).replace(f"{library.parent}/", "")
         raise compiler_failed(
-            command, f"it has written no library for this Python: {said}"
+            command, f"it has written no library for this Python: {reason}"
         ) from None
 
 
@@ -180,20 +180,20 @@ class CMonitor:
         They are the rulebook's and each rule's: its best, and its worst.
         """
         end = (len(verdicts) + 3) // 4 * 4
-        said = self.said.raw[: end + 4]
-        counted = n_violations is None or int.from_bytes(said[end:], "little") == n_violations
-        return said.startswith(verdicts) and counted
+        answer = self.said.raw[: end + 4]
+        counted = n_violations is None or int.from_bytes(answer[end:], "little") == n_violations
+        return answer.startswith(verdicts) and counted
 
     def last_answer(self, status: int) -> CSaid:
         """What the last step, which came to this status, has said."""
-        said = self.said.raw
+        answer = self.said.raw
         names = [own.rule.name for own in self._library.layout.rules]
         verdicts = [
-            within(_four(said[place]), _four(said[place + 1]))
+            within(_four(answer[place]), _four(answer[place + 1]))
             for place in range(0, 2 * len(names) + 2, 2)
         ]
         end = (2 * len(names) + 2 + 3) // 4 * 4
-        numbers = [int.from_bytes(said[at : at + 4], "little") for at in (end, end + 4)]
+        numbers = [int.from_bytes(answer[at : at + 4], "little") for at in (end, end + 4)]
         return CSaid(
             status, verdicts[0], dict(zip(names, verdicts[1:], strict=True)), numbers[0], numbers[1]
         )

@@ -52,14 +52,14 @@ class BothMonitors:
         """The same, and that of its rule nothing better is said than the table does."""
         name = word.rule.name
         follows = True
-        for number, (text, said) in enumerate(self._steps(word.drive)):
+        for number, (text, answer) in enumerate(self._steps(word.drive)):
             # A state that facts exclude together with others' defaults has not been taken.
-            follows = follows and said is not None
+            follows = follows and answer is not None
             expected = VERDICTS.index(word.verdicts[number])
             if (
                 follows
-                and said is not None
-                and VERDICTS.index(worst_of(said.rules[name])) < expected
+                and answer is not None
+                and VERDICTS.index(worst_of(answer.rules[name])) < expected
             ):
                 yield f"rule {name}, better than {VERDICTS[expected]}, state {number}"
             else:
@@ -72,7 +72,7 @@ class BothMonitors:
         for number, (state, objects) in enumerate(drive):
             status = theirs.take(self._input(state, objects))
             try:
-                said = ours.step(state, objects)
+                our = ours.step(state, objects)
             except RulecError as error:
                 by_facts = error.diagnostics[0].code == VIOLATED_AXIOM.code
                 if status != EXCLUDED_BY_FACTS:
@@ -83,18 +83,18 @@ class BothMonitors:
                 yield "", None
                 continue
             if status != 0:
-                yield f"status {status}, state {number}: {state}", said
+                yield f"status {status}, state {number}: {state}", our
                 return
-            mapping, expected = packed.get(id(said.rules), (None, b""))
-            if mapping is not said.rules:
-                verdicts = said.verdict, *said.rules.values()
+            mapping, expected = packed.get(id(our.rules), (None, b""))
+            if mapping is not our.rules:
+                verdicts = our.verdict, *our.rules.values()
                 expected = b"".join([self._code(verdict) for verdict in verdicts])
-                packed[id(said.rules)] = said.rules, expected
+                packed[id(our.rules)] = our.rules, expected
             n_lost = len(ours.violations) if self._known and not self._weighing else None
             if theirs.says(expected, n_lost):
-                yield "", said
+                yield "", our
             else:
-                yield self._compared(said, theirs.last_answer(status), n_lost, str(state)), said
+                yield self._compared(our, theirs.last_answer(status), n_lost, str(state)), our
 
     def _input(self, state: State, objects: Mapping[str, str]) -> Any:
         """The state as C has it, prepared once as long as it comes again and again."""
@@ -112,18 +112,18 @@ class BothMonitors:
             self._codes[verdict] = bytes(VERDICTS.index(outcome) for outcome in both)
         return self._codes[verdict]
 
-    def _compared(self, said: SoFar, answer: CSaid, n_lost: int | None, where: str) -> str:
-        if n_lost is not None and answer.violations != n_lost:
+    def _compared(self, ours: SoFar, theirs: CSaid, n_lost: int | None, where: str) -> str:
+        if n_lost is not None and theirs.violations != n_lost:
             return f"the number of violations, {where}"
-        for name in [name for name in said.rules if name not in self._vague]:
-            expected = said.rules[name]
-            other = answer.rules[name]
+        for name in [name for name in ours.rules if name not in self._vague]:
+            expected = ours.rules[name]
+            other = theirs.rules[name]
             right = is_no_narrower(other, expected)
             if self._known and name not in self._weighing:
                 right = other == expected
             if not right:
                 return f"rule {name}, {expected} and {other}, {where}"
-        right = bool(self._vague) or is_no_narrower(answer.verdict, said.verdict)
+        right = bool(self._vague) or is_no_narrower(theirs.verdict, ours.verdict)
         return "" if right else f"the rulebook, {where}"
 
 

@@ -132,12 +132,12 @@ def _steps(library: CLibrary) -> Iterator[str]:
             continue
         ask(number, reached, verdicts, by_sets)
         states = np.array(machine.successors).ravel()
-        said = [
+        expected_verdicts = [
             VERDICTS.index(four_valued(machine, target, accepted))
             for targets, row in zip(machine.successors, machine.outputs, strict=True)
             for target, accepted in zip(targets, row, strict=True)
         ]
-        expected = states * 4 + np.array(said)
+        expected = states * 4 + np.array(expected_verdicts)
         equal = (np.array(reached) * 4 + np.array(verdicts) == expected) & (
             np.array(by_sets) == expected
         )
@@ -161,8 +161,8 @@ def _readings(library: CLibrary) -> Iterator[str]:
     ask = library.call("digits")
     for probe in probes(library.layout):
         source, place = probe.place
-        given, who = _input(library, probe)
-        ask(ctypes.byref(given), who, source, digits)
+        given, places = _input(library, probe)
+        ask(ctypes.byref(given), places, source, digits)
         low, more = digits[place] & 0xFF, digits[place] >> 8
         read = ((1 << (more + 1)) - 1) << low
         right = read == probe.digits if probe.is_sharp else read & probe.digits == probe.digits
@@ -172,8 +172,8 @@ def _readings(library: CLibrary) -> Iterator[str]:
 def _input(library: CLibrary, probe: ReadingProbe) -> tuple[ctypes.Structure, Any]:
     given = library.input_of(probe.state, probe.objects, {})
     names = list(probe.objects)
-    who = [names.index(item) for item in probe.binding]
-    return given, (ctypes.c_size_t * MOST_VARIABLES)(*who)
+    places = [names.index(item) for item in probe.binding]
+    return given, (ctypes.c_size_t * MOST_VARIABLES)(*places)
 
 
 def _runs(library: CLibrary, n_states: int, share_unknown: float) -> Iterator[str]:

@@ -76,8 +76,8 @@ def _rules(run: FleetRun) -> Iterator[str]:
     for name in dict.fromkeys(name for name, _ in sorted(rules)):
         counts = {x: rules[name, x] for x in ("violated", "open", "not_judged") if rules[name, x]}
         if counts:
-            said = ", ".join(f"{x.replace('_', ' ')} {n:,}" for x, n in counts.items())
-            yield f"  {name}: {said}"
+            outcomes = ", ".join(f"{x.replace('_', ' ')} {n:,}" for x, n in counts.items())
+            yield f"  {name}: {outcomes}"
 
 
 def _files(run: FleetRun) -> Iterator[str]:

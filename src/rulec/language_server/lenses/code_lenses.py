@@ -61,8 +61,8 @@ def code_lenses(
             continue
         where = positions.range(*names.bounds(item.name.span))
         for title, command in _of_rule(item, rule, names, known):
-            asked = [uri, rule.name] if command else None
-            lenses.append(lsp.CodeLens(where, lsp.Command(title, command, arguments=asked)))
+            arguments = [uri, rule.name] if command else None
+            lenses.append(lsp.CodeLens(where, lsp.Command(title, command, arguments=arguments)))
     return lenses
 
 

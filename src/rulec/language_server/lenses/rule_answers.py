@@ -30,14 +30,14 @@ class ExampleAnswer:
     def in_words(self, rule: str) -> str:
         """One sentence each on examples, edges and recordings."""
         total = self.passed + len(self.failing)
-        said = [f"{rule}: {self.passed} of {total} examples come out as they say"]
+        text = [f"{rule}: {self.passed} of {total} examples come out as they say"]
         if self.failing:
-            said.append(f"otherwise come out: {', '.join(self.failing)}")
+            text.append(f"otherwise come out: {', '.join(self.failing)}")
         if self.missing:
-            said.append(f"untested edges: {len(self.missing)}, the first one by\n{self.missing[0]}")
+            text.append(f"untested edges: {len(self.missing)}, the first one by\n{self.missing[0]}")
         if self.lacking:
-            said.append(f"not judgeable from CommonRoad, which lacks {', '.join(self.lacking)}")
-        return "\n".join(said)
+            text.append(f"not judgeable from CommonRoad, which lacks {', '.join(self.lacking)}")
+        return "\n".join(text)
 
 
 @dataclass(frozen=True, slots=True)

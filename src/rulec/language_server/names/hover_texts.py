@@ -104,10 +104,10 @@ def _rule(names: DocumentNames, name: str) -> Iterator[str]:
     if item.says:
         yield item.says.value
     law = entry.law
-    whose = law.name.text if law.name is not None else ""
+    book = law.name.text if law.name is not None else ""
     if item.cite:
         heading = _heading(names, item.cite.value)
-        yield f"**{item.cite.value}**{f', {heading}' if heading else ''}, law of `{whose}`"
+        yield f"**{item.cite.value}**{f', {heading}' if heading else ''}, law of `{book}`"
     if item.source:
         yield f"<{item.source.value}>" if "://" in item.source.value else item.source.value
     if item.in_force:

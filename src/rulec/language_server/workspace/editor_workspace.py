@@ -177,15 +177,15 @@ class EditorWorkspace:
 
     def sources(self) -> list[str]:
         """The addresses of all sources in the workspace's folders, and of what is open."""
-        uris = dict.fromkeys(self.documents)
+        addresses = dict.fromkeys(self.documents)
         known = {os.path.realpath(entry.path) for entry in self.documents.values() if entry.path}
         for folder in self.folders:
             for path in sources_below(str(folder)).paths:
                 real = os.path.realpath(path)
                 if real not in known:
                     known.add(real)
-                    uris[uri_of(path)] = None
-        return list(uris)
+                    addresses[uri_of(path)] = None
+        return list(addresses)
 
     def is_read_only(self, file: str | Path) -> bool:
         """Tell whether a file is not the author's: outside of the workspace, or rulec's own."""

@@ -58,8 +58,8 @@ def described_edits(
     if match := _CHANGED_BY.search(help_text):
         yield from _changing(match["head"], text, start)
     if match := re.match(r"this state leaves open `([^`(]+)`,", message):
-        for said in (f"not {match[1]}", match[1]):
-            yield _edit(f"Say `{said}` in this state", end, end, f" and {said}")
+        for words in (f"not {match[1]}", match[1]):
+            yield _edit(f"Say `{words}` in this state", end, end, f" and {words}")
     if " can mean " in message:
         for reading in re.findall(r"`([^`]+)`", message)[1:]:
             yield _edit(f"Write `{reading}`", start, end, reading)
@@ -70,7 +70,7 @@ def described_edits(
     if help_text.startswith("the nearest multiple"):
         was = message.split("`")[1]
         begin = text.find(was, start, end)
-        near = [said for said in _NUMBER_WITH_UNIT.findall(help_text) if _is_near(said, was)]
+        near = [words for words in _NUMBER_WITH_UNIT.findall(help_text) if _is_near(words, was)]
         for number in near if begin >= 0 else ():
             yield _edit(f"Write `{number}`", begin, begin + len(was), number)
     if match := re.match(r"that month has (\d+) days", help_text):
@@ -85,13 +85,13 @@ def described_edits(
         yield _edit(f"Leave out `is {own}`", len(text[:begin].rstrip()), end, "")
     if "give it a weight" in help_text and (match := re.search(r"\b0+(?:\.0*)?\b", own)):
         yield _edit("Write `1`", start + match.start(), start + match.end(), "1")
-    for said in re.findall(r"`([^`…]+)`", help_text):
-        yield from _beginning_before(said, text, start, end)
+    for words in re.findall(r"`([^`…]+)`", help_text):
+        yield from _beginning_before(words, text, start, end)
 
 
-def _is_near(said: str, was: str) -> bool:
+def _is_near(amount: str, was: str) -> bool:
     """Tell whether a number differs from another by a twentieth at most: no other law."""
-    first, second = (Fraction(number.split()[0].replace(",", "")) for number in (said, was))
+    first, second = (Fraction(number.split()[0].replace(",", "")) for number in (amount, was))
     return abs(first - second) * 20 <= second
 
 
@@ -164,18 +164,18 @@ def _operator_outside(text: str, start: int, end: int) -> Iterator[Edit]:
     quantified = _QUANTIFIED.search(text[:start])
     operator = _OPERATOR.match(text, start, end)
     if quantified and operator:
-        said = operator[0].strip()
-        moved = f"{said} {quantified[0]}{text[operator.end() : end]}"
-        yield _edit(f"Put `{said}` around it", quantified.start(), end, moved)
+        word = operator[0].strip()
+        moved = f"{word} {quantified[0]}{text[operator.end() : end]}"
+        yield _edit(f"Put `{word}` around it", quantified.start(), end, moved)
 
 
-def _beginning_before(said: str, text: str, start: int, end: int) -> Iterator[Edit]:
+def _beginning_before(words: str, text: str, start: int, end: int) -> Iterator[Edit]:
     """What is written instead begins with a word that stands before the place already."""
-    first, space, _ = said.partition(" ")
-    if ": " in said:
+    first, space, _ = words.partition(" ")
+    if ": " in words:
         # As it is declared in the head of its rule
         declared = [*re.finditer(rf"\b{re.escape(first)}\s*\w+", text[:start])]
         if declared:
-            yield _edit(f"Write `{said}`", *declared[-1].span(), said)
+            yield _edit(f"Write `{words}`", *declared[-1].span(), words)
     elif space and (match := re.search(rf"\b{re.escape(first)}\s+$", text[:start])):
-        yield _edit(f"Write `{said}`", match.start(), end, said)
+        yield _edit(f"Write `{words}`", match.start(), end, words)

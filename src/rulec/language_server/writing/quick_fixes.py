@@ -143,18 +143,18 @@ def _quoted_edits(
     finding: Diagnostic, text: str, start: int, end: int
 ) -> Iterator[tuple[str, TextChange]]:
     """Edits with what the help quotes."""
-    asked = [
+    words = [
         word
         for word in _QUOTED.findall(finding.help)
         if not _is_example(word, finding.help, text[start:end])
     ]
     if not _SEVERAL.search(finding.expected):
-        asked += _QUOTED.findall(finding.expected)
+        words += _QUOTED.findall(finding.expected)
     if finding.help.startswith(_DELETING):
         yield from _deletions(text, start, end)
-    if finding.help.startswith("did you mean") and asked:
-        yield from _misspelt(asked[0], text, start)
-    for word in dict.fromkeys(asked):
+    if finding.help.startswith("did you mean") and words:
+        yield from _misspelt(words[0], text, start)
+    for word in dict.fromkeys(words):
         if word == text[start:end]:
             continue
         first_word, _, rest = word.partition(" ")

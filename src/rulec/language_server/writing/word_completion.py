@@ -196,17 +196,17 @@ def _in_formula(piece: PieceAtCursor, names: DocumentNames, offset: int) -> Iter
         kind = _KINDS.Unit if unit is not None else _KINDS.EnumMember
         kind = _KINDS.Variable if unit is None and name in symbols.items else kind
         span = symbols.spans.get(name)
-        said = description(span) if span is not None else ""
+        text = description(span) if span is not None else ""
         in_unit = f" in {item.unit}" if isinstance(item, Quantity) else ""
         if not item.parameters:
             detail = f"of ego or the world{in_unit}"
-            yield 2, lsp.CompletionItem(name, kind=kind, detail=detail, documentation=said or None)
+            yield 2, lsp.CompletionItem(name, kind=kind, detail=detail, documentation=text or None)
             continue
         for objects in _fitting(item.parameters, scope, names):
             label = f"{name}({', '.join(objects)})"
             about = " and ".join(item.parameters)
             detail = f"of an object, {about}{in_unit}"
-            yield 1, lsp.CompletionItem(label, kind=kind, detail=detail, documentation=said or None)
+            yield 1, lsp.CompletionItem(label, kind=kind, detail=detail, documentation=text or None)
     if piece.kind == "state":
         return
     yield from _provisions(wanted, scope, names)

@@ -46,10 +46,10 @@ def facts_in_words(
                 language.value_is.format(noun or of_objects(name, items, language), number)
             )
         else:
-            said = str(value) if isinstance(item, Enumeration) else None
-            atom = spoken_formula(Atom(name, items, said), phrases, language)
+            named = str(value) if isinstance(item, Enumeration) else None
+            atom = spoken_formula(Atom(name, items, named), phrases, language)
             assert isinstance(atom, Atom), "an atom that is spoken stays one"
             spoken = isinstance(atom, SpokenAtom)
-            clauses.append(atom_clause(atom, language, holds=said is not None or value is True))
+            clauses.append(atom_clause(atom, language, holds=named is not None or value is True))
         has_phrase |= spoken
     return listed(clauses, language) if has_phrase else ""

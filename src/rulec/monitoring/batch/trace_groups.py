@@ -60,7 +60,7 @@ def group_traces(traces: Sequence[Trace]) -> TraceGroup:
     names = [tuple(trace.objects) for trace in ordered]
     are_alike = names.count(names[0]) == len(names)
     now = list(chain.from_iterable([scene_of_step[:n_steps] for n_steps in steps_of]))
-    whose = list(chain.from_iterable(map(repeat, names, steps_of)))
+    owners = list(chain.from_iterable(map(repeat, names, steps_of)))
     places: Sequence[int]
     ids = list(map(id, states))
     if len(set(ids)) == len(ids):
@@ -68,7 +68,7 @@ def group_traces(traces: Sequence[Trace]) -> TraceGroup:
     elif len(scenes) == 1 and are_alike:
         places, numbers = _distinct(ids)
     else:
-        places, numbers = _distinct(list(zip(ids, now, whose, strict=True)))
+        places, numbers = _distinct(list(zip(ids, now, owners, strict=True)))
     # From one trace after the other to one step after the other.
     before = np.cumsum(layout.lengths) - layout.lengths
     trace = np.repeat(np.arange(layout.n_traces), layout.lengths)
@@ -84,7 +84,7 @@ def group_traces(traces: Sequence[Trace]) -> TraceGroup:
         there=() if len(scenes) == 1 else tuple([scenes[now[place]] for place in places]),
         step_s=example.step_s,
     )
-    own_names = () if are_alike else [whose[place] for place in places]
+    own_names = () if are_alike else [owners[place] for place in places]
     return TraceGroup(shared, order.tolist(), own_names)
 
 

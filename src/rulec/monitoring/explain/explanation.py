@@ -117,11 +117,11 @@ class Explanation:
         what chooses what it asks for, such as that a sign tells a limit, where others are left.
         """
         when = set() if self.rule.trigger is None else set(ltl.atoms_of(self.rule.trigger))
-        asked = [part for part in self.parts if part.decides and part.formula not in when]
-        signals = {part.formula.name for part in asked if isinstance(part.formula, ltl.Atom)}
+        decisive = [part for part in self.parts if part.decides and part.formula not in when]
+        signals = {part.formula.name for part in decisive if isinstance(part.formula, ltl.Atom)}
         margins = [fact.measured for fact in self.facts if fact.text.partition("(")[0] in signals]
         choosing = choosing_comparisons(self.rule.formula)
-        compared = [part for part in asked if part.margins]
+        compared = [part for part in decisive if part.margins]
         asks = [part for part in compared if part.formula not in choosing] or compared
         margins += [part.measured for part in asks]
         return [margin for margin in dict.fromkeys(margins) if margin is not None]

@@ -59,18 +59,18 @@ class ArrayTables(NameTables):
         upper = values
         if column is not None:
             arrays = self._arrays
-            said: Flags = ~arrays.absent[name] if name in arrays.absent else np.True_  # type: ignore[assignment]
+            given: Flags = ~arrays.absent[name] if name in arrays.absent else np.True_  # type: ignore[assignment]
             if isinstance(declaration, Enumeration):
                 places = [declaration.values.index(text) for text in arrays.texts[name]]
                 column = np.asarray(places)[column]
             dark = arrays.unknown.get(name, np.False_)
-            values[there] = np.where(said, column, default)
-            unknown[there] = np.where(said, dark, not is_known)
+            values[there] = np.where(given, column, default)
+            unknown[there] = np.where(given, dark, not is_known)
             if name in arrays.bounds:
                 upper = values.copy()
                 low, high = arrays.bounds[name]
-                values[there] = np.where(said, low, default)
-                upper[there] = np.where(said, high, default)
+                values[there] = np.where(given, low, default)
+                upper[there] = np.where(given, high, default)
         rows = ValueRows(values, upper, unknown)
         return _constant(rows, there) if declaration.constant else rows
 

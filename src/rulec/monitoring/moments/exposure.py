@@ -127,12 +127,12 @@ def _watched_rule(rule: CompiledRule, step_s: Fraction, place: SourceLocation | 
 
 def _tally(truth: TraceTruth, watched: _Watched, outcomes: Mapping[Chosen, Outcome]) -> _Tally:
     tally = _Tally(truth.tables.last)
-    asked = truth.choices_of(watched.rule.variables)
+    choices = truth.choices_of(watched.rule.variables)
     left = dict(outcomes)
     if watched.trigger is None:
-        tally.add_whole(asked.trace, *truth.stretch_of(asked))
+        tally.add_whole(choices.trace, *truth.stretch_of(choices))
     else:
-        for part in truth.of(watched.trigger, asked):
+        for part in truth.of(watched.trigger, choices):
             opportunities = opportunity_stretches(part.sure, part.possible)
             tally.add(part, opportunities)
             rows, decided = _decided(part.choices, left)

@@ -48,11 +48,11 @@ def moments(trace: Trace | TraceArrays, query: FormulaQuery) -> list[Moment]:
     roundings = _in_steps(trace, query)
     tables = tables_of(trace, query.vocabulary)
     truth, n_states = TraceTruth(tables, query.semantics, trace.ends), tables.n_states
-    asked = truth.choices_of(query.rule.variables)
+    choices = truth.choices_of(query.rule.variables)
     flags_of: dict[tuple[str, ...], list[tuple[Flags, Flags]]] = {}
     for rounded in roundings:
         ready = ReadyFormula(rounded, place=trace.place if isinstance(trace, Trace) else None)
-        for part in truth.of(ready, asked):
+        for part in truth.of(ready, choices):
             sure, possible = (flags[:, :n_states] for flags in part.in_trace())
             for row in np.flatnonzero(possible.any(axis=1)).tolist():
                 choice = tuple([tables.objects[item] for item in part.choices.items[row]])
@@ -62,7 +62,7 @@ def moments(trace: Trace | TraceArrays, query: FormulaQuery) -> list[Moment]:
         possible = np.any([flags for _, flags in rows], axis=0)
         sure = np.all([flags for flags, _ in rows], axis=0)
         sure &= len(rows) == len(roundings)
-        objects = dict(zip(asked.variables, choice, strict=True))
+        objects = dict(zip(choices.variables, choice, strict=True))
         result += sorted(_of_one(objects, sure, possible), key=lambda moment: moment.first)
     return result
 

@@ -216,13 +216,13 @@ def _between_floats(value: Any) -> PartialValue:
     """A number that no float stands for, as what lies between two of them."""
     if type(value) is int and abs(value) > EXACT_IN_FLOATS:
         value = WrittenNumber(Fraction(value))
-    said: PartialValue = value
-    return Interval(*value.neighbours) if isinstance(value, WrittenNumber) else said
+    plain: PartialValue = value
+    return Interval(*value.neighbours) if isinstance(value, WrittenNumber) else plain
 
 
 def _spelled(state: Mapping[str, Any], trace: Trace, vocabulary: Vocabulary) -> dict[str, Any]:
     """A state that says something of all that some state speaks of, if only that it is unknown."""
-    said: dict[tuple[str, tuple[str, ...]], Any] = {}
+    values: dict[tuple[str, tuple[str, ...]], Any] = {}
     names = set().union(*trace.states) & vocabulary.declarations.keys()
     for name in names:
         declaration = vocabulary.declarations[name]
@@ -234,5 +234,5 @@ def _spelled(state: Mapping[str, Any], trace: Trace, vocabulary: Vocabulary) -> 
             rows = [(*row, item) for row in rows for item in own]
         for row in rows:
             value = value_in(state, name, row, declaration)
-            said[name, row] = UNKNOWN if value is None else _between_floats(value)
-    return dict(with_values({}, said))
+            values[name, row] = UNKNOWN if value is None else _between_floats(value)
+    return dict(with_values({}, values))

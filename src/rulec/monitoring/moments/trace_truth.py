@@ -107,16 +107,16 @@ class TraceTruth:
         if ends == "cut":
             self._ends = "cut"
 
-    def of(self, ready: ReadyFormula, asked: ChosenObjects) -> Iterator[FormulaTruth]:
+    def of(self, ready: ReadyFormula, wanted: ChosenObjects) -> Iterator[FormulaTruth]:
         """The truth of a formula for choices of objects that are there together.
 
         There are several parts where there is much of it, and none of traces in which it is seen to
         hold nowhere.
         """
-        rows = np.flatnonzero(self._may_hold(ready)[asked.trace])
+        rows = np.flatnonzero(self._may_hold(ready)[wanted.trace])
         most = max(1, MOST_ENTRIES // (self.tables.n_states + ready.settles + 1))
         for begin in range(0, len(rows), most):
-            yield self._part(ready, asked, rows[begin : begin + most])
+            yield self._part(ready, wanted, rows[begin : begin + most])
 
     def choices_of(self, variables: Sequence[Variable]) -> ChosenObjects:
         """All choices of distinct objects of these types that are there together."""
@@ -138,8 +138,8 @@ class TraceTruth:
         spans = self._spans[chosen.items]
         return spans[:, :, 0].max(axis=1), spans[:, :, 1].min(axis=1)
 
-    def _part(self, ready: ReadyFormula, asked: ChosenObjects, rows: Places) -> FormulaTruth:
-        own = asked.at(rows)
+    def _part(self, ready: ReadyFormula, wanted: ChosenObjects, rows: Places) -> FormulaTruth:
+        own = wanted.at(rows)
         first, last = self.stretch_of(own)
         states, end = np.arange(self.tables.n_states), last
         if self._ends == "goes on":

@@ -79,11 +79,11 @@ def known_bits(reader: LetterReader, rule: CompiledRule) -> ReadBits:
 
 
 def _in_order(
-    choices: Iterator[tuple[str, ...]], already_begun: Collection[tuple[str, ...]], cast: Cast
+    doubtful: Iterator[tuple[str, ...]], already_begun: Collection[tuple[str, ...]], cast: Cast
 ) -> Iterator[tuple[str, ...]]:
     if not already_begun:
-        return choices
-    both = merge(choices, in_usual_order(already_begun, cast), key=usual_order(cast))
+        return doubtful
+    both = merge(doubtful, in_usual_order(already_begun, cast), key=usual_order(cast))
     return iter(dict.fromkeys(both))
 
 

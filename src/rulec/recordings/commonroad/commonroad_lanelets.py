@@ -123,9 +123,9 @@ def complete(
     """A lanelet with what it refers to, as far as the file has it."""
     elements = [element for number in entry.signs for element in signs.get(number, ())]
     lanelet = entry.lanelet
-    said = [element for element in elements if element.limit_mps is not None]
-    limits = [sign.limit_mps for sign in said if sign.name == MAX_SPEED] + [lanelet.limit_mps]
-    least = [sign.limit_mps for sign in said if sign.name == MIN_SPEED]
+    limiting = [element for element in elements if element.limit_mps is not None]
+    limits = [sign.limit_mps for sign in limiting if sign.name == MAX_SPEED] + [lanelet.limit_mps]
+    least = [sign.limit_mps for sign in limiting if sign.name == MIN_SPEED]
     inside = {"intersection"} if junction else set()
     ids = sorted(set(entry.lights), key=recording.id_order)
     return replace(

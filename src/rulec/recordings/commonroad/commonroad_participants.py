@@ -156,10 +156,10 @@ def _lamps(
     shows: frozenset[recorded.Lamp] | None = None
     # One that is empty stands for none
     for state in filter(lambda state: state.children, states):
-        said = {_SIGNALS[child.name]: child for child in state.children if child.name in _SIGNALS}
-        lit = frozenset(lamp for lamp, child in said.items() if _LIT[child.one_of(_LIT)])
+        known = {_SIGNALS[child.name]: child for child in state.children if child.name in _SIGNALS}
+        lit = frozenset(lamp for lamp, child in known.items() if _LIT[child.one_of(_LIT)])
         lamps.update(dict.fromkeys(read_steps(state.child("time"), extent), lit))
-        shows = frozenset(said) if shows is None else shows & frozenset(said)
+        shows = frozenset(known) if shows is None else shows & frozenset(known)
     return lamps, shows or frozenset()
 
 

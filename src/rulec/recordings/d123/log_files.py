@@ -84,9 +84,9 @@ def said_in(table: ArrowTable) -> Mapping[Any, Any]:
     return metadata
 
 
-def word(said: Mapping[Any, Any], name: str) -> str:
+def word(metadata: Mapping[Any, Any], name: str) -> str:
     """A text in metadata, empty if it is none, or no name."""
-    text = said.get(name)
+    text = metadata.get(name)
     if not isinstance(text, str) or len(text) > LONGEST_TEXT or not text.isprintable():
         return ""
     return text

@@ -145,9 +145,9 @@ def _key(table: ArrowTable) -> str:
 
 def _tracks(table: ArrowTable, about: Mapping[Any, Any]) -> Iterator[TrackBoxes]:
     key = _key(table)
-    said = files.word(about, "box_detection_label_class").rpartition(".")[2]
-    if said not in LABELS:
-        why = f"its labels are those of `{short(said)}`"
+    scheme = files.word(about, "box_detection_label_class").rpartition(".")[2]
+    if scheme not in LABELS:
+        why = f"its labels are those of `{short(scheme)}`"
         raise LOG.refused(table.path, why, expected=f"expected one of {', '.join(LABELS)}")
     boxes, labels, tokens = (
         table.nested[f"{key}.{name}"] for name in ("bounding_box_se3", "label", "track_token")
@@ -166,9 +166,9 @@ def _tracks(table: ArrowTable, about: Mapping[Any, Any]) -> Iterator[TrackBoxes]
         if len(twice):
             row = int(own[twice[0]])
             raise table.refused(row, f"`{short(name)}` is twice in one moment")
-        if label not in LABELS[said]:
-            raise table.refused(int(own[0]), f"a label is {label}, which `{said}` has not")
-        category = LABELS[said][label]
+        if label not in LABELS[scheme]:
+            raise table.refused(int(own[0]), f"a label is {label}, which `{scheme}` has not")
+        category = LABELS[scheme][label]
         if category != LEFT_OUT:
             length, width = np.median(sizes[rows], axis=0).tolist()
             yield TrackBoxes(name, category, own, poses.taken(rows), (length, width))
@@ -196,9 +196,9 @@ def _ego(path: Path, sweeps: _Sweeps) -> TrackBoxes:
     before, after = moments[np.maximum(at - 1, 0)], moments[np.minimum(at, len(moments) - 1)]
     near = np.minimum(np.abs(sweeps.moments - before), np.abs(after - sweeps.moments))
     there = np.flatnonzero(near <= _FARTHEST_S * NANOSECONDS)
-    asked, said = ((x - moments[0]).astype(float) for x in (sweeps.moments[there], moments))
-    places = np.column_stack([np.interp(asked, said, body.translations[:, k]) for k in range(3)])
-    turned = np.interp(asked, said, np.unwrap(body.headings))
+    wanted, known = ((x - moments[0]).astype(float) for x in (sweeps.moments[there], moments))
+    places = np.column_stack([np.interp(wanted, known, body.translations[:, k]) for k in range(3)])
+    turned = np.interp(wanted, known, np.unwrap(body.headings))
     zero = np.zeros_like(turned)
     flat = rotations(np.column_stack((np.cos(turned / 2), zero, zero, np.sin(turned / 2))))
     return TrackBoxes(EGO, "car", there, CityPoses(flat, places), size)

@@ -127,12 +127,12 @@ def _layers(path: Path) -> _Layers:
         if layer not in _LAYERS:
             continue
         try:
-            said = unpacked(packed[row])
+            features = unpacked(packed[row])
         except OddPackError:
             raise table.refused(row, "its `features` are damaged") from None
-        if not isinstance(said, dict):
+        if not isinstance(features, dict):
             raise table.refused(row, "its `features` are no table of names and values")
-        by_layer[layer].append(_Thing(row, key, said, shapes[row]))
+        by_layer[layer].append(_Thing(row, key, features, shapes[row]))
     return _Layers(table, by_layer)
 
 
@@ -224,11 +224,11 @@ def _line(layers: _Layers, thing: _Thing, name: str) -> Points:
     return without_repeats(flat, _CLOSEST_M)
 
 
-def _array(said: object) -> NDArray[float64] | None:
+def _array(packed: object) -> NDArray[float64] | None:
     """The places of an array as NumPy's bytes; None if it is none."""
-    if not isinstance(said, dict):
+    if not isinstance(packed, dict):
         return None
-    kind, shape, data = (said.get(key) for key in (b"dtype", b"shape", b"data"))
+    kind, shape, data = (packed.get(key) for key in (b"dtype", b"shape", b"data"))
     if kind not in ("<f8", "<f4") or not isinstance(shape, list) or not isinstance(data, bytes):
         return None
     if len(shape) != 2 or shape[1] not in (2, 3) or not isinstance(shape[0], int):

@@ -119,5 +119,5 @@ def _askew_deg(track: Track) -> float:
 def _speed_ratio(track: Track, step_s: float) -> float:
     """How many times the way between its places its speeds make."""
     speed = np.abs(track.rows[:, 3])
-    said = (speed[1:] + speed[:-1]) / 2 * np.diff(track.steps) * step_s
-    return float(said.sum() / np.hypot(*_ways(track).T).sum())
+    by_speed = (speed[1:] + speed[:-1]) / 2 * np.diff(track.steps) * step_s
+    return float(by_speed.sum() / np.hypot(*_ways(track).T).sum())

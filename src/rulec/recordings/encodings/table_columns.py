@@ -171,8 +171,8 @@ def unread_remark(unread: Iterable[str], kinds: Sequence[ColumnKind]) -> str:
     """What to say of columns that are not read but are called almost as one that would be."""
     known = [kind.name for kind in kinds]
     near = [(short(name), nearest_name(name.strip(), known)) for name in unread]
-    meant = [f"`{name}` (is it `{known_name}`?)" for name, known_name in near if known_name]
-    return f"columns that are not read: {', '.join(meant)}" if meant else ""
+    similar = [f"`{name}` (is it `{known_name}`?)" for name, known_name in near if known_name]
+    return f"columns that are not read: {', '.join(similar)}" if similar else ""
 
 
 def _missing(

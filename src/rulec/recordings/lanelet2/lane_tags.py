@@ -58,11 +58,11 @@ def _participants(tags: _Tags) -> set[str] | None:
     """Who may use a lanelet, None if its subtype says it; if any are named, nobody else may."""
     prefix = "participant:"
     named = {key.removeprefix(prefix): word for key, word in tags.items() if prefix in key}
-    return {who for who, word in named.items() if word in _TRUE} if named else None
+    return {user for user, word in named.items() if word in _TRUE} if named else None
 
 
 def _types_for(allowed: set[str]) -> Iterator[str]:
-    motorized = {who for who in allowed if who.partition(":")[0] == "vehicle"}
+    motorized = {user for user in allowed if user.partition(":")[0] == "vehicle"}
     if motorized and motorized <= _BUSES:
         yield "busLane" if "vehicle:bus" in motorized else "restricted_area"
         if "bicycle" in allowed:

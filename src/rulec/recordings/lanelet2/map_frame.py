@@ -144,24 +144,24 @@ def read_projector_info(path: Path) -> ProjectorInfo:
     with opened(path) as stream:
         text = stream.read(_LARGEST_BYTES).decode(errors="replace")
     pairs = (line.partition("#")[0].partition(":") for line in text.splitlines())
-    said = {key.strip(): value.strip().strip("\"'") for key, _, value in pairs}
-    kind = said.get("projector_type", "").lower()
+    info = {key.strip(): value.strip().strip("\"'") for key, _, value in pairs}
+    kind = info.get("projector_type", "").lower()
     if kind not in _KINDS:
         why = f"its `projector_type` is `{short(kind)}`"
         raise LANELET2.refused(path, why, expected=f"expected one of {', '.join(_KINDS)}")
-    lat, lon = (_number(path, said, key, nan) for key in ("latitude", "longitude"))
+    lat, lon = (_number(path, info, key, nan) for key in ("latitude", "longitude"))
     if kind in _WITH_ORIGIN and not (abs(lat) <= projections.MOST_NORTH_DEG and abs(lon) <= 360):
         raise LANELET2.refused(path, "it has no `map_origin` with `latitude` and `longitude`")
-    return ProjectorInfo(kind, lat, lon, _number(path, said, "scale_factor", projections.UTM_SCALE))
+    return ProjectorInfo(kind, lat, lon, _number(path, info, "scale_factor", projections.UTM_SCALE))
 
 
-def _number(path: Path, said: dict[str, str], key: str, default: float) -> float:
-    if not said.get(key):
+def _number(path: Path, info: dict[str, str], key: str, default: float) -> float:
+    if not info.get(key):
         return default
     try:
-        value = float(said[key])
+        value = float(info[key])
     except ValueError:
         value = nan
     if not (isfinite(value) and abs(value) < LARGEST):
-        raise LANELET2.refused(path, f"its `{key}` is `{short(said[key])}`, which is no number")
+        raise LANELET2.refused(path, f"its `{key}` is `{short(info[key])}`, which is no number")
     return value

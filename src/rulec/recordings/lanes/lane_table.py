@@ -196,15 +196,15 @@ class _LaneTable:
         texts = self.named.texts.get(name)
         if texts is None:
             return ""
-        said = [code for code in dict.fromkeys(texts.codes[own].tolist()) if texts.names[code]]
-        if len(said) > 1:
-            row = int(own[np.argmax(texts.codes[own] == said[1])])
-            both = " and ".join(f"`{short(texts.names[code])}`" for code in said[:2])
+        codes = [code for code in dict.fromkeys(texts.codes[own].tolist()) if texts.names[code]]
+        if len(codes) > 1:
+            row = int(own[np.argmax(texts.codes[own] == codes[1])])
+            both = " and ".join(f"`{short(texts.names[code])}`" for code in codes[:2])
             lane = short(self.lane.names[int(self.lane.codes[own[0]])])
             why = f"its `{name}` is another than in the rows above of lane `{lane}`: {both}"
             way_out = "separate several with blanks; where something changes, begin another lane"
             raise self.columns.wrong(row, why, help_text=way_out)
-        return texts.names[said[0]] if said else ""
+        return texts.names[codes[0]] if codes else ""
 
     def _words(self, name: str, own: NDArray[np.intp]) -> tuple[str, ...]:
         return tuple(self._text(name, own).split())

@@ -56,21 +56,21 @@ class Bulb:
     def of(cls, key: str, fields: Fields, file: WireFile) -> Bulb:
         """The light in a message. Raises RulecError R0610."""
         place = part(fields, "base", "position")
-        said = part(fields, "classification")
+        kind = part(fields, "classification")
         return cls(
             id=key,
-            icon=said.get("icon", "unknown"),
+            icon=kind.get("icon", "unknown"),
             place=(number(place, "x", file), number(place, "y", file)),
-            lanes=assigned_lanes(said),
+            lanes=assigned_lanes(kind),
         )
 
     def add(self, moment: int, fields: Fields) -> None:
         """Note what it shows at a moment; at moments without it nothing is known."""
         self.codes.extend(bytes(max(moment + 1 - len(self.codes), 0)))
-        said = part(fields, "classification")
-        mode, colour = said.get("mode"), said.get("color")
+        state = part(fields, "classification")
+        mode, colour = state.get("mode"), state.get("color")
         code = 0
-        if said.get("is_out_of_service") or mode == "off":
+        if state.get("is_out_of_service") or mode == "off":
             code = _TOLD["off"]
         elif colour in _COLOURS and mode in _SHOWN:
             code = _BLINKS if mode == "flashing" and colour == "yellow" else _TOLD[colour]

@@ -48,12 +48,12 @@ def ids_of(fields: Fields, name: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(str(entry.get("value", 0)) for entry in fields.get(name, ())))
 
 
-def assigned_lanes(said: Fields) -> tuple[str, ...]:
+def assigned_lanes(fields: Fields) -> tuple[str, ...]:
     """The lanes that a classification names, and the logical ones, whose ids are others."""
     logical = (
-        id_of(entry, "assigned_lane_id") for entry in said.get("logical_lane_assignment", ())
+        id_of(entry, "assigned_lane_id") for entry in fields.get("logical_lane_assignment", ())
     )
-    return tuple(dict.fromkeys((*ids_of(said, "assigned_lane_id"), *filter(None, logical))))
+    return tuple(dict.fromkeys((*ids_of(fields, "assigned_lane_id"), *filter(None, logical))))
 
 
 def part(fields: Fields, *names: str) -> Fields:

@@ -140,8 +140,8 @@ class MovingObject:
     def size(self) -> tuple[float, float] | None:
         """The medians of the lengths and widths that messages say; None if none says both."""
         sizes = np.array(self.rows).reshape(-1, _NUMBERS)[:, _MOTION:]
-        said = sizes[sizes.min(axis=1) > 0]
-        return (median(said[:, 0]), median(said[:, 1])) if len(said) else None
+        known = sizes[sizes.min(axis=1) > 0]
+        return (median(known[:, 0]), median(known[:, 1])) if len(known) else None
 
 
 def _kind_of(fields: Fields) -> str:

@@ -56,12 +56,12 @@ def with_signs(
     """
     signed = dict(lanelets)
     for fields in signs:
-        said = part(fields, "main_sign", "classification")
-        name = _NAMES.get(said.get("type", "unknown"))
-        if name is None or said.get("is_out_of_service") or _is_qualified(fields):
+        sign = part(fields, "main_sign", "classification")
+        name = _NAMES.get(sign.get("type", "unknown"))
+        if name is None or sign.get("is_out_of_service") or _is_qualified(fields):
             continue
-        limit = limit_of(part(said, "value"), file) if name in _LIMITS else None
-        for key in _lanelets_of(said, of_lane):
+        limit = limit_of(part(sign, "value"), file) if name in _LIMITS else None
+        for key in _lanelets_of(sign, of_lane):
             own = signed[key]
             limits = [x for x in (own.limit_mps, limit) if x is not None]
             signed[key] = replace(
@@ -75,8 +75,8 @@ def _is_qualified(fields: Fields) -> bool:
     return any(part(x, "classification").get("type", "other") != "no_sign" for x in below)
 
 
-def _lanelets_of(said: Fields, of_lane: _Lanes) -> Iterator[str]:
-    for lane in assigned_lanes(said):
+def _lanelets_of(sign: Fields, of_lane: _Lanes) -> Iterator[str]:
+    for lane in assigned_lanes(sign):
         yield from of_lane.get(lane, ())
 
 
@@ -86,18 +86,18 @@ def with_stop_lines(
     """The lanelets with the stop lines on their lanes: the mark of a sign to stop."""
     lined = dict(lanelets)
     for fields in marks:
-        said = part(fields, "classification")
-        if not _is_mark_of(said, "stop"):
+        mark = part(fields, "classification")
+        if not _is_mark_of(mark, "stop"):
             continue
         place = places([part(fields, "base", "position")], file)
-        for key in _lanelets_of(said, of_lane):
+        for key in _lanelets_of(mark, of_lane):
             lined[key] = replace(lined[key], stop_line=_across(lined[key], place))
     return lined
 
 
-def _is_mark_of(said: Fields, sign: str) -> bool:
-    painted = said.get("type") in _PAINTED and said.get("traffic_main_sign_type") == sign
-    return painted and not said.get("is_out_of_service")
+def _is_mark_of(mark: Fields, sign: str) -> bool:
+    painted = mark.get("type") in _PAINTED and mark.get("traffic_main_sign_type") == sign
+    return painted and not mark.get("is_out_of_service")
 
 
 def _across(lanelet: Lanelet, place: Points) -> Points:
@@ -117,11 +117,11 @@ def with_crossings(
     """The lanelets, and one for each pedestrian crossing that is painted."""
     crossed = dict(lanelets)
     for key, fields in marks.items():
-        said = part(fields, "classification")
+        mark = part(fields, "classification")
         outline = _ground_outline(part(fields, "base"), file)
-        if not _is_mark_of(said, "zebra_crossing") or outline is None:
+        if not _is_mark_of(mark, "zebra_crossing") or outline is None:
             continue
-        lanes = [lanelets[x] for x in _lanelets_of(said, of_lane)]
+        lanes = [lanelets[x] for x in _lanelets_of(mark, of_lane)]
         crossed[_CROSSING + key] = _crossing(_CROSSING + key, outline, lanes)
     return crossed
 

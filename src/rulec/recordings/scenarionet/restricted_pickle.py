@@ -191,8 +191,10 @@ def _get(form: str) -> Callable[[PickleMachine], None]:
 def _named(machine: PickleMachine, module: Any, name: Any) -> None:
     full = f"{module} {name}"
     if not isinstance(module, str) or not isinstance(name, str) or full not in _NAMES:
-        asked = f"{short(str(module))}.{short(str(name))}"
-        raise machine.wrong(f"it asks for `{asked}`, which is none of what a scenario is made of")
+        import_name = f"{short(str(module))}.{short(str(name))}"
+        raise machine.wrong(
+            f"it asks for `{import_name}`, which is none of what a scenario is made of"
+        )
     machine.push(PickledName(full.replace(" ", "."), _NAMES[full]))
 
 

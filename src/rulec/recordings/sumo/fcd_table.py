@@ -65,11 +65,11 @@ def read_fcd_table(path: Path) -> FloatingCarData:
 def _add(
     data: FloatingCarData,
     columns: Columns,
-    who: tuple[str, str],
+    element_and_key: tuple[str, str],
     rows: NDArray[intp],
     at: NDArray[int64],
 ) -> None:
-    kind, key = who
+    kind, key = element_and_key
     if len(key) > LONGEST_ID:
         raise columns.wrong(int(rows[0]), f"an id is longer than {LONGEST_ID} characters")
     carrier = columns.texts.get(f"{kind}_vehicle")

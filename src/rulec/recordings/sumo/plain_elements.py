@@ -132,7 +132,7 @@ def read_elements(lines: TextPlaces, quotes: Places, bounds: Places, kinds: Know
                 else:
                     rows[members, n] = values
     keys, types, places = (TextPlaces(lines.text, *columns[key]) for key in ("id", "type", "on"))
-    firsts, whose = _distinct_texts(keys)
+    firsts, owners = _distinct_texts(keys)
     on = {
         places[n]: ("lane" if is_lane[n] else "edge", n)
         for n in _distinct_texts(places)[0].tolist()
@@ -140,7 +140,7 @@ def read_elements(lines: TextPlaces, quotes: Places, bounds: Places, kinds: Know
     }
     own = firsts.tolist()
     keys_of, types_of = ([texts[n] for n in own] for texts in (keys, types))
-    return Elements(list(names), named, keys_of, types_of, whose, rows=rows, on=on, lamps=lamps)
+    return Elements(list(names), named, keys_of, types_of, owners, rows=rows, on=on, lamps=lamps)
 
 
 def _by_kind(

@@ -86,7 +86,7 @@ def track_recording(
     """
     heading_at = _heading_on(roads.lanelets.values())
     tracks = [read_tracks(rows, heading_at) for rows in tables]
-    said = [remark for part in tracks for remark in part.remarks]
+    of_tracks = [remark for part in tracks for remark in part.remarks]
     recording = Recording(
         name=name,
         step_s=tables[0].times.step_s,
@@ -94,7 +94,7 @@ def track_recording(
         participants=tuple(participant for part in tracks for participant in part.participants),
         form=form,
         side=roads.side,
-        remarks=tuple(dict.fromkeys(filter(None, (*remarks, *said, *roads.remarks)))),
+        remarks=tuple(dict.fromkeys(filter(None, (*remarks, *of_tracks, *roads.remarks)))),
         country=roads.country,
         complete=roads.complete,
         ego=next((part.ego for part in tracks if part.ego), ""),

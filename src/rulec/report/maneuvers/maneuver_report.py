@@ -242,10 +242,10 @@ def _violated_before(violations: Sequence[Violation]) -> Iterator[str]:
 def _predictions(scenario: Scenario) -> Iterator[str]:
     several = [obstacle for obstacle in scenario.obstacles if obstacle.alternatives]
     if several:
-        whose = "1 obstacle has" if len(several) == 1 else f"{len(several)} obstacles have"
+        obstacles = "1 obstacle has" if len(several) == 1 else f"{len(several)} obstacles have"
         probability = likeliest(scenario)
         how = f"the likeliest world is counted, with probability {probability:.4g}"
-        yield f"predictions {whose} several; {how}"
+        yield f"predictions {obstacles} several; {how}"
 
 
 def _world(world: AlternativeCounts) -> str:

@@ -131,5 +131,5 @@ def in_full(cell: Cell) -> str:
 def meaning(graph: NavigationGraph) -> str:
     """Explanation of the letters, and the obstacles that they are about."""
     names = list(graph.objects)
-    whose = f"of {names[0]}" if len(names) == 1 else f"of {', '.join(names)} in this order"
-    return f"{_MEANING[graph.partition]}; {whose}"
+    objects = f"of {names[0]}" if len(names) == 1 else f"of {', '.join(names)} in this order"
+    return f"{_MEANING[graph.partition]}; {objects}"

@@ -86,8 +86,8 @@ def _explanations(
     if len(ribbon.violations) > MOST_VIOLATIONS:
         notes.append(f"and {len(ribbon.violations) - MOST_VIOLATIONS:,} more")
     if ribbon.left_out:
-        asked = "no violated rule reads" if ribbon.violations else "are all default"
-        notes.append(f"without {counted(ribbon.left_out, 'row')} that {asked}")
+        why = "no violated rule reads" if ribbon.violations else "are all default"
+        notes.append(f"without {counted(ribbon.left_out, 'row')} that {why}")
     for note in notes:
         labels.append(LabelText(note, (canvas.MARGIN, y), style="faint"))
         y += canvas.LINE_HEIGHT

@@ -84,7 +84,7 @@ def ribbon(
         if shown_objects.issuperset(violation.binding.values())
     )
     reads = {rule.name: tuple(names_in(rule.formula)) for rule in rules.rules}
-    asked = every_row or not violations
+    every = every_row or not violations
     rows = []
     left_out = 0
     names = list(dict.fromkeys(name for rule in rules.rules for name in reads[rule.name]))
@@ -98,7 +98,7 @@ def ribbon(
                 and set(violation.binding.values()).issuperset(objects)
                 for violation in violations
             )
-            if matters or (asked and any(_is_said(state, name, objects) for state in trace.states)):
+            if matters or (every and any(_is_said(state, name, objects) for state in trace.states)):
                 rows.append(row)
             else:
                 left_out += 1
@@ -170,11 +170,11 @@ def _is_said(state: State, name: str, objects: Sequence[str]) -> bool:
 def _runs(given: Sequence[PartialValue | None], there: Sequence[bool]) -> Iterator[ValueRun]:
     at = 0
     bounds = [shown(value) if isinstance(value, Interval) else "" for value in given]
-    for (value, said, present), same in groupby(
+    for (value, bound, present), same in groupby(
         zip(map(_known, given), bounds, there, strict=True)
     ):
         first, at = at, at + sum(1 for _ in same)
-        yield ValueRun(first, at - 1, value, unknown=present and value is None, bounds=said)
+        yield ValueRun(first, at - 1, value, unknown=present and value is None, bounds=bound)
 
 
 _LIGHTS = {"red_light": "red", "amber_light": "yellow", "green_light": "green"}

@@ -149,9 +149,9 @@ def _in_words(
             before = row.values[place - 1] if place else None
             if value is not None and not row.is_default and (not place or value != before):
                 facts.append((row.title, value, shown(value)))
-        said = facts_in_words(facts, rulebook_diff.first.vocabulary, phrases)
-        if said:
-            line = f"{title}: {visible(said)}"
+        words = facts_in_words(facts, rulebook_diff.first.vocabulary, phrases)
+        if words:
+            line = f"{title}: {visible(words)}"
             yield from wrap(line, TABLE_WIDTH, initial_indent="    ", subsequent_indent="      ")
 
 

@@ -179,14 +179,14 @@ def _laws(rule: SharedRule) -> Iterator[str]:
         letter = _letter(rule, book)
         rows.append([letter, code(book), own.strength, escaped(own.cite), escaped(own.says)])
     yield markdown_table(["", "rulebook", "strength", "provision", "what it says"], rows)
-    said = [
+    remarks = [
         f"- {code(book)}: {escaped(remark.because)}"
         for book, remark in rule.remarks.items()
         if remark.because
     ]
-    if said:
+    if remarks:
         yield "Without it, because:"
-        yield "\n".join(said)
+        yield "\n".join(remarks)
 
 
 _COLOURS = 6

@@ -24,15 +24,15 @@ def spoken_book(rulebook: Rulebook, language: Language = ENGLISH) -> Rulebook:
 
 
 def _spoken(rule: Rule, phrases: Mapping[str, str], language: Language) -> Rule:
-    def said(formula: Formula) -> Formula:
+    def spoken(formula: Formula) -> Formula:
         return spoken_formula(formula, phrases, language)
 
     return replace(
         rule,
-        formula=said(rule.formula),
-        required=None if rule.required is None else said(rule.required),
-        condition=None if rule.condition is None else said(rule.condition),
+        formula=spoken(rule.formula),
+        required=None if rule.required is None else spoken(rule.required),
+        condition=None if rule.condition is None else spoken(rule.condition),
         exemptions=tuple(
-            replace(exemption, formula=said(exemption.formula)) for exemption in rule.exemptions
+            replace(exemption, formula=spoken(exemption.formula)) for exemption in rule.exemptions
         ),
     )

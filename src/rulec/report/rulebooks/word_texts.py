@@ -59,8 +59,8 @@ def word_text(name: str, symbols: SymbolTable, *, recorded: bool) -> WordText:
         "where no source tells it, its default holds" if item.presumed else "",
     ]
     if any(remarks):
-        said = "; ".join(filter(None, remarks))
-        sentences.append(f"{said[0].upper()}{said[1:]}.")
+        sentence = "; ".join(filter(None, remarks))
+        sentences.append(f"{sentence[0].upper()}{sentence[1:]}.")
     if recorded:
         sentences.append(_tellers(item.name))
     return WordText(_declared(item, symbols.spans[item.name]), tuple(sentences))
@@ -83,13 +83,13 @@ def tells_words(vocabularies: Iterable[tree.File]) -> bool:
 
 def described(span: Span) -> Iterator[str]:
     """The comment on a declaration, and who supplies what it declares."""
-    said = description(span)
-    first, colon, rest = said.partition(": ")
+    text = description(span)
+    first, colon, rest = text.partition(": ")
     if colon and first in SUPPLIERS:
         yield rest[:1].upper() + rest[1:]
         yield f"Supplied by {SUPPLIERS[first]}."
-    elif said:
-        yield said
+    elif text:
+        yield text
 
 
 def _declared(item: Declaration, span: Span) -> str:

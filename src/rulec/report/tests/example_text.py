@@ -77,11 +77,11 @@ def asked_rules(
 def coverage_in_words(runs: Sequence[ExampleRun], covered: Sequence[Sequence[RuleCoverage]]) -> str:
     """The coverage of a rulebook's own rules, and that of all where it inherits some."""
     everything = [rule for rules in covered for rule in rules]
-    asked = asked_rules(runs, covered)
-    if len(asked) == len(everything):
-        return f"coverage {as_percent(percent(asked))}"
+    own_rules = asked_rules(runs, covered)
+    if len(own_rules) == len(everything):
+        return f"coverage {as_percent(percent(own_rules))}"
     with_others = as_percent(percent(everything))
-    own = f" {as_percent(percent(asked))} of own rules" if asked else ": no rule is its own"
+    own = f" {as_percent(percent(own_rules))} of own rules" if own_rules else ": no rule is its own"
     return f"coverage{own}, {with_others} with those that are inherited"
 
 
@@ -128,10 +128,10 @@ def shortcomings(
     if fail_on_empty and not any(run.outcomes for run in runs):
         short["examples"] = "there is no example to run"
     if covered is not None and threshold is not None:
-        asked = asked_rules(runs, covered)
-        part = percent(asked)
+        rules = asked_rules(runs, covered)
+        part = percent(rules)
         if part < threshold:
-            own = " of own rules" if len(asked) < sum(map(len, covered)) else ""
+            own = " of own rules" if len(rules) < sum(map(len, covered)) else ""
             short["coverage"] = (
                 f"coverage{own} is {as_percent(part)}, below the {threshold:g} % asked for"
             )
@@ -145,13 +145,13 @@ def coverage_lines(rules: Sequence[RuleCoverage], vocabulary: Vocabulary) -> Ite
         values = (
             f"{rule.n_values - len(rule.missing_values):,} of {rule.n_values:,} values of atoms"
         )
-        whose = " (inherited)" if rule.inherited else ""
+        origin = " (inherited)" if rule.inherited else ""
         limits = (
             f", {rule.n_limits - len(rule.missing_limits):,} of {rule.n_limits:,} sides of limits"
             if rule.n_limits
             else ""
         )
-        lines = [f"{rule.rule}{whose}: {edges}, {values}{limits} ({as_percent(percent([rule]))})"]
+        lines = [f"{rule.rule}{origin}: {edges}, {values}{limits} ({as_percent(percent([rule]))})"]
         for atom, value in rule.missing_values:
             lines.append(f"`{formula_text(atom)}` is never {'true' if value else 'false'}")
         for limit in rule.missing_limits:

@@ -66,15 +66,15 @@ class VerdictFinding:
         law = cited_law(self.provision, self.inherited_from)
         title = f"{self.rule} [{law}]" if law else self.rule
         about = f" towards {', '.join(self.other)}" if self.other else ""
-        who = self.vehicle or "every vehicle"
+        vehicle = self.vehicle or "every vehicle"
         if self.outcome == "violated":
             narrow = f": {self.measure}" if self.measure else ""
-            return f"{who} violates {title}{about}{time_in_words(self)}{narrow}"
+            return f"{vehicle} violates {title}{about}{time_in_words(self)}{narrow}"
         on = f": depends on {', '.join(self.open_on)}" if self.open_on else ""
         why = f" ({self.because})" if self.because else ""
         if self.outcome == "open":
-            return f"whether {who} violates {title}{about} is open{on}{why}"
-        return f"{title} is not judged for {who}{on}{why}"
+            return f"whether {vehicle} violates {title}{about} is open{on}{why}"
+        return f"{title} is not judged for {vehicle}{on}{why}"
 
 
 def named_rule(rule: CompiledRule) -> dict[str, Any]:

@@ -129,9 +129,9 @@ def _table(verdicts: RecordingVerdicts, tally: ViolationTally) -> Iterator[str]:
     rows = [("violated", "", " drives", "   first", "by")]
     for rule, title in zip(rules, titles, strict=True):
         times = tally.first_s[rule.name]
-        who = sorted(times, key=lambda ego: times[ego])
+        egos = sorted(times, key=lambda ego: times[ego])
         share, first = f"{len(times)}/{tally.judged}", f"{min(times.values()):g} s"
-        rows.append((title, rule.strength, share, first, first_of(who, MOST_VEHICLES)))
+        rows.append((title, rule.strength, share, first, first_of(egos, MOST_VEHICLES)))
     heads, *lines = table_lines(rows, right=(2, 3))
     yield from ("", heads)
     for rule, line in zip(rules, lines, strict=True):

@@ -95,9 +95,9 @@ def decisive_state_in_words(
         if fact.decides and fact.objects is None and value is not None:
             number = value.middle if isinstance(value, Interval) else value
             facts.append((fact.text, number, shown(value)))
-    said = facts_in_words(facts, explanation.vocabulary, phrases)
+    words = facts_in_words(facts, explanation.vocabulary, phrases)
     when = f"{explanation.decisive}{times.of(explanation.decisive)}"
-    return f"at state {when}: {visible(said)}" if said else ""
+    return f"at state {when}: {visible(words)}" if words else ""
 
 
 def _repair(explanation: Explanation, options: TableOptions) -> Iterator[str]:

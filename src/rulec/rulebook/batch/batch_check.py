@@ -68,11 +68,11 @@ def check(
     """
     files: dict[str, str] = {}
     findings: dict[tuple[object, ...], Diagnostic] = {}
-    meant = FoundSources()
-    unread = meant.refused
+    sources = FoundSources()
+    unread = sources.refused
     uncited: list[str] = []
     untested: list[str] = []
-    for path in _named_sources(references, search_path, excluded, meant):
+    for path in _named_sources(references, search_path, excluded, sources):
         try:
             data = standard_input() if path is _STANDARD_INPUT else search.read_bytes(path)
         except RulecError as error:
@@ -92,7 +92,7 @@ def check(
         tuple(files.values()),
         tuple(findings.values()),
         tuple(unread),
-        left_alone=tuple(meant.left_alone),
+        left_alone=tuple(sources.left_alone),
         uncited=tuple(uncited),
         untested=tuple(untested),
     )
@@ -122,20 +122,20 @@ def _named_sources(
     references: Iterable[str],
     search_path: Sequence[Path],
     excluded: Exclusion | None,
-    meant: FoundSources,
+    sources: FoundSources,
 ) -> Iterator[Path]:
     for reference in references:
         if reference == "-":
             yield _STANDARD_INPUT
             continue
         try:
-            sources = find_sources(reference, search_path, excluded)
+            below = find_sources(reference, search_path, excluded)
         except RulecError as error:
-            meant.refused += error.diagnostics
+            sources.refused += error.diagnostics
             continue
-        meant.refused += sources.refused
-        meant.left_alone += sources.left_alone
-        yield from sources.paths
+        sources.refused += below.refused
+        sources.left_alone += below.left_alone
+        yield from below.paths
 
 
 def named_rulebooks(

@@ -65,8 +65,8 @@ class IgnoreFile:
 
 def is_ignored(path: Path, files: Sequence[IgnoreFile], *, is_folder: bool) -> bool:
     """Tell whether git ignores a path, by files of patterns of which the nearest come last."""
-    said = (file.verdict(path, is_folder=is_folder) for file in reversed(files))
-    return next((verdict for verdict in said if verdict is not None), False)
+    verdicts = (file.verdict(path, is_folder=is_folder) for file in reversed(files))
+    return next((verdict for verdict in verdicts if verdict is not None), False)
 
 
 def ignore_files(folder: Path, tree: Path) -> list[IgnoreFile]:

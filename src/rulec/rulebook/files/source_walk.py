@@ -154,7 +154,7 @@ def _first(names: Sequence[str], most: int) -> str:
 
 
 def _nothing_left(folder: str, left_alone: Sequence[LeftAlone]) -> Diagnostic:
-    said = in_words(left_alone)
+    reasons = in_words(left_alone)
     compiled = next(filter(_is_compiled, sorted(Path(folder).glob("*.json"))), None)
     way_out = "give a folder with files whose names end in `.rules`, or a file by its own path"
     if compiled is not None:
@@ -163,7 +163,7 @@ def _nothing_left(folder: str, left_alone: Sequence[LeftAlone]) -> Diagnostic:
         SourceLocation(folder),
         "there is no rulebook and no vocabulary in this folder",
         help=way_out,
-        notes=(f"left alone: {said}",) if said else (),
+        notes=(f"left alone: {reasons}",) if reasons else (),
     )
 
 

@@ -73,14 +73,14 @@ def described(names: Iterable[str], vocabularies: Iterable[str]) -> tuple[Descri
 
 def offer(name: str, words: tuple[DescribedWord, ...]) -> str:
     """The way out that names words which mean what ``name`` says; empty if none surely does."""
-    asked = set(_stems(name))
+    stems = set(_stems(name))
     about = {word.name: _about(word) for word in words}
-    if not asked or not about:
+    if not stems or not about:
         return ""
-    weight = {part: _rarity(part, about.values()) for part in asked}
+    weight = {part: _rarity(part, about.values()) for part in stems}
     total = sum(weight.values())
     covered = {
-        word: sum(weight[part] * parts.get(part, 0.0) for part in asked) / total
+        word: sum(weight[part] * parts.get(part, 0.0) for part in stems) / total
         for word, parts in about.items()
     }
     ranked = sorted(covered, key=lambda word: (-covered[word], len(about[word]), word))
@@ -95,8 +95,8 @@ def offer(name: str, words: tuple[DescribedWord, ...]) -> str:
 
 
 def _shown(word: DescribedWord) -> str:
-    said = re.sub(r"\[([^|\]]*)\|[^\]]*\]", r"\1", word.phrase).replace("{}", "…")
-    return f"`{word.name}` ({said})" if said else f"`{word.name}`"
+    phrase = re.sub(r"\[([^|\]]*)\|[^\]]*\]", r"\1", word.phrase).replace("{}", "…")
+    return f"`{word.name}` ({phrase})" if phrase else f"`{word.name}`"
 
 
 @cache

@@ -51,7 +51,7 @@ def contradictory_facts(
     types = {variable.name: variable.type for variable in variables}
     objects = {name for instance in instances for name in instance.variables}
     number = Counter(types[name] for name in objects)
-    who = [
+    kinds = [
         f"a `{type_}`" if several == 1 else f"{several} objects of type `{type_}`"
         for type_, several in sorted(number.items())
     ]
@@ -64,14 +64,14 @@ def contradictory_facts(
         help="a fact is what holds in every state: correct or remove "
         + ("one of them" if others else "it"),
         labels=_labels(others, "and so"),
-        notes=(f"there would be no state with {' and '.join(who)}",) if who else (),
+        notes=(f"there would be no state with {' and '.join(kinds)}",) if kinds else (),
     )
 
 
 def ruled_out(
     role: str, trigger: Formula, instances: Iterable[AxiomInstance], span: Span | None
 ) -> Diagnostic:
-    """R0363: what a rule waits for, which ``what`` names, is ruled out, perhaps by facts."""
+    """R0363: what a rule waits for, which ``role`` names, is ruled out, perhaps by facts."""
     axioms = _facts_of(instances)
     many = "s" if len(axioms) > 1 else ""
     return IMPOSSIBLE_TRIGGER.at(

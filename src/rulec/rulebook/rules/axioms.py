@@ -151,8 +151,8 @@ def contradicted(
             )
         read = read_of[there]
         for number, state in enumerate(example.states):
-            said = with_what_follows(state, vocabulary)
-            violated = _violated(ExampleValues(said, read, objects, vocabulary), axioms)
+            full = with_what_follows(state, vocabulary)
+            violated = _violated(ExampleValues(full, read, objects, vocabulary), axioms)
             if violated is not None:
                 axiom, text = violated
                 spans = example.state_spans

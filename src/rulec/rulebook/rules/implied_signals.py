@@ -26,10 +26,10 @@ def with_implied(vocabulary: Vocabulary, facts: Iterable[Formula]) -> Vocabulary
     return replace(vocabulary, implied=MappingProxyType(implied))
 
 
-def with_what_follows(said: ExampleState, vocabulary: Vocabulary) -> ExampleState:
+def with_what_follows(given: ExampleState, vocabulary: Vocabulary) -> ExampleState:
     """What an example's state says, and what follows from it that it does not mention."""
-    known = dict(said)
-    ahead = [name for name, value in said.items() if value is True]
+    known = dict(given)
+    ahead = [name for name, value in given.items() if value is True]
     while ahead:
         cause, items = ahead.pop()
         for effect in vocabulary.implied.get(cause, ()):

@@ -70,7 +70,7 @@ def item(
         case "provisions_item":
             date = "".join(map(values.date, node.leaves("DATE")))
             articles = tuple(_article(values, entry) for entry in node.branches("article"))
-            sure = [clause(values, said) for said in node.branches("certainty_clause")]
+            sure = [clause(values, word) for word in node.branches("certainty_clause")]
             certainty = cast("tree.Certainty", sure[0] if sure else "")
             return tree.ProvisionsItem(values.text(node), date, articles, certainty, span=span)
         case _:
@@ -96,8 +96,8 @@ _TREATMENTS: dict[str, tree.Treatment] = {
 def _article(values: NodeValues, node: ParseNode) -> tree.ArticleEntry:
     number, heading, *because = values.texts(node)
     kinds = {leaf.kind for leaf in node.children if isinstance(leaf, ParseLeaf)}
-    said: list[tree.Treatment] = [words for kind, words in _TREATMENTS.items() if kind in kinds]
-    treatment = said[0] if said else "to do"
+    ways: list[tree.Treatment] = [words for kind, words in _TREATMENTS.items() if kind in kinds]
+    treatment = ways[0] if ways else "to do"
     return tree.ArticleEntry(number, heading, treatment, *because, span=values.span(node))
 
 

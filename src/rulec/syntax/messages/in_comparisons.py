@@ -80,9 +80,9 @@ def advise_on_comparison(ctx: ParseContext) -> str:
         return "write `>=` for at least; `=>` would be `implies`"
     if ctx.operator and text == "is":
         words = (ctx.text_behind, ctx.text_at(ctx.at + 2))
-        said = words[:1] if words[:1] in _IN_WORDS else words
-        if sign := _IN_WORDS.get(said):
-            return f"for `is {' '.join(said)}` write `{sign}`"
+        key = words[:1] if words[:1] in _IN_WORDS else words
+        if sign := _IN_WORDS.get(key):
+            return f"for `is {' '.join(key)}` write `{sign}`"
         if words[0].isidentifier() and words[0] not in keywords.RESERVED:
             about = f"`{words[0]}({before})`"
             if re.search(rf"\b{re.escape(before)}\s*:", ctx.source.text):
@@ -91,12 +91,12 @@ def advise_on_comparison(ctx: ParseContext) -> str:
         return "quantities are compared by `<`, `<=`, `=`, `!=`, `>=` or `>`"
     if ctx.operator and ctx.is_number(ctx.at + 1) and (sign := _IN_WORDS.get((before, text))):
         return f"how many stands behind what is counted: `count x: vehicle (…) {sign} 3`"
-    meant = sign_in_words(text, ctx.text_behind) if ctx.operator and text == "at" else ""
-    if meant and ctx.is_number(ctx.at + 2):
+    at_sign = sign_in_words(text, ctx.text_behind) if ctx.operator and text == "at" else ""
+    if at_sign and ctx.is_number(ctx.at + 2):
         lasting = (
-            f"how long something lasts stands in a bound, such as `historically[{meant} 3 s] p`"
+            f"how long something lasts stands in a bound, such as `historically[{at_sign} 3 s] p`"
         )
-        return f"for `at {ctx.text_behind}` write `{meant}`; {lasting}"
+        return f"for `at {ctx.text_behind}` write `{at_sign}`; {lasting}"
     if ctx.operator and text == "==":
         value = ctx.text_behind if ctx.text_behind.isidentifier() else ""
         alone = f"; one of several values stands alone: `{value}`" if value else ""
@@ -136,8 +136,8 @@ def _any_value(ctx: ParseContext) -> str:
     of = ""
     if ctx.text_before == ")" and opened is not None:
         of = "".join(token.text for token in ctx.tokens[opened : ctx.at])
-    said = " or ".join(f"{value}{of}" for value in values[:3])
-    return f"each value stands for itself: write `{said}`" if values else ""
+    choice = " or ".join(f"{value}{of}" for value in values[:3])
+    return f"each value stands for itself: write `{choice}`" if values else ""
 
 
 def _chain(ctx: ParseContext) -> str:

@@ -66,10 +66,10 @@ def advise_on_aggregate(ctx: ParseContext) -> str:
         named = ctx.text_behind if ctx.text_behind.isidentifier() else ""
         plain = "" if named else f"`not {text}`, of objects "
         # `no vehicle v`, or `no vehicle beside`
-        said = f"{named}: {text} (…)"
+        head = f"{named}: {text} (…)"
         if len(named) != 1:
-            said = f"x: {text} ({f'{named}(x)' if named else '…'})"
-        return f"for `no {text}` write {plain}`not some {said}`"
+            head = f"x: {text} ({f'{named}(x)' if named else '…'})"
+        return f"for `no {text}` write {plain}`not some {head}`"
     if text == "every" and ctx.operator and ctx.is_number(ctx.at + 1):
         return "for `p every 4 h` write `always eventually[<= 4 h] p`"
     word = _QUANTIFIERS.get(text) or (_QUANTIFIERS.get(before) if ctx.operator else None)
@@ -86,9 +86,9 @@ def advise_on_aggregate(ctx: ParseContext) -> str:
         return f"it is written `{before} x: vehicle (…)`"
     is_head = ctx.text_at(ctx.at - 2) == "(" and ctx.text_at(ctx.at - 3) != "fact"
     if text == ":" and ctx.operator and is_head:
-        said = f"{before}: {ctx.text_at(ctx.at + 1)}"
+        head = f"{before}: {ctx.text_at(ctx.at + 1)}"
         return (
-            f"write `every {said} (…)` or `some {said} (…)`, or declare it behind the rule's name"
+            f"write `every {head} (…)` or `some {head} (…)`, or declare it behind the rule's name"
         )
     if text in keywords.UNARY_OPERATORS and ctx.operator and ctx.first not in ("unless", "also"):
         if ctx.text_behind in ("", "}"):

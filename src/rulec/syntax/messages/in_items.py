@@ -211,8 +211,8 @@ def advise_on_clause(ctx: ParseContext) -> str:
     if ctx.kind != "clause":
         return ""
     behind_text = ctx.before is not None and ctx.before.kind == "string"
-    said = ctx.first in ("cite", "says", "source")
-    if said and behind_text and ctx.accepted == {"$END"} and not ctx.is_word():
+    is_text = ctx.first in ("cite", "says", "source")
+    if is_text and behind_text and ctx.accepted == {"$END"} and not ctx.is_word():
         return "put all of it between one pair of quotes"
     scoped = ctx.first in ("unless", "also")
     if scoped and ctx.operator and ctx.text == "always":

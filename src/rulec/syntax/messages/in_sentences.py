@@ -35,8 +35,8 @@ def advise_on_sentence(ctx: ParseContext) -> str:
         return f"for `{text} not p` write `never p`, such as `never (speed > 50 km/h)`"
     if text in _OBLIGATIONS:
         return f"leave out `{text}`: what a formula says must hold, such as `speed <= 50 km/h`"
-    if before in EGO and ctx.is_word() and (said := _what_is_said(ctx)):
-        return f"what is ego's stands alone: write `{said}`"
+    if before in EGO and ctx.is_word() and (subject := _predicate(ctx)):
+        return f"what is ego's stands alone: write `{subject}`"
     if text in _CONJUNCTIONS:
         return _CONJUNCTIONS[text]
     if text in _COMPARING and behind:
@@ -48,8 +48,8 @@ def advise_on_sentence(ctx: ParseContext) -> str:
     return ""
 
 
-def _what_is_said(ctx: ParseContext) -> str:
+def _predicate(ctx: ParseContext) -> str:
     """What is said of ego: `junction` of `ego is at the junction`."""
     words = (token.text for token in ctx.tokens[ctx.at :])
-    said = next((word for word in words if word not in _SMALL_WORDS), "")
-    return said if said.isidentifier() and said not in keywords.RESERVED else ""
+    subject = next((word for word in words if word not in _SMALL_WORDS), "")
+    return subject if subject.isidentifier() and subject not in keywords.RESERVED else ""

@@ -170,7 +170,7 @@ class StructureMessages:
         return Span(self.source, end, end).place
 
     def no_close(self, block: str, opened: int, index: int) -> Diagnostic:
-        """The brace of ``what``, at ``opened``, should have been closed before ``index``."""
+        """The brace of a ``block``, at ``opened``, should have been closed before ``index``."""
         at_end = index >= len(self.tokens)
         return UNBALANCED_BRACE.at(
             self.place(index),

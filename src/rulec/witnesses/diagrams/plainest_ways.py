@@ -158,8 +158,8 @@ class WaySearch:
         choices, diagrams = self._choices, self._diagrams
         nodes = keys + axioms
         # What is as usual matters only to nodes that read it; others are known from other searches.
-        asked = keys, axioms, choices.usual and choices.usual & diagrams.support(nodes)
-        known = self._known.walked.get(asked)
+        key = keys, axioms, choices.usual and choices.usual & diagrams.support(nodes)
+        known = self._known.walked.get(key)
         if known is not None:
             return known
         self._n_nodes += 1
@@ -178,6 +178,6 @@ class WaySearch:
                 fewest = ways.get(classes)
                 if fewest is None or own + cost < fewest[0]:
                     ways[classes] = own + cost, chosen + step
-        self._known.walked[asked] = ways
+        self._known.walked[key] = ways
         self._take(len(ways))
         return ways

@@ -189,13 +189,13 @@ def partial_values(
     declaration: Declaration,
 ) -> list[PartialValue | None]:
     """What states say by values, or places of values, the most that numbers may be, and flags."""
-    said: list[Any] = values.tolist()
+    cells: list[Any] = values.tolist()
     if isinstance(declaration, Enumeration):
-        said = [declaration.values[place] for place in said]
+        cells = [declaration.values[place] for place in cells]
     elif isinstance(declaration, Quantity) and upper is not None:
-        ends = zip(said, upper.tolist(), strict=True)
-        said = [low if low == high else Interval(low, high) for low, high in ends]
+        ends = zip(cells, upper.tolist(), strict=True)
+        cells = [low if low == high else Interval(low, high) for low, high in ends]
     if unknown is not None:
         for place in unknown.nonzero()[0].tolist():
-            said[place] = UNKNOWN
-    return said
+            cells[place] = UNKNOWN
+    return cells

@@ -47,12 +47,12 @@ class LinkedFacts:
         stack, compared = reader.stack, self.names - set(self.signals)
         if compared or any(fact.variables for fact in self.facts):
             return False
-        said: dict[tuple[str, tuple[str, ...]], PartialValue | None] = {
+        values: dict[tuple[str, tuple[str, ...]], PartialValue | None] = {
             (name, ()): reader.met_values.only_value(name) for name in self.signals
         }
-        if None in said.values():
+        if None in values.values():
             return False
-        return can_be(StateView(with_values({}, said), {}, stack.vocabulary), self.facts)
+        return can_be(StateView(with_values({}, values), {}, stack.vocabulary), self.facts)
 
 
 _OBJECT = "an object"
@@ -126,8 +126,8 @@ def _contradicted_states(
     columns = [reader.values_at(name, items, spots.part(examples)) for name in names]
     broken = []
     for values in zip(*columns, strict=True):
-        said = {(name, items): value for name, value in zip(names, values, strict=True)}
-        view = StateView(with_values({}, said), objects, reader.stack.vocabulary)
+        state = {(name, items): value for name, value in zip(names, values, strict=True)}
+        view = StateView(with_values({}, state), objects, reader.stack.vocabulary)
         broken.append(not can_be(view, facts))
     contradicting: Places = spots.states[np.array(broken)[kinds]]
     return contradicting

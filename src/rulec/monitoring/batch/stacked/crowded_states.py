@@ -122,8 +122,8 @@ class CrowdedStates:
         owners = states.searchsorted(stack.state_of[cells])
         often = np.bincount(owners * n_kinds + kinds, minlength=len(states) * n_kinds)
         often = np.minimum(often, self._enough).reshape(len(states), n_kinds)
-        said = [codes for name in self._world for codes in _codes(stack.column(name), states)]
-        groups = alike_places((*often.T, *said), len(states))
+        columns = [codes for name in self._world for codes in _codes(stack.column(name), states)]
+        groups = alike_places((*often.T, *columns), len(states))
         firsts = np.empty(int(groups.max(initial=-1)) + 1, dtype=np.intp)
         firsts[groups[::-1]] = np.arange(len(states))[::-1]
         examples = np.empty(n_kinds, dtype=np.intp)
@@ -141,8 +141,8 @@ class CrowdedStates:
     def _kinds(self, cells: Places) -> Places:
         """A number for each cell, the same where the same is said of objects of one type."""
         stack = self._stack
-        said = (codes for name in self._about for codes in _codes(stack.column(name), cells))
-        return alike_places((stack.kind_of[stack.object_of[cells]], *said), len(cells))
+        columns = (codes for name in self._about for codes in _codes(stack.column(name), cells))
+        return alike_places((stack.kind_of[stack.object_of[cells]], *columns), len(cells))
 
     def _numbers_of(
         self,

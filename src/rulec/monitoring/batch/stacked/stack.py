@@ -326,10 +326,10 @@ class Stack:
             piece.only[name] if name in piece.only else np.ones(piece.n_objects, dtype=bool)
             for piece in self._pieces
         ]
-        said = _end_to_end(every)
-        if not self._all_are(kind) and (said & ~self.of_type(kind)).any():
+        is_about = _end_to_end(every)
+        if not self._all_are(kind) and (is_about & ~self.of_type(kind)).any():
             raise UnencodableError
-        return None if said.all() else (~said).repeat(self._n_cells)
+        return None if is_about.all() else (~is_about).repeat(self._n_cells)
 
     def _all_are(self, kind: str) -> bool:
         """Whether all objects are of a type."""

@@ -86,13 +86,13 @@ def judge_arrays(
     return [answer for answer in answers if answer is not None]
 
 
-def _names(said: Mapping[str, Array], known: dict[int, frozenset[str]]) -> frozenset[str]:
+def _names(columns: Mapping[str, Array], known: dict[int, frozenset[str]]) -> frozenset[str]:
     """The names of columns, which are ``known`` of those that several traces share."""
-    if not isinstance(said, SharedColumns):
-        return frozenset(said)
-    key = id(said.columns)
+    if not isinstance(columns, SharedColumns):
+        return frozenset(columns)
+    key = id(columns.columns)
     if key not in known:
-        known[key] = frozenset(said)
+        known[key] = frozenset(columns)
     return known[key]
 
 

@@ -191,12 +191,12 @@ class _Engine:
             return None
         columns = [(numbers[n], machines.width(n)) for n in own.independent]
         for subject in entangled.subjects_of(binding.objects):
-            said = self._reader.codes(subject, entangled.regions)
+            coded = self._reader.codes(subject, entangled.regions)
             where = rows.where_supposed(subject)
             is_said = subject in self._columns.values
-            if said is None or (where is not None and not is_said):
+            if coded is None or (where is not None and not is_said):
                 return None
-            column, width = rows.numbers(said[0]), said[1]
+            column, width = rows.numbers(coded[0]), coded[1]
             if where is not None:
                 values, chosen = where
                 regions = entangled.regions
@@ -247,8 +247,8 @@ class _Engine:
         entangled_states = np.zeros(columns.layout.n_states, dtype=bool)
         reads = own.entangled
         supposed = np.zeros(rows.layout.n_states, dtype=bool)
-        asked = zip(reads.subjects, reads.subjects_of(binding.objects), strict=True)
-        for about, subject in asked:
+        subjects = zip(reads.subjects, reads.subjects_of(binding.objects), strict=True)
+        for about, subject in subjects:
             if about in reads.shared and self._reader.is_dark(subject):
                 entangled_states[:] = True
             if about in reads.shared and subject in columns.unknown:

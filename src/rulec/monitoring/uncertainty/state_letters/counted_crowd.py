@@ -65,28 +65,28 @@ class Crowd:
         """What a state says but for names, and enough of those that are ``there``, with types."""
         kept: dict[str, str] = {}
         alike: Counter[tuple[object, ...]] = Counter()
-        asked = []
+        named = []
         for item, kind in there.items():
             own = self.own.get(item)
             if own is None:
-                asked.append(item)
+                named.append(item)
             else:
-                said = kind, *[values[place] for place in own]
-                if alike[said] == self.enough:
+                traits = kind, *[values[place] for place in own]
+                if alike[traits] == self.enough:
                     continue
-                alike[said] += 1
+                alike[traits] += 1
             kept[item] = kind
-        key = tuple([values[place] for place in self.others]), tuple(asked)
+        key = tuple([values[place] for place in self.others]), tuple(named)
         return (*key, frozenset(alike.items())), kept
 
 
 def crowd_of(
     reads: Sequence[Read | NumberRead],
     subjects: Sequence[Subject],
-    asked: frozenset[str],
+    bound: frozenset[str],
     everybody: Mapping[str, str],
 ) -> Crowd | None:
-    """The crowd of reads that are ``asked`` of some objects; None if it matters who is who.
+    """The crowd of reads of ``bound`` objects and of others; None if it matters who is who.
 
     ``subjects`` are what the reads depend on.
     """
@@ -94,11 +94,11 @@ def crowd_of(
     if enough is None:
         return None
     own: dict[str, list[tuple[str, tuple[str, ...], int]]] = {
-        item: [] for item in everybody if item not in asked
+        item: [] for item in everybody if item not in bound
     }
     others = []
     for place, (name, items) in enumerate(subjects):
-        strangers = {item for item in items if item not in asked}
+        strangers = {item for item in items if item not in bound}
         if len(strangers) > 1:
             return None
         for item in strangers:
@@ -248,17 +248,17 @@ class CountsApart:
 
         about = tuple(renamed(subjects))
         binding = bound(self._binding)
-        asked = tuple([(self._reads[piece.read], names.get(piece.item or "")) for piece in pieces])
+        asks = tuple([(self._reads[piece.read], names.get(piece.item or "")) for piece in pieces])
         kept = [(fact.formula, bound(fact.environment)) for fact in facts]
-        said = tuple([(formula, *own.items()) for formula, own in kept])
-        key = about, said, (*objects.items(),), (*binding.items(),), asked
+        formulas = tuple([(formula, *own.items()) for formula, own in kept])
+        key = about, formulas, (*objects.items(),), (*binding.items(),), asks
         if key not in self._known:
             instances = [
                 FactInstance(*own, frozenset(renamed(fact.about)))
                 for own, fact in zip(kept, facts, strict=True)
             ]
             values = JointValues(about, instances, objects, self._everybody.vocabulary)
-            ways = tuple([_ways_of(read, item, binding, values) for read, item in asked])
+            ways = tuple([_ways_of(read, item, binding, values) for read, item in asks])
             self._known[key] = ReadWays(values, ways), {}
         reads = tuple([piece.read for piece in pieces])
         is_of_world = not set(self._world).isdisjoint(places)

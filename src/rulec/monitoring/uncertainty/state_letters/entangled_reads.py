@@ -84,7 +84,7 @@ class EntangledReads:
     are local, on the rule's own objects alone, these are asked of variables, which have a
     ``binding`` to themselves. Where none of those that are ``shared`` is unknown, nor another one
     an interval, each read may have any of its digits whatever the others have. Of a number that is
-    only compared by itself no more matters than in which of its ``regions`` it is. ``found`` has
+    only compared by itself no more matters than in which of its ``regions`` it is. ``joint_letters`` has
     what the reads may be together, as cubes of their digits, and whether no more is said than is.
     """
 
@@ -124,8 +124,8 @@ class EntangledReads:
         # Facts about several objects tell how many of these may count.
         self._crowd = None
         if not is_local and all(map(is_of_one, axioms)):
-            asked = frozenset(binding.values())
-            self._crowd = crowd_of(self._reads, self.subjects, asked, everybody.objects)
+            bound = frozenset(binding.values())
+            self._crowd = crowd_of(self._reads, self.subjects, bound, everybody.objects)
         self._apart = None
         if local_parts is not None:
             self._apart = ReadsApart(

@@ -228,7 +228,7 @@ def alike_values(
         for _, term in read.terms
         if isinstance(term, ltl.Count)
     ]
-    asked = {(atom.name, atom.value) for part in (*facts, *bodies) for atom in _atoms_in(part)}
+    atoms = {(atom.name, atom.value) for part in (*facts, *bodies) for atom in _atoms_in(part)}
     groups_of: dict[str, Alike] = {}
     for name in names:
         declaration = vocabulary.declarations[name]
@@ -236,7 +236,7 @@ def alike_values(
             own = [read for read in reads if isinstance(read, Read) and read.name == name]
             groups: dict[object, list[Value]] = {}
             for value in declaration.values:
-                apart = (name, value) in asked and value
+                apart = (name, value) in atoms and value
                 groups.setdefault((apart, *[read.digit(value) for read in own]), []).append(value)
             groups_of[name] = tuple(map(tuple, groups.values()))
     return groups_of

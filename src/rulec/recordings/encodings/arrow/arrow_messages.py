@@ -64,10 +64,10 @@ def _buffer_sizes(metadata: bytes, batch: int, body: memoryview, *, packed: bool
         if offset < 0 or length < 0 or offset + length > len(body):
             raise OddMessageError
         if packed and length:
-            (said,) = struct.unpack_from("<q", body, offset)
+            (size,) = struct.unpack_from("<q", body, offset)
             # -1: this one is as it is
-            yield length if said == -1 else said
-            if said < -1:
+            yield length if size == -1 else size
+            if size < -1:
                 raise OddMessageError
         else:
             yield length

@@ -157,11 +157,11 @@ _FRONTS = {"own": "curve", "against": "link", "vehicle": "axis"}
 
 
 def _boxes(
-    scene: DriveScene, state: int, view: _View, whose: Collection[str]
+    scene: DriveScene, state: int, view: _View, ids: Collection[str]
 ) -> Iterator[canvas.Rectangle]:
     for body in scene.bodies:
         outline = body.outline(state)
-        if body.id in whose and outline is not None:
+        if body.id in ids and outline is not None:
             (left, right), (top, bottom) = (
                 (min(axis), max(axis)) for axis in zip(*view.at(outline), strict=True)
             )

@@ -223,10 +223,10 @@ def _definitions_section(inherited: BookLineage, words: DocumentLanguage) -> Ite
     for definition in definitions:
         *earlier, last = definition.settings
         before = [words.say("in {} {}", code(value.book), code(value.text)) for value in earlier]
-        said = words.say("{} is defined by {}.", code(definition.name), code(last.book))
+        now = words.say("{} is defined by {}.", code(definition.name), code(last.book))
         was = words.say(" It was {}.", listed(before, words.language)) if before else ""
         note = f" {escaped(last.note)}" if last.note else ""
-        yield f"{said}{was}{note}"
+        yield f"{now}{was}{note}"
         written = f"define {definition.head} = {last.text}"
         if len(written) > WIDTH:
             meaning = "\n  ".join(formula_lines(last.text, WIDTH - 2))
@@ -296,8 +296,8 @@ def _about(item: Declaration, words: DocumentLanguage) -> str:
 
 def _kind(item: Declaration, words: DocumentLanguage) -> str:
     """What a word can be, and what else is declared of it."""
-    said = {"; never changes": item.constant, "; presumed": item.presumed}
-    return _values_of(item, words) + "".join(words.say(x) for x, holds in said.items() if holds)
+    remarks = {"; never changes": item.constant, "; presumed": item.presumed}
+    return _values_of(item, words) + "".join(words.say(x) for x, holds in remarks.items() if holds)
 
 
 def _values_of(item: Declaration, words: DocumentLanguage) -> str:

@@ -144,9 +144,9 @@ def _block(
         columns = columns_of(whole, table)
     except (blocks.OddTableError, ValueError):  # a number that cannot be
         return list(traces_in(_rows([whole], first, table), table, file))
-    said = np.zeros(len(whole), dtype=bool)
+    is_odd = np.zeros(len(whole), dtype=bool)
     for column in columns.values():
-        said |= _odd_values(column)
+        is_odd |= _odd_values(column)
     names = columns[TRACE]
     assert isinstance(names, blocks.Coded), "names are texts"
     starts = np.append(blocks.trace_starts(names), len(whole))
@@ -159,10 +159,10 @@ def _block(
         unknown = {}
         partial |= given_in(whole.column(table.at[UNKNOWN_NAMES]))
     for nobody_knows in unknown.values():
-        said[nobody_knows] = True
+        is_odd[nobody_knows] = True
     unsaid, others = (
         frozenset((np.searchsorted(starts, np.flatnonzero(flags), "right") - 1).tolist())
-        for flags in (partial, said)
+        for flags in (partial, is_odd)
     )
     return blocks.Block(
         table,
