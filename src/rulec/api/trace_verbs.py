@@ -240,7 +240,7 @@ class TraceVerbs(SessionSettings):
         from rulec.recordings.recording import Recording
         from rulec.recordings.recording_files import is_recording, read_recordings
         from rulec.recordings.recording_format import RecordingSource
-        from rulec.rulebook.formula_query import read_query
+        from rulec.rulebook.query_reader import read_query
 
         words = {"rulebook": str(rulebook), "vocabulary": vocabulary}
         query = read_query(formula, **words, search_path=self.search_path, at=self.at)

@@ -14,8 +14,8 @@ from rulec.monitoring.assumptions import Assumptions
 from rulec.monitoring.moments.formula_moments import Moment, moments
 from rulec.monitoring.state_validation import StateValidator, check_objects, check_told
 from rulec.recordings.recording import Recording
-from rulec.rulebook.asked_formula import FormulaQuery
-from rulec.rulebook.formula_query import bound_between_states
+from rulec.rulebook.query_model import FormulaQuery
+from rulec.rulebook.query_reader import bound_between_states
 from rulec.trace import Trace
 from rulec.trace.trace_model import check_trace
 from rulec.value_display import short_repr

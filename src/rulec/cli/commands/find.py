@@ -32,7 +32,7 @@ from rulec.settings import search_path
 
 if TYPE_CHECKING:
     from rulec.extraction.moment_search import DriveMoments
-    from rulec.rulebook.asked_formula import FormulaQuery
+    from rulec.rulebook.query_model import FormulaQuery
     from rulec.trace.formats.trace_files import Format
 
 FORMATS = {**endings_of("text", "json"), **TABLES}
@@ -92,7 +92,7 @@ def command(
     from rulec.recordings.recording_inputs import input_files
     from rulec.report.moments import moment_rows
     from rulec.report.verdict_findings.finding_tables import RowWriter
-    from rulec.rulebook.formula_query import read_query
+    from rulec.rulebook.query_reader import read_query
 
     if os.path.isfile(formula) and not any(map(os.path.exists, files)):  # noqa: PTH113 - Path raises on a null character
         raise click.UsageError(

@@ -18,7 +18,7 @@ from rulec.monitoring.moments.trace_truth import (
     TraceTruth,
     tables_of,
 )
-from rulec.rulebook.asked_formula import FormulaQuery
+from rulec.rulebook.query_model import FormulaQuery
 from rulec.trace import Trace
 from rulec.trace.trace_arrays import TraceArrays
 from rulec.value_display import short_repr

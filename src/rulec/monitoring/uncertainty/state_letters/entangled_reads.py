@@ -84,8 +84,9 @@ class EntangledReads:
     are local, on the rule's own objects alone, these are asked of variables, which have a
     ``binding`` to themselves. Where none of those that are ``shared`` is unknown, nor another one
     an interval, each read may have any of its digits whatever the others have. Of a number that is
-    only compared by itself no more matters than in which of its ``regions`` it is. ``joint_letters`` has
-    what the reads may be together, as cubes of their digits, and whether no more is said than is.
+    only compared by itself no more matters than in which of its ``regions`` it is.
+    ``joint_letters`` has what the reads may be together, as cubes of their digits, and whether
+    these are all possible.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""Places in the program around a formula, as places in what somebody has asked."""
+"""Places of diagnostics about a query: from the program around its formula to its own text."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from rulec.diagnostics import Diagnostic, Source, SourceLocation, Span
 
 
 @dataclass(frozen=True, slots=True)
-class AskedParts:
-    """What has been ``asked``, and the ``program`` in which parts of it stand.
+class QueryPlaces:
+    """The text of a ``query``, and the ``program`` in which parts of it stand.
 
-    ``parts`` are where each begins in the program, where in what was asked, and how long it is.
-    Both texts are called alike in messages.
+    ``parts`` are where each begins in the program, where in the query, and its length, in
+    characters. Both texts are called alike in messages.
     """
 
-    asked: Source
+    query: Source
     program: Source
     parts: tuple[tuple[int, int, int], ...]
 
     def relocated(self, problem: Diagnostic) -> Diagnostic:
-        """The diagnostic, with no place where it is about what nobody has written."""
+        """The diagnostic with its places in the query, without those in the rest of the program."""
         place = problem.place and self._place(problem.place)
         moved = ((label, self._place(label.place)) for label in problem.labels)
         labels = tuple(
@@ -34,11 +34,11 @@ class AskedParts:
             return place
         lines = self.program.text.split("\n")
         start = sum(len(line) + 1 for line in lines[: place.line - 1]) + place.column - 1
-        for begin, at_text, length in self.parts:
+        for begin, in_query, length in self.parts:
             if begin <= start <= begin + length:
-                shift = at_text - begin
+                shift = in_query - begin
                 end = start + max((place.end_column or 0) - place.column, 0)
                 if place.end_line != place.line:
                     end = begin + length
-                return Span(self.asked, start + shift, min(end, begin + length) + shift).place
+                return Span(self.query, start + shift, min(end, begin + length) + shift).place
         return None

@@ -1,4 +1,4 @@
-"""Formulas that are asked of traces: rules without a rulebook of their own."""
+"""Reader of queries: a formula is read as the only rule of a rulebook around it, the program."""
 
 from __future__ import annotations
 
@@ -9,10 +9,8 @@ from pathlib import Path
 
 from rulec.diagnostics import Diagnostic, RulecError, Source
 from rulec.logic.bounds import NotAMultipleError
-from rulec.rulebook.asked_formula import FormulaQuery
 from rulec.rulebook.elaborate.rule_messages import no_multiple
 from rulec.rulebook.elaborate.time_reach_messages import FIRST_STATE_ONLY
-from rulec.rulebook.formula_places import AskedParts
 from rulec.rulebook.loader import (
     Trees,
     find,
@@ -22,6 +20,8 @@ from rulec.rulebook.loader import (
     resolve_trees,
     with_book,
 )
+from rulec.rulebook.query_model import FormulaQuery
+from rulec.rulebook.query_places import QueryPlaces
 from rulec.rulebook.rulebook_model import Rulebook
 from rulec.syntax.parser import parse_formula
 
@@ -29,7 +29,7 @@ _HEAD = re.compile(r"\s*(\(\s*\w+\s*(?::\s*\w+\s*)(?:,\s*\w+\s*(?::\s*\w+\s*)?)*
 """Variables with their types, as in the head of a rule; no formula begins so."""
 
 _NAME = "what_is_asked"
-_SAID = "the formula"
+_QUERY = "the formula"
 _NO_WORD = (
     "`rulec list vocabularies` says where words are; those of a rulebook take `--rulebook NAME`"
 )
@@ -58,13 +58,13 @@ def read_query(
     head = _HEAD.match(text)
     begin = head.end() if head else 0
     formula = text[begin:]
-    query = Source(_SAID, text)
+    source = Source(_QUERY, text)
     folders = [Path(folder) for folder in search_path]
-    program = Source(_SAID, formula)
+    program = Source(_QUERY, formula)
     parts: tuple[tuple[int, int, int], ...] = ((0, begin, len(formula)),)
     try:
         # That it is one formula, and nothing else.
-        parse_formula(formula, _SAID)
+        parse_formula(formula, _QUERY)
         trees = parse_all(find(rulebook, folders)) if rulebook else None
         words = vocabulary or ("" if rulebook else _USUAL)
         first = f"rulebook {_NAME}" + (f" use {_word(words, folders)}" if words else "")
@@ -75,22 +75,16 @@ def read_query(
         first += "\n"
         first += f"soft rule {_NAME} "
         second = f"{head[1] if head else ''} {{\n  require "
-        program = Source(_SAID, f"{first}{second}{formula}\n}}\n")
+        program = Source(_QUERY, f"{first}{second}{formula}\n}}\n")
         parts = ((len(first + second), begin, len(formula)),)
         if head:
             parts = (*parts, (len(first), head.start(1), len(head[1])))
         resolved = _resolved(program, trees, folders, at)
     except RulecError as error:
-        places = AskedParts(query, program, parts)
-        # What is asked at each moment by itself is not for the first state only.
-        found_wrong = [
-            diagnostic
-            for diagnostic in error.diagnostics
-            if diagnostic.code != FIRST_STATE_ONLY.code
-        ]
-        raise RulecError(
-            [places.relocated(_in_words(diagnostic)) for diagnostic in found_wrong]
-        ) from None
+        places = QueryPlaces(source, program, parts)
+        # A query is evaluated at each moment, not in the first state only.
+        wrong = [x for x in error.diagnostics if x.code != FIRST_STATE_ONLY.code]
+        raise RulecError([places.relocated(_in_words(x)) for x in wrong]) from None
     own = next(rule for rule in resolved.rules if rule.name == _NAME)
     named = replace(resolved.vocabulary, name=words)
     return FormulaQuery(text.strip(), own, named, resolved.semantics, resolved.traffic)

@@ -1,4 +1,4 @@
-"""Formula asked of traces, with its vocabulary and variables."""
+"""A query: a formula whose moments in traces are looked for."""
 
 from __future__ import annotations
 
