@@ -146,7 +146,7 @@ class Contest:
 
 
 def _said_of_constant(read: Read, vocabulary: Vocabulary) -> list[Axiom]:
-    """That it has one of the values that are told apart, for each of these; the default first."""
+    """Axioms that a constant has one value, for each that is told apart; the default first."""
     each: list[ltl.Formula] = [ltl.Atom(read.name, (), value) for value in read.values]
     if not read.values:
         own = ltl.Atom(read.name)

@@ -246,11 +246,10 @@ def reported(
     source: Source,
     placed: Callable[[SourceLocation], SourceLocation] = lambda place: place,
 ) -> tuple[Diagnostic, ...]:
-    """What is said of what was found, in order.
+    """The diagnostics of ``mistakes`` to report, in order, without those that comments allow.
 
-    That is not what comments of the source allow, and with books and vocabularies that have the
-    words that nothing is called here. ``placed`` leads from places of the trees to those of what
-    was found, where a text was edited since it was first parsed.
+    Of unknown words they name the rulebooks and vocabularies that have them. ``placed`` leads from
+    places in the trees to those in a text that was edited since it was parsed.
     """
     findings = in_order(trees.name, judged_allowances(mistakes, source))
     read = [file.name.text for file in (*trees.books, *trees.vocabularies) if file.name]

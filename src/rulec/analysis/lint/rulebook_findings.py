@@ -108,7 +108,7 @@ def _likely(
     of_bases: Sequence[Mapping[str, AnalyzedRule]],
     related: RelatedRules,
 ) -> Iterator[Question]:
-    """What will be asked if nothing is found, which is as good as all that is."""
+    """The questions that are asked where nothing is found: nearly all."""
     names = [name for own_ones in occurring.values() for _, name in own_ones]
     for name in (*names, *rules):
         yield Question("kept", (name,))

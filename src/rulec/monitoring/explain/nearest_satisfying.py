@@ -107,7 +107,7 @@ def _totals(
 
 
 def _costs(machine: MealyMonitor, near: Sequence[_Near]) -> list[Sequence[int]]:
-    """So far from being accepted is the rest of the word, by how much of it is over and the state.
+    """The fewest changes after which the rest of the word is accepted, by its place and the state.
 
     A state's classes mostly lead to few others, of which the nearest class counts.
     """

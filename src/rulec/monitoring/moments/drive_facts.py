@@ -43,7 +43,7 @@ def facts_of_many(
     verdicts: Sequence[Verdict | None],
     rulebook: CompiledRulebook,
 ) -> list[DriveFacts]:
-    """Those of what was read and has a verdict, in order; what is alike is looked at together."""
+    """The facts of the traces that have a verdict, in order; alike traces are evaluated at once."""
     judged = {place: verdict for place, verdict in enumerate(verdicts) if verdict is not None}
     facts_at: dict[int, DriveFacts] = {}
     for alike in alike_traces(items, [*judged], rulebook.vocabulary):

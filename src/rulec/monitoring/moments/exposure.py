@@ -150,7 +150,7 @@ def _tally(truth: TraceTruth, watched: _Watched, outcomes: Mapping[Chosen, Outco
 
 
 def _decided(choices: ChosenObjects, left: dict[Chosen, Outcome]) -> tuple[Counts, list[Outcome]]:
-    """The rows of what is violated or open, and which of it, which is taken out."""
+    """The rows that are violated or open and their outcomes, which are removed from ``left``."""
     if not left:
         return np.zeros(0, dtype=np.intp), []
     near = np.flatnonzero(np.isin(choices.trace, [trace for trace, _ in left]))

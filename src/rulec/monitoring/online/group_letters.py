@@ -143,7 +143,7 @@ class _LetterTable(dict[Any, int]):
 class _GroupReader:
     """Reader of a group's letters for ``n_bindings``; ``read`` are the values it looks at.
 
-    ``keys`` are by what the letters are known, and raise as ``letters``.
+    ``keys`` are those of the letters that are kept, and raise as ``letters``.
     """
 
     def __init__(self, group: RuleGroup, bindings: Sequence[Items], shape: StateShape) -> None:

@@ -106,7 +106,7 @@ class Dependence:
         return self._decides(names, thoroughly=True) is True
 
     def _decides(self, names: frozenset[str], *, thoroughly: bool) -> bool | None:
-        """The same; None if it is not to be found out ``thoroughly``, and few pairs do not tell."""
+        """As ``decides``; None if few pairs do not tell and others are only for ``thoroughly``."""
         fixed = tuple([n for n, about in enumerate(self._unknown) if about and about <= names])
         is_same = BEFORE in names
         is_one = is_same or self._runs.n_starts == 1
@@ -181,7 +181,7 @@ class Dependence:
         return agree if all_followed or not agree else None
 
     def _alike(self, first: Word, second: Word) -> list[_Stretch]:
-        """What two words have for a while, without their last letters."""
+        """The pairs of letters of two words but for the last, each with how often it is repeated."""
         stretches = self._stretches.get((first, second))
         if stretches is None:
             together = groupby(zip(first[:-1], second[:-1], strict=True))

@@ -124,7 +124,7 @@ class _Search:
                 self._column(number, chosen)
 
     def choices(self) -> Iterator[tuple[str, ...]]:
-        """Those of which some state does something to the rule's machine."""
+        """The choices of objects for which some state does something to the rule's machine."""
         cast = self._cast
         nobody = self._longer(dict.fromkeys(range(cast.n_states), ()), (), range(cast.n_states))
         fitting = []

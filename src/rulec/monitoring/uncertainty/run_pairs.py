@@ -180,9 +180,10 @@ class RunPairs:
         return greatest
 
     def _furthest(self, rows: Mapping[int, int]) -> Pairs:
-        """The pairs without those of which nothing can come that does not come of another.
+        """The pairs of states that no other pair dominates.
 
-        So it is if the other's first state is no worse and its second one no better.
+        One does if its first state is no worse and its second one no better: whatever can come of
+        the dominated pair comes of it, too.
         """
         if all(others == 1 << state for state, others in rows.items()):
             return frozenset(rows.items())

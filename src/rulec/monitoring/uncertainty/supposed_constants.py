@@ -67,7 +67,7 @@ class ConstantsReader:
     ) -> tuple[list[dict[Subject, Value]], bool]:
         """The values that constants of which all is ``given`` that is known may have, together.
 
-        Second is whether no more is supposed to be possible than is.
+        Second is whether each of these is possible.
         """
         formulas = [rule.formula, *self._facts]
         options: dict[Subject, Sequence[Value]] = {}

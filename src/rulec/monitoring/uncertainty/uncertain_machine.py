@@ -147,10 +147,10 @@ class UncertainMachine:
         order: Sequence[str],
         names: Set[str],
     ) -> frozenset[str]:
-        """On what it depends which of two outcomes words have but for these names.
+        """The names but for these on which it depends which of two outcomes words have.
 
-        As ``reasons`` tell, but sooner: a name that decides what all others do not is in every set
-        that decides.
+        They are those of ``reasons``, found sooner: a name without which all others do not decide
+        is in every set that decides.
         """
         alternatives, unknown = _possible_alternatives(words, constants)
         doubtful = _doubtful(alternatives, unknown)

@@ -1,4 +1,4 @@
-"""Places where `and` or `or` stands beside `until` and its kin, and nothing shows who binds whom.
+"""Places where `and` or `or` stands beside `until` or an operator like it, without parentheses.
 
 ``a until b and c`` is ``(a until b) and c``. Half of its readers take it for
 ``a until (b and c)``, so that it is worth a pair of parentheses.

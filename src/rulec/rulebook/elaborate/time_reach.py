@@ -88,7 +88,7 @@ def _reach(
     behind: Sequence[tree.Infix],
     definitions: Mapping[str, tree.DefineItem],
 ) -> int:
-    """Where that ends which the operator was probably meant to speak of."""
+    """The end of what the operator was probably meant to govern: the place of a character."""
     end = prefix.span.end
     for operation in behind:
         alike = operation.operator in JOINS_ALIKE

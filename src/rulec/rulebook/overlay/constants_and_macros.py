@@ -31,7 +31,7 @@ class ConstantsAndMacros:
     """How much of the expression at hand has been looked at, and how deep in it we are."""
 
     def begin(self) -> None:
-        """Turn to another expression."""
+        """Begin another expression, whose parts are counted anew."""
         self.parts = self.depth = 0
 
     @contextmanager

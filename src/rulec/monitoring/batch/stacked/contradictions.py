@@ -43,7 +43,7 @@ class LinkedFacts:
         return known
 
     def _can_all_be(self, reader: StackReader) -> bool:
-        """Whether all states say the same, of no object, and this can be."""
+        """Whether the facts are about signals of the world alone, whose only values they allow."""
         stack, compared = reader.stack, self.names - set(self.signals)
         if compared or any(fact.variables for fact in self.facts):
             return False
@@ -134,7 +134,7 @@ def _contradicted_states(
 
 
 def _alike(names: Sequence[str], stack: Stack, spots: Spots) -> Places:
-    """Numbers from 0 for spots, equal for those of which the same is said."""
+    """The group of each spot, from 0: of spots in one group states have the same values."""
     where = spots.cells.get(_OBJECT, spots.states)
     columns = (column for name in names if (column := stack.column(name)) is not None)
     parts = (part for own in columns for part in (own.values, own.upper, own.unknown))

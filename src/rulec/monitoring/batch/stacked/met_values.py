@@ -24,7 +24,7 @@ _TRUE, _FALSE = known(np.True_), known(np.False_)
 
 
 class MetValues:
-    """Which values, or between which numbers, what is said of each name is.
+    """The values of each name anywhere in the traces, or the range of its numbers.
 
     Raises UnencodableError.
     """

@@ -46,7 +46,7 @@ class StackedReasons:
         return told_within_bounds(reasons, lambda name: self._is_within_bounds(name, stretch))
 
     def beyond(self, words: StackedWords, place: int, names: Set[str]) -> frozenset[str]:
-        """On what it depends but for these names, told without finding all reasons."""
+        """The names but for these on which a verdict depends, found without all reasons."""
         if not _are_more_unknown(words, place, names):
             return frozenset()
         possible, constants, _ = self._possible_words(words, place)

@@ -374,7 +374,7 @@ def _ends(low: Array, high: Array | None) -> tuple[float, float]:
 
 
 def either(first: Flags | None, second: Flags | None) -> Flags | None:
-    """Where one of both flags is set; None is for nowhere."""
+    """Where at least one of two flags is set; None stands for nowhere."""
     if first is None or second is None:
         return second if first is None else first
     return first | second

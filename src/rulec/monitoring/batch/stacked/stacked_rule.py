@@ -177,7 +177,7 @@ class StackedRule:
     ) -> tuple[Sequence[Mapping[Subject, Value]], bool]:
         """What constants, of which nothing is known, may be together, by the reads of them.
 
-        Second is whether no more is supposed to be possible than is.
+        Second is whether each of these is possible.
         """
         if not places:
             return ({},), True
@@ -287,9 +287,9 @@ class StackedRule:
 def different_pairs(
     left: NDArray[np.uint64], right: NDArray[np.uint64]
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """The places of the different pairs of numbers, or of all, and for each pair which it is.
+    """The places of one example of each different pair, and for each pair which example it is.
 
-    They are told apart by a sum with a weight, and compared then.
+    Pairs are told apart by a weighted sum; where that is the same of two, each is its own example.
     """
     codes = left * ODD + right
     different = distinct(codes)

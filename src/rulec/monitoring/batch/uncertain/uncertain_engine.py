@@ -181,7 +181,7 @@ class _Engine:
     def _codes(
         self, binding: RuleBinding, machines: SetTables, rule_reads: _RuleReads, places: Places
     ) -> tuple[object, Sequence[object]] | None:
-        """For each place what is the same where the same is said; first its kind.
+        """A kind of codes, and codes of each place that are equal where states say the same.
 
         None if that cannot be told by a few numbers.
         """

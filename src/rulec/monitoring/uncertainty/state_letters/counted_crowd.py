@@ -136,12 +136,12 @@ def count_in(read: Read | NumberRead) -> ltl.Count | None:
 
 
 class CountsApart:
-    """Reads about everybody, of whom each who may count is looked at with what concerns only him.
+    """Reads that count, where each object and the world alone decide whether that object counts.
 
     They depend on these ``subjects`` and are asked of the objects of a ``binding``, where
-    ``everybody`` is there. What is said of the world as well as of him is supposed, one way after
-    the other. What is ``known`` is kept for all who are alike. Raises LookupError if more is read
-    than words, and how many of these objects something is true of.
+    ``everybody`` is there. Values of the world are supposed, one choice after the other; ``known``
+    has the answers for objects that are alike. Raises LookupError if more is read than words, and
+    how many of these objects something is true of.
     """
 
     def __init__(
@@ -317,7 +317,7 @@ def _added(before: Digits, reads: Sequence[int], digits: Digits) -> Digits:
 
 
 def _may_be(value: PartialValue | None, values: Sequence[Value]) -> Sequence[PartialValue | None]:
-    """What a word or a truth may be of which this is said."""
+    """The values that a word or a truth may have, of which ``value`` is known."""
     if value is UNKNOWN:
         return values
     return tuple(value.values) if isinstance(value, OneOf) else (value,)

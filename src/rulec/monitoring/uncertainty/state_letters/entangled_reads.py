@@ -59,7 +59,7 @@ MOST_COUNTED = 16
 
 @dataclass(frozen=True, slots=True)
 class NothingKnown:
-    """A state of which only is known who is there."""
+    """A state of which nothing is known but which objects are there."""
 
     objects: Mapping[str, str]
     vocabulary: Vocabulary
@@ -86,7 +86,7 @@ class EntangledReads:
     an interval, each read may have any of its digits whatever the others have. Of a number that is
     only compared by itself no more matters than in which of its ``regions`` it is.
     ``joint_letters`` has what the reads may be together, as cubes of their digits, and whether
-    these are all possible.
+    each of them is possible.
     """
 
     def __init__(
@@ -183,7 +183,7 @@ class EntangledReads:
         return () if self._apart is None else self._apart.numbers
 
     def place_of_parts(self, key: tuple[int, ...]) -> int:
-        """The place of what is found for these numbers of the ``parts``."""
+        """The place among ``joint_letters`` of those for these numbers of the ``parts``."""
         place = self._places.get(key)
         if place is None:
             assert self._apart is not None

@@ -43,7 +43,7 @@ from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval, PartialValu
 
 
 class _PossibleDigits(NamedTuple):
-    """What a part's reads may be together, and whether no more is said than is.
+    """The joint digits of a part's reads; ``exact`` if each of them is possible.
 
     ``known`` are their digits if each has but one by itself.
     """
@@ -216,7 +216,7 @@ class _PartTable:
 
 
 class _Part(NamedTuple):
-    """Places of some reads among all, a getter of their subjects' values, and what is found."""
+    """Places of some reads among all, a getter of their subjects' values, and their table."""
 
     reads: tuple[int, ...]
     values: Callable[[Any], tuple[Any, ...]]
@@ -266,14 +266,14 @@ class ReadsApart:
         self._letters: dict[tuple[int, ...], tuple[Letters, bool]] = {}
 
     def key(self, values: Sequence[PartialValue | None]) -> tuple[int, ...]:
-        """By what it is known what the reads may be for these values.
+        """The key of the letters for these values of the subjects.
 
         Raises MissingValueError, not always about the value that is missing first.
         """
         return tuple([number(pick(values)) for pick, number in self.numbers])
 
     def letters(self, key: tuple[int, ...]) -> tuple[Letters, bool]:
-        """What the reads may be together, and whether no more is said than is."""
+        """The joint letters of a key, and whether each of them is possible."""
         known = self._letters.get(key)
         if known is None:
             known = self._letters[key] = self._together(key)
