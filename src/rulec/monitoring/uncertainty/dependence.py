@@ -181,7 +181,7 @@ class Dependence:
         return agree if all_followed or not agree else None
 
     def _alike(self, first: Word, second: Word) -> list[_Stretch]:
-        """The pairs of letters of two words but for the last, each with how often it is repeated."""
+        """The pairs of letters of two words but the last, each with how often it is repeated."""
         stretches = self._stretches.get((first, second))
         if stretches is None:
             together = groupby(zip(first[:-1], second[:-1], strict=True))
