@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, Literal
@@ -215,8 +215,10 @@ class Rulebook(Rows):
 
     def rows(self) -> list[dict[str, Any]]:
         """One row a rule."""
-        columns = ("strength", "level", "cite", "says", "book")
-        return [
-            {"rule": rule.name, **{column: getattr(rule, column) for column in columns}}
-            for rule in self.rules
-        ]
+        return rule_rows(self.rules)
+
+
+def rule_rows(rules: Iterable[Any]) -> list[dict[str, Any]]:
+    """One row a rule, of a rulebook's rules or of compiled ones."""
+    columns = ("strength", "level", "cite", "says", "book")
+    return [{"rule": x.name, **{column: getattr(x, column) for column in columns}} for x in rules]

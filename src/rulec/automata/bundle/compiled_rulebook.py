@@ -211,11 +211,7 @@ class CompiledRulebook(Rows):
 
     def rows(self) -> list[dict[str, Any]]:
         """One row a rule."""
-        fields = ("strength", "level", "cite", "says", "book")
-        return [
-            {"rule": rule.name, **{name: getattr(rule, name) for name in fields}}
-            for rule in self.rules
-        ]
+        return model.rule_rows(self.rules)
 
 
 def is_too_large(error: RulecError) -> bool:
