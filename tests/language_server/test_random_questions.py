@@ -64,10 +64,10 @@ def ask_everything(editor, document, offset):
     for one in names.all():
         assert document.text[slice(*names.bounds(one.span))] == one.span.text
         hover_text(names, one)
-        declaration_of(names, one.thing, editor)
+        declaration_of(names, one.symbol, editor)
     one = names.at(offset)
     if one is not None:
-        references_to(one.thing, names, editor)
+        references_to(one.symbol, names, editor)
         with suppress(RefusedRenamingError):
             placeholder(names, offset, editor)
     return found

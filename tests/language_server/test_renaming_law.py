@@ -44,7 +44,7 @@ def after_renaming(law, name, folder):
     path, names = opened(law)
     shutil.copytree(law[0], folder)
     kinds = ("rule", "definition", "parameter")  # a word of a vocabulary may be called so, too
-    things = (one.thing for one in names.all() if one.thing.name == name)
+    things = (one.symbol for one in names.all() if one.symbol.name == name)
     thing = next(one for one in things if one.kind in kinds)
     for uri, changes in renamed(thing, NEW, names, law[1]).items():
         document = law[1].document(uri)

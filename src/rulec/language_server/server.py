@@ -111,7 +111,7 @@ def _names(server: EditorSession) -> None:
         names, positions = known
         occurrence = names.at(positions.offset(params.position))
         return (
-            None if occurrence is None else declaration_of(names, occurrence.thing, server.editor)
+            None if occurrence is None else declaration_of(names, occurrence.symbol, server.editor)
         )
 
     @server.feature(lsp.TEXT_DOCUMENT_REFERENCES)
@@ -125,7 +125,7 @@ def _names(server: EditorSession) -> None:
             return []
         return [
             place.location
-            for place in references_to(occurrence.thing, names, server.editor)
+            for place in references_to(occurrence.symbol, names, server.editor)
             if params.context.include_declaration or not place.declares
         ]
 
@@ -138,10 +138,12 @@ def _renaming(server: EditorSession) -> None:
             return None
         names, positions = known
         try:
-            thing, start, end = placeholder(names, positions.offset(params.position), server.editor)
+            symbol, start, end = placeholder(
+                names, positions.offset(params.position), server.editor
+            )
         except RefusedRenamingError as refused:
             raise JsonRpcInvalidParams(str(refused)) from None
-        return lsp.PrepareRenamePlaceholder(positions.range(start, end), thing.name)
+        return lsp.PrepareRenamePlaceholder(positions.range(start, end), symbol.name)
 
     @server.feature(lsp.TEXT_DOCUMENT_RENAME, lsp.RenameOptions(prepare_provider=True))
     def rename(params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
@@ -150,8 +152,8 @@ def _renaming(server: EditorSession) -> None:
             return None
         names, positions = known
         try:
-            thing, _, _ = placeholder(names, positions.offset(params.position), server.editor)
-            changes = renamed(thing, params.new_name, names, server.editor)
+            symbol, _, _ = placeholder(names, positions.offset(params.position), server.editor)
+            changes = renamed(symbol, params.new_name, names, server.editor)
         except RefusedRenamingError as refused:
             raise JsonRpcInvalidParams(str(refused)) from None
         return workspace_edit(changes, server.editor)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from rulec.diagnostics import Span
 from rulec.language_server.names.name_occurrences import (
-    NamedThing,
+    NamedSymbol,
     NamesOfChain,
     Occurrence,
     occurrences,
@@ -40,11 +40,11 @@ class DocumentNames:
         own = span.source is self.checked.parsed.source
         return self.checked.text if own else span.source.text
 
-    def is_same(self, thing: NamedThing, other: NamedThing, names: DocumentNames) -> bool:
+    def is_same(self, symbol: NamedSymbol, other: NamedSymbol, names: DocumentNames) -> bool:
         """Tell whether something of this document is what another document, ``names``, means."""
-        if not thing.is_alike(other):
+        if not symbol.is_alike(other):
             return False
-        return thing.kind != "variable" or self.bounds(thing.span) == names.bounds(other.span)
+        return symbol.kind != "variable" or self.bounds(symbol.span) == names.bounds(other.span)
 
     def all(self) -> Iterator[Occurrence]:
         """All names of the document that mean something."""

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from rulec.diagnostics import Span
 from rulec.language_server.names.document_names import DocumentNames
-from rulec.language_server.names.name_occurrences import NamedThing, Occurrence
+from rulec.language_server.names.name_occurrences import NamedSymbol, Occurrence
 from rulec.logic.printing import formula_text
 from rulec.report.rulebooks.word_texts import (
     as_paragraphs,
@@ -24,40 +24,40 @@ from rulec.syntax.tree_printer import print_formula
 
 def hover_text(names: DocumentNames, occurrence: Occurrence) -> str:
     """What is known of a name."""
-    return "\n\n".join(filter(None, _parts(names, occurrence.thing)))
+    return "\n\n".join(filter(None, _parts(names, occurrence.symbol)))
 
 
-def _parts(names: DocumentNames, thing: NamedThing) -> Iterator[str]:
+def _parts(names: DocumentNames, symbol: NamedSymbol) -> Iterator[str]:
     laid, symbols = names.chain.names.constants.overlay, names.chain.names.symbols
-    match thing.kind:
+    match symbol.kind:
         case "rule":
-            yield from _rule(names, thing.name)
+            yield from _rule(names, symbol.name)
         case "signal" | "quantity" | "enumeration" | "value":
             recorded = tells_words(names.chain.vocabularies)
-            yield from as_paragraphs(word_text(thing.name, symbols, recorded=recorded))
+            yield from as_paragraphs(word_text(symbol.name, symbols, recorded=recorded))
         case "type":
-            yield from as_paragraphs(type_text(thing.name, symbols))
+            yield from as_paragraphs(type_text(symbol.name, symbols))
         case "option":
-            yield _code(f"option {thing.name} = {'on' if laid.options[thing.name] else 'off'}")
-            yield from described(thing.span)
-            changed = laid.changed_at.get(thing.name)
+            yield _code(f"option {symbol.name} = {'on' if laid.options[symbol.name] else 'off'}")
+            yield from described(symbol.span)
+            changed = laid.changed_at.get(symbol.name)
             if changed is not None:
                 yield f"Set in {_file(names, changed.span)}."
         case "parameter":
-            yield from _parameter(names, thing)
+            yield from _parameter(names, symbol)
         case "definition":
-            item = laid.definitions[thing.name]
+            item = laid.definitions[symbol.name]
             yield _code(f"{_head(item)} =\n  {print_formula(item.body, 'written')}")
             yield from described(item.span)
         case "variable":
-            kind = _type_of(names, thing)
-            yield _code(f"{thing.name}: {kind}" if kind else thing.name)
+            kind = _type_of(names, symbol)
+            yield _code(f"{symbol.name}: {kind}" if kind else symbol.name)
             known = names.chain.type(kind) if kind else None
             if known is not None:
                 yield from described(known.span)
         case "level":
-            yield f"Priority level `{thing.name}`"
-            higher, lower = _around(names, thing.name)
+            yield f"Priority level `{symbol.name}`"
+            higher, lower = _around(names, symbol.name)
             yield "; ".join(
                 text
                 for text in (
@@ -67,11 +67,11 @@ def _parts(names: DocumentNames, thing: NamedThing) -> Iterator[str]:
                 if text
             )
         case "topic":
-            yield f"Topic: {laid.topics[thing.name].title.value}"
+            yield f"Topic: {laid.topics[symbol.name].title.value}"
         case "file":
-            yield from _book(names, thing)
-    if thing.span.source is not names.checked.parsed.source:
-        yield f"*from {_file(names, thing.span)}*"
+            yield from _book(names, symbol)
+    if symbol.span.source is not names.checked.parsed.source:
+        yield f"*from {_file(names, symbol.span)}*"
 
 
 def _code(text: str) -> str:
@@ -139,17 +139,17 @@ def _heading(names: DocumentNames, cite: str) -> str:
     return heading
 
 
-def _parameter(names: DocumentNames, thing: NamedThing) -> Iterator[str]:
+def _parameter(names: DocumentNames, symbol: NamedSymbol) -> Iterator[str]:
     constants = names.chain.names.constants
-    values = constants.overlay.parameters[thing.name]
+    values = constants.overlay.parameters[symbol.name]
     for value in values:
         item = value.item
         if isinstance(item, tree.ParamItem):
             kind = f" : {item.dimension.text}" if item.dimension else ""
-            yield _code(f"param {thing.name}{kind} = {print_formula(item.value, 'written')}")
+            yield _code(f"param {symbol.name}{kind} = {print_formula(item.value, 'written')}")
             break
     yield from described(values[0].item.span)
-    on_day = constants.numbers.get(thing.name)
+    on_day = constants.numbers.get(symbol.name)
     if on_day is not None:
         yield f"On {constants.at}: **{value_text(on_day)}**"
     others = [value for value in values if not _holds(value, values, constants.at)]
@@ -190,8 +190,8 @@ def _head(item: tree.DefineItem) -> str:
     return f"define {item.name.text}{f'({about})' if about else ''}"
 
 
-def _type_of(names: DocumentNames, thing: NamedThing) -> str:
-    source, start = thing.span.source, thing.span.start
+def _type_of(names: DocumentNames, symbol: NamedSymbol) -> str:
+    source, start = symbol.span.source, symbol.span.start
     for item in (item for book in names.chain.books for item in book.items):
         if item.span.source is source and item.span.start <= start < item.span.end:
             for parameter in _parameters_in(item):
@@ -227,10 +227,10 @@ def _around(names: DocumentNames, level: str) -> tuple[list[str], list[str]]:
     return higher, lower
 
 
-def _book(names: DocumentNames, thing: NamedThing) -> Iterator[str]:
+def _book(names: DocumentNames, symbol: NamedSymbol) -> Iterator[str]:
     for file in (*names.chain.books, *names.chain.vocabularies):
-        if file.span.source is thing.span.source:
-            yield f"**{file.kind} {thing.name}**"
+        if file.span.source is symbol.span.source:
+            yield f"**{file.kind} {symbol.name}**"
             if file.title is not None:
                 yield file.title.text.value
             if file.law is not None:

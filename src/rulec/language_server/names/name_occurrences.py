@@ -31,7 +31,7 @@ NameKind = Literal[
 
 
 @dataclass(frozen=True, slots=True)
-class NamedThing:
+class NamedSymbol:
     """What a name means; ``span`` is where it is declared.
 
     Of a ``file`` the span is empty: it is the beginning of the rulebook or vocabulary.
@@ -41,8 +41,8 @@ class NamedThing:
     name: str
     span: Span
 
-    def is_alike(self, other: NamedThing) -> bool:
-        """Tell whether two files may mean the same thing; of variables there may be several."""
+    def is_alike(self, other: NamedSymbol) -> bool:
+        """Tell whether two files may mean the same symbol; of variables there may be several."""
         if (self.kind, self.name) != (other.kind, other.name):
             return False
         return os.path.realpath(self.span.source.name) == os.path.realpath(other.span.source.name)
@@ -56,12 +56,12 @@ class Occurrence:
     """
 
     span: Span
-    thing: NamedThing
+    symbol: NamedSymbol
     declares: bool = False
     listed: bool = False
 
 
-Scope = Mapping[str, NamedThing]
+Scope = Mapping[str, NamedSymbol]
 """The variables of a rule, a definition or a count."""
 
 
@@ -73,58 +73,58 @@ class NamesOfChain:
     books: Sequence[tree.File]
     vocabularies: Sequence[tree.File]
 
-    def thing(self, name: str) -> NamedThing | None:
+    def symbol(self, name: str) -> NamedSymbol | None:
         """The option, parameter, definition or word of a name."""
         laid, symbols = self.names.constants.overlay, self.names.symbols
         if kind := laid.kind_of(name):
             named: NameKind = "option" if kind == "option" else "definition"
             named = "parameter" if kind == "parameter" else named
-            return NamedThing(named, name, laid.declared_at[name].span)
+            return NamedSymbol(named, name, laid.declared_at[name].span)
         span = symbols.spans.get(name)
         if span is None:
             return None
         item = symbols.items.get(name)
         if item is None:
-            return NamedThing("value", name, span)
+            return NamedSymbol("value", name, span)
         if isinstance(item, Signal):
-            return NamedThing("signal", name, span)
-        return NamedThing("quantity" if isinstance(item, Quantity) else "enumeration", name, span)
+            return NamedSymbol("signal", name, span)
+        return NamedSymbol("quantity" if isinstance(item, Quantity) else "enumeration", name, span)
 
-    def type(self, name: str) -> NamedThing | None:
+    def type(self, name: str) -> NamedSymbol | None:
         """The type of a name."""
         span = self.names.symbols.type_spans.get(name)
-        return None if span is None else NamedThing("type", name, span)
+        return None if span is None else NamedSymbol("type", name, span)
 
-    def rule(self, name: str, until: tree.File | None = None) -> NamedThing | None:
+    def rule(self, name: str, until: tree.File | None = None) -> NamedSymbol | None:
         """The rule of a name, where it was first written; not in books below ``until``."""
-        named_thing: NamedThing | None = None
+        named_symbol: NamedSymbol | None = None
         for book in self.books:
             for item in book.items:
                 if isinstance(item, tree.RuleItem) and not item.override and item.name.text == name:
-                    named_thing = NamedThing("rule", name, item.name.span)
+                    named_symbol = NamedSymbol("rule", name, item.name.span)
             if book is until:
                 break
-        return named_thing
+        return named_symbol
 
-    def level(self, name: str) -> NamedThing | None:
+    def level(self, name: str) -> NamedSymbol | None:
         """The priority level of a name, where it is first placed."""
         for book in self.books:
             for line in book.priorities:
                 for level in line.levels:
                     if level.text == name:
-                        return NamedThing("level", name, level.span)
+                        return NamedSymbol("level", name, level.span)
         return None
 
-    def topic(self, name: str) -> NamedThing | None:
+    def topic(self, name: str) -> NamedSymbol | None:
         """The topic of a name."""
         entry = self.names.constants.overlay.topics.get(name)
-        return None if entry is None else NamedThing("topic", name, entry.name.span)
+        return None if entry is None else NamedSymbol("topic", name, entry.name.span)
 
-    def file(self, name: str) -> NamedThing | None:
+    def file(self, name: str) -> NamedSymbol | None:
         """The rulebook or vocabulary of a name."""
         for file in (*self.books[:-1], *self.vocabularies):
             if file.name is not None and file.name.text == name:
-                return NamedThing("file", name, Span(file.span.source, 0, 0))
+                return NamedSymbol("file", name, Span(file.span.source, 0, 0))
         return None
 
 
@@ -139,10 +139,10 @@ def occurrences(file: tree.File, chain: NamesOfChain) -> Iterator[Occurrence]:
         yield from _in_item(item, file, chain)
 
 
-def _at(name: tree.Name, thing: NamedThing | None) -> Iterator[Occurrence]:
-    if thing is not None:
-        same = thing.span.source is name.span.source and thing.span.start == name.span.start
-        yield Occurrence(name.span, thing, declares=same)
+def _at(name: tree.Name, symbol: NamedSymbol | None) -> Iterator[Occurrence]:
+    if symbol is not None:
+        same = symbol.span.source is name.span.source and symbol.span.start == name.span.start
+        yield Occurrence(name.span, symbol, declares=same)
 
 
 def _in_item(item: tree.Item, file: tree.File, chain: NamesOfChain) -> Iterator[Occurrence]:
@@ -161,30 +161,30 @@ def _in_item(item: tree.Item, file: tree.File, chain: NamesOfChain) -> Iterator[
             if parent is not None:
                 yield from _at(parent, chain.type(parent.text))
         case tree.EnumerationItem():
-            yield from _at(item.name, chain.thing(item.name.text))
+            yield from _at(item.name, chain.symbol(item.name.text))
             yield from _types(item.parameters, chain)
             for value in (*item.values, *((item.default,) if item.default else ())):
-                yield from _at(value, chain.thing(value.text))
+                yield from _at(value, chain.symbol(value.text))
         case tree.SignalItem(signals):
             for head in signals:
-                yield from _at(head.name, chain.thing(head.name.text))
+                yield from _at(head.name, chain.symbol(head.name.text))
                 yield from _types(head.parameters, chain)
         case tree.QuantityItem(name, parameters):
-            yield from _at(name, chain.thing(name.text))
+            yield from _at(name, chain.symbol(name.text))
             yield from _types(parameters, chain)
         case tree.ConstantItem(names) | tree.PresumedItem(names):
             for name in names:
-                yield from _at(name, chain.thing(name.text))
+                yield from _at(name, chain.symbol(name.text))
         case tree.FactItem(formula):
             yield from in_formula(formula, {}, chain)
         case tree.OptionItem(name):
-            yield from _at(name, chain.thing(name.text))
+            yield from _at(name, chain.symbol(name.text))
         case tree.ParamItem(name, _, value) | tree.SetItem(name, value):
-            yield from _at(name, chain.thing(name.text))
+            yield from _at(name, chain.symbol(name.text))
             if not isinstance(value, bool):
                 yield from in_formula(value, {}, chain)
         case tree.DefineItem(name, parameters, body):
-            yield from _at(name, chain.thing(name.text))
+            yield from _at(name, chain.symbol(name.text))
             yield from _types(parameters, chain)
             yield from _variables(parameters)
             yield from in_formula(body, variables_of(parameters), chain)
@@ -218,18 +218,18 @@ def _in_rule(rule: tree.RuleItem, chain: NamesOfChain) -> Iterator[Occurrence]:
                 yield from _use(literal.atom, inside, chain)
 
 
-def variables_of(parameters: Iterable[tree.Parameter]) -> dict[str, NamedThing]:
+def variables_of(parameters: Iterable[tree.Parameter]) -> dict[str, NamedSymbol]:
     """What the names of parameters mean inside of their rule or definition."""
     return {
-        parameter.name.text: NamedThing("variable", parameter.name.text, parameter.name.span)
+        parameter.name.text: NamedSymbol("variable", parameter.name.text, parameter.name.span)
         for parameter in parameters
     }
 
 
 def _variables(parameters: Iterable[tree.Parameter]) -> Iterator[Occurrence]:
     for parameter in parameters:
-        thing = NamedThing("variable", parameter.name.text, parameter.name.span)
-        yield Occurrence(parameter.name.span, thing, declares=True)
+        symbol = NamedSymbol("variable", parameter.name.text, parameter.name.span)
+        yield Occurrence(parameter.name.span, symbol, declares=True)
 
 
 def _types(parameters: Iterable[tree.Parameter], chain: NamesOfChain) -> Iterator[Occurrence]:
@@ -257,21 +257,21 @@ def in_formula(formula: tree.Formula, scope: Scope, chain: NamesOfChain) -> Iter
 
 def _use(use: tree.AtomUse, scope: Scope, chain: NamesOfChain) -> Iterator[Occurrence]:
     name = use.name.text
-    thing = scope.get(name) or chain.thing(name)
-    if thing is not None:
-        yield from _at(use.name, thing)
+    symbol = scope.get(name) or chain.symbol(name)
+    if symbol is not None:
+        yield from _at(use.name, symbol)
     elif not use.arguments:
         yield from _short_form(use.name, scope, chain)
     for argument in use.arguments:
-        yield from _at(argument, scope.get(argument.text) or chain.thing(argument.text))
+        yield from _at(argument, scope.get(argument.text) or chain.symbol(argument.text))
 
 
 def _short_form(name: tree.Name, scope: Scope, chain: NamesOfChain) -> Iterator[Occurrence]:
     """``b_v``, which stands for ``b(v)``."""
     for at, letter in enumerate(name.text):
         head, variable = name.text[:at], name.text[at + 1 :]
-        thing = chain.thing(head) if letter == "_" and variable in scope else None
-        if thing is not None and thing.kind in ("signal", "quantity", "value"):
+        symbol = chain.symbol(head) if letter == "_" and variable in scope else None
+        if symbol is not None and symbol.kind in ("signal", "quantity", "value"):
             start, source = name.span.start, name.span.source
-            yield Occurrence(Span(source, start, start + at), thing)
+            yield Occurrence(Span(source, start, start + at), symbol)
             yield Occurrence(Span(source, start + at + 1, name.span.end), scope[variable])

@@ -1,4 +1,4 @@
-"""Declarations and uses of a thing in all files of the workspace."""
+"""Declarations and uses of a symbol in all files of the workspace."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from lsprotocol import types as lsp
 
 from rulec.diagnostics import RulecError
 from rulec.language_server.names.document_names import DocumentNames, names_in_document
-from rulec.language_server.names.name_occurrences import NamedThing
+from rulec.language_server.names.name_occurrences import NamedSymbol
 from rulec.language_server.workspace.editor_workspace import EditorWorkspace, uri_of
 from rulec.syntax import tree
 
@@ -28,22 +28,23 @@ class NamePlace:
 
 
 def declaration_of(
-    names: DocumentNames, thing: NamedThing, editor: EditorWorkspace
+    names: DocumentNames, symbol: NamedSymbol, editor: EditorWorkspace
 ) -> lsp.Location:
-    """Where a thing is declared."""
-    positions = editor.positions(names.text_of(thing.span))
-    return lsp.Location(uri_of(thing.span.source.name), positions.range(*names.bounds(thing.span)))
+    """Where a symbol is declared."""
+    span = symbol.span
+    positions = editor.positions(names.text_of(span))
+    return lsp.Location(uri_of(span.source.name), positions.range(*names.bounds(span)))
 
 
 def references_to(
-    thing: NamedThing, names: DocumentNames, editor: EditorWorkspace
+    symbol: NamedSymbol, names: DocumentNames, editor: EditorWorkspace
 ) -> list[NamePlace]:
-    """All places of a thing's name."""
+    """All places of a symbol's name."""
     places: dict[tuple[str, int], NamePlace] = {}
-    for book in books_with(thing, names, editor):
-        for place in _in_document(thing, names, book, editor):
+    for book in books_with(symbol, names, editor):
+        for place in _in_document(symbol, names, book, editor):
             places.setdefault((place.uri, place.start), place)
-    declared = uri_of(thing.span.source.name)
+    declared = uri_of(symbol.span.source.name)
     return sorted(
         places.values(),
         key=lambda name_place: (name_place.uri != declared, name_place.uri, name_place.start),
@@ -51,14 +52,14 @@ def references_to(
 
 
 def books_with(
-    thing: NamedThing, names: DocumentNames, editor: EditorWorkspace
+    symbol: NamedSymbol, names: DocumentNames, editor: EditorWorkspace
 ) -> Iterator[DocumentNames]:
     """The sources in which a name stands, of those of the workspace and what the document reads.
 
     A variable stands where its rule does, which another book may override.
     """
     yield names
-    name = thing.name if thing.kind != "variable" else _owner(thing, names)
+    name = symbol.name if symbol.kind != "variable" else _owner(symbol, names)
     if not name:
         return
     word = re.compile(rf"(?<!\w){re.escape(name)}(?![^\W_])")
@@ -78,7 +79,7 @@ def books_with(
             yield other
 
 
-def _owner(variable: NamedThing, names: DocumentNames) -> str:
+def _owner(variable: NamedSymbol, names: DocumentNames) -> str:
     """The rule that a variable belongs to; empty for one of a definition."""
     for item in (item for book in names.chain.books for item in book.items):
         span = item.span
@@ -89,12 +90,12 @@ def _owner(variable: NamedThing, names: DocumentNames) -> str:
 
 
 def _in_document(
-    thing: NamedThing, origin: DocumentNames, names: DocumentNames, editor: EditorWorkspace
+    symbol: NamedSymbol, origin: DocumentNames, names: DocumentNames, editor: EditorWorkspace
 ) -> Iterator[NamePlace]:
     uri = uri_of(names.checked.path or names.checked.name)
     positions = editor.positions(names.checked.text)
     for occurrence in names.all():
-        if names.is_same(occurrence.thing, thing, origin):
+        if names.is_same(occurrence.symbol, symbol, origin):
             start, end = names.bounds(occurrence.span)
             location = lsp.Location(uri, positions.range(start, end))
             yield NamePlace(

@@ -1,4 +1,4 @@
-"""Giving a thing another name in all rulebooks of the workspace, or saying why not."""
+"""Giving a symbol another name in all rulebooks of the workspace, or saying why not."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from lsprotocol import types as lsp
 
 from rulec.diagnostics import Diagnostic, RulecError
 from rulec.language_server.names.document_names import DocumentNames
-from rulec.language_server.names.name_occurrences import NamedThing
+from rulec.language_server.names.name_occurrences import NamedSymbol
 from rulec.language_server.names.name_places import books_with, references_to
 from rulec.language_server.workspace.editor_workspace import (
     CheckedDocument,
@@ -31,7 +31,7 @@ _WORDS = ("type", "signal", "quantity", "enumeration", "value", "variable")
 
 
 class RefusedRenamingError(Exception):
-    """Why a thing keeps its name, in words for its author."""
+    """Why a symbol keeps its name, in words for its author."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,48 +47,50 @@ Changes = Mapping[str, Sequence[TextChange]]
 """Address of a document -> what becomes of its text, in order."""
 
 
-def renamed(thing: NamedThing, name: str, names: DocumentNames, editor: EditorWorkspace) -> Changes:
-    """The changes that rename a thing. Raises RefusedRenamingError.
+def renamed(
+    symbol: NamedSymbol, name: str, names: DocumentNames, editor: EditorWorkspace
+) -> Changes:
+    """The changes that rename a symbol. Raises RefusedRenamingError.
 
     Every rulebook that is changed, or in which the new name stands, is checked as it would be: it
     has the same findings and the same rules, but for the name.
     """
-    refuse_in_general(thing, editor)
-    if name == thing.name:
+    refuse_in_general(symbol, editor)
+    if name == symbol.name:
         return {}
     if not _NAME.fullmatch(name):
         raise RefusedRenamingError(f"`{name}` is no name: letters, digits and `_`, no digit first")
     if name in RESERVED:
         raise RefusedRenamingError(f"`{name}` is a word of the language")
     changes: dict[str, list[TextChange]] = {}
-    for place in references_to(thing, names, editor):
+    for place in references_to(symbol, names, editor):
         if place.listed:
             continue
         changes.setdefault(place.uri, []).append(TextChange(place.start, place.end, name))
-    if thing.kind == "rule":
-        for uri, change in _in_topics(thing, name, names, editor):
+    if symbol.kind == "rule":
+        for uri, change in _in_topics(symbol, name, names, editor):
             changes.setdefault(uri, []).append(change)
     for uri, parts in changes.items():
         parts.sort(key=lambda change: change.start)
         path = path_of(uri)
         if path is not None and editor.is_read_only(path):
-            raise RefusedRenamingError(f"`{thing.name}` stands in {path}, {_NOT_YOURS}")
-    _refuse_other_meaning(changes, thing, name, names, editor)
+            raise RefusedRenamingError(f"`{symbol.name}` stands in {path}, {_NOT_YOURS}")
+    _refuse_other_meaning(changes, symbol, name, names, editor)
     return changes
 
 
 _NOT_YOURS = "which is outside of the editor's folders and stays as it is"
 
 
-def refuse_in_general(thing: NamedThing, editor: EditorWorkspace) -> None:
-    """Raise RefusedRenamingError if a thing cannot be renamed, whatever its new name."""
-    if thing.kind == "file":
+def refuse_in_general(symbol: NamedSymbol, editor: EditorWorkspace) -> None:
+    """Raise RefusedRenamingError if a symbol cannot be renamed, whatever its new name."""
+    if symbol.kind == "file":
         raise RefusedRenamingError(
-            f"`{thing.name}` is called as its file: rename that, and what stands behind `rulebook`"
+            f"`{symbol.name}` is called as its file: rename that, and what stands behind `rulebook`"
         )
-    declared = thing.span.source.name
+    declared = symbol.span.source.name
     if path_of(uri_of(declared)) is not None and editor.is_read_only(declared):
-        raise RefusedRenamingError(f"`{thing.name}` is declared in {declared}, {_NOT_YOURS}")
+        raise RefusedRenamingError(f"`{symbol.name}` is declared in {declared}, {_NOT_YOURS}")
 
 
 def changed_text(text: str, changes: Sequence[TextChange]) -> str:
@@ -102,7 +104,7 @@ def changed_text(text: str, changes: Sequence[TextChange]) -> str:
 
 
 def _in_topics(
-    thing: NamedThing, name: str, names: DocumentNames, editor: EditorWorkspace
+    symbol: NamedSymbol, name: str, names: DocumentNames, editor: EditorWorkspace
 ) -> Iterator[tuple[str, TextChange]]:
     """Topics list rules by the beginnings of their names, also rules of books upon them."""
     heads = re.compile(r"\brule\s+([^\W\d]\w*)")
@@ -110,16 +112,16 @@ def _in_topics(
         document.text for document in map(editor.document, editor.sources()) if document is not None
     ]
     others = Counter(match[1] for text in texts for match in heads.finditer(text))
-    others[thing.name] -= sum(
+    others[symbol.name] -= sum(
         1
-        for book in books_with(thing, names, editor)
+        for book in books_with(symbol, names, editor)
         for occurrence in book.all()
-        if book.is_same(occurrence.thing, thing, names) and not occurrence.listed
+        if book.is_same(occurrence.symbol, symbol, names) and not occurrence.listed
         if _heads_a_rule(book, occurrence.span.start, occurrence.span.end)
     )
     done: set[tuple[str, int]] = set()
-    for book in books_with(thing, names, editor):
-        longest = _longest_listed(thing.name, book)
+    for book in books_with(symbol, names, editor):
+        longest = _longest_listed(symbol.name, book)
         for file in book.chain.books:
             uri = uri_of(file.span.source.name)
             path = path_of(uri)
@@ -128,7 +130,7 @@ def _in_topics(
             for entry in _topic_entries(file):
                 if not any(rule.text == longest for rule in entry.rules):
                     continue
-                change = _in_topic(entry, thing.name, name, book, others)
+                change = _in_topic(entry, symbol.name, name, book, others)
                 if change is not None and (uri, change.start) not in done:
                     done.add((uri, change.start))
                     yield uri, change
@@ -173,14 +175,14 @@ def _in_topic(
 
 
 def _refuse_other_meaning(
-    changes: Changes, thing: NamedThing, name: str, names: DocumentNames, editor: EditorWorkspace
+    changes: Changes, symbol: NamedSymbol, name: str, names: DocumentNames, editor: EditorWorkspace
 ) -> None:
     """Raise RefusedRenamingError unless all books mean the same afterwards."""
     trial = EditorWorkspace(editor.folders, editor.encoding)
     for uri, shown in editor.documents.items():
         trial.documents[uri] = Document(uri, shown.text, shown.version, shown.parsed)
     before: dict[str, CheckedDocument] = {}
-    for uri in _affected(changes, thing, name, names, editor):
+    for uri in _affected(changes, symbol, name, names, editor):
         document = editor.document(uri)
         assert document is not None, "it has been read before"
         before[uri] = _checked(editor, document)
@@ -194,20 +196,20 @@ def _refuse_other_meaning(
         new = _first_new(was.findings, now.findings)
         if new is not None:
             raise RefusedRenamingError(f"with `{name}` there would be a mistake: {new.message}")
-        if thing.kind not in _WORDS and _meaning(was, thing, name) != _meaning(now, thing, name):
+        if symbol.kind not in _WORDS and _meaning(was, symbol, name) != _meaning(now, symbol, name):
             raise RefusedRenamingError(
                 f"with `{name}` the rules in {file} would mean another thing"
             )
 
 
 def _affected(
-    changes: Changes, thing: NamedThing, name: str, names: DocumentNames, editor: EditorWorkspace
+    changes: Changes, symbol: NamedSymbol, name: str, names: DocumentNames, editor: EditorWorkspace
 ) -> list[str]:
     """The documents that are changed, and all others upon them with the old name or the new one."""
     uris = dict.fromkeys(changes)
-    declared = os.path.realpath(thing.span.source.name)
-    for named_thing in (thing, replace(thing, name=name)):
-        for other in books_with(named_thing, names, editor):
+    declared = os.path.realpath(symbol.span.source.name)
+    for named_symbol in (symbol, replace(symbol, name=name)):
+        for other in books_with(named_symbol, names, editor):
             files = (*other.chain.books, *other.chain.vocabularies)
             if any(os.path.realpath(file.span.source.name) == declared for file in files):
                 uris[uri_of(other.checked.path or other.checked.name)] = None
@@ -231,7 +233,7 @@ def _first_new(before: Sequence[Diagnostic], after: Sequence[Diagnostic]) -> Dia
 
 
 def _meaning(
-    checked: CheckedDocument, thing: NamedThing, name: str
+    checked: CheckedDocument, symbol: NamedSymbol, name: str
 ) -> tuple[dict[str, Rule], object] | None:
     """The rules and their order, with the new name for the old one."""
     book = None if checked.resolved is None else checked.resolved.rulebook
@@ -239,7 +241,7 @@ def _meaning(
         return None
 
     def called(text: str, kind: str) -> str:
-        return name if kind == thing.kind and text == thing.name else text
+        return name if kind == symbol.kind and text == symbol.name else text
 
     rules = {
         called(rule.name, "rule"): replace(
@@ -268,10 +270,10 @@ def workspace_edit(changes: Changes, editor: EditorWorkspace) -> lsp.WorkspaceEd
 
 def placeholder(
     names: DocumentNames, offset: int, editor: EditorWorkspace
-) -> tuple[NamedThing, int, int]:
+) -> tuple[NamedSymbol, int, int]:
     """What would be renamed at a character, and where. Raises RefusedRenamingError."""
     occurrence = names.at(offset)
     if occurrence is None:
         raise RefusedRenamingError("there is no name here that could be another one")
-    refuse_in_general(occurrence.thing, editor)
-    return occurrence.thing, *names.bounds(occurrence.span)
+    refuse_in_general(occurrence.symbol, editor)
+    return occurrence.symbol, *names.bounds(occurrence.span)

@@ -147,7 +147,7 @@ def _in_other_letters(own: str, like: str, text: str) -> Iterator[Edit]:
 
 
 def _changing(head: str, text: str, start: int) -> Iterator[Edit]:
-    """An inherited thing given another value in place of being declared again."""
+    """An inherited symbol given another value in place of being declared again."""
     first = text.rfind("\n", 0, start) + 1
     equals = text.find("=", start, _line_end(text, start))
     if equals >= 0:

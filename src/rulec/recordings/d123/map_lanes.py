@@ -1,6 +1,6 @@
 """Maps of 123D as lanelets.
 
-By the map writer and the map layers of py123d 0.7: a row for each thing, with its layer, its id
+By the map writer and the map layers of py123d 0.7: a row for each object, with its layer, its id
 within that, its outline or line as well-known binary, and what else there is of it as MessagePack,
 in which arrays are maps of type, shape and bytes. Bounds lie in the direction of travel.
 """
@@ -58,25 +58,25 @@ _MARKS: Mapping[int, LaneMark] = {
 
 
 @dataclass(frozen=True, slots=True)
-class _Thing:
-    """A row: its number, what is said of it, and its geometry as bytes."""
+class _Entry:
+    """A row: its number, its id, its ``features`` and its geometry as bytes."""
 
     row: int
     id: int
-    said: Mapping[Any, Any]
+    features: Mapping[Any, Any]
     shape: bytes
 
 
 @dataclass(frozen=True, slots=True)
 class _Layers:
     table: ArrowTable
-    by_number: Mapping[int, list[_Thing]]
+    by_number: Mapping[int, list[_Entry]]
 
-    def of(self, layer: int) -> list[_Thing]:
+    def of(self, layer: int) -> list[_Entry]:
         return self.by_number.get(layer, [])
 
-    def wrong(self, thing: _Thing, why: str) -> RulecError:
-        return self.table.refused(thing.row, why)
+    def wrong(self, entry: _Entry, why: str) -> RulecError:
+        return self.table.refused(entry.row, why)
 
 
 def read_d123_map(path: Path) -> RoadMap:
@@ -120,7 +120,7 @@ def _layers(path: Path) -> _Layers:
         nested_bytes=(Nested(name="features"), Nested(name="wkb")),
     )
     table = read_table(path, MAP, wanted)
-    by_layer: dict[int, list[_Thing]] = defaultdict(list)
+    by_layer: dict[int, list[_Entry]] = defaultdict(list)
     ids, layers = (table.whole[name].tolist() for name in ("object_id", "map_layer"))
     packed, shapes = (table.nested[name].values for name in ("features", "wkb"))
     for row, (key, layer) in enumerate(zip(ids, layers, strict=True)):
@@ -132,52 +132,52 @@ def _layers(path: Path) -> _Layers:
             raise table.refused(row, "its `features` are damaged") from None
         if not isinstance(features, dict):
             raise table.refused(row, "its `features` are no table of names and values")
-        by_layer[layer].append(_Thing(row, key, features, shapes[row]))
+        by_layer[layer].append(_Entry(row, key, features, shapes[row]))
     return _Layers(table, by_layer)
 
 
 def _lanes(layers: _Layers) -> Iterator[Lanelet]:
-    things = {}
-    for thing in layers.of(_LANE):
-        if thing.id in things:
-            raise layers.wrong(thing, f"there are two lanes {thing.id}")
-        things[thing.id] = thing
+    entries = {}
+    for entry in layers.of(_LANE):
+        if entry.id in entries:
+            raise layers.wrong(entry, f"there are two lanes {entry.id}")
+        entries[entry.id] = entry
     bounds = {}
-    for name, thing in things.items():
-        lines = [_line(layers, thing, f"{side}_boundary") for side in ("left", "right")]
+    for name, entry in entries.items():
+        lines = [_line(layers, entry, f"{side}_boundary") for side in ("left", "right")]
         # At the edge of a part that has been cut out a lane may be a point
         if min(map(len, lines)) > 1:
             bounds[name] = lines[0], lines[1]
     inside = {
         group.id
         for group in layers.of(_LANE_GROUP)
-        if group.said.get("intersection_id") is not None
+        if group.features.get("intersection_id") is not None
     }
     before: dict[int, dict[int, None]] = defaultdict(dict)
     for name in bounds:
-        before[name] |= dict.fromkeys(_ids(layers, things[name], "predecessor_ids"))
+        before[name] |= dict.fromkeys(_ids(layers, entries[name], "predecessor_ids"))
     for name in bounds:
-        for after in _ids(layers, things[name], "successor_ids"):
+        for after in _ids(layers, entries[name], "successor_ids"):
             before[after][name] = None
     paint = _Paint(layers)
     for name, own in bounds.items():
-        thing = things[name]
+        entry = entries[name]
         left, right = paired(*own)
-        kind = thing.said.get("lane_type")
+        kind = entry.features.get("lane_type")
         if not isinstance(kind, int) or kind not in _TYPES:
-            raise layers.wrong(thing, f"a lane is of the type {kind!s:.40}")
-        crossing = ("intersection",) * (thing.said.get("lane_group_id") in inside)
+            raise layers.wrong(entry, f"a lane is of the type {kind!s:.40}")
+        crossing = ("intersection",) * (entry.features.get("lane_group_id") in inside)
         yield Lanelet(
             id=str(name),
             left=left,
             right=right,
             centre=(left + right) / 2,
-            successors=_known(_ids(layers, thing, "successor_ids"), bounds),
+            successors=_known(_ids(layers, entry, "successor_ids"), bounds),
             predecessors=_known(before[name], bounds),
-            left_of=_beside(thing, bounds, left=True),
-            right_of=_beside(thing, bounds, left=False),
+            left_of=_beside(entry, bounds, left=True),
+            right_of=_beside(entry, bounds, left=False),
             types=frozenset((*_TYPES[kind], *crossing)),
-            limit_mps=_limit(layers, thing),
+            limit_mps=_limit(layers, entry),
             left_mark=paint.along(own[0]),
             right_mark=paint.along(own[1]),
         )
@@ -187,23 +187,23 @@ def _known(names: Iterable[int], bounds: Mapping[int, object]) -> tuple[str, ...
     return tuple(str(name) for name in names if name in bounds)
 
 
-def _ids(layers: _Layers, thing: _Thing, name: str) -> list[int]:
-    ids = thing.said.get(name)
+def _ids(layers: _Layers, entry: _Entry, name: str) -> list[int]:
+    ids = entry.features.get(name)
     if ids is None:
         return []
     if not isinstance(ids, list) or not all(isinstance(x, int) for x in ids):
-        raise layers.wrong(thing, f"`{name}` is no list of ids")
+        raise layers.wrong(entry, f"`{name}` is no list of ids")
     return list(dict.fromkeys(ids))
 
 
-def _beside(lane: _Thing, bounds: Mapping[int, tuple[Points, Points]], *, left: bool) -> str | None:
+def _beside(lane: _Entry, bounds: Mapping[int, tuple[Points, Points]], *, left: bool) -> str | None:
     """The lane beside one if it leads the same way; data sets name others there, too."""
-    other = lane.said.get("left_lane_id" if left else "right_lane_id")
+    other = lane.features.get("left_lane_id" if left else "right_lane_id")
     return str(other) if leads_the_same_way(bounds, lane.id, other, left=left) else None
 
 
-def _limit(layers: _Layers, lane: _Thing) -> float | None:
-    limit = lane.said.get("speed_limit_mps")
+def _limit(layers: _Layers, lane: _Entry) -> float | None:
+    limit = lane.features.get("speed_limit_mps")
     if limit is None:
         return None
     if not isinstance(limit, int | float) or not 0 < limit < LARGEST:
@@ -211,16 +211,16 @@ def _limit(layers: _Layers, lane: _Thing) -> float | None:
     return float(limit)
 
 
-def _line(layers: _Layers, thing: _Thing, name: str) -> Points:
-    """A line in what is said of a thing, without heights."""
-    points = _array(thing.said.get(name))
+def _line(layers: _Layers, entry: _Entry, name: str) -> Points:
+    """A line among the features of an object, without heights."""
+    points = _array(entry.features.get(name))
     if points is None or not len(points):
-        raise layers.wrong(thing, f"`{name}` is no array of places")
+        raise layers.wrong(entry, f"`{name}` is no array of places")
     if not (np.abs(points[:, :2]) < LARGEST).all():
-        raise layers.wrong(thing, f"a place of `{name}` is not on earth")
+        raise layers.wrong(entry, f"a place of `{name}` is not on earth")
     flat = points[:, :2].astype(float)
     if line_length(flat) > LONGEST_M:
-        raise layers.wrong(thing, f"`{name}` is longer than {LONGEST_M / 1000:g} km")
+        raise layers.wrong(entry, f"`{name}` is longer than {LONGEST_M / 1000:g} km")
     return without_repeats(flat, _CLOSEST_M)
 
 
@@ -243,9 +243,9 @@ class _Paint:
     """The lines of a map."""
 
     def __init__(self, layers: _Layers) -> None:
-        things = layers.of(_ROAD_LINE)
-        self._lines = [_shape(layers, thing) for thing in things]
-        self._marks = [_mark(thing) for thing in things]
+        entries = layers.of(_ROAD_LINE)
+        self._lines = [_shape(layers, entry) for entry in entries]
+        self._marks = [_mark(entry) for entry in entries]
         self._tree = shapely.STRtree(self._lines)
 
     def along(self, bound: Points) -> LaneMark | None:
@@ -262,13 +262,13 @@ class _Paint:
         return marks.pop() if len(marks) == 1 else None
 
 
-def _mark(line: _Thing) -> LaneMark | None:
+def _mark(line: _Entry) -> LaneMark | None:
     """What kind of mark a line is; None for a kind that is not known."""
-    kind = line.said.get("road_line_type")
+    kind = line.features.get("road_line_type")
     return _MARKS.get(kind) if isinstance(kind, int) else None
 
 
-def _shape(layers: _Layers, line: _Thing) -> shapely.LineString:
+def _shape(layers: _Layers, line: _Entry) -> shapely.LineString:
     """A line of the map without heights."""
     try:
         # Of places that are no numbers there is more to say than a warning
@@ -284,15 +284,15 @@ def _shape(layers: _Layers, line: _Thing) -> shapely.LineString:
 
 def _stop_zones(layers: _Layers) -> Iterator[StopZone]:
     """The zones of signs."""
-    for thing in layers.of(_STOP_ZONE):
-        kind = thing.said.get("stop_zone_type")
+    for entry in layers.of(_STOP_ZONE):
+        kind = entry.features.get("stop_zone_type")
         if isinstance(kind, int) and kind in SIGNS:
-            lanes = tuple(map(str, _ids(layers, thing, "lane_ids")))
-            yield StopZone(SIGNS[kind], _line(layers, thing, "outline"), lanes)
+            lanes = tuple(map(str, _ids(layers, entry, "lane_ids")))
+            yield StopZone(SIGNS[kind], _line(layers, entry, "outline"), lanes)
 
 
 def _crosswalks(layers: _Layers) -> Iterator[Lanelet]:
-    for thing in layers.of(_CROSSWALK):
-        outline = _line(layers, thing, "outline")
+    for entry in layers.of(_CROSSWALK):
+        outline = _line(layers, entry, "outline")
         if len(outline) > 3:
-            yield crosswalk_with_outline(f"crosswalk {thing.id}", outline)
+            yield crosswalk_with_outline(f"crosswalk {entry.id}", outline)
