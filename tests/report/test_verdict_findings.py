@@ -17,7 +17,7 @@ from rulec.report.verdict_findings.finding_writers import ENDINGS, finding_write
 from rulec.report.verdict_findings.mcap_file_writer import JsonChannel, TimedMessage, write_mcap
 from rulec.report.verdict_findings.verdict_finding import (
     COLUMNS,
-    FindingsOf,
+    FindingContext,
     RecordingFindings,
     VerdictFinding,
 )
@@ -77,7 +77,7 @@ BROKEN = RecordingFindings(
 
 def written(rules, form, *found):
     stream = io.BytesIO()
-    writer = finding_writer(form, stream, FindingsOf(rules, "9.9"), "f")
+    writer = finding_writer(form, stream, FindingContext(rules, "9.9"), "f")
     for one in found:
         writer.add(one)
     writer.close()

@@ -95,11 +95,11 @@ def verdict_outputs(
                 lines.append(files.enter_context(answer_lines(output)))
             else:
                 # Documents in JSON, 12 ms: only where there are findings to be written.
-                from rulec.report.verdict_findings.verdict_finding import FindingsOf
+                from rulec.report.verdict_findings.verdict_finding import FindingContext
 
                 stream, name = files.enter_context(output_stream(output))
                 writer = finding_writer(
-                    output.form, stream, FindingsOf(rules, columns=columns), name
+                    output.form, stream, FindingContext(rules, columns=columns), name
                 )
                 outputs._writers.append((writer, name))
         if len(written) == len(to) and not outputs._text:

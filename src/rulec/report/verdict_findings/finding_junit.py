@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.report.text.xml_text import HEAD, element, written, xml_text
 from rulec.report.verdict_findings.verdict_finding import (
-    FindingsOf,
+    FindingContext,
     RecordingFindings,
     VerdictFinding,
 )
@@ -23,7 +23,7 @@ class JUnitWriter:
     and nobody is known to violate it: nothing passes that nobody saw.
     """
 
-    def __init__(self, stream: IO[bytes], about: FindingsOf) -> None:
+    def __init__(self, stream: IO[bytes], about: FindingContext) -> None:
         self._stream = stream
         self._about = about
         stream.write(f'{HEAD}<testsuites name="rulec">\n'.encode())

@@ -15,7 +15,7 @@ from rulec.file_messages import UNWRITABLE_FILE
 from rulec.report.verdict_findings.mcap_file_writer import JsonChannel, TimedMessage, write_mcap
 from rulec.report.verdict_findings.verdict_finding import (
     COLUMNS,
-    FindingsOf,
+    FindingContext,
     RecordingFindings,
     VerdictFinding,
     as_json,
@@ -40,7 +40,7 @@ class McapWriter:
     A file has one time line, so it is about one recording.
     """
 
-    def __init__(self, stream: IO[bytes], about: FindingsOf, name: str) -> None:
+    def __init__(self, stream: IO[bytes], about: FindingContext, name: str) -> None:
         self._stream = stream
         self._about = about
         self._name = name

@@ -12,7 +12,7 @@ from typing import IO, Any
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.report.findings.sarif import SCHEMA, uri_of
 from rulec.report.verdict_findings.verdict_finding import (
-    FindingsOf,
+    FindingContext,
     RecordingFindings,
     VerdictFinding,
 )
@@ -27,7 +27,7 @@ class SarifWriter:
     Results are written as they come; what could not be judged is kept for the end.
     """
 
-    def __init__(self, stream: IO[bytes], about: FindingsOf) -> None:
+    def __init__(self, stream: IO[bytes], about: FindingContext) -> None:
         self._stream = stream
         self._numbers = {name: number for number, name in enumerate(about.rules)}
         self._notes: list[dict[str, Any]] = []

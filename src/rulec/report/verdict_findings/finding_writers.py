@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import IO, TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from rulec.report.verdict_findings.verdict_finding import FindingsOf, RecordingFindings
+    from rulec.report.verdict_findings.verdict_finding import FindingContext, RecordingFindings
 
 ENDINGS: Mapping[str, tuple[str, ...]] = {
     "jsonl": (".jsonl", ".ndjson"),
@@ -31,7 +31,7 @@ class FindingWriter(Protocol):
         """Write what comes at the end. Raises RulecError."""
 
 
-def finding_writer(form: str, stream: IO[bytes], about: FindingsOf, name: str) -> FindingWriter:
+def finding_writer(form: str, stream: IO[bytes], about: FindingContext, name: str) -> FindingWriter:
     """A writer of a format, for a stream that is called ``name`` in messages.
 
     Raises RulecError R0706 if Parquet cannot be written here.

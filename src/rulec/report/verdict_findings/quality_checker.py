@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.report.text.xml_text import HEAD, element, written
 from rulec.report.verdict_findings.verdict_finding import (
-    FindingsOf,
+    FindingContext,
     RecordingFindings,
     VerdictFinding,
 )
@@ -33,7 +33,7 @@ class QualityCheckerWriter:
     Hard rules are errors, soft ones warnings, and what is open is information.
     """
 
-    def __init__(self, stream: IO[bytes], about: FindingsOf) -> None:
+    def __init__(self, stream: IO[bytes], about: FindingContext) -> None:
         self._stream = stream
         self._about = about
         self._issues = 0

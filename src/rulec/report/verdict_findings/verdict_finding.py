@@ -153,7 +153,7 @@ class RecordingFindings:
     """The findings of a recording, or of a file of traces, with the number of its ``drives``.
 
     Without drives, and with one finding without a rule, it could not be judged at all. ``rows`` are
-    those of drives, rules and findings, if they are wanted (``FindingsOf.columns``).
+    those of drives, rules and findings, if they are wanted (``FindingContext.columns``).
     """
 
     __repr__ = short_repr
@@ -185,8 +185,8 @@ class RecordingFindings:
 
 
 @dataclass(frozen=True)
-class FindingsOf:
-    """What all findings are of: a rulebook, judged by a version of rulec.
+class FindingContext:
+    """What all findings have in common: the rulebook, and the version of rulec that judged.
 
     With ``columns`` tables have rows of drives, rules and findings, with these in them.
     """
