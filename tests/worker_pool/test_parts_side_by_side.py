@@ -8,7 +8,7 @@ import pytest
 import rulec
 from rulec.batch import worker_pool
 from rulec.batch.jobs import Jobs
-from rulec.batch.recording_judge import JudgedRecording, JudgeSettings, judge_aloud
+from rulec.batch.recording_judge import JudgedRecording, JudgeSettings, judge_with_progress
 from rulec.diagnostics import RulecError
 from rulec.extraction import recording_parts
 from rulec.extraction.recording_parts import egos_of
@@ -53,7 +53,9 @@ def pieces(rules, jobs, to_explain, **more):
         findings=True,
     )
     counted = []
-    found = list(judge_aloud(settings, str(world.data), lambda *n: counted.append(n), jobs, **more))
+    found = list(
+        judge_with_progress(settings, str(world.data), lambda *n: counted.append(n), jobs, **more)
+    )
     return found, counted
 
 

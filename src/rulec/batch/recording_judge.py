@@ -95,17 +95,17 @@ def _nobody(*_: object) -> None:
 
 def judge(settings: JudgeSettings, path: str) -> Iterator[Piece]:
     """The pieces of a file, in its order; one that cannot be read is an error."""
-    return judge_aloud(settings, path, _nobody)
+    return judge_with_progress(settings, path, _nobody)
 
 
-def judge_aloud(
+def judge_with_progress(
     settings: JudgeSettings,
     path: str,
     tell: Callable[[int, int], object],
     jobs: Jobs = _ALONE,
     lost: Callable[[int | None], object] = _nobody,
 ) -> Iterator[Piece]:
-    """As ``judge``; it tells how many vehicles, or parts, of how many are done.
+    """As ``judge``; ``tell`` is told how many vehicles, or parts, are done, and of how many.
 
     Parts of a long recording are judged in several processes; ``lost`` is told by which signal one
     of them was killed, whose part is judged again.

@@ -15,7 +15,7 @@ from rulec.batch.recording_judge import (
     JudgeSettings,
     Piece,
     in_a_line,
-    judge_aloud,
+    judge_with_progress,
 )
 from rulec.cli.output import print_lost
 from rulec.cli.standard_input import copied
@@ -82,7 +82,7 @@ class RecordingRun:
             return
         (file,) = files
         with progress(f"judging {self.settings.labels.get(file, file)}", 1) as tell:
-            pieces = judge_aloud(
+            pieces = judge_with_progress(
                 self.settings,
                 file,
                 lambda done, all_: tell(done / all_),

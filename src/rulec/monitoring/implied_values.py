@@ -14,7 +14,7 @@ from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
 
 
-def with_all_said(
+def with_derived_values(
     trace: Trace, vocabulary: Vocabulary, where: Callable[[int], str] = "state {}".format
 ) -> Trace:
     """The trace ``with_constants`` and ``with_implied_values``. Raises RulecError R0503."""

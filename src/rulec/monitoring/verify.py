@@ -13,7 +13,7 @@ from rulec.diagnostics import Diagnostic, Label, RulecError, SourceLocation
 from rulec.diagnostics.diagnostic import as_answer, with_place
 from rulec.monitoring.axiom_violations import check_counting_axioms
 from rulec.monitoring.bindings import Binding, Cast, types_of
-from rulec.monitoring.implied_values import with_all_said
+from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.state_validation import StateValidator, check_objects, check_told
 from rulec.monitoring.verdict import NotJudged, Verdict, Violation, agreed
@@ -40,7 +40,7 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
         from rulec.monitoring.uncertainty.uncertain_verdict import uncertain_verdict
 
         # What is unknown of everybody is so of each one of whom nothing is said elsewhere.
-        trace = with_all_said(spelled_out(trace, rulebook.vocabulary), rulebook.vocabulary)
+        trace = with_derived_values(spelled_out(trace, rulebook.vocabulary), rulebook.vocabulary)
         return uncertain_verdict(trace, rulebook)
     reader = letter_reader_of(trace, rulebook)
     check_counting_axioms(rulebook, len(trace.states), reader.view, "state {}".format, trace.place)
@@ -95,7 +95,7 @@ def letter_reader_of(
 
     Raises RulecError R0503 if a constant changes.
     """
-    trace = with_all_said(trace, rulebook.vocabulary, where)
+    trace = with_derived_values(trace, rulebook.vocabulary, where)
     place, objects, present = trace.place, trace.objects, trace.present
     return LetterReader(
         trace.states, rulebook, where, place=place, objects=objects, present=present

@@ -12,7 +12,7 @@ from rulec.monitoring.batch.columns.block_columns import BlockGroup, columnize_b
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.columns.line_columns import columnize_lines
 from rulec.monitoring.batch.trace_groups import Names, Shape, group_traces, shape_of
-from rulec.monitoring.implied_values import with_all_said
+from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
 from rulec.trace import Trace
@@ -58,7 +58,7 @@ def alike_traces(
         trace = items[place]
         assert isinstance(trace, Trace), "it has been judged"
         if vocabulary.constants or vocabulary.implied:
-            trace = with_all_said(spelled_out(trace, vocabulary), vocabulary)
+            trace = with_derived_values(spelled_out(trace, vocabulary), vocabulary)
         shapes.setdefault((*shape_of(trace), trace.ends, trace.told), []).append((place, trace))
     makers += [partial(_of_traces, placed, vocabulary) for placed in shapes.values()]
     for made in makers:
@@ -69,7 +69,7 @@ def alike_traces(
 def traces_of_group(group: BlockGroup, vocabulary: Vocabulary) -> AlikeTraces:
     """The traces of one shape of a block. Raises UnencodableError."""
     columns = columnize_block(group, vocabulary)
-    _check_all_said(columns, vocabulary)
+    _check_nothing_derived(columns, vocabulary)
     traces = group.traces.tolist()
     return AlikeTraces(traces, columns, lambda number: group.presence.objects_of(traces[number]))
 
@@ -77,7 +77,7 @@ def traces_of_group(group: BlockGroup, vocabulary: Vocabulary) -> AlikeTraces:
 def traces_of_lines(lines: AlikeLines, vocabulary: Vocabulary) -> AlikeTraces:
     """The traces of lines, ``places`` being those of the lines. Raises UnencodableError."""
     order, columns = columnize_lines(lines, vocabulary)
-    _check_all_said(columns, vocabulary)
+    _check_nothing_derived(columns, vocabulary)
     headings = [lines.headings[place] for place in order.tolist()]
     return AlikeTraces(
         lines.lines[order].tolist(), columns, lambda number: tuple(headings[number].objects)
@@ -101,7 +101,7 @@ def _of_traces(placed: Sequence[tuple[int, Trace]], vocabulary: Vocabulary) -> A
     )
 
 
-def _check_all_said(columns: TraceColumns, vocabulary: Vocabulary) -> None:
+def _check_nothing_derived(columns: TraceColumns, vocabulary: Vocabulary) -> None:
     """Raises UnencodableError if facts tell more than columns that were read from a file."""
     for (name, _), values in columns.values.items():
         if name in vocabulary.constants and _changes(values, columns.layout):

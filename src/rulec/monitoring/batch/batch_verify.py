@@ -22,7 +22,7 @@ from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.engine import verify_cells, verify_columns
 from rulec.monitoring.batch.verdict_columns import VerdictColumns
 from rulec.monitoring.bindings import Cast, types_of
-from rulec.monitoring.implied_values import with_all_said
+from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import (
     check_objects,
@@ -100,7 +100,7 @@ def verify_chunk(
         if isinstance(item, Trace):
             try:
                 if rulebook.vocabulary.constants or rulebook.vocabulary.implied:
-                    item = _with_all_said(item, rulebook.vocabulary)
+                    item = _with_derived_values(item, rulebook.vocabulary)
                 shape = *trace_groups.shape_of(item), item.ends, item.told
                 shapes.setdefault(shape, []).append((place, item))
             except (TypeError, AttributeError, LookupError, RulecError):
@@ -215,14 +215,14 @@ def _is_partial(state: object) -> bool:
     return isinstance(state, Mapping) and has_partial_values(state)
 
 
-def _with_all_said(trace: Trace, vocabulary: Vocabulary) -> Trace:
+def _with_derived_values(trace: Trace, vocabulary: Vocabulary) -> Trace:
     about = [x for x in vocabulary.constants if vocabulary.declarations[x].parameters]
     if any(state.get(name) is UNKNOWN for name in about for state in trace.states):
         # As above, for partial states alone.
         from rulec.monitoring.uncertainty.suppositions import spelled_out
 
         trace = spelled_out(trace, vocabulary)
-    return with_all_said(trace, vocabulary)
+    return with_derived_values(trace, vocabulary)
 
 
 def rules_for(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:

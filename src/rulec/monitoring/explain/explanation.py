@@ -24,7 +24,7 @@ from rulec.monitoring.explain.explained_states import states_to_explain
 from rulec.monitoring.explain.margins import Margin, choosing_comparisons
 from rulec.monitoring.explain.nearest_satisfying import Repair, nearest_satisfying
 from rulec.monitoring.explain.observed_states import ObservedStates, known_value
-from rulec.monitoring.implied_values import with_all_said
+from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.letter_reader import LetterReader
 from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import has_partial_values
@@ -129,12 +129,10 @@ class Explanation:
     def __str__(self) -> str:
         """The rule, since when it cannot be kept, by how much, and what would have kept it."""
         rule, about = self.rule, self.violation.binding
-        cite = f" [{rule.cite}]" if rule.cite else ""
+        law = f" [{rule.cite}]" if rule.cite else ""
         bound = ", ".join(f"{name} = {item}" for name, item in about.items())
         bound = f" for {bound}" if bound else ""
-        lines = [
-            f"{rule.strength} rule {rule.name}{cite}{bound}: violated in state {self.decisive}"
-        ]
+        lines = [f"{rule.strength} rule {rule.name}{law}{bound}: violated in state {self.decisive}"]
         lines += [rule.says] if rule.says else []
         lines += map(str, self.margins())
         at = self.states.index(self.decisive)
@@ -178,7 +176,7 @@ def explain(
     never in a trace of which a window is looked at.
     """
     declared = rulebook.vocabulary
-    given = trace = with_all_said(trace, declared)
+    given = trace = with_derived_values(trace, declared)
     rule = next((rule for rule in rulebook.rules if rule.name == violation.rule), None)
     if rule is None:
         raise ValueError(f"{rulebook.name} has no rule `{violation.rule}`, which was violated")

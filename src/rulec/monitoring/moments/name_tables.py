@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from rulec.automata.thresholds import EXACT_IN_FLOATS
 from rulec.monitoring.batch.columns.columnize import UnencodableError, columnize
 from rulec.monitoring.batch.trace_groups import group_traces
-from rulec.monitoring.implied_values import with_all_said
+from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.state_view import value_in, with_values
 from rulec.monitoring.uncertainty.suppositions import spelled_out
 from rulec.monitoring.uncertainty.untold_names import untold_names, with_untold
@@ -184,7 +184,7 @@ class ColumnTables(NameTables):
 def tables_of_trace(trace: Trace, vocabulary: Vocabulary) -> NameTables:
     """Tables of a trace with states."""
     if vocabulary.constants or vocabulary.implied:
-        trace = with_all_said(spelled_out(trace, vocabulary), vocabulary)
+        trace = with_derived_values(spelled_out(trace, vocabulary), vocabulary)
     untold = untold_names(vocabulary, trace.told)
     columns = _columns_of(trace, with_untold(vocabulary, untold) if untold else vocabulary)
     return ColumnTables(columns, vocabulary, trace.told)

@@ -269,12 +269,12 @@ class _CloseLook:
     @cached_property
     def _run(self) -> UncertainRun:
         # Judging by states, 5 ms: only where arrays do not tell.
-        from rulec.monitoring.implied_values import with_all_said
+        from rulec.monitoring.implied_values import with_derived_values
         from rulec.monitoring.uncertainty.suppositions import spelled_out
         from rulec.monitoring.uncertainty.uncertain_verdict import UncertainRun
 
         vocabulary = self._rulebook.vocabulary
-        trace = with_all_said(spelled_out(self._trace.trace(), vocabulary), vocabulary)
+        trace = with_derived_values(spelled_out(self._trace.trace(), vocabulary), vocabulary)
         return UncertainRun(trace, self._rulebook)
 
     def answer(self, rule: str, binding: Mapping[str, str]) -> ViolationOrOpen | None:
