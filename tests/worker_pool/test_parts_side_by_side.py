@@ -53,9 +53,11 @@ def pieces(rules, jobs, to_explain, **more):
         findings=True,
     )
     counted = []
-    found = list(
-        judge_with_progress(settings, str(world.data), lambda *n: counted.append(n), jobs, **more)
-    )
+
+    def tell(*numbers):
+        counted.append(numbers)
+
+    found = list(judge_with_progress(settings, str(world.data), tell, jobs, **more))
     return found, counted
 
 
