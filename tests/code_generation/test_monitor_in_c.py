@@ -165,7 +165,7 @@ def test_a_pointer_that_leads_nowhere(esterle):
     step = esterle.call("step")
     monitor = CMonitor(esterle)
     given = esterle.input_type()
-    assert step(None, ctypes.byref(given), monitor.said) == 1
+    assert step(None, ctypes.byref(given), monitor.answer) == 1
     given.n_objects = 1
     assert monitor.take(given) == 1
     given.n_objects = 60_001

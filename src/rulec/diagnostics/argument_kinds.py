@@ -161,7 +161,7 @@ def _unexpected(name: str, annotation: str, value: object) -> TypeError:
     items = [inner for kind in kinds for own in kind.items for inner in _kinds(own)]
     names = [kind.name for kind in (*kinds, *items)]
     ways = [WAYS_OUT[name] for name in names if name in WAYS_OUT]
-    phrases = [kind.said for kind in kinds if kind.name not in _UNSAID]
+    phrases = [kind.phrase for kind in kinds if kind.name not in _UNSAID]
     listed = " or ".join(filter(None, (", ".join(phrases[:-1]), phrases[-1])))
     way_out = f": {ways[0]}" if ways else ""
     return TypeError(f"`{name}` is {listed}, not {type(value).__name__}{way_out}")
@@ -175,7 +175,7 @@ class _Kind:
     """
 
     name: str
-    said: str
+    phrase: str
     holds: Callable[[type], bool]
     items: tuple[str, ...] = ()
 

@@ -21,7 +21,7 @@ from rulec.vocabulary import Vocabulary
 from rulec.witnesses import letter_functions
 from rulec.witnesses.object_universe import EXTRA, Itself, ObjectUniverse
 from rulec.witnesses.relevant_axioms import (
-    SaidAxiom,
+    GroundAxiom,
     axioms_about,
     relevant_axioms,
     subjects_read,
@@ -194,7 +194,7 @@ class CountedObjectKinds:
             axiom.holds_by_default and known.reached.isdisjoint(axiom.subjects) for axiom in own
         ):
             return known  # they are about what nothing asks
-        axioms = (*known.said, *own)
+        axioms = (*known.axioms, *own)
         vocabulary = Itself(self.universe.vocabulary)
         return _fitting_type(known.counted.type, known.places, known.bodies, axioms, vocabulary)
 
@@ -206,12 +206,12 @@ class CountedObjectKinds:
                 _digit(counted.reads[place], state, vocabulary)
                 if rest is None
                 else state.total(rest, vocabulary, {})
-                for place, rest in counted.asked
+                for place, rest in counted.inputs
             ]
         )
         if given not in counted.by_given:
             known: list[int | Fraction] = [0] * len(counted.reads)
-            for (place, _), value in zip(counted.asked, given, strict=True):
+            for (place, _), value in zip(counted.inputs, given, strict=True):
                 known[place] = value
             counted.by_given[given] = tuple(_first_of_each(counted, known, vocabulary))
         return counted.by_given[given]
@@ -222,9 +222,9 @@ class _CountedType:
     """A type of additional objects, and what decides which counts one adds to.
 
     Letters are those of ``reads``; sets of them are the bits of integers. ``counted`` has for each
-    count those in which it counts, ``allowed`` for each axiom those in which it holds. A state is
-    ``asked`` for the digits of reads that are not about the object, and for the sum of such terms
-    in those that are. Objects are kept in ``by_given``, by what a state gives.
+    count those in which it counts, ``allowed`` for each axiom those in which it holds. The
+    ``inputs`` from a state are the digits of reads that are not about the object, and the sum of
+    such terms in those that are. Objects are kept in ``by_given``, by what a state gives.
     """
 
     type: str
@@ -232,7 +232,7 @@ class _CountedType:
     are_about_it: Sequence[bool]
     counted: Sequence[int]
     allowed: Sequence[int]
-    asked: Sequence[tuple[int, Sequence[tuple[Fraction, Term]] | None]]
+    inputs: Sequence[tuple[int, Sequence[tuple[Fraction, Term]] | None]]
     by_given: dict[object, tuple[CountedObject, ...]] = field(default_factory=dict)
 
 
@@ -241,14 +241,14 @@ class _FittingType:
     """A type of additional objects, with what decides which of the axioms matter to it.
 
     The first of the ``places`` is the number of all counts, the others are those of the ``bodies``.
-    ``said`` are the axioms about such an object, ``reached`` is what those that can tell anything
+    ``axioms`` are those about such an object, ``reached`` is what those that can tell anything
     about the bodies are about, and these.
     """
 
     counted: _CountedType
     places: tuple[int, ...]
     bodies: tuple[Formula, ...]
-    said: tuple[SaidAxiom, ...]
+    axioms: tuple[GroundAxiom, ...]
     reached: Set[Subject]
 
 
@@ -258,7 +258,7 @@ def _fitting_type(
     kind: str,
     places: tuple[int, ...],
     bodies: tuple[Formula, ...],
-    axioms: tuple[SaidAxiom, ...],
+    axioms: tuple[GroundAxiom, ...],
     vocabulary: Itself[Vocabulary],
 ) -> _FittingType:
     read = [reads_of(body, vocabulary.item) for body in bodies]
@@ -267,7 +267,7 @@ def _fitting_type(
     about = (*bodies, *(axiom.formula for axiom in relevant))
     counted = _counted_type(kind, places, about, vocabulary)
     reached = frozenset().union(*map(subjects_read, read), *(axiom.subjects for axiom in relevant))
-    return _FittingType(counted, places, bodies, said=axioms, reached=reached)
+    return _FittingType(counted, places, bodies, axioms=axioms, reached=reached)
 
 
 # Universes of a few objects and one vocabulary have the same additional ones.
@@ -287,14 +287,14 @@ def _counted_type(
     letters = dict(zip(counting, truths, strict=False))
     counted = tuple(letters.get(place, 0) for place in range(n_counts))
     are_about_it = [letter_functions.speaks_of_extra(read) for read in reads]
-    asked = [
+    inputs = [
         (place, rest)
         for place, (read, about_it) in enumerate(zip(reads, are_about_it, strict=True))
         for rest in (_rest_of(read) if about_it else None,)
         if rest is None or rest
     ]
     allowed = tuple(truths[len(counting) :])
-    return _CountedType(kind, reads, are_about_it, counted, allowed=allowed, asked=asked)
+    return _CountedType(kind, reads, are_about_it, counted, allowed=allowed, inputs=inputs)
 
 
 def _first_of_each(

@@ -28,7 +28,7 @@ from rulec.witnesses.diagrams.plainest_ways import (
 )
 from rulec.witnesses.joint_reads import joint_reads, merged, subject_of
 from rulec.witnesses.object_universe import ObjectUniverse
-from rulec.witnesses.relevant_axioms import relevant_axioms, said_axioms, subjects_read
+from rulec.witnesses.relevant_axioms import ground_axioms, relevant_axioms, subjects_read
 from rulec.witnesses.undecided import UndecidedError
 
 JointLetter = tuple[int, ...]
@@ -59,7 +59,7 @@ class JointAlphabet:
     ) -> None:
         self._universe = universe
         vocabulary = universe.vocabulary
-        axioms = list(said_axioms(universe))
+        axioms = list(ground_axioms(universe))
         facts = [axiom.function for axiom in axioms]
         reads = (read for function in (*monitors, *facts) for read in function.reads)
         self._counts = [
@@ -105,7 +105,7 @@ class JointAlphabet:
         usual._defaults, usual._digits = [*self._defaults], [*self._digits]
         reads = list(self._joint.reads)
         levels = {subject_of(read): level for level, read in enumerate(reads)}
-        for instance in said_axioms(replace(self._universe, axioms=tuple(axioms))):
+        for instance in ground_axioms(replace(self._universe, axioms=tuple(axioms))):
             (own,) = instance.function.reads
             level = levels.get(subject_of(own))
             default = None if level is None else self._defaults[level]

@@ -24,7 +24,7 @@ MOST_KEPT = 20_000
 
 
 @dataclass(frozen=True, eq=False)
-class SaidAxiom:
+class GroundAxiom:
     """An axiom that is said of objects: its formula, and what is asked of it again and again."""
 
     formula: Formula
@@ -56,7 +56,7 @@ class SaidAxiom:
         return _holds_by_default(self.function, self.vocabulary)
 
 
-def said_axioms(universe: ObjectUniverse) -> Iterator[SaidAxiom]:
+def ground_axioms(universe: ObjectUniverse) -> Iterator[GroundAxiom]:
     """The axioms, said of the universe's objects; those of one vocabulary are kept."""
     known = _known_instances(Itself(universe.vocabulary))
     if len(known) > MOST_KEPT:
@@ -65,11 +65,11 @@ def said_axioms(universe: ObjectUniverse) -> Iterator[SaidAxiom]:
         key = id(axiom), *names.values()
         if key not in known:
             # It is kept beside it, so that no other one can have its number.
-            known[key] = axiom, SaidAxiom(applied_to(axiom, names), universe.vocabulary)
+            known[key] = axiom, GroundAxiom(applied_to(axiom, names), universe.vocabulary)
         yield known[key][1]
 
 
-def axioms_about(name: str, kind: str, universe: ObjectUniverse) -> tuple[SaidAxiom, ...]:
+def axioms_about(name: str, kind: str, universe: ObjectUniverse) -> tuple[GroundAxiom, ...]:
     """The axioms that count nothing, said of one more object beside the universe's."""
     known = _about(Itself(universe.vocabulary))
     key = name, kind, tuple(universe.objects.items()), tuple(map(id, universe.axioms))
@@ -80,7 +80,7 @@ def axioms_about(name: str, kind: str, universe: ObjectUniverse) -> tuple[SaidAx
         instances = tuple(
             [
                 axiom
-                for axiom in said_axioms(with_it)
+                for axiom in ground_axioms(with_it)
                 if not axiom.is_counting and name in axiom.objects
             ]
         )
@@ -91,16 +91,16 @@ def axioms_about(name: str, kind: str, universe: ObjectUniverse) -> tuple[SaidAx
 @lru_cache(maxsize=8)
 def _about(
     _: Itself[Vocabulary],
-) -> dict[tuple[object, ...], tuple[Sequence[Axiom], tuple[SaidAxiom, ...]]]:
+) -> dict[tuple[object, ...], tuple[Sequence[Axiom], tuple[GroundAxiom, ...]]]:
     return {}
 
 
 @lru_cache(maxsize=8)
-def _known_instances(_: Itself[Vocabulary]) -> dict[tuple[object, ...], tuple[Axiom, SaidAxiom]]:
+def _known_instances(_: Itself[Vocabulary]) -> dict[tuple[object, ...], tuple[Axiom, GroundAxiom]]:
     return {}
 
 
-def relevant_axioms(axioms: Sequence[SaidAxiom], read: Iterable[Reads]) -> list[SaidAxiom]:
+def relevant_axioms(axioms: Sequence[GroundAxiom], read: Iterable[Reads]) -> list[GroundAxiom]:
     """The axioms, in their order, that speak of what is read, or lead from it to more.
 
     Those that defaults break are among them, and those that count objects. Raises UndecidedError.

@@ -13,7 +13,7 @@ from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.witnesses.joint_alphabet import JointAlphabet
 from rulec.witnesses.letter_functions import LetterFunction, counts_read
 from rulec.witnesses.object_universe import ObjectUniverse
-from rulec.witnesses.relevant_axioms import hold_by_default, said_axioms
+from rulec.witnesses.relevant_axioms import ground_axioms, hold_by_default
 
 
 def have_harmless_state(
@@ -36,7 +36,7 @@ def have_harmless_state(
     if (
         not counts_read(reads)
         and hold_by_default(contents, universe.vocabulary)
-        and all(axiom.holds_by_default for axiom in said_axioms(universe))
+        and all(axiom.holds_by_default for axiom in ground_axioms(universe))
     ):
         return True
     return JointAlphabet(universe, contents).can_be_read((1,) * len(contents))

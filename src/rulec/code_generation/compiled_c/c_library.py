@@ -142,7 +142,7 @@ def structures(layout: MonitorLayout) -> tuple[type[ctypes.Structure], type[ctyp
 
 
 @dataclass(frozen=True, slots=True)
-class CSaid:
+class CAnswer:
     """What a step of a monitor in C says: its ``status``, and the verdicts if that is 0."""
 
     status: int
@@ -160,16 +160,16 @@ class CMonitor:
         self.state = ctypes.create_string_buffer(library.call("state_size")())
         n_rules = len(library.layout.rules)
         # Two bytes for the rulebook and each rule, and two numbers of 32 bits.
-        self.said = ctypes.create_string_buffer(2 + 2 * n_rules + 16)
+        self.answer = ctypes.create_string_buffer(2 + 2 * n_rules + 16)
         self._ids: dict[str, int] = {}
         library.call("init")(self.state)
 
     def take(self, given: ctypes.Structure) -> int:
         """Take the next state as C has it; the status."""
         step = self._library.call("step")
-        return int(step(self.state, ctypes.byref(given), self.said))
+        return int(step(self.state, ctypes.byref(given), self.answer))
 
-    def step(self, state: State, objects: Mapping[str, str]) -> CSaid:
+    def step(self, state: State, objects: Mapping[str, str]) -> CAnswer:
         """Take the next state."""
         library = self._library
         return self.last_answer(self.take(library.input_of(state, objects, self._ids)))
@@ -180,13 +180,13 @@ class CMonitor:
         They are the rulebook's and each rule's: its best, and its worst.
         """
         end = (len(verdicts) + 3) // 4 * 4
-        answer = self.said.raw[: end + 4]
+        answer = self.answer.raw[: end + 4]
         counted = n_violations is None or int.from_bytes(answer[end:], "little") == n_violations
         return answer.startswith(verdicts) and counted
 
-    def last_answer(self, status: int) -> CSaid:
+    def last_answer(self, status: int) -> CAnswer:
         """What the last step, which came to this status, has said."""
-        answer = self.said.raw
+        answer = self.answer.raw
         names = [own.rule.name for own in self._library.layout.rules]
         verdicts = [
             within(_four(answer[place]), _four(answer[place + 1]))
@@ -194,7 +194,7 @@ class CMonitor:
         ]
         end = (2 * len(names) + 2 + 3) // 4 * 4
         numbers = [int.from_bytes(answer[at : at + 4], "little") for at in (end, end + 4)]
-        return CSaid(
+        return CAnswer(
             status, verdicts[0], dict(zip(names, verdicts[1:], strict=True)), numbers[0], numbers[1]
         )
 

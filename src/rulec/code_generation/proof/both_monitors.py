@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from rulec.code_generation.compiled_c.c_library import CLibrary, CMonitor, CSaid
+from rulec.code_generation.compiled_c.c_library import CAnswer, CLibrary, CMonitor
 from rulec.code_generation.monitor_layout import VERDICTS
 from rulec.code_generation.proof.probing_inputs import nests, weighs
 from rulec.code_generation.proof.random_drives import Drive, TableDrive
@@ -112,7 +112,7 @@ class BothMonitors:
             self._codes[verdict] = bytes(VERDICTS.index(outcome) for outcome in both)
         return self._codes[verdict]
 
-    def _compared(self, ours: SoFar, theirs: CSaid, n_lost: int | None, where: str) -> str:
+    def _compared(self, ours: SoFar, theirs: CAnswer, n_lost: int | None, where: str) -> str:
         if n_lost is not None and theirs.violations != n_lost:
             return f"the number of violations, {where}"
         for name in [name for name in ours.rules if name not in self._vague]:

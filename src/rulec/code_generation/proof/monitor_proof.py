@@ -42,7 +42,7 @@ _MOST_DIGITS = 1 << 12
 class ProofPart:
     """What has been compared, how often, and what differs, the first few."""
 
-    what: str
+    subject: str
     n: int
     differs: tuple[str, ...]
 
@@ -61,7 +61,7 @@ def proof_report(library: CLibrary, n_states: int = USUAL_STATES) -> str:
         f"monitor in {library.language} of {book.name}, by rulec {book.rulec}",
         *[f"source: {source.name}, SHA-256 {source.sha256}" for source in book.sources],
         f"compiled by: {library.command}, {library.compiler_version}",
-        *[f"{part.n:>9} {part.what}: 0 differ" for part in parts],
+        *[f"{part.n:>9} {part.subject}: 0 differ" for part in parts],
     ]
     return "\n".join([*lines, ""])
 

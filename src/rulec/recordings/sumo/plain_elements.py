@@ -85,7 +85,7 @@ class TextPlaces:
 class Elements:
     """Elements in columns.
 
-    ``named`` has their places among ``names``, ``whose`` those among ``keys``, which are in the
+    ``named`` has their places among ``names``, ``owners`` those among ``keys``, which are in the
     order in which they come first, as are ``types``, those of the first element of each. ``rows``
     are the numbers, NaN for a missing acceleration. ``on`` has for each lane and edge
     which of them it is, and the first element there; ``lamps`` are by element.
@@ -95,7 +95,7 @@ class Elements:
     named: NDArray[intp]
     keys: Sequence[str]
     types: Sequence[str]
-    whose: NDArray[intp]
+    owners: NDArray[intp]
     rows: NDArray[float64]
     on: dict[str, tuple[str, int]]
     lamps: dict[int, int]

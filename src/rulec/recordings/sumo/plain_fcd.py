@@ -180,9 +180,9 @@ class _Lines:
 
 def _add(data: FloatingCarData, new: Elements, moments: NDArray[intp]) -> None:
     """Add elements to tracks. Raises NotPlainError."""
-    order = np.argsort(new.whose.astype(np.uint32), kind="stable")
+    order = np.argsort(new.owners.astype(np.uint32), kind="stable")
     at, rows, named = moments[order], new.rows[order], new.named[order]
-    bounds = np.searchsorted(new.whose[order], np.arange(len(new.keys) + 1)).tolist()
+    bounds = np.searchsorted(new.owners[order], np.arange(len(new.keys) + 1)).tolist()
     for number, (key, start, end) in enumerate(zip(new.keys, bounds, bounds[1:], strict=False)):
         own, name = at[start:end], new.names[named[start]]
         if key not in data.tracks:
@@ -196,4 +196,4 @@ def _add(data: FloatingCarData, new: Elements, moments: NDArray[intp]) -> None:
         track.rows.frombytes(rows[start:end, :-1].tobytes())
         track.accelerations.frombytes(rows[start:end, -1].tobytes())
     for number, bits in new.lamps.items():
-        data.tracks[new.keys[new.whose[number]]].lamps[int(moments[number])] = bits
+        data.tracks[new.keys[new.owners[number]]].lamps[int(moments[number])] = bits

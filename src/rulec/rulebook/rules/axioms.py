@@ -117,14 +117,14 @@ class ExampleValues:
     What neither of them speaks of is not known. ``read`` are those: declarations and objects.
     """
 
-    said: ExampleState
+    given: ExampleState
     read: frozenset[tuple[str, tuple[str, ...]]]
     objects: Mapping[str, str]
     vocabulary: Vocabulary
 
     def value(self, name: str, items: tuple[str, ...]) -> bool | float | str | Unknown:
         """The value of a signal or an enumeration."""
-        known = self.said.get((name, items))
+        known = self.given.get((name, items))
         if known is None and (name, items) in self.read:
             known = self.vocabulary.declarations[name].default
         return Unknown(name, items) if known is None else known
@@ -167,7 +167,7 @@ def contradicted(
 
 
 def _violated(state: ExampleValues, axioms: Sequence[Axiom]) -> tuple[Axiom, str] | None:
-    known = {name for name, _ in (*state.said, *state.read)}
+    known = {name for name, _ in (*state.given, *state.read)}
     for axiom in axioms:
         names_decide = _deciding_names(axiom.formula)
         if names_decide is not None and known.isdisjoint(names_decide):

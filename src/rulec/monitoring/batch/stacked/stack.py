@@ -59,8 +59,8 @@ class Stack:
     ``defaults`` remember these as they stand in columns, for all that are judged by it.
 
     ``begins`` is where the states of each trace begin, ``starts`` where the cells of each object
-    do, both with the end of all as the last. ``said`` are the names that some state may say, and
-    whether they are about objects. ``trace_of``, ``firsts`` and ``lasts`` are the trace
+    do, both with the end of all as the last. ``is_about_objects`` tells of each name that some
+    state may say whether it is about objects. ``trace_of``, ``firsts`` and ``lasts`` are the trace
     and the first and last state of each object, among all, ``kind_of`` the number of its type
     among the ``kinds``.
     """
@@ -87,7 +87,7 @@ class Stack:
         self.kind_of: Places = np.array([numbers[kind] for kind in self.types], dtype=np.intp)
         self.names = [name for trace in traces for name in trace.objects]
         about = dict.fromkeys(traces[0].about, True)
-        self.said = {**dict.fromkeys(traces[0].world, False), **about}
+        self.is_about_objects = {**dict.fromkeys(traces[0].world, False), **about}
         self._ends: dict[str, tuple[float, float]] = {}
         self._of_type: dict[str, Flags] = {}
         self._whole_types: dict[str, bool] = {}
@@ -161,8 +161,8 @@ class Stack:
             if column.missing is not None:
                 odd.update(self.traces_at(name, column.missing.nonzero()[0]))
             if name in constants:
-                starts = self.starts if self.said[name] else self.begins
-                lengths = self._n_cells if self.said[name] else starts[1:] - starts[:-1]
+                starts = self.starts if self.is_about_objects[name] else self.begins
+                lengths = self._n_cells if self.is_about_objects[name] else starts[1:] - starts[:-1]
                 for values in (column.values, column.unknown):
                     if values is not None:
                         changed = values != values[starts[:-1]].repeat(lengths)
@@ -172,7 +172,7 @@ class Stack:
 
     def traces_at(self, name: str, places: Places) -> list[int]:
         """The traces of a name's values at some places."""
-        if self.said[name]:
+        if self.is_about_objects[name]:
             places = self.state_of[places]
         traces: list[int] = distinct(self.begins.searchsorted(places, side="right") - 1).tolist()
         return traces
@@ -184,7 +184,7 @@ class Stack:
     @cached_property
     def columns(self) -> Mapping[str, StackColumn]:
         """The columns of all names that are said. Raises UnencodableError."""
-        return {name: self._column(name) for name in self.said}
+        return {name: self._column(name) for name in self.is_about_objects}
 
     def ends(self, name: str) -> tuple[float, float] | None:
         """The least and the greatest number of a quantity; None if some are unknown, or none said.
@@ -222,7 +222,7 @@ class Stack:
 
     def _column(self, name: str) -> StackColumn:
         declaration = self.vocabulary.declarations.get(name)
-        is_about = self.said[name]
+        is_about = self.is_about_objects[name]
         if declaration is None or len(declaration.parameters) != is_about:
             raise UnencodableError
         parts = [piece.about[name] if is_about else piece.world[name] for piece in self._pieces]

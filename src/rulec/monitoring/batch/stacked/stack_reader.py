@@ -139,7 +139,7 @@ class StackReader:
         if others:
             return read.every
         ready = read.ready
-        if name not in self.stack.said:
+        if name not in self.stack.is_about_objects:
             default = self.stack.default(name)
             if default is UNKNOWN_VALUE:
                 return read.every
