@@ -236,7 +236,9 @@ class Relations:
         wide, narrow = column(boxes.half_width[1]), column(boxes.half_width[0])
         low, high = column(boxes.d[0]), column(boxes.d[1])
         least = np.maximum(others.d[0] - high - wide, low - wide - others.d[1]) - loose
-        most = np.maximum(others.d[0] - low - narrow, high - narrow - others.d[1]) + loose
+        # Where lanes part it is the farthest of the places that they may have
+        (_, nearer), (farther, _) = others.right, others.left
+        most = np.maximum(nearer - low - narrow, high - narrow - farther) + loose
         return np.maximum(least, 0.0), np.maximum(most, 0.0)
 
     def _differences(self) -> Bounds:
