@@ -364,6 +364,10 @@ def test_beyond_a_split_somebody_is_in_any_of_its_lanes(german):
     assert states[0]["lateral"]["10"] is UNKNOWN or "same_lane" in states[0]["lateral"]["10"].values
 
 
+ACROSS = [(0.0, 0.0), (0.225, 0.9), (0.9, 1.8), (1.8, 1.8), (2.7, 1.8), (3.375, 0.9), (3.6, 0.0)]
+"""Places and speeds (m, m/s) across the road, every 0.5 s, of who changes lanes to the left."""
+
+
 def test_before_a_split_somebody_is_behind_any_of_its_lanes(german):
     """Ego changes to the left one, which is that of the one behind to its drive."""
     lanes = (
@@ -372,18 +376,51 @@ def test_before_a_split_somebody_is_behind_any_of_its_lanes(german):
         straight(3, 50, 300, y=4, right_of=2, predecessors=[1]),
     )
     behind = vehicle(10, {k: (20.0 + k, 2.0) for k in range(25)}, speed=2.0)
-    across = [
-        (0.0, 0.0),
-        (0.225, 0.9),
-        (0.9, 1.8),
-        (1.8, 1.8),
-        (2.7, 1.8),
-        (3.375, 0.9),
-        (3.6, 0.0),
-    ]
-    motion = [(5.0 * k, 10.0, *own) for k, own in enumerate(across)]
+    motion = [(5.0 * k, 10.0, *own) for k, own in enumerate(ACROSS)]
     states = driven_among([behind], german, motion, 0.0, lanes=lanes)
     assert states[-1]["lateral"]["10"] is UNKNOWN
+
+
+def test_beyond_a_split_somebody_before_it_is_behind_any_of_its_lanes(german):
+    """Ego is in the lane to the left by then, into which the one behind it leads, too."""
+    lanes = (
+        straight(1, 0, 70, successors=[2, 3]),
+        straight(2, 70, 300, left_of=3, predecessors=[1]),
+        straight(3, 70, 300, y=4, right_of=2, predecessors=[1]),
+    )
+    behind = vehicle(10, {k: (20.0 + k, 0.0) for k in range(25)}, speed=2.0)
+    motion = [(5.0 * k, 10.0, *own) for k, own in enumerate(ACROSS)]
+    states = driven_among([behind], german, motion, 0.0, lanes=lanes)
+    assert states[-1]["lateral"]["10"] is UNKNOWN
+
+
+def test_of_who_is_behind_where_the_next_lane_comes_from_elsewhere_nothing_is_said(german):
+    lanes = (
+        straight(1, 0, 50, successors=[2]),
+        lanelet(4, [(0, 40), (50, 4)], successors=[3]),
+        straight(2, 50, 300, left_of=3, predecessors=[1]),
+        straight(3, 50, 300, y=4, right_of=2, predecessors=[4]),
+    )
+    behind = vehicle(10, {k: (20.0 + k, 0.0) for k in range(25)}, speed=2.0)
+    motion = [(5.0 * k, 10.0, *own) for k, own in enumerate(ACROSS)]
+    states = driven_among([behind], german, motion, 0.0, lanes=lanes)
+    assert {state["lateral"]["10"] for state in states} == {UNKNOWN}
+
+
+def test_a_junction_of_the_next_lane_is_that_of_who_goes_on_there(german):
+    crosses = {"types": frozenset({"intersection"})}
+    lanes = (
+        straight(1, 0, 80, left_of=4, successors=[2]),
+        straight(2, 80, 90, left_of=5, successors=[3], predecessors=[1]),
+        straight(3, 90, 300, left_of=6, predecessors=[2]),
+        straight(4, 0, 80, y=4, right_of=1, successors=[5]),
+        straight(5, 80, 90, y=4, right_of=2, successors=[6], predecessors=[4], **crosses),
+        straight(6, 90, 300, y=4, right_of=3, predecessors=[5]),
+    )
+    motion = [(5.0 * k, 10.0, *own) for k, own in enumerate([(0.0, 0.0)] * 4 + ACROSS)]
+    states = driven_among([], german, motion, 0.0, lanes=lanes)
+    # Ego's front is at 82.25 m then
+    assert states[4]["enters_junction"] is UNKNOWN
 
 
 @pytest.mark.parametrize(("onward", "said"), [((), False), ((3,), UNKNOWN)])

@@ -16,8 +16,10 @@ from rulec.cell_words.ego_boxes import EgoBoxes, body_size, ego_boxes
 from rulec.cell_words.line_words import LineWords
 from rulec.cell_words.place_words import (
     AT_LINE,
+    LOOSE_M,
     NEEDS_CROSSING,
     NEEDS_JUNCTION,
+    OF_LANES,
     PlaceWords,
     SceneWords,
     Words,
@@ -70,11 +72,19 @@ def cell_words(graph: NavigationGraph, rules: CompiledRulebook) -> CellWords | N
     if mirrored:
         raise other_side(graph.scenario.name, str(origin.recording.side), rules.name, rules.traffic)
     probes = probe_drives(graph, origin, rules, side, NEEDS_JUNCTION | NEEDS_CROSSING)
+    boxes = list(ego_boxes(graph, probes.recording.step_s))
+    lanes = {
+        lane
+        for own in boxes
+        for first, last in zip(*lanes_of(own, origin.lanes.straight), strict=True)
+        for lane in range(first, last + 1)
+    }
     try:
-        frame = RoadFrame(probes, hypot(*body_size(graph)) / 2)
+        half_m, ego_d = hypot(*body_size(graph)) / 2, graph.scenario.ego.d
+        frame = RoadFrame(probes, half_m, ego_d, sorted(lanes))
     except ValueError:
         frame = None
-    return _Words(graph, rules, probes, frame).all()
+    return _Words(graph, rules, probes, frame, boxes).all()
 
 
 class _Words:
@@ -86,11 +96,11 @@ class _Words:
         rules: CompiledRulebook,
         probes: ProbeDrives,
         frame: RoadFrame | None,
+        boxes: Sequence[EgoBoxes],
     ) -> None:
-        self._graph, self._probes, self._frame = graph, probes, frame
+        self._graph, self._probes, self._frame, self._boxes = graph, probes, frame, boxes
         self._vocabulary: Vocabulary = rules.vocabulary
         self._names = names_read(rules) & probes.told
-        self._boxes = list(ego_boxes(graph, probes.recording.step_s))
         self._scene = self._scene_words()
         self._may_leave = frame is None or any(
             frame.leaving[first : last + 1].any()
@@ -103,7 +113,10 @@ class _Words:
         self._lines = LineWords(probes, frame, self._names, body_size(graph)[0])
         self._bodies = probes.among.recording.participants[:-1]
         self._rows = {body.id: row for row, body in enumerate(self._bodies)}
-        self._now = [None if frame is None else frame.at(layer.start_s) for layer in graph.layers]
+        self._now = [
+            None if frame is None else frame.at(layer.start_s, own.s[1].max(initial=0.0))
+            for layer, own in zip(graph.layers, boxes, strict=True)
+        ]
         self._present = self._presences()
 
     def all(self) -> CellWords:
@@ -199,11 +212,22 @@ class _Words:
         own |= {name: [UNKNOWN if x else False for x in flags] for name, flags in crosses.items()}
         if "light" in self._names:
             own["light"] = self._lines.lights(boxes, at_lines, layer.start_s, crosses)
+        doubtful = self._in_doubt(boxes)
         for cell, (place, at_line) in enumerate(zip(places, at_lines, strict=True)):
             state: Words = {**shared, **place, **at_line, **settled_by_place(place, self._names)}
+            state |= doubtful[cell]
             state |= {name: values[cell] for name, values in own.items()}
             state |= {name: values[cell] for name, values in about.items()}
             yield state
+
+    def _in_doubt(self, boxes: EgoBoxes) -> list[Words]:
+        """What is unknown in each cell since to drives in other lanes others are there."""
+        low, high = boxes.s[0] - LOOSE_M, boxes.s[1] + LOOSE_M
+        doubtful = np.zeros(len(low), dtype=bool)
+        for start, end in () if self._frame is None else self._frame.other_lanes:
+            doubtful |= (low <= end) & (high >= start)
+        unknown = dict.fromkeys(self._names & OF_LANES, UNKNOWN)
+        return [unknown if one else {} for one in doubtful.tolist()]
 
     def _at_lines_of(
         self,

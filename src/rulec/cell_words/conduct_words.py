@@ -103,11 +103,15 @@ class ConductWords:
         ahead = others.goes_along & others.counts & (self._relations.stations == BEHIND)
         ahead &= self._shares & (self._relations.gaps[1] <= column(reach))
         found: Flags = ahead.any(axis=1)
-        for start, end in (*frame.junctions, *frame.crossings):
-            near = (front[:, 0] >= start + frame.apart_s - reach) & (far_front[:, 0] <= start)
-            inside = (front[:, 0] >= start) & (far_rear[:, 0] <= end - frame.apart_s)
-            found |= near | inside
-        return found
+        always = np.ones(len(reach), dtype=bool)
+        for stretches in frame.reasons:
+            on_this = np.zeros(len(reach), dtype=bool)
+            for start, end in stretches:
+                near = (front[:, 0] >= start + frame.apart_s - reach) & (far_front[:, 0] <= start)
+                inside = (front[:, 0] >= start) & (far_rear[:, 0] <= end - frame.apart_s)
+                on_this |= near | inside
+            always &= on_this
+        return found | always
 
     def _overtaken_by_nobody(self) -> Flags:
         others = self._others

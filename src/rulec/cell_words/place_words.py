@@ -75,6 +75,9 @@ OF_PLACE = frozenset(
 )
 """Decided by where ego is along the road, and in which lane."""
 
+OF_LANES = frozenset({"lanes", "lane", "lane_number", "marked_lanes"})
+"""Of these by what other lanes are there."""
+
 AT_LINE = frozenset(
     {"light", "give_way_sign", "stop_sign", "turn_on_red_sign", "no_turn_on_red_sign"}
 )

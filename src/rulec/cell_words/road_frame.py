@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import TypeAlias
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy import bool_, intp
 from numpy.typing import NDArray
 
 from rulec.cell_words.ego_boxes import Floats
+from rulec.cell_words.lane_roads import lane_roads, linked_with
 from rulec.cell_words.probe_drives import ProbeDrives
 from rulec.extraction.drive_context import KMH
 from rulec.extraction.signals.ego_lanelets import CYCLE_LANE, SHOULDER, lanes_of_type
@@ -89,18 +90,6 @@ class LaneLight:
         )
 
 
-@dataclass(frozen=True, slots=True)
-class _Parting:
-    """A place (m) of the road beyond which lanes may be others, ahead (1) or behind (-1) of ego.
-
-    ``shifts`` say how many lanes farther left they may be, ascending.
-    """
-
-    place: float
-    way: int
-    shifts: Sequence[int]
-
-
 class RoadFrame:
     """A scene's road, with everybody on it as extraction has them.
 
@@ -108,13 +97,22 @@ class RoadFrame:
     the same lanes, ``apart_d`` how far those across it, ``loose_s`` and ``loose_d`` how far
     distances may be wrong for that and since places are known to ``place_m`` only. ``has_rails``:
     is there a level crossing on it? ``one_way``: does nobody come the other way on it, surely?
-    ``goes_straight``: does it turn in none of its junctions? ``lights`` are those of its lanes,
-    ``leaving`` flags of those that lead to another one, or come from there.
-    Ego is ``half_m`` long from its middle to its corners at most.
+    ``goes_straight``: does it turn in none of its junctions? ``crossings`` and ``junctions`` are
+    those of any road along its lanes, ``reasons`` both of each. On ``other_lanes`` not all of these
+    have the same lanes. ``lights`` are those of its lanes, ``leaving`` flags of those that lead to
+    another one, or come from there.
+    Ego is ``half_m`` long from its middle to its corners at most, starts ``ego_d`` m left of the
+    line, and gets to some ``lanes``, or to all.
     Raises ValueError: no drive has such a road, or it meets itself.
     """
 
-    def __init__(self, probes: ProbeDrives, half_m: float) -> None:
+    def __init__(
+        self,
+        probes: ProbeDrives,
+        half_m: float,
+        ego_d: float = 0.0,
+        lanes: Sequence[int] | None = None,
+    ) -> None:
         origin, among = probes.origin, probes.among
         found = among.map.road(origin.way)
         if isinstance(found, str):
@@ -125,14 +123,20 @@ class RoadFrame:
         self.probes, self._origin = probes, origin
         self._straight = origin.lanes.straight
         self.places: RoadPlaces = among.places(replace(road, line=origin.line, lanes=origin.lanes))
-        self.crossings = self._in_scene(road, road.crossings)
-        self.junctions = self._in_scene(road, road.junctions)
+        self._roads = lane_roads(probes, road, ego_d, lanes)
+        roads = self._roads.roads
+        crossings = [self._roads.in_scene(own, own.crossings) for own in roads]
+        junctions = [self._roads.in_scene(own, own.junctions) for own in roads]
+        self.reasons = [[*own, *more] for own, more in zip(crossings, junctions, strict=True)]
+        self.crossings, self.junctions = (
+            list(dict.fromkeys(chain(*own))) for own in (crossings, junctions)
+        )
         lanelets = [lanelet for row in road.rows for lanelet in row if lanelet is not None]
         self.lights = tuple(self._lane_lights(road))
-        self._partings = self._partings_along(road)
+        self._partings = self._roads.partings()
         self.has_rails = any("level_crossing" in lanelet.types for lanelet in lanelets)
         self.one_way = all(among.surroundings.directions(lanelet)[0] for lanelet in lanelets)
-        turns = [road.turned(start, end, aside_m=1.0) for start, end in road.junctions]
+        turns = [own.turned(*ends, aside_m=1.0) for own in roads for ends in own.junctions]
         self.goes_straight = all(abs(turn) < _BENDS for turn in turns)
         at = np.abs(origin.lanes.s - origin.ego_s) <= _FAR_M
         widths = np.diff(origin.lanes.bounds[at], axis=1)
@@ -148,39 +152,21 @@ class RoadFrame:
         self.apart_s = _HAIR_M + min(turned * across / 2, across)
         self.loose_s = self.place_m + self.apart_s
         self._line_s = origin.lanes.s[at] - origin.ego_s
-        self._line_d, self._bounds_d = self._apart(road)
+        self._line_d, self._bounds_d = self._roads.apart(self._line_s)
+        self.other_lanes = list(self._roads.other_lanes(self._line_s))
         self._bent_d = _bent(self._line_s, headings, half_m)
         self._lasting = _lasting_lanes(road)
         self.leaving = _leaving(road.rows, 1) | _leaving(road.rows[::-1], -1)
 
     def _lane_lights(self, road: DrivenRoad) -> Iterator[LaneLight]:
         recording, ends = self.probes.recording, road.borders[1:].tolist()
-        places = self._in_scene(road, [(end, end) for end in ends])
+        places = self._roads.in_scene(road, [(end, end) for end in ends])
         for piece, (row, (end, _)) in enumerate(zip(road.rows, places, strict=True)):
             for lane, lanelet in enumerate(row):
                 if lanelet is not None and lanelet.lights:
                     lights = lights_of(recording, road, piece, lane)
                     drawn = lanelet.stop_line is not None
                     yield LaneLight(lane, end, lights or lanelet.lights, drawn)
-
-    def _apart(self, road: DrivenRoad) -> tuple[Floats, Floats]:
-        """How far (m) the scene's line, and the bounds of lanes, are from those of drives.
-
-        Where a road bends each line along it cuts the corners in its own way.
-        """
-        line_s, lanes = self._line_s, self._origin.lanes
-        there = np.pad(lanes.existing_at(line_s + self._origin.ego_s), ((0, 0), (1, 1)))
-        apart = np.zeros((len(self._straight) + 1, len(line_s)))
-        for number, d in enumerate((0.0, *self._straight.tolist())):
-            places, _ = self._origin.places(line_s, np.full(len(line_s), d))
-            found = road.line.coordinates(places)[:, :2]
-            beside = (found[:, 0] > 0.0) & (found[:, 0] < road.line.arc[-1])
-            aside = found[:, 1]
-            if number:
-                aside = road.lanes.from_bounds(found)[:, number - 1]
-                beside &= there[:, number - 1] | there[:, number]
-            apart[number, beside] = np.minimum(np.abs(aside[beside]), 1.0)
-        return apart[0], apart[1:].max(axis=0)
 
     def gap_to_oncoming_lanes(
         self, places: tuple[Floats, Floats], sides: tuple[Floats, Floats]
@@ -245,68 +231,54 @@ class RoadFrame:
         come: Flags = self.places.counts & (slowest * KMH < -USUAL.standing_kmh)
         return come
 
-    def _in_scene(
-        self, road: DrivenRoad, stretches: Sequence[tuple[float, float]]
-    ) -> list[tuple[float, float]]:
-        """Stretches of a road, in the scene's coordinates along its own."""
-        line, found = road.line, []
-        for ends in stretches:
-            s = np.array(ends)
-            piece = np.clip(np.searchsorted(line.arc, s, "right") - 1, 0, len(line.arc) - 1)
-            places = line.start[piece] + line.ahead[piece] * (s - line.arc[piece])[:, None]
-            first, last = (
-                self._origin.line.coordinates(places)[:, 0] - self._origin.ego_s
-            ).tolist()
-            found.append((first, last))
-        return found
+    def _with_partings(self, now: OthersNow, ego_s: float) -> OthersNow:
+        """The others, with those beyond a parting in each lane that they may be in to a drive.
 
-    def _partings_along(self, road: DrivenRoad) -> list[_Parting]:
-        """Where one lane becomes several, or several become one, ahead of ego and behind.
-
-        A drive's own lanes beyond are those that its lane leads to, or comes from, and ego may be
-        in any of these.
+        Ego has got to a place (m) at most, and to it those before a parting behind it are beyond.
         """
-        found = []
-        for (before, after), border in zip(
-            pairwise(road.rows), road.borders[1:-1].tolist(), strict=True
-        ):
-            ((place, _),) = self._in_scene(road, [(border, border)])
-            way = 1 if place > 0.0 else -1
-            near, far = (before, after) if way > 0 else (after, before)
-            shifts = {0}
-            for row, others, onward in ((near, far, way), (far, near, -way)):
-                for k, lanelet in enumerate(row):
-                    linked = () if lanelet is None else _linked(lanelet, onward)
-                    into = [j for j, lane in enumerate(others) if lane and lane.id in linked]
-                    if len(into) > 1:
-                        shifts |= {k - j if row is near else j - k for j in into}
-            if len(shifts) > 1:
-                found.append(_Parting(place, way, sorted(shifts)))
-        return found
-
-    def _with_partings(self, now: OthersNow) -> OthersNow:
-        """The others, with those beyond a parting in each lane that they may be in to a drive."""
         lanes, perhaps = now.lanes.copy(), now.perhaps.copy()
         sides = [side.copy() for side in (*now.d, *now.right, *now.left)]
-        widest = float(np.diff(self._straight).max())
-        for parting in self._partings:
-            s, place = now.s, parting.place
-            rows = np.flatnonzero(s[1] > place if parting.way > 0 else s[0] < place)
-            lanes[rows] = np.all([_shifted(lanes[rows], by) for by in parting.shifts], axis=0)
-            perhaps[rows] = np.any([_shifted(perhaps[rows], by) for by in parting.shifts], axis=0)
+        widest, (s0, s1) = float(np.diff(self._straight).max()), now.s
+        anywhere, unknown = (-lanes.shape[1], lanes.shape[1]), np.zeros(len(lanes), dtype=bool)
+        for place, way, shifts in self._beyond(ego_s):
+            rows = np.flatnonzero(s1 > place if way > 0 else s0 < place)
             for number, side in enumerate(sides):
-                side[rows] += parting.shifts[-(number % 2)] * widest
+                side[rows] += (shifts or anywhere)[-(number % 2)] * widest
+            lanes[rows] = np.all([_shifted(lanes[rows], by) for by in shifts], axis=0)
+            perhaps[rows] = np.any([_shifted(perhaps[rows], by) for by in shifts], axis=0)
+            unknown[rows] |= not shifts
+        lanes[unknown], perhaps[unknown] = False, True
         d, right, left = zip(sides[::2], sides[1::2], strict=True)
-        return replace(now, lanes=lanes, perhaps=perhaps, d=d, right=right, left=left)
+        return replace(
+            now,
+            lanes=lanes,
+            perhaps=perhaps,
+            d=d,
+            right=right,
+            left=left,
+            counts=now.counts & ~unknown,
+            goes_along=now.goes_along & ~unknown,
+        )
 
-    def at(self, seconds: float) -> OthersNow | None:
-        """The others at a time of the scene; None before or after the recording."""
+    def _beyond(self, ego_s: float) -> Iterator[tuple[float, int, Sequence[int]]]:
+        """Beyond which place, which way, others are so many lanes farther left, perhaps."""
+        for parting in self._partings:
+            yield parting.place, parting.way, parting.shifts
+            if parting.way > 0 and parting.place < ego_s:
+                yield parting.place, -1, tuple(-by for by in reversed(parting.shifts))
+
+    def at(self, seconds: float, ego_s: float = 0.0) -> OthersNow | None:
+        """The others at a time of the scene; None before or after the recording.
+
+        Ego has got to a place (m) at most by then.
+        """
         column = self.probes.column(seconds)
         columns = np.unique([int(np.floor(column + 1e-6)), int(np.ceil(column - 1e-6))])
         n_columns = self.places.extents.s_min.shape[1]
         if columns[0] < 0 or columns[-1] >= n_columns:
             return None
-        return self._in(columns)
+        now = self._in(columns)
+        return self._with_partings(now, ego_s) if self._partings else now
 
     def _in(self, columns: NDArray[intp]) -> OthersNow:
         places, ends, tracks = self.places, self.places.extents, self.places.tracks
@@ -342,7 +314,7 @@ class RoadFrame:
         loose = (_HAIR_M + apart)[:, None, None]
         lanes = np.all(((inside > least + loose) & there) | absent[..., None], axis=1)
         perhaps = np.any((inside > least - loose) & there, axis=1)
-        now_there = OthersNow(
+        return OthersNow(
             s=s,
             d=(low[:, now].min(axis=1), high[:, now].max(axis=1)),
             right=(np.fmin.reduce(low, axis=1) - apart, np.fmax.reduce(low, axis=1) + apart),
@@ -359,7 +331,6 @@ class RoadFrame:
             ever_come=np.any(self._come, axis=1),
             loose_s=self.loose_s,
         )
-        return self._with_partings(now_there) if self._partings else now_there
 
     def _straightened(self, left_of: Floats) -> Floats:
         """The scene's coordinate across the road, from how far left of each bound places are."""
@@ -392,7 +363,7 @@ def _leaving(rows: Sequence[Sequence[Lanelet | None]], way: int) -> Flags:
     found: Flags = np.zeros(len(rows[0]), dtype=bool)
     for row, onward in pairwise(rows):
         there = {lanelet.id for lanelet in onward if lanelet is not None}
-        linked = [() if lanelet is None else _linked(lanelet, way) for lanelet in row]
+        linked = [() if lanelet is None else linked_with(lanelet, way) for lanelet in row]
         found |= [bool(ids) and there.isdisjoint(ids) for ids in linked]
     return found
 
@@ -412,7 +383,3 @@ def _shifted(flags: Flags, by: int) -> Flags:
     count = flags.shape[1]
     found[:, max(by, 0) : count + min(by, 0)] = flags[:, max(-by, 0) : count - max(by, 0)]
     return found
-
-
-def _linked(lanelet: Lanelet, way: int) -> tuple[str, ...]:
-    return lanelet.successors if way > 0 else lanelet.predecessors
