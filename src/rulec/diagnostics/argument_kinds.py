@@ -99,8 +99,8 @@ def expected(name: str, annotation: str, value: Any) -> Any:
     kind = _fitting(annotation, cast("Hashable", type(value)))
     if kind is None:
         raise _unexpected(name, annotation, value)
-    if kind.name == "Literal" and repr(str(value)) not in kind.said:
-        raise ValueError(f"`{name}` is {kind.said}, not {value!r}")
+    if kind.name == "Literal" and repr(str(value)) not in kind.phrase:
+        raise ValueError(f"`{name}` is {kind.phrase}, not {value!r}")
     if kind.name == "Path" and not isinstance(value, Path):
         try:
             return Path(value)

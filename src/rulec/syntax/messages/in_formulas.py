@@ -128,7 +128,9 @@ def _arguments(ctx: ParseContext) -> str:
         way_out = "an argument is a name; it has no arguments of its own"
         spaced = opened and ctx.tokens[opened - 1].end < ctx.tokens[opened].start
         # `nie (p(x) …)` is meant for an operator
-        return f"{way_out}; no operator is called `{ctx.text_at(opened - 1)}`" if spaced else way_out
+        return (
+            f"{way_out}; no operator is called `{ctx.text_at(opened - 1)}`" if spaced else way_out
+        )
     joins = ctx.text in keywords.PRECEDENCE or ctx.text in (
         *keywords.SYMBOLS.values(),
         *RELATIONS,
