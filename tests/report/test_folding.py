@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from rulec.logic.formula import Atom, Binary, BinaryOperator, Unary, UnaryOperator
 from rulec.logic.printing import formula_text
-from rulec.monitoring.explain.explanation import Part
+from rulec.monitoring.explain.explained_parts import Part
 from rulec.report.verdicts.table_folding import fitting, folded, head, width
 from support.builders.rulebooks import always, both, implies, no
 

@@ -11,13 +11,9 @@ from rulec.logic import formula as ltl
 from rulec.logic.free_names import names_in, reads_in
 from rulec.monitoring.bindings import Binding, binding_of
 from rulec.monitoring.explain.column_truths import ColumnTruths
-from rulec.monitoring.explain.explanation import (
-    Deciding,
-    Explained,
-    Explanation,
-    explanation_of,
-    shown_states,
-)
+from rulec.monitoring.explain.explained_parts import Deciding
+from rulec.monitoring.explain.explained_states import shown_states
+from rulec.monitoring.explain.explanation import Explained, Explanation, explanation_of
 from rulec.monitoring.explain.observed_states import ObservedStates
 from rulec.monitoring.implied_values import with_implied_values
 from rulec.monitoring.letter_reader import present_in

@@ -40,3 +40,12 @@ def states_to_explain(
             way.append(number)
             length_at[state] = len(way)
     return [*way, *window]
+
+
+def shown_states(stretch: range, decisive: int) -> tuple[int, ...]:
+    """The numbers of the states of a stretch that an explanation shows."""
+    if len(stretch) <= LIMITS.states_shown:
+        return tuple(stretch)
+    last = min(decisive + 1, stretch[-1])
+    first = max(stretch[0], last - LIMITS.states_shown + 2)
+    return tuple(sorted({stretch[0], *range(first, last + 1)}))

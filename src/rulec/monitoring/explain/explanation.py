@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import Protocol
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRule, CompiledRulebook
 from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor
@@ -15,18 +14,23 @@ from rulec.diagnostics import RulecError
 from rulec.logic import formula as ltl
 from rulec.logic.bounds import in_steps
 from rulec.logic.causes import instants_among
-from rulec.logic.kleene import objects_counted
-from rulec.logic.printing import formula_text, term_text
 from rulec.logic.semantics import Semantics, extended_by_columns
 from rulec.monitoring.bindings import Binding, binding_of
 from rulec.monitoring.explain.broken_stretch import broken_stretch, is_broken_before
-from rulec.monitoring.explain.explained_states import states_to_explain
+from rulec.monitoring.explain.explained_parts import (
+    Deciding,
+    Observation,
+    Part,
+    facts_of,
+    parts_of,
+    with_margins,
+)
+from rulec.monitoring.explain.explained_states import shown_states, states_to_explain
 from rulec.monitoring.explain.margins import Margin, choosing_comparisons
 from rulec.monitoring.explain.nearest_satisfying import Repair, nearest_satisfying
-from rulec.monitoring.explain.observed_states import ObservedStates, known_value
+from rulec.monitoring.explain.observed_states import ObservedStates
 from rulec.monitoring.implied_values import with_derived_values
 from rulec.monitoring.letter_reader import LetterReader
-from rulec.monitoring.limits import LIMITS
 from rulec.monitoring.state_validation import has_partial_values
 from rulec.monitoring.state_view import StateView
 from rulec.monitoring.uncertainty.one_completion import completed, favourable, with_all_defaults
@@ -35,51 +39,9 @@ from rulec.monitoring.verdict import Violation
 from rulec.monitoring.verify import letter_reader_of
 from rulec.trace import Trace, Value
 from rulec.value_display import short_repr
-from rulec.vocabulary import Quantity, Vocabulary
-from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
+from rulec.vocabulary import Vocabulary
+from rulec.vocabulary.partial_values import Interval
 from rulec.witnesses.letter_functions import letter_of
-
-
-@dataclass(frozen=True, slots=True)
-class Observation:
-    """Read of a rule, such as ``position(v1)``, with its values by state.
-
-    A value that is unknown is None, a number may be an interval. ``unit`` is a quantity's.
-    ``objects`` are, for a count, those that counted in each state. ``margins`` are, for a signal
-    that was decided by a number, by how much, as far as is known, ``measured`` is the one where the
-    signal decides last.
-    ``changed``: does the rule tell the value in the decisive state from the one before?
-    ``decides``: does a part that decides read it?
-    """
-
-    text: str
-    values: tuple[Value | Interval | None, ...]
-    changed: bool
-    decides: bool
-    unit: str = ""
-    objects: tuple[tuple[str, ...], ...] | None = None
-    margins: tuple[Margin | None, ...] = ()
-    measured: Margin | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Part:
-    """Subformula at a ``depth`` of nesting, with its truth by state.
-
-    ``changed``: is its value in the decisive state another than in the one before? ``decides``: is
-    it one of those that, at some instant, make the formula come out as it does? ``margins`` are a
-    comparison's by state, ``measured`` is that of the last state up to the decisive one, shown or
-    not, in which it decides.
-    """
-
-    formula: ltl.Formula
-    text: str
-    depth: int
-    values: tuple[bool, ...]
-    changed: bool
-    decides: bool
-    margins: tuple[Margin | None, ...] = ()
-    measured: Margin | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,13 +112,6 @@ def _in_a_word(value: Value | Interval | None, unit: str) -> str:
     else:
         text = "unknown" if value is None else str(value).lower()
     return f"{text} {unit}".rstrip()
-
-
-class Deciding(Protocol):
-    """The numbers by which a signal about objects was decided."""
-
-    def margin(self, item: str, state: int) -> Margin | None:
-        """The margin for an object in a state of the trace."""
 
 
 def explain(
@@ -253,10 +208,10 @@ def explanation_of(
         states=states,
         decisive=numbers[place],
         facts=tuple(
-            _with_margins(fact, decided_by, states, decided_at)
-            for fact in _facts(truths, deciding.keys(), observed)
+            with_margins(fact, decided_by, states, decided_at)
+            for fact in facts_of(truths, deciding.keys(), observed)
         ),
-        parts=tuple(_parts((rule.formula, formula), values, deciding, observed)),
+        parts=tuple(parts_of((rule.formula, formula), values, deciding, observed)),
         repair=None,
         vocabulary=subject.vocabulary,
         lasts=(numbers[first], numbers[last]),
@@ -307,113 +262,3 @@ def _window(numbers: Sequence[int], place: int) -> tuple[int, int]:
     while first and numbers[first - 1] == numbers[first] - 1:
         first -= 1
     return numbers[first], numbers[-1]
-
-
-def _with_margins(
-    fact: Observation,
-    decided_by: Mapping[str, Deciding],
-    states: Sequence[int],
-    decided_at: Mapping[str, int],
-) -> Observation:
-    name, _, rest = fact.text.partition("(")
-    if name not in decided_by:
-        return fact
-    numbers, item = decided_by[name], rest.removesuffix(")")
-    margins = tuple([numbers.margin(item, state) for state in states])
-    measured = numbers.margin(item, decided_at[name]) if name in decided_at else None
-    return replace(fact, margins=margins, measured=measured)
-
-
-def shown_states(stretch: range, decisive: int) -> tuple[int, ...]:
-    """The numbers of the states of a stretch that an explanation shows."""
-    if len(stretch) <= LIMITS.states_shown:
-        return tuple(stretch)
-    last = min(decisive + 1, stretch[-1])
-    first = max(stretch[0], last - LIMITS.states_shown + 2)
-    return tuple(sorted({stretch[0], *range(first, last + 1)}))
-
-
-def _facts(
-    truths: Mapping[ltl.Proposition, list[bool]],
-    deciding: Set[ltl.Formula],
-    observed: ObservedStates,
-) -> Iterator[Observation]:
-    readers: dict[ltl.Atom | ltl.Term, list[ltl.Proposition]] = {}
-    for proposition in truths:
-        if isinstance(proposition, ltl.Comparison):
-            for _, term in proposition.terms:
-                readers.setdefault(term, []).append(proposition)
-        else:
-            atom = ltl.Atom(proposition.name, proposition.arguments)
-            readers.setdefault(atom, []).append(proposition)
-    views, vocabulary = observed.views, observed.views[0].vocabulary
-    for read, propositions in readers.items():
-        # A number always changes a little; what counts is whether it passes a limit.
-        passes = isinstance(read, ltl.Atom) or any(
-            observed.changes(truths[proposition]) for proposition in propositions
-        )
-        values: dict[int, Value | Interval | None]
-        unit, objects = "", None
-        if isinstance(read, ltl.Count):
-            text = term_text(read)
-            counted = {
-                n: known_value(objects_counted(read, observed.bound, views[n]))
-                for n in observed.looked_up
-            }
-            values = {n: len(those) for n, those in counted.items()}
-            objects = tuple(counted[n] for n in observed.shown)
-        else:
-            text = str(ltl.Atom(read.name, observed.items(read.arguments)))
-            values = {
-                n: observed.value(read.name, read.arguments, views[n]) for n in observed.looked_up
-            }
-            items = observed.items(read.arguments)
-            for index in values:
-                given = observed.given(index).given(read.name, items)
-                if given is None or type(given) in UNKNOWN_TYPES:
-                    values[index] = given if isinstance(given, Interval) else None
-            declaration = vocabulary.declarations[read.name]
-            unit = declaration.unit if isinstance(declaration, Quantity) else ""
-        yield Observation(
-            text,
-            values=tuple(values[n] for n in observed.shown),
-            changed=passes and observed.changes(values),
-            decides=not deciding.isdisjoint(propositions),
-            unit=unit,
-            objects=objects,
-        )
-
-
-def _parts(
-    formulas: tuple[ltl.Formula, ltl.Formula],
-    truths: Mapping[ltl.Formula, list[bool]],
-    deciding: Mapping[ltl.Formula, int],
-    observed: ObservedStates,
-    depth: int = 0,
-) -> Iterator[Part]:
-    written, stepped = formulas
-    margins: tuple[Margin | None, ...] = ()
-    measured = None
-    if isinstance(written, ltl.Comparison):
-        margins = observed.margins(written)
-        if margins and stepped in deciding:
-            measured = observed.margin(written, deciding[stepped])
-    yield Part(
-        formula=written,
-        text=formula_text(written),
-        depth=depth,
-        values=tuple(truths[stepped][n] for n in observed.shown),
-        changed=observed.changes(truths[stepped]),
-        decides=stepped in deciding,
-        margins=margins,
-        measured=measured,
-    )
-    match formulas:
-        case ltl.Unary(_, operand), ltl.Unary(_, same):
-            operands = [(operand, same)]
-        case ltl.Binary(_, left, right), ltl.Binary(_, same_left, same_right):
-            operands = [(left, same_left), (right, same_right)]
-        case _:
-            operands = []
-    for both in operands:
-        yield from _parts(both, truths, deciding, observed, depth + 1)

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 
 from rulec.logic.bounds import BOOLEAN, operations_of
 from rulec.logic.formula import Binary, BinaryOperator, Unary, UnaryOperator
-from rulec.monitoring.explain.explanation import Part
+from rulec.monitoring.explain.explained_parts import Part
 
 MOST_PARTS = 20
 """Of a formula with more only those parts are shown that decide."""

@@ -11,7 +11,8 @@ from operator import itemgetter
 from rulec.automata.thresholds import exact
 from rulec.logic.printing import number_in_words
 from rulec.logic.sentences.fact_clauses import facts_in_words
-from rulec.monitoring.explain.explanation import Explanation, Observation
+from rulec.monitoring.explain.explained_parts import Observation
+from rulec.monitoring.explain.explanation import Explanation
 from rulec.monitoring.explain.margins import Margin, number_with_error
 from rulec.report.text.console import PAGE_WIDTH
 from rulec.report.text.guard_text import GuardWording, runs

@@ -14,7 +14,8 @@ from rulec.extraction.recording_verdicts import RecordingVerdicts
 from rulec.extraction.to_trace import Drive
 from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.extraction.tracks.tracks import Tracks, tracks_of
-from rulec.monitoring.explain.explanation import Deciding, Explanation, explain
+from rulec.monitoring.explain.explained_parts import Deciding
+from rulec.monitoring.explain.explanation import Explanation, explain
 from rulec.monitoring.verdict import Verdict, Violation
 from rulec.recordings.recording import Points
 from rulec.report.pictures.drives import scene_map

@@ -1,0 +1,175 @@
+"""What an explanation has by state: values that a rule reads, and its formula's parts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+from rulec.logic import formula as ltl
+from rulec.logic.kleene import objects_counted
+from rulec.logic.printing import formula_text, term_text
+from rulec.monitoring.explain.margins import Margin
+from rulec.monitoring.explain.observed_states import ObservedStates, known_value
+from rulec.trace import Value
+from rulec.vocabulary import Quantity
+from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
+
+
+@dataclass(frozen=True, slots=True)
+class Observation:
+    """Read of a rule, such as ``position(v1)``, with its values by state.
+
+    A value that is unknown is None, a number may be an interval. ``unit`` is a quantity's.
+    ``objects`` are, for a count, those that counted in each state. ``margins`` are, for a signal
+    that was decided by a number, by how much, as far as is known, ``measured`` is the one where the
+    signal decides last.
+    ``changed``: does the rule tell the value in the decisive state from the one before?
+    ``decides``: does a part that decides read it?
+    """
+
+    text: str
+    values: tuple[Value | Interval | None, ...]
+    changed: bool
+    decides: bool
+    unit: str = ""
+    objects: tuple[tuple[str, ...], ...] | None = None
+    margins: tuple[Margin | None, ...] = ()
+    measured: Margin | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """Subformula at a ``depth`` of nesting, with its truth by state.
+
+    ``changed``: is its value in the decisive state another than in the one before? ``decides``: is
+    it one of those that, at some instant, make the formula come out as it does? ``margins`` are a
+    comparison's by state, ``measured`` is that of the last state up to the decisive one, shown or
+    not, in which it decides.
+    """
+
+    formula: ltl.Formula
+    text: str
+    depth: int
+    values: tuple[bool, ...]
+    changed: bool
+    decides: bool
+    margins: tuple[Margin | None, ...] = ()
+    measured: Margin | None = None
+
+
+class Deciding(Protocol):
+    """The numbers by which a signal about objects was decided."""
+
+    def margin(self, item: str, state: int) -> Margin | None:
+        """The margin for an object in a state of the trace."""
+
+
+def facts_of(
+    truths: Mapping[ltl.Proposition, list[bool]],
+    deciding: Set[ltl.Formula],
+    observed: ObservedStates,
+) -> Iterator[Observation]:
+    """What is read, from the ``truths`` of propositions by state."""
+    readers: dict[ltl.Atom | ltl.Term, list[ltl.Proposition]] = {}
+    for proposition in truths:
+        if isinstance(proposition, ltl.Comparison):
+            for _, term in proposition.terms:
+                readers.setdefault(term, []).append(proposition)
+        else:
+            atom = ltl.Atom(proposition.name, proposition.arguments)
+            readers.setdefault(atom, []).append(proposition)
+    views, vocabulary = observed.views, observed.views[0].vocabulary
+    for read, propositions in readers.items():
+        # A number always changes a little; what counts is whether it passes a limit.
+        passes = isinstance(read, ltl.Atom) or any(
+            observed.changes(truths[proposition]) for proposition in propositions
+        )
+        values: dict[int, Value | Interval | None]
+        unit, objects = "", None
+        if isinstance(read, ltl.Count):
+            text = term_text(read)
+            counted = {
+                n: known_value(objects_counted(read, observed.bound, views[n]))
+                for n in observed.looked_up
+            }
+            values = {n: len(those) for n, those in counted.items()}
+            objects = tuple(counted[n] for n in observed.shown)
+        else:
+            text = str(ltl.Atom(read.name, observed.items(read.arguments)))
+            values = {
+                n: observed.value(read.name, read.arguments, views[n]) for n in observed.looked_up
+            }
+            items = observed.items(read.arguments)
+            for index in values:
+                given = observed.given(index).given(read.name, items)
+                if given is None or type(given) in UNKNOWN_TYPES:
+                    values[index] = given if isinstance(given, Interval) else None
+            declaration = vocabulary.declarations[read.name]
+            unit = declaration.unit if isinstance(declaration, Quantity) else ""
+        yield Observation(
+            text,
+            values=tuple(values[n] for n in observed.shown),
+            changed=passes and observed.changes(values),
+            decides=not deciding.isdisjoint(propositions),
+            unit=unit,
+            objects=objects,
+        )
+
+
+def parts_of(
+    formulas: tuple[ltl.Formula, ltl.Formula],
+    truths: Mapping[ltl.Formula, list[bool]],
+    deciding: Mapping[ltl.Formula, int],
+    observed: ObservedStates,
+    depth: int = 0,
+) -> Iterator[Part]:
+    """A formula and its parts, as written and with bounds in steps, each before its operands.
+
+    ``deciding`` has of those that decide the index of the last state in which they do.
+    """
+    written, stepped = formulas
+    margins: tuple[Margin | None, ...] = ()
+    measured = None
+    if isinstance(written, ltl.Comparison):
+        margins = observed.margins(written)
+        if margins and stepped in deciding:
+            measured = observed.margin(written, deciding[stepped])
+    yield Part(
+        formula=written,
+        text=formula_text(written),
+        depth=depth,
+        values=tuple(truths[stepped][n] for n in observed.shown),
+        changed=observed.changes(truths[stepped]),
+        decides=stepped in deciding,
+        margins=margins,
+        measured=measured,
+    )
+    match formulas:
+        case ltl.Unary(_, operand), ltl.Unary(_, same):
+            operands = [(operand, same)]
+        case ltl.Binary(_, left, right), ltl.Binary(_, same_left, same_right):
+            operands = [(left, same_left), (right, same_right)]
+        case _:
+            operands = []
+    for both in operands:
+        yield from parts_of(both, truths, deciding, observed, depth + 1)
+
+
+def with_margins(
+    fact: Observation,
+    decided_by: Mapping[str, Deciding],
+    states: Sequence[int],
+    decided_at: Mapping[str, int],
+) -> Observation:
+    """What is read, with how far the number by which it was decided is from its limit, if any.
+
+    ``states`` are the numbers of those shown, ``decided_at`` is that in which a name decides last.
+    """
+    name, _, rest = fact.text.partition("(")
+    if name not in decided_by:
+        return fact
+    numbers, item = decided_by[name], rest.removesuffix(")")
+    margins = tuple([numbers.margin(item, state) for state in states])
+    measured = numbers.margin(item, decided_at[name]) if name in decided_at else None
+    return replace(fact, margins=margins, measured=measured)
