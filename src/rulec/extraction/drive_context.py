@@ -185,19 +185,45 @@ class DriveContext:
         changes = self.spans.changes(self.ego_lane)
         if not changes.any():
             return self.ego_lane
-        left_of, lanes = self.ego_extents.left_of[0], np.arange(self.existing_lanes.shape[1])
-        beyond = np.maximum(-left_of[:, :-1], left_of[:, 1:])
-        stays = (beyond < self.thresholds.changed_m) & self.existing_lanes
-        # For each lane the first state from each on in which ego has left it
-        leaves = self.spans.next_state(((self.ego_lane[:, None] != lanes) & ~stays).T)
         steady: NDArray[intp] = self.ego_lane.copy()
         for _, columns in self.spans.those(self.spans.any(changes)):
-            state, last = columns.start, columns.stop - 1
-            while state <= last:
-                own = int(steady[state])
-                end = int(leaves[own, state + 1]) if state < last else columns.stop
-                steady[state:end], state = own, end
+            self._keep_lanes(steady, columns, int(steady[columns.start]))
         return steady
+
+    @cached_property
+    def steady_lane_from_beside(self) -> NDArray[intp]:
+        """The same if ego, so near a mark when its drive begins, has come over that just before."""
+        begins = self.spans.begins
+        near = self._stays[begins]
+        near[np.arange(len(begins)), self.ego_lane[begins]] = False
+        if not near.any():
+            return self.steady_lane
+        steady = self.steady_lane.copy()
+        for number in near.any(axis=1).nonzero()[0].tolist():
+            self._keep_lanes(steady, self.spans.slices[number], int(near[number].argmax()))
+        return steady
+
+    @cached_property
+    def _stays(self) -> Flags:
+        """Flags of lanes (second axis) that ego, if it comes from there, has not left yet."""
+        left_of = self.ego_extents.left_of[0]
+        beyond = np.maximum(-left_of[:, :-1], left_of[:, 1:])
+        stays: Flags = (beyond < self.thresholds.changed_m) & self.existing_lanes
+        return stays
+
+    @cached_property
+    def _leaves(self) -> NDArray[intp]:
+        """For each lane the first state from each on in which ego has left it."""
+        others = self.ego_lane[:, None] != np.arange(self.existing_lanes.shape[1])
+        return self.spans.next_state((others & ~self._stays).T)
+
+    def _keep_lanes(self, steady: NDArray[intp], columns: slice, own: int) -> None:
+        """Write the lanes that ego keeps to in a drive that begins in its ``own``."""
+        state, last = columns.start, columns.stop - 1
+        while state <= last:
+            end = int(self._leaves[own, state + 1]) if state < last else columns.stop
+            steady[state:end], state = own, end
+            own = int(self.ego_lane[min(end, last)])
 
     @cached_property
     def going_along(self) -> Flags:

@@ -27,6 +27,27 @@ def test_the_state_in_which_the_lane_is_another_one():
     assert changes(body=steady(7, 0, 0)).world["lane_change"].tolist() == [False] * 4
 
 
+@pytest.mark.parametrize(
+    ("ys", "changed", "lane"),
+    [
+        # The mark is at 2 m, and left behind 0.3 m farther on
+        ((2.1, 2.2, 2.5, 4), "..T.", [False, False, True, True]),
+        ((2.1, 2.0, 1.5, 0), "..T.", [False, False, True, True]),
+        ((2.5, 2.5, 4.0, 4), "....", [True] * 4),
+        ((2.1, 2.2, 2.1, 2.2), "....", [False] * 4),
+    ],
+    ids=["goes over", "goes back", "is over it", "stays there"],
+)
+def test_who_begins_on_a_mark_may_come_from_either_lane(ys, changed, lane):
+    ego = vehicle(7, {k: (5.0 * k, y) for k, y in enumerate(ys)})
+    context = context_of(recording(lanes(2), [ego]))
+    found = lane_change_signals(context)
+    assert np.flatnonzero(found.unknown["lane_change"]).tolist() == [
+        k for k, mark in enumerate(changed) if mark == "T"
+    ]
+    assert (~ego_signals(context).unknown["lane"]).tolist() == lane
+
+
 @pytest.mark.parametrize(("states", "known"), [(4, False), (6, True)])
 def test_who_is_back_within_half_a_second_has_changed_no_lanes(states, known):
     """Its middle is 1 m beyond the mark for 0.4 s or 0.6 s, as where headings jump."""

@@ -99,9 +99,10 @@ def _stopping(context: DriveContext) -> SignalColumns:
 
 
 def _lane(context: DriveContext) -> SignalColumns:
-    lane, moves = _from_kerb(context, context.steady_lane), context.steady_lane != context.ego_lane
-    if moves.any():
-        moves = lane != _from_kerb(context, context.ego_lane)
+    lane, moves = _from_kerb(context, context.steady_lane), np.zeros(context.states, dtype=bool)
+    for other in (context.ego_lane, context.steady_lane_from_beside):
+        if (context.steady_lane != other).any():
+            moves |= lane != _from_kerb(context, other)
     # Beside one to join or to leave by, the lane at the kerb may as well be ego's
     at_side = (lane == _MIDDLE) & ~_nearer_goes_on(context)
     return SignalColumns({"lane": lane}, unknown={"lane": moves | at_side}, texts={"lane": _LANES})
@@ -117,13 +118,13 @@ def _nearer_goes_on(context: DriveContext) -> Flags:
 
 
 def _lane_number(context: DriveContext) -> SignalColumns:
-    number, other = (
+    number, other, from_beside = (
         np.clip(_rank(context, lane), 0, len(_NUMBERS) - 1)
-        for lane in (context.steady_lane, context.ego_lane)
+        for lane in (context.steady_lane, context.ego_lane, context.steady_lane_from_beside)
     )
     return SignalColumns(
         {"lane_number": number},
-        unknown={"lane_number": number != other},
+        unknown={"lane_number": (number != other) | (number != from_beside)},
         texts={"lane_number": _NUMBERS},
     )
 

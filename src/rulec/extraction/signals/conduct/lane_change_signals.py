@@ -52,14 +52,15 @@ def _lane_change(context: DriveContext) -> SignalColumns:
 
     Its body swings over the lanes of the road that it comes to. Nor does anybody know where a lane
     has just forked, or two become one: ego may follow one of its ways; nor of who stands, whose
-    places drift, or is back at once.
+    places drift, or is back at once, nor of who begins its drive so near a mark that it may come
+    over that.
     """
     changes = _changes(context)
-    unknown = np.zeros(context.states, dtype=bool)
+    unknown = changes != context.spans.changes(context.steady_lane_from_beside)
     if changes.any():
         swings = swings_round(context) | lies_askew_in_turn(context)
         stands = np.abs(_speed_ahead(context)) * KMH < context.thresholds.standing_kmh
-        unknown = _within_tolerance(context, changes) | _there_and_back(context, changes)
+        unknown |= _within_tolerance(context, changes) | _there_and_back(context, changes)
         unknown |= changes & (swings | stands)
         states = (changes & ~unknown).nonzero()[0]
         pieces = context.road.piece(context.ego_extents.s[0, states])
