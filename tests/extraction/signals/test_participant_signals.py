@@ -60,7 +60,8 @@ def test_relations_and_distances():
 )
 def test_ego_may_be_passing_who_is_beside_it_at_first(other, unknown):
     signals = participant_signals(context(other))
-    assert signals.unknown["station"][0].tolist() == unknown
+    for name in ("station", "position"):
+        assert signals.unknown[name][0].tolist() == unknown
     assert not signals.unknown["lateral"].any()
 
 

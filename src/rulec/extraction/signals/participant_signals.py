@@ -60,7 +60,11 @@ _ASKED_FOR_M = 3.0
 
 
 def _position(context: DriveContext) -> SignalColumns:
-    return SignalColumns(about={"position": relations.position(context)})
+    """The paper's positions; unknown, as stations are, of who is beside ego in the first state."""
+    return SignalColumns(
+        about={"position": relations.position(context)},
+        unknown={"position": _beside_at_first(context)},
+    )
 
 
 def _station(context: DriveContext) -> SignalColumns:
