@@ -3,7 +3,9 @@
 A recording begins and stops because the recorder did. What an operator of the past looks for before
 the first letter is unknown: it may have been anything. So a rule with such operators is compiled as
 ``not begun weak until (begun and formula)``, where ``begun`` is true from the first letter on; a
-run may start in whatever state the letters before it lead to.
+run may start in whatever state the letters before it lead to. A sequence may be under way, too: a
+rule of what ego alone always or never does has been kept until then, and goes on. Those about others
+begin where these are there: in all pasts that there might be, ego passed them on some crossing.
 """
 
 from __future__ import annotations
@@ -43,7 +45,10 @@ def prefix_machines(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine |
     for rule in missing:
         own = _table(next(answers)) if _looks_back(rule) else rule.machine
         finite = own if rulebook.semantics == "finite" else _table(next(answers))
-        _KNOWN[keys[rule.name]] = None if own is None or finite is None else _machine(own, finite)
+        machine = None
+        if own is not None and finite is not None:
+            machine = _machine(own, finite, goes_on=_goes_on(rule.formula, rule.variables))
+        _KNOWN[keys[rule.name]] = machine
     return {name: _KNOWN[key] for name, key in keys.items()}
 
 
@@ -68,6 +73,15 @@ def _answers(jobs: Sequence[Job], *, is_spots: bool) -> list[Done | Failed | Non
 def _key(rule: CompiledRule, rulebook: CompiledRulebook) -> tuple[object, ...]:
     axioms = tuple([(axiom.variables, axiom.formula) for axiom in rulebook.axioms])
     return rule.formula, rule.machine.reads, rule.step_s, rule.variables, rulebook.semantics, axioms
+
+
+def _goes_on(formula: ltl.Formula, variables: Sequence[object]) -> bool:
+    """Whether a rule has been kept for some time before a word that is cut, a sequence under way."""
+    always = ltl.UnaryOperator.ALWAYS, ltl.UnaryOperator.NEVER
+    if not isinstance(formula, ltl.Unary) or formula.operator not in always or variables:
+        return False
+    then = ltl.BinaryOperator.THEN
+    return formula.bound is None and any(x.operator is then for x in operations_of(formula))
 
 
 def _looks_back(rule: CompiledRule) -> bool:
@@ -96,22 +110,29 @@ def _table(answer: Done | Failed | None) -> MealyMonitor | None:
     return answer.machine if isinstance(answer, Done) else None
 
 
-def _machine(own: MealyMonitor, finite: MealyMonitor) -> OutcomeMachine:
-    if own.reads[-1:] != (Read(_BEGUN.name, ()),):
-        return of_prefixes(own, finite)
-    half = len(own.letters) // 2
-    before = dict.fromkeys(zip(own.letters[:half], finite.letters[:half], strict=True))
-    starts = {(0, 0): None}
-    for state, other in (waiting := [(0, 0)]):
-        for symbol, finite_symbol in before:
-            if symbol == IMPOSSIBLE:
-                continue
-            pair = own.successors[state][symbol], finite.successors[other][finite_symbol]
-            if pair not in starts:
-                starts[pair] = None
-                waiting.append(pair)
-    own, finite = (
-        replace(machine, reads=machine.reads[:-1], letters=machine.letters[half:])
-        for machine in (own, finite)
+def _machine(own: MealyMonitor, finite: MealyMonitor, *, goes_on: bool) -> OutcomeMachine:
+    looks_back = own.reads[-1:] == (Read(_BEGUN.name, ()),)
+    half = len(own.letters) // 2 if looks_back else 0
+    before, begun = (
+        dict.fromkeys(
+            pair
+            for pair in zip(own.letters[letters], finite.letters[letters], strict=True)
+            if IMPOSSIBLE not in pair
+        )
+        for letters in (slice(half), slice(half, None))
     )
+    starts = {(0, 0): None}
+    for symbols in (before, begun) if goes_on else (before,):
+        for state, other in (waiting := list(starts)):
+            for symbol, finite_symbol in symbols:
+                pair = own.successors[state][symbol], finite.successors[other][finite_symbol]
+                lost = pair[0] == own.rejecting_sink and not own.outputs[state][symbol]
+                if pair not in starts and not (lost and symbols is begun):
+                    starts[pair] = None
+                    waiting.append(pair)
+    if looks_back:
+        own, finite = (
+            replace(machine, reads=machine.reads[:-1], letters=machine.letters[half:])
+            for machine in (own, finite)
+        )
     return of_prefixes(own, finite, starts)

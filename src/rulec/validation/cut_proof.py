@@ -15,10 +15,13 @@ MOST_ATOMS = 1 << 12
 """So many sets of letters that everything treats alike are told apart."""
 
 
-def prove_cut_table(machine: FormulaMachine, entry: Mapping[str, Any], letters: Letters) -> None:
+def prove_cut_table(
+    machine: FormulaMachine, entry: Mapping[str, Any], letters: Letters, *, goes_on: bool
+) -> None:
     """Raise UnprovableError unless a table for cut traces gives every word its formula's outcome.
 
-    What was before is unknown: a run begins in all states that some past leads to. The states of
+    What was before is unknown: a run begins in all states that some past leads to; of a rule that
+    ``goes_on`` also in those to which it leads that is kept so far. The states of
     both sides that no word tells apart are found together, by Moore's partition refinement, and the
     states that runs begin in have to be the same ones.
     """
@@ -39,6 +42,13 @@ def prove_cut_table(machine: FormulaMachine, entry: Mapping[str, Any], letters: 
     graph = {state: {move.target for move in machine.moves(state)} for state in states}
     kept = {state for state in states if any(move.kept for move in machine.moves(state))}
     alive = led_to(kept, graph)
+    if goes_on:
+        for state in own_starts:
+            own_starts += [
+                move.target
+                for move in machine.moves(state)
+                if (move.kept or move.target in alive) and move.target not in own_starts
+            ]
     atoms = _atoms(machine, states, table)
     places = {state: place for place, state in enumerate(states)}
     targets, outcomes = [], []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from hashlib import sha256
 from typing import Any, Literal
@@ -121,9 +121,23 @@ def _prove(rule: Mapping[str, Any], book: Mapping[str, Any]) -> None:
     same = rule.get("certificate", "") in ("", table_digest(*table))
     require(same, "its certificate is of another table")
     if rule.get("cut") is not None:
-        prove_cut_table(formula, rule["cut"], letters)
+        prove_cut_table(formula, rule["cut"], letters, goes_on=_goes_on(rule))
     prove_parts(rule)
     prove_hoa(formula, rule["hoa"], tree, letters, ends=book["semantics"] == "finite")
+
+
+def _goes_on(rule: Mapping[str, Any]) -> bool:
+    """Whether a rule was kept before a trace that is cut, a sequence perhaps under way."""
+    tree = rule["tree"]
+    is_one = isinstance(tree, list) and tree[0] in ("always", "never") and len(tree) == 2
+    return is_one and not rule["variables"] and "then" in _operators(tree)
+
+
+def _operators(tree: Any) -> Iterator[str]:
+    if isinstance(tree, list):
+        yield tree[0]
+        for part in tree[1:]:
+            yield from _operators(part)
 
 
 def table_digest(letters: Any, following: Any, accepting: Any) -> str:

@@ -4,12 +4,14 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 
+import pytest
 from hypothesis import Phase, given, settings
 
 from rulec.automata.bundle.stored_prefixes import stored
 from rulec.logic.bounds import PAST, operations_of, range_of
-from rulec.logic.formula import Atom, Bound, Unary, UnaryOperator
+from rulec.logic.formula import Atom, Binary, BinaryOperator, Bound, Unary, UnaryOperator
 from rulec.monitoring.verify import verify
+from rulec.rulebook.loader import parse_rulebook
 from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.trace import Trace
 from rulec.vocabulary import Signal, Vocabulary
@@ -57,18 +59,29 @@ def reach(found):
 
 
 def reading(meant, semantics, word):
-    """The outcome over all histories: violated, kept or open; with the reasons."""
+    """The outcome over all histories: violated, kept or open; with the reasons.
+
+    A sequence that never happens did not before, either: the formula begins anywhere in the
+    history, which keeps it.
+    """
     found = set()
+    operations = list(operations_of(meant))
+    goes_on = meant in operations[:1] and meant.operator.value in ("always", "never")
+    goes_on = goes_on and meant.bound is None and "then" in [x.operator.value for x in operations]
     for length in range(LONGEST + 1):
-        there = Unary(UnaryOperator.NEXT, meant, Bound(Fraction(length), Fraction(length), "steps"))
-        hope = Hope(there, semantics, LETTERS)
-        for before in product(LETTERS, repeat=length):
-            whole = [*before, *word]
-            if hope.first_lost(whole) is not None:
-                found.add("violated")
-            else:
-                found.add("kept" if is_kept(there, whole, "finite") else "pending")
-        if len(found) == 3 or not any(op.operator in PAST for op in operations_of(meant)):
+        for begin in range(length + 1) if goes_on else [length]:
+            steps = Bound(Fraction(begin), Fraction(begin), "steps")
+            there = Unary(UnaryOperator.NEXT, meant, steps)
+            hope = Hope(there, semantics, LETTERS)
+            for before in product(LETTERS, repeat=length):
+                whole = [*before, *word]
+                lost = hope.first_lost(whole)
+                if lost is None:
+                    found.add("kept" if is_kept(there, whole, "finite") else "pending")
+                elif lost >= length:
+                    found.add("violated")
+        looks_back = any(op.operator in PAST for op in operations)
+        if len(found) == 3 or not (looks_back or goes_on):
             break
     return found
 
@@ -80,6 +93,8 @@ def test_outcomes_are_those_of_all_that_may_have_been(chance):
     while meant is None or not is_easy(meant) or reach(meant) > LONGEST - 1:
         leaves = chance.randint(1, 3)
         meant = narrowed(formula(chance, lambda chance: chance.choice([P, Q]), leaves))
+        if chance.random() < 0.3:
+            meant = Unary(UnaryOperator.NEVER, Binary(BinaryOperator.THEN, P, meant))
     semantics = chance.choice(["stutter", "finite"])
     book = Rulebook("r", VOCABULARY, (Rule("r", "hard", (), meant),), semantics=semantics)
     compiled = compile_here(book, Fraction(1))
@@ -98,3 +113,39 @@ def test_outcomes_are_those_of_all_that_may_have_been(chance):
         assert not verdict.violations
         assert ("not over" in found.because) >= (expected == {"pending"})
         assert ("began before" in found.because) == (len(expected) > 1), (meant, word, expected)
+
+
+LONG = "true then p then[>= 3 s] true"
+"""For three states or longer, and some state before."""
+
+
+@pytest.mark.parametrize(
+    ("text", "values", "outcome"),
+    [
+        (f"require never ({LONG})", "TF", "open"),
+        (f"require never ({LONG})", "FTTF", "kept"),
+        (f"require never ({LONG})", "TTTTT", "violated"),
+        # Nobody knows for how long, but of what is not under way
+        (f"require never ({LONG})", "TTFTTF", "open"),
+        ("require never (p then not p)", "FF", "open"),
+        ("require always not (p and next not p)", "FF", "kept"),
+        # What was violated before is no matter of the trace
+        (f"require never ({LONG})", "F", "kept"),
+    ],
+)
+def test_a_sequence_that_was_under_way_is_open(text, values, outcome):
+    book = parse_rulebook(f"rulebook r signal p hard rule r {{ {text} }}")
+    states = tuple({"p": value == "T"} for value in values)
+    verdict = verify(Trace("t", 1.0, {}, states, ends="cut"), compile_here(book, Fraction(1)))
+    assert [bool(verdict.violations), bool(verdict.open)] == [
+        outcome == "violated",
+        outcome == "open",
+    ]
+    assert all(own.because == ("began before",) for own in verdict.open)
+
+
+def test_what_is_with_others_begins_where_they_are_there():
+    text = "type car signal p(o: car) hard rule r (o: car) { require never (p(o) then not p(o)) }"
+    book = compile_here(parse_rulebook(f"rulebook r {text}"), Fraction(1))
+    states = ({"p": {"a": False}},) * 2
+    assert verify(Trace("t", 1.0, {"a": "car"}, states, ends="cut"), book).satisfied
