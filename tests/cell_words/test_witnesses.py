@@ -239,6 +239,24 @@ def test_who_comes_into_a_lane_is_behind_a_cycle_at_its_other_edge(german):
     assert [state["precedes"]["10"] for state in states] == [False, False, UNKNOWN]
 
 
+def test_who_has_come_to_be_in_the_way_in_doubt_is_so_until_that_is_sure(german):
+    # A car's left side is over the mark at y = 2 by 2 cm, less than places are known to, and then
+    # before it. Ego, 2.5 m wide, has its right side there, and goes on into the car's lane
+    over = {k: (90.0 + 5 * k, y) for k, y in enumerate([0.5, 1.02, 0.975, *[0.9] * 10])}
+    other = vehicle(10, over, speed=10.0, width=2.0)
+    across = [
+        (-0.4, -1.0),
+        (-1.1, -1.8),
+        (-1.775, -0.9),
+        (-2.225, -0.9),
+        (-2.675, -0.9),
+        (-2.9, 0.0),
+    ]
+    motion = [(5.0 * k, 10.0, *own) for k, own in enumerate(across)]
+    states = driven_among([other], german, motion, 3.6, "bus", aside=-1.0)
+    assert "same_lane" in states[2]["lateral"]["10"].values
+
+
 def test_a_side_for_a_moment_is_that_before_and_after(german):
     # Ego gets over the mark at y = 2 in the third state, and the other one 0.1 s later behind it:
     # for a fifth of a second it would be left of it, and is in its lane before and after

@@ -96,8 +96,10 @@ class Relations:
         left_edge = np.where(touches, straight[last + 1], end)
         # Who reaches into ego's lane is in its way as far as ego's body is in theirs
         right_bound, left_bound = (straight[own_lane] for own_lane in self._own_lanes(low, high))
-        right = (high <= right_edge) & ((begin >= left_bound + _HAIR_M) | (high + width < begin))
-        left = (low >= left_edge) & ((end <= right_bound - _HAIR_M) | (low - width > end))
+        # By how much is in doubt there, and what was so before counts to drives
+        loose = self._frame.place_m + _HAIR_M
+        right = (high <= right_edge) & ((begin >= left_bound + loose) | (high + width < begin))
+        left = (low >= left_edge) & ((end <= right_bound - loose) | (low - width > end))
         before, beyond = ((others.right[k] + others.left[k]) / 2 for k in (0, 1))
         found = np.where(high < before, RIGHT | SAME, np.where(low > beyond, SAME | LEFT, _ALL))
         found = np.where(right, RIGHT, np.where(left, LEFT, found))
