@@ -52,6 +52,40 @@ def test_lines_across_a_plane_leave_out_no_cell(ends, lines, anywhere):
     assert len(found) == len(set(found))
 
 
+FOUR = [*NUMBERS, QuantityTerm("z", ()), QuantityTerm("w", ())]
+across_four = st.builds(
+    lambda factors, limit: LinearPlane(dict(zip(FOUR, factors, strict=True)), limit),
+    st.tuples(*[st.sampled_from([Fraction(0), Fraction(0), Fraction(1), Fraction(-2)])] * 4),
+    small,
+)
+
+
+@given(
+    st.tuples(*[st.none() | intervals] * 4),
+    st.lists(across_four, max_size=4),
+    st.tuples(*[small] * 4),
+    st.tuples(*[st.fractions(0, 1)] * 4),
+)
+def test_planes_with_numbers_of_their_own_leave_out_no_cell(ends, planes, anywhere, shares):
+    box = dict(zip(FOUR, ends, strict=True))
+    point = {
+        n: at if box[n] is None else box[n][0] + share * (box[n][1] - box[n][0])
+        for n, at, share in zip(FOUR, anywhere, shares, strict=True)
+    }
+    found = sample_points(box, planes)
+    assert sides(planes, point) in {sides(planes, one) for one in found}
+    assert all(box[n] is None or box[n][0] <= one[n] <= box[n][1] for one in found for n in FOUR)
+
+
+def test_seven_compared_with_one_are_on_three_sides_each():
+    """Elimination had too many inequalities for five of them."""
+    one, *others = [QuantityTerm(name, ()) for name in "abcdefgh"]
+    planes = [LinearPlane({one: Fraction(1), x: Fraction(-1)}, Fraction(16)) for x in others]
+    box = {one: (Fraction(0), Fraction(30)), **dict.fromkeys(others, (Fraction(-40), Fraction(10)))}
+    found = [sides(planes, point) for point in sample_points(box, planes)]
+    assert len(found) == len(set(found)) == 3**7
+
+
 def test_many_lines_are_as_many_cells_as_counted_by_hand():
     """Lines of which no two are parallel and no three meet: n lines, n(n-1)/2 points where two
     cross, n * n pieces of lines, n(n+1)/2 + 1 areas (Steiner 1826)."""

@@ -7,9 +7,11 @@ Fourier-Motzkin elimination.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence, Set
 from fractions import Fraction
-from itertools import pairwise
+from itertools import pairwise, product
+from math import prod
 from typing import NamedTuple
 
 from rulec.logic.formula import Term
@@ -57,6 +59,10 @@ def sample_points(
         return list(_beside(cutting, boxed))
     if len(bounds) == 2:
         return _in_a_plane(bounds, cutting)
+    counts = Counter(number for plane in cutting for number, x in plane.coefficients.items() if x)
+    shared = {number: interval for number, interval in bounds.items() if counts[number] > 1}
+    if len(shared) < len(bounds):
+        return _by_shared_numbers(bounds, shared, cutting)
     within = [
         bound
         for number, interval in bounds.items()
@@ -75,6 +81,103 @@ def sample_points(
     except TooManyBoundsError:
         return None
     return points
+
+
+def _by_shared_numbers(
+    bounds: Mapping[Term, _Interval | None],
+    shared: Mapping[Term, _Interval | None],
+    planes: Sequence[LinearPlane],
+) -> list[Point] | None:
+    """Points where some numbers are in one plane alone.
+
+    Once the ``shared`` ones are chosen each plane's own numbers put it on either side by
+    themselves, as far as their sum goes; where that changes is a plane of the shared ones.
+    """
+    own = [_OwnNumbers.of(plane, bounds, shared) for plane in planes]
+    among = [plane for one in own for plane in one.turns()]
+    known = sample_points(shared, among) if shared else [{}]
+    if known is None:
+        return None
+    free = {number: _any_of(interval) for number, interval in bounds.items()}
+    found: dict[tuple[int, ...], Point] = {}
+    for point in known:
+        sides = [one.sides(point) for one in own]
+        if prod(map(len, sides)) > MOST_POINTS:
+            return None
+        for chosen in product(*sides):
+            signs = tuple([sign for sign, _ in chosen])
+            if signs not in found:
+                found[signs] = free | point
+                for _, numbers in chosen:
+                    found[signs].update(numbers)
+        if len(found) > MOST_POINTS:
+            return None
+    return list(found.values())
+
+
+class _OwnNumbers(NamedTuple):
+    """A plane, of which some numbers are its own: ``least`` and ``most`` are where their sum is so.
+
+    Where it goes on for ever there is no ``most``, and ``least`` has all but one number.
+    """
+
+    shared: LinearPlane
+    own: LinearPlane
+    least: Point
+    most: Point | None
+
+    @classmethod
+    def of(
+        cls,
+        plane: LinearPlane,
+        bounds: Mapping[Term, _Interval | None],
+        shared: Mapping[Term, _Interval | None],
+    ) -> _OwnNumbers:
+        """Of a plane, by which numbers are in others, too."""
+        apart: tuple[Point, Point] = {}, {}
+        for number, factor in plane.coefficients.items():
+            if factor:
+                apart[number not in shared][number] = factor
+        within = [(number, bounds[number]) for number in apart[1]]
+        parts = LinearPlane(apart[0], plane.limit), LinearPlane(apart[1], Fraction(0))
+        endless = next((number for number, interval in within if interval is None), None)
+        if endless is None:
+            box = {number: interval for number, interval in within if interval is not None}
+            return cls(*parts, *_corners(parts[1], box))
+        rest = {n: _any_of(interval) for n, interval in within if n != endless}
+        return cls(*parts, rest, None)
+
+    def turns(self) -> Iterator[LinearPlane]:
+        """Where the shared numbers leave no more room on one side."""
+        coefficients, limit = self.shared
+        if coefficients and self.most is not None:
+            ends = {_sum(self.own, end) for end in (self.least, self.most)}
+            yield from (LinearPlane(coefficients, limit - end) for end in sorted(ends))
+
+    def sides(self, point: Point) -> list[tuple[int, Point]]:
+        """Numbers with which it is on each side that it may be on, and which side that is."""
+        left = self.shared.limit - _sum(self.shared, point)
+        if self.most is None:
+            for number, chosen in self.least.items():
+                left -= self.own.coefficients[number] * chosen
+            (endless,) = self.own.coefficients.keys() - self.least.keys()
+            factor = self.own.coefficients[endless]
+            return [(side, {**self.least, endless: (left + side) / factor}) for side in (-1, 0, 1)]
+        low, high = _sum(self.own, self.least), _sum(self.own, self.most)
+        found = [(-1, self.least)] if low < left else []
+        if low <= left <= high:
+            found.append((0, _between(self.least, self.most, left - low, high - low)))
+        return [*found, (1, self.most)] if high > left else found
+
+
+def _any_of(interval: _Interval | None) -> Fraction:
+    return Fraction(0) if interval is None else interval[0]
+
+
+def _between(least: Point, most: Point, way: Fraction, whole: Fraction) -> Point:
+    """A part of the way from one point to another."""
+    share = way / whole if whole else Fraction(0)
+    return {number: low + share * (most[number] - low) for number, low in least.items()}
 
 
 class _Work:
@@ -132,10 +235,9 @@ def _beside(planes: Sequence[LinearPlane], box: Mapping[Term, _Interval]) -> Ite
     (plane,) = planes
     least, most = _corners(plane, box)
     low, high = _sum(plane, least), _sum(plane, most)
-    share = (plane.limit - low) / (high - low) if high > low else Fraction(0)
     if low < plane.limit:
         yield least
-    yield {number: least[number] + share * (most[number] - least[number]) for number in box}
+    yield _between(least, most, plane.limit - low, high - low)
     if high > plane.limit:
         yield most
 
