@@ -69,7 +69,7 @@ def test_a_trace_of_another_step_does_not_stop_the_others(folder, more):
     assert problem.code == "R0507"
     assert "compiled for steps of 0.5 s and 1/3 s" in problem.message
     assert "0.25 s" in problem.message
-    assert "--step 0.25" in problem.help
+    assert "step_s=0.25" in problem.help
 
 
 def test_it_says_where_the_trace_of_another_step_is(folder, tmp_path, capsys):

@@ -73,7 +73,7 @@ def test_the_machine_of_another_step_does_not_judge():
     assert problem.message == (
         "rule `answered` was compiled for steps of 1 s; the trace has steps of 0.5 s"
     )
-    assert problem.help == "compile its source with `--step 0.5`"
+    assert problem.help == "compile its source with `step_s=0.5`"
     assert problem.place == SourceLocation("t.jsonl", 3)
 
 

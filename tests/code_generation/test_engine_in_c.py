@@ -84,7 +84,7 @@ def test_too_many_objects_are_refused():
     crowd = rulec.Trace("t", 1, dict.fromkeys(names, "vehicle"), states)
     (found,) = rulec.verify_many([crowd], "esterle2019", engine="c")
     (diagnostic,) = found.error.diagnostics
-    assert (diagnostic.code, "--engine python" in diagnostic.help) == ("R0750", True)
+    assert (diagnostic.code, 'engine="python"' in diagnostic.help) == ("R0750", True)
 
 
 def test_it_is_for_traces(tmp_path, capsys):

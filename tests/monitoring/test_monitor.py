@@ -356,7 +356,7 @@ def test_rules_of_another_step_are_named_as_that(tmp_path):
         "R0510",
         "this monitor was saved for a step of 1 s, and these rules are compiled for 1/10 s",
     )
-    assert "`--step`" in problem.help
+    assert "`step_s`" in problem.help
 
 
 @pytest.mark.parametrize("data", [None, [], 1, "text", {}])

@@ -135,7 +135,7 @@ def test_a_file_that_is_something_else_is_one_mistake(data, noun):
 
 
 def test_csv_and_a_list_are_one_mistake():
-    assert "--input-format csv" in problem(b"trace,step,p\nt,0,true\nt,1,true\n").help
+    assert "`.csv`" in problem(b"trace,step,p\nt,0,true\nt,1,true\n").help
     pretty = json.dumps([GOOD, GOOD], indent=1).encode()
     in_lines = b"[\n" + line().rstrip() + b",\n" + line() + b"]\n"
     for data in (pretty, in_lines):

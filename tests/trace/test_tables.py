@@ -131,7 +131,7 @@ HEAD = "trace,step,object,type,other,p\n"
             "call it `step`",
         ),
         ("step,p\n0,true\n", 1, "there is no column `trace`", "the first columns are"),
-        ("track,time\na,0\n", 1, "there is no column `trace`", "(`--input-format tracks`)"),
+        ("track,time\na,0\n", 1, "there is no column `trace`", '(`form="tracks"`)'),
         ("time;speed\n", 1, "names are separated by semicolons", "separate the cells by commas"),
         ("trace;step\n", 1, "names are separated by semicolons", "separate the cells by commas"),
         ("step\ttrace\n", 1, "names are separated by tabs", "separate the cells by commas"),
@@ -179,7 +179,7 @@ HEAD = "trace,step,object,type,other,p\n"
         (HEAD + "t,0,,,,true\n" * 100 + "t\0,0,,,,true\n", 102, "a null character", ""),
         (HEAD + "t,0,,", 2, "this row has 4 cells", "has the file been cut short?"),
         (HEAD + "t,0,,,,a, b\n", 2, "this row has 7 cells", "stands in quotes"),
-        ('{"states": [{}]}\n', None, "no CSV, but JSON", "add `--input-format jsonl`"),
+        ('{"states": [{}]}\n', None, "no CSV, but JSON", "let its name end in `.jsonl`"),
     ],
 )
 def test_what_is_refused(text, line, words, way_out):

@@ -244,4 +244,4 @@ def test_without_a_map_it_says_which(tmp_path):
         read_recording(path)
     (found,) = caught.value.diagnostics
     assert "log_map_archive_*.json" in found.message
-    assert "--map" in found.help
+    assert "`map_path`" in found.help

@@ -79,6 +79,15 @@ def test_ways_out(tmp_path):
     )
 
 
+def test_numbers_out_of_range_are_said_as_given(tmp_path):
+    found = message(tmp_path, "lane,x,y,Limit_kmh", "a,0,0,5000", "a,9,0,")
+    assert found.message.endswith("its `Limit_kmh` is 5000")
+    # 200 m/s
+    assert found.expected == "expected a number between 0 and 720"
+    wide = message(tmp_path, "lane,x,y,width", "a,0,0,350", "a,9,0,350")
+    assert (wide.message[-18:], wide.help) == ("its `width` is 350", "widths are in metres")
+
+
 def test_a_map_is_no_recording(tmp_path):
     """It is not read as traces, either, which have other columns."""
     file = tmp_path / "lanes.csv"

@@ -389,7 +389,7 @@ def test_tracks_are_no_map(tmp_path):
     cars = written(tmp_path, table(HEAD, *driving()))
     with pytest.raises(RulecError, match="it has tracks, and no lanes") as refused:
         read_recording(cars, cars)
-    assert "its map with --map" in refused.value.diagnostics[0].help
+    assert "its map with `map_path`" in refused.value.diagnostics[0].help
 
 
 def test_lanes_beside_in_parquet(tmp_path):
@@ -467,7 +467,7 @@ def test_two_egos(tmp_path):
 def test_without_a_map(tmp_path):
     found = message(tmp_path, HEAD, *driving(), lanes="")
     assert (found.code, found.message) == ("R0614", "`cars.csv` has tracks, but no roads")
-    assert "--map" in found.help
+    assert "`map_path`" in found.help
     assert "`cars.lanes.csv` or `lanes.csv` beside it would be found" in found.help
 
 

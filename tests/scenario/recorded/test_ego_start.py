@@ -62,7 +62,7 @@ def test_a_problem_takes_the_part_of_a_participant_in_its_place():
 def test_what_is_not_there_cannot_be_chosen():
     assert "no moving obstacle 8; choose one of `99`, `7`" in refusal(ego=8)
     nobody = replace(FOUND, problems=())
-    assert "choose one of its vehicles with --ego: `7`" in refusal(nobody)
+    assert "choose one of its vehicles with `ego`: `7`" in refusal(nobody)
     assert "nobody moves in the file" in refusal(replace(nobody, participants=()))
 
 

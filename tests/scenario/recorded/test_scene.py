@@ -232,7 +232,7 @@ def test_without_a_planning_problem_ego_has_to_be_chosen():
     made = replace(recording([ROAD], [drive(7, 40, 10)]), problems=())
     with pytest.raises(RulecError, match="no planning problem") as caught:
         seen_from_ego(made, CHOICE, "f")
-    assert "--ego: `7`" in caught.value.diagnostics[0].help
+    assert "`ego`: `7`" in caught.value.diagnostics[0].help
     assert seen_from_ego(made, Choice(ego=7), "f").ego.s == 0
 
 

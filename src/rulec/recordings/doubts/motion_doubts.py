@@ -32,6 +32,9 @@ _ASKEW_DEG, _ACROSS_DEG = 20.0, 45.0
 _FASTEST_MPS = 100.0
 """No traffic is as fast as 360 km/h in the median."""
 
+_LONGEST_CAR_M = 8.0
+"""Longer than any car, and shorter than most are in feet."""
+
 _SPEEDS = "speeds are"
 
 
@@ -90,6 +93,10 @@ def _doubts(tracks: list[Track], recording: Recording, angle: float) -> Iterator
         )
     if np.mean([track.length < track.width for track in tracks]) > 0.5:
         yield "most vehicles are wider than long: lengths and widths may be exchanged"
+    cars = (body.states for body in recording.participants if body.type == "car")
+    lengths = [states.track.length for states in cars if isinstance(states, TrackStates)]
+    if lengths and (middle := median(np.array(lengths))) > _LONGEST_CAR_M:
+        yield f"cars are {middle:.3g} m long in the median: lengths may be in feet"
 
 
 def _ways(track: Track) -> NDArray[float64]:

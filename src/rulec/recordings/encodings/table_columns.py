@@ -116,6 +116,14 @@ class NamedColumns(NamedTuple):
         """A column of numbers, or None if the table has none."""
         return self.numbers.get(name)
 
+    def as_given(self, kind: ColumnKind) -> tuple[str, float]:
+        """What a column is called in the table, and its unit there in ours."""
+        known = {kind.name: 1.0, **kind.also}
+        for name in self.columns.numbers:
+            if (ours := name.strip().casefold()) in known:
+                return name, known[ours]
+        return kind.name, 1.0
+
     def part(self, chosen: NDArray[np.intp]) -> NamedColumns:
         """Some of the rows."""
         return NamedColumns(

@@ -107,9 +107,12 @@ class _LaneTable:
         bad = ~((values > low) & (values < high)) & ~np.isnan(values)
         if bad.any():
             row = int(np.argmax(bad))
-            why = f"its `{name}` is {values[row]:g}"
-            expected = f"expected a number between {low:g} and {high:g}"
-            raise self.columns.wrong(row, why, expected)
+            (kind,) = (kind for kind in LANE_COLUMNS if kind.name == name)
+            given, unit = self.named.as_given(kind)
+            why = f"its `{short(given)}` is {self.columns.numbers[given][row]:g}"
+            expected = f"expected a number between {low / unit:g} and {high / unit:g}"
+            metres = "widths are in metres" if name == "width" else ""
+            raise self.columns.wrong(row, why, expected, metres)
 
     def road_map(self) -> RoadMap:
         lanelets = {}

@@ -327,7 +327,8 @@ def _check(rows: TrackRows) -> None:
             row = int(np.argmax(bad))
             why = f"its `{name}` is {values[row]:g}"
             expected = f"expected a number from {low:g} to {largest:g}"
-            raise rows.columns.wrong(row, why, expected)
+            metres = f"`{name}` is in metres" if name in ("length", "width") else ""
+            raise rows.columns.wrong(row, why, expected, metres)
     for name, values in (("ego", rows.ego), ("standing", rows.standing), *rows.lamps.items()):
         if values is None:
             continue
