@@ -63,7 +63,10 @@ def test_what_is_said_as_it_moves(tmp_path):
         ({"step": 100}, "speeds are 1e+03 times what places and times say"),
         ({"heading": lambda row: row["heading"] + 0.5}, "29° off their headings"),
         ({"size": (1.8, 4.5)}, "wider than long"),
-        ({"size": (14.8, 5.9)}, "cars are 14.8 m long in the median: lengths may be in feet"),
+        (
+            {"size": (14.8, 5.9)},
+            "cars are 14.8 m long in the median: lengths may be in feet or cent",
+        ),
     ],
 )
 def test_units_and_sizes_that_contradict_the_places(tmp_path, changed, said):

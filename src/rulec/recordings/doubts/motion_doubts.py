@@ -96,7 +96,7 @@ def _doubts(tracks: list[Track], recording: Recording, angle: float) -> Iterator
     cars = (body.states for body in recording.participants if body.type == "car")
     lengths = [states.track.length for states in cars if isinstance(states, TrackStates)]
     if lengths and (middle := median(np.array(lengths))) > _LONGEST_CAR_M:
-        yield f"cars are {middle:.3g} m long in the median: lengths may be in feet"
+        yield f"cars are {middle:.3g} m long in the median: lengths may be in feet or centimetres"
 
 
 def _ways(track: Track) -> NDArray[float64]:

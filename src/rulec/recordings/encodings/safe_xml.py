@@ -14,6 +14,7 @@ from rulec.diagnostics import RulecError
 from rulec.files import opened
 from rulec.recordings.encodings.file_format import FileFormat, XmlFormat
 from rulec.recordings.encodings.xml_element import XmlElement, short
+from rulec.trace.formats.stream_lines import packed
 
 LONGEST_TAG = 1_000_000
 """Bytes; expat keeps a tag in memory until it ends."""
@@ -140,10 +141,11 @@ def root_of(path: Path, form: FileFormat) -> str:
         parser.StartElementHandler = None
 
     parser.StartElementHandler = root
-    size = 0
+    size, first = 0, b""
     try:
         for block in blocks_of(path):
             size += len(block)
+            first = first or block
             _parse(parser, block, path, form)
             if names:
                 break
@@ -154,6 +156,8 @@ def root_of(path: Path, form: FileFormat) -> str:
         if not names:
             parser.Parse(b"", True)
     except ExpatError as problem:
+        if not names and (kind := packed(first)) is not None:
+            raise form.refused(path, f"it is {kind.noun}", help_text=kind.help) from None
         if not names:
             why = f"it is not well-formed XML: {errors.messages[problem.code]}"
             raise form.refused(path, why, problem.lineno) from None

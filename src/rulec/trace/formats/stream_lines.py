@@ -84,6 +84,11 @@ _UTF16 = Foreign("text in UTF-16", "save it in UTF-8")
 _BEGINNINGS = {
     b"\x1f\x8b": Foreign("data compressed with gzip", "unpack it with `gunzip`"),
     b"\x28\xb5\x2f\xfd": Foreign("data compressed with Zstandard", "unpack it with `unzstd`"),
+    b"BZh": Foreign("data compressed with bzip2", "unpack it with `bunzip2`"),
+    b"\xfd7zXZ": Foreign("data compressed with xz", "unpack it with `unxz`"),
+    b"version https://git-lfs": Foreign(
+        "a pointer of Git LFS", "fetch the file that it stands for with `git lfs pull`"
+    ),
     b"PK\x03\x04": Foreign(
         "a ZIP archive", "unpack it with `unzip`; or, if it is Excel's, save its sheet as CSV"
     ),

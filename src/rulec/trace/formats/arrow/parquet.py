@@ -159,7 +159,8 @@ def _no_utf8(content: str, place: SourceLocation) -> RulecError:
 
 def _no_parquet(stream: IO[bytes], file: str) -> RulecError | None:
     start = stream.tell()
-    beginning = stream.read(len(_MARK))
+    head = stream.read(100)
+    beginning = head[: len(_MARK)]
     size = stream.seek(0, io.SEEK_END) - start
     stream.seek(max(start, start + size - len(_MARK)))
     end = stream.read()
@@ -168,7 +169,7 @@ def _no_parquet(stream: IO[bytes], file: str) -> RulecError | None:
     if not size:
         return problem(f"{refusal}: it is empty", SourceLocation(file), _AGAIN)
     if beginning != _MARK:
-        result = packed(beginning)
+        result = packed(head)
         if result is not None:
             return problem(
                 f"this is no Parquet, but {result.noun}", SourceLocation(file), result.help
