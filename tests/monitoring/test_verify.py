@@ -278,6 +278,12 @@ def test_what_is_no_number_is_refused(value):
     assert "it is a finite number, in m" in diagnostic.message
 
 
+def test_a_number_with_its_unit_is_to_be_written_alone():
+    with pytest.raises(RulecError) as caught:
+        measured(always(closer("v", 5)), {"gap": {"car1": "5 m"}})
+    assert caught.value.diagnostics[0].help == "write the number alone, in that unit"
+
+
 @pytest.mark.parametrize("value", [10**400, -(10**400), 1.7976931348623157e308, 0, -0.0])
 def test_any_finite_number_is_a_number(value):
     state = {"gap": {"car1": value, "car2": value}}

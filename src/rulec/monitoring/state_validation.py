@@ -211,8 +211,11 @@ def _check_value(
                 way_out = _SIDES.get(value) or did_you_mean(value, declaration.values)
             if isinstance(declaration, Signal) and isinstance(value, str | int | float):
                 way_out = _TRUTHS_ELSEWHERE.get(value, "")
-            if isinstance(declaration, Quantity) and isinstance(value, str) and _is_number(value):
-                way_out = "numbers stand without quotes"
+            if isinstance(declaration, Quantity) and isinstance(value, str):
+                if _is_number(value):
+                    way_out = "numbers stand without quotes"
+                elif _is_number(value.partition(" ")[0]):
+                    way_out = "write the number alone, in that unit"
             message = f"{where} says `{name}` is {_shown(value)}; {expected}"
             if isinstance(value, Mapping):
                 message = f"{where} gives `{name}` by object; {expected}, and about no object"

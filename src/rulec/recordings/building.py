@@ -16,6 +16,7 @@ from rulec.diagnostics import did_you_mean, named
 from rulec.diagnostics.argument_kinds import checked_kinds, expected, expected_fields
 from rulec.recordings.building_checks import BuildingChecks
 from rulec.recordings.encodings.xml_element import LARGEST
+from rulec.recordings.lanes.lane_table import FASTEST_LIMIT_MPS, WIDEST_M
 from rulec.recordings.lanes.lanes_along import (
     LANE_TYPES,
     USUAL_WIDTH_M,
@@ -39,6 +40,7 @@ from rulec.recordings.recording import (
 from rulec.recordings.track import Track, tracked
 from rulec.recordings.tracks import derived_motion as motion
 from rulec.recordings.tracks.road_user_types import usual_size
+from rulec.recordings.tracks.track_rows import LONGEST_BODY_M
 
 _OFF_STEP = 0.02
 
@@ -89,7 +91,7 @@ def build_lanelet(
         if mark is not None:
             checks.one_of(side, mark, get_args(LaneMark))
     if limit_mps is not None:
-        checks.positive("limit_mps", limit_mps)
+        checks.positive("limit_mps", limit_mps, "m/s", FASTEST_LIMIT_MPS)
     if stop_line is not None:
         drawn = checks.points("stop_line", stop_line)
     checks.raise_problems()
@@ -122,7 +124,7 @@ def _widths(
     except ValueError:  # rows of different lengths
         is_one = False
     if is_one:
-        return checks.positive("width", cast("float", width))
+        return checks.positive("width", cast("float", width), "m", WIDEST_M)
     if checks.problems:
         return 1.0
     given = np.array(centre, dtype=float)
@@ -166,7 +168,7 @@ def build_participant(
     if not name:
         checks.wrong("its id is empty")
     checks.one_of("kind", kind, OBSTACLE_TYPES)
-    step_s = checks.positive("step_s", step_s)
+    step_s = checks.positive("step_s", step_s, "s")
     times = checks.numbers("t", t)
     count = len(times)
     if not count:
@@ -179,8 +181,11 @@ def build_participant(
         if values is not None
     }
     usual = usual_size(kind)
+    # Trains and buildings may be longer.
+    is_vehicle = "vehicle" in OBSTACLE_TYPES.get(kind, ())
+    longest_m = LONGEST_BODY_M if is_vehicle else LARGEST
     size = [
-        checks.positive(argument, value) if value is not None else usual[at]
+        checks.positive(argument, value, "m", longest_m) if value is not None else usual[at]
         for at, (argument, value) in enumerate((("length", length), ("width", width)))
     ]
     steps = _steps(checks, times, step_s)
@@ -257,7 +262,7 @@ def build_recording(
     for part in (*lanes, *bodies):
         expected_fields(part)
     checks = BuildingChecks("the recording")
-    step_s = checks.positive("step_s", step_s)
+    step_s = checks.positive("step_s", step_s, "s")
     if side is not None:
         checks.one_of("side", side, get_args(Side))
     for kind in sorted(set(complete) - COMPLETE):

@@ -86,10 +86,12 @@ class BuildingChecks:
             self.wrong(why, f"expected a number below {LARGEST:.0e}")
         return not bad.any()
 
-    def positive(self, name: str, value: float) -> float:
+    def positive(self, name: str, value: float, unit: str, below: float = LARGEST) -> float:
         """A number above 0; 1 where it is none."""
-        if not isinstance(value, int | float | np.number) or not 0 < value < LARGEST:
-            self.wrong(f"`{name}` is {brief(value):.40}", "expected a number above 0")
+        if not isinstance(value, int | float | np.number) or not 0 < value < below:
+            most = f" and below {below:g}" if below < LARGEST else ""
+            expected = f"expected a number above 0{most}, in {unit}"
+            self.wrong(f"`{name}` is {brief(value):.40}", expected)
             return 1.0
         return float(value)
 

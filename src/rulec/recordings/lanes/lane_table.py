@@ -41,6 +41,7 @@ LANES = FileFormat(
 )
 MOST_LANES = 100_000
 WIDEST_M = 50.0
+FASTEST_LIMIT_MPS = 200.0
 
 LANE_COLUMNS = (
     ColumnKind("lane", {"lane_id": 1, "lanelet": 1, "lanelet_id": 1}, True, True),
@@ -101,7 +102,7 @@ class _LaneTable:
         values = self.named.number(name)
         if values is None:
             return
-        low, high = {"width": (0.0, WIDEST_M), "limit_mps": (0.0, 200.0)}.get(
+        low, high = {"width": (0.0, WIDEST_M), "limit_mps": (0.0, FASTEST_LIMIT_MPS)}.get(
             name, (-LARGEST, LARGEST)
         )
         bad = ~((values > low) & (values < high)) & ~np.isnan(values)
