@@ -198,7 +198,7 @@ class DriveContext:
         near[np.arange(len(begins)), self.ego_lane[begins]] = False
         if not near.any():
             return self.steady_lane
-        steady = self.steady_lane.copy()
+        steady: NDArray[intp] = self.steady_lane.copy()
         for number in near.any(axis=1).nonzero()[0].tolist():
             self._keep_lanes(steady, self.spans.slices[number], int(near[number].argmax()))
         return steady
