@@ -262,3 +262,14 @@ def test_what_does_not_go_with_several_rulebooks(arguments, words, verify):
     status, out, err = verify(*arguments, "-r", "./slower.rules")
     assert (status, out) == (2, "")
     assert words in err
+
+
+def test_a_rule_that_is_too_large_for_a_recording_s_step_is_a_finding(verify):
+    """2,000 s are 20,000 steps of 0.1 s, twice as many as may be."""
+    late = "\n\nhard rule late { require always (wet implies eventually[<= 2000 s] not wet) }\n"
+    Path("tiny.rules").write_text(BOOK.replace("use road", "use road\nstep 10 s") + late)
+    verify("drives/b.xml.gz", "-o", "f.jsonl")
+    rows = [json.loads(line) for line in Path("f.jsonl").read_text().splitlines()]
+    (row,) = [row for row in rows if row["rule"] == "late"]
+    assert (row["outcome"], row["strength"]) == ("not_judged", "hard")
+    assert "too large for steps of 0.1 s" in row["because"]

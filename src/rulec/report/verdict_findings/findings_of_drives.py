@@ -102,10 +102,12 @@ class DriveFindings:
         for name, by_drive in self.gathered.not_judged.items():
             everywhere = len(by_drive) == drives
             for vehicle, rule in [*by_drive.items()][: 1 if everywhere else None]:
+                # One that is too large for the recording's step is none of the compiled rules.
+                too_large = self._own(rule=name, strength=rule.strength)
                 yield VerdictFinding(
                     vehicle="" if everywhere else vehicle,
                     **not_judged(rule),
-                    **self._about(rules[name]),
+                    **(self._about(rules[name]) if name in rules else too_large),
                 )
 
     def _own(self, **fields: Any) -> dict[str, Any]:
