@@ -60,9 +60,14 @@ def test_relations_and_distances():
 )
 def test_ego_may_be_passing_who_is_beside_it_at_first(other, unknown):
     signals = participant_signals(context(other))
-    for name in ("station", "position"):
-        assert signals.unknown[name][0].tolist() == unknown
+    assert signals.unknown["station"][0].tolist() == unknown
     assert not signals.unknown["lateral"].any()
+
+
+def test_the_papers_side_of_who_is_behind_on_another_lane_at_first_says_as_little():
+    signals = participant_signals(context(steady(8, 20, 4), steady(9, 20, 0)))
+    assert signals.about["position"][:, 1].tolist() == ["r", "b"]
+    assert signals.unknown["position"].tolist() == [[True] + [False] * 3, [False] * 4]
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.4, 0.8, 1.2])

@@ -60,10 +60,11 @@ _ASKED_FOR_M = 3.0
 
 
 def _position(context: DriveContext) -> SignalColumns:
-    """The paper's positions; unknown, as stations are, of who is beside ego in the first state."""
+    """The paper's positions; unknown of who is at ego's side in the first state, as stations are."""
+    position = relations.position(context)
+    at_side = (position == "l") | (position == "r")
     return SignalColumns(
-        about={"position": relations.position(context)},
-        unknown={"position": _beside_at_first(context)},
+        about={"position": position}, unknown={"position": _at_first(context) & at_side}
     )
 
 
@@ -80,20 +81,19 @@ def _station(context: DriveContext) -> SignalColumns:
     longest = round(context.thresholds.passed_s / context.recording.step_s)
     station = with_one_change(station, doubtful, there, context.spans)
     doubtful &= ~only_when(station, doubtful, there, longest, context.spans)
+    beside = _at_first(context) & (relations.station(context) == relations.BESIDE)
     return SignalColumns(
         about={"station": station},
-        unknown={"station": doubtful | _passed_unseen(context) | _beside_at_first(context)},
+        unknown={"station": doubtful | _passed_unseen(context) | beside},
         texts={"station": STATIONS},
     )
 
 
 @once
-def _beside_at_first(context: DriveContext) -> Flags:
-    """Flags of the first states of those who are beside ego then, and were not recorded before."""
+def _at_first(context: DriveContext) -> Flags:
+    """Flags of the first states of others in a drive in which they were not recorded before."""
     runs, spans, first = presence_runs(context), context.spans, np.zeros_like(context.relevant)
     rows, columns = runs.rows, spans.begins[runs.drives] + runs.first
-    beside = relations.station(context)[rows, columns] == relations.BESIDE
-    rows, columns = rows[beside], columns[beside]
     present = context.surroundings.tracks.present
     before = np.maximum(context.columns[columns] - 1, 0)
     unseen = ~present[context.tracks.rows[rows], before] | (columns == spans.first[columns])
