@@ -5,8 +5,7 @@ the first letter is unknown: it may have been anything. So a rule with such oper
 ``not begun weak until (begun and formula)``, where ``begun`` is true from the first letter on; a
 run may start in whatever state the letters before it lead to. A sequence may be under way, too: a
 rule of what ego alone always or never does has been kept until then, and goes on. Those about
-others begin where these are there: in all pasts that there might be, ego passed them on some
-crossing.
+others begin where these are there: in some past that there might be, ego passed them on a crossing.
 """
 
 from __future__ import annotations
@@ -77,7 +76,7 @@ def _key(rule: CompiledRule, rulebook: CompiledRulebook) -> tuple[object, ...]:
 
 
 def _goes_on(formula: ltl.Formula, variables: Sequence[object]) -> bool:
-    """Whether a rule has been kept before a word that is cut, with a sequence perhaps under way."""
+    """Whether a rule was kept before a word that is cut, a sequence perhaps under way."""
     always = ltl.UnaryOperator.ALWAYS, ltl.UnaryOperator.NEVER
     if not isinstance(formula, ltl.Unary) or formula.operator not in always or variables:
         return False

@@ -215,7 +215,8 @@ class DriveContext:
     def _leaves(self) -> NDArray[intp]:
         """For each lane the first state from each on in which ego has left it."""
         others = self.ego_lane[:, None] != np.arange(self.existing_lanes.shape[1])
-        return self.spans.next_state((others & ~self._stays).T)
+        leaves: NDArray[intp] = self.spans.next_state((others & ~self._stays).T)
+        return leaves
 
     def _keep_lanes(self, steady: NDArray[intp], columns: slice, own: int) -> None:
         """Write the lanes that ego keeps to in a drive that begins in its ``own``."""

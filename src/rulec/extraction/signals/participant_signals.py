@@ -60,7 +60,7 @@ _ASKED_FOR_M = 3.0
 
 
 def _position(context: DriveContext) -> SignalColumns:
-    """The paper's positions; unknown of who is at ego's side in the first state, as stations are."""
+    """The paper's positions; unknown, as stations, of who is at ego's side in the first state."""
     position = relations.position(context)
     at_side = (position == "l") | (position == "r")
     return SignalColumns(
