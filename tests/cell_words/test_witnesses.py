@@ -425,6 +425,21 @@ def test_of_who_is_behind_where_the_next_lane_comes_from_elsewhere_nothing_is_sa
     assert {state["lateral"]["10"] for state in states} == {UNKNOWN}
 
 
+def test_who_is_beside_the_road_of_the_next_lane_alone_is_there(german):
+    lanes = (
+        straight(1, 0, 50, successors=[2]),
+        lanelet(4, [(20, 60), (50, 4)], successors=[3]),
+        straight(2, 50, 300, left_of=3, predecessors=[1]),
+        straight(3, 50, 300, y=4, right_of=2, predecessors=[4]),
+    )
+    places = {k: (44.0 + 0.236 * k, 15.2 - 0.441 * k) for k in range(25)}
+    comes = vehicle(10, places, speed=1.0, heading=atan2(-56, 30))
+    motion = [(5.0 * k, 10.0, *own) for k, own in enumerate(ACROSS)]
+    states = driven_among([comes], german, motion, 0.0, lanes=lanes)
+    assert [states[0][name]["10"] for name in ("lateral", "gap")] == [UNKNOWN, UNKNOWN]
+    assert states[0]["oncoming"]["10"] is False
+
+
 def test_a_junction_of_the_next_lane_is_that_of_who_goes_on_there(german):
     crosses = {"types": frozenset({"intersection"})}
     lanes = (

@@ -20,6 +20,7 @@ from rulec.cell_words.place_words import (
     NEEDS_CROSSING,
     NEEDS_JUNCTION,
     OF_LANES,
+    OF_OTHERS,
     PlaceWords,
     SceneWords,
     Words,
@@ -71,7 +72,8 @@ def cell_words(graph: NavigationGraph, rules: CompiledRulebook) -> CellWords | N
     side, mirrored = chosen_side(origin.recording, RequestedDrives(), rules.traffic)
     if mirrored:
         raise other_side(graph.scenario.name, str(origin.recording.side), rules.name, rules.traffic)
-    probes = probe_drives(graph, origin, rules, side, NEEDS_JUNCTION | NEEDS_CROSSING)
+    of_others = NEEDS_JUNCTION | NEEDS_CROSSING
+    probes = probe_drives(graph, origin, rules, side, of_others, OF_OTHERS)
     boxes = list(ego_boxes(graph, probes.recording.step_s))
     lanes = {
         lane
@@ -158,7 +160,8 @@ class _Words:
 
         By their ids in the recording: who leaves the scene's road and comes back may be beside it
         meanwhile. Nobody is there for rules who is farther away than who counts, wherever ego may
-        be, nor before or after it is recorded.
+        be, nor before or after it is recorded. Who is beside another lane's road alone is there for
+        who goes on in that.
         """
         spans: dict[str, tuple[int, int]] = {}
         on_road = [
@@ -180,6 +183,8 @@ class _Words:
                 there = [item for item in there if not far[self._rows[item]]]
                 rows = np.flatnonzero(now.is_there & ~far).tolist()
                 there += [self._bodies[row].id for row in rows]
+                said = self._scene.present(self._states(number))
+                there += [item for item in said if not far[self._rows[item]]]
             for item in there:
                 first, last = spans.get(item, (number, number))
                 spans[item] = min(first, number), max(last, number)
@@ -197,6 +202,11 @@ class _Words:
         )
         there = [p for p, at in enumerate(starts) if begin - _HAIR_S <= at <= end + _HAIR_S]
         return range(there[0], there[-1] + 1) if there else range(0)
+
+    def _states(self, number: int) -> list[int]:
+        """The state of the scene's time in which a layer begins, or those before and after that."""
+        at = self._graph.layers[number].start_s / self._probes.recording.step_s
+        return sorted({int(np.floor(at + 1e-6)), int(np.ceil(at - 1e-6))})
 
     def _layer(self, number: int) -> Iterator[State]:
         layer, boxes = self._graph.layers[number], self._boxes[number]
@@ -249,11 +259,8 @@ class _Words:
 
     def _shared(self, number: int, items: Sequence[str]) -> Words:
         """What is the same in all cells of a layer; what nobody knows is unknown."""
-        step_s = self._probes.recording.step_s
-        at = self._graph.layers[number].start_s / step_s
-        states = sorted({int(np.floor(at + 1e-6)), int(np.ceil(at - 1e-6))})
         everywhere, about_all = self._scene.everywhere, self._scene.about_all
-        of_others = self._scene.of_others(states)
+        of_others = self._scene.of_others(self._states(number))
         words: Words = {}
         for name in self._names:
             declaration = self._vocabulary.declarations.get(name)

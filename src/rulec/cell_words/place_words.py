@@ -338,19 +338,26 @@ class SceneWords:
     def of_others(self, states: Sequence[int]) -> dict[str, dict[str, Any]]:
         """What is said of others in states of the scene's time, all drives agreeing."""
         found: dict[str, dict[str, list[Any]]] = {}
-        begin = self.probes.origin.start.step
-        for probe in self.probes.timed:
-            for number in states:
-                place = number + begin - probe.first
-                if not 0 <= place < len(probe.states):
-                    continue
-                for name in self.names & OF_OTHERS & probe.states[place].keys():
-                    for item, value in probe.states[place][name].items():
-                        found.setdefault(name, {}).setdefault(item, []).append(value)
+        for said in self._timed(states):
+            for name in self.names & OF_OTHERS & said.keys():
+                for item, value in said[name].items():
+                    found.setdefault(name, {}).setdefault(item, []).append(value)
         return {
             name: {item: hull(values) for item, values in own.items()}
             for name, own in found.items()
         }
+
+    def present(self, states: Sequence[int]) -> list[str]:
+        """Of whom something is said in states of the scene's time."""
+        about = (value for said in self._timed(states) for value in said.values())
+        return list(dict.fromkeys(x for own in about if isinstance(own, Mapping) for x in own))
+
+    def _timed(self, states: Sequence[int]) -> Iterator[Mapping[str, Any]]:
+        begin = self.probes.origin.start.step
+        for probe in self.probes.timed:
+            for place in (number + begin - probe.first for number in states):
+                if 0 <= place < len(probe.states):
+                    yield probe.states[place]
 
 
 def settled_by_place(words: Words, names: frozenset[str]) -> Words:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import ceil
 from typing import Any, TypeAlias
 
@@ -25,7 +26,8 @@ EVERY_M = 1.0
 """Places along a lane are asked for so far apart, nearer where something on it is shorter."""
 
 _BEFORE_M, _BEYOND_M = 30.0, 30.0
-_SLOWER_MPS, _FASTER_MPS = 10.0, 10.0
+_SPEEDS_MPS = (0.0, -10.0, 10.0)
+"""Drives are so much faster than ego is."""
 
 _ON_S, _ON_MPS, _ON_MPS2 = 8.0, 10.0, 3.0
 """For how long drives go on, and how fast; they speed up by no more than the third."""
@@ -55,7 +57,6 @@ class TimedProbe:
 
     first: int
     states: Sequence[Mapping[str, Any]]
-    objects: Mapping[str, str]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -129,10 +130,12 @@ def probe_drives(
     rules: CompiledRulebook,
     side: Side,
     of_others: frozenset[str],
+    in_time: frozenset[str] = frozenset(),
 ) -> ProbeDrives:
     """Ask extraction for all the words that rules read.
 
-    ``of_others`` are those about others that are kept of drives along lanes.
+    ``of_others`` are those about others that are kept of drives along lanes, ``in_time`` those that
+    are asked for along the roads of lanes that ego may change to, too.
     """
     step_s = origin.recording.step_s
     reach = [own.s for row in graph.reach for own in row if own is not None]
@@ -144,7 +147,9 @@ def probe_drives(
         body_along(graph, origin, row, np.full(len(row[0]), EVERY_M / step_s)) for _, row in rows
     ]
     count = ceil((len(graph.layers) - 1) * graph.step_s / step_s - 1e-9) + 1
-    for row, speed in _through_time(graph, count, step_s):
+    beside = _lanes_beside(graph, origin) if in_time else ()
+    n_timed = len(rows) + len(_SPEEDS_MPS)
+    for row, speed in _through_time(graph, count, step_s, beside):
         bodies.append(body_along(graph, origin, row, speed))
     longest = max(len(body.states) for body in bodies)
     among = world_of(origin, bodies[0], side, longest)
@@ -162,9 +167,13 @@ def probe_drives(
                 names = drive.arrays.world.keys() | (of_others & drive.arrays.about.keys())
                 of_lane = drive.arrays.part(names, drive.arrays.objects.keys())
                 lane_probes.append(LaneProbe(lanes[number], s, of_lane.trace().states))
+            elif len(own) == 1 and number < n_timed:
+                timed.append(TimedProbe(drive.first_step, drive.trace.states))
             elif len(own) == 1:
-                trace = drive.trace
-                timed.append(TimedProbe(drive.first_step, trace.states, trace.objects))
+                part = drive.arrays.part(
+                    in_time & drive.arrays.about.keys(), drive.arrays.objects.keys()
+                )
+                timed.append(TimedProbe(drive.first_step, part.trace().states))
     return ProbeDrives(
         among=among,
         origin=origin,
@@ -203,10 +212,21 @@ def _along_lanes(origin: SceneOrigin, s: Floats) -> Iterator[tuple[int, Row]]:
                 yield lane, (s[first:end], middle, np.zeros(end - first))
 
 
+def _lanes_beside(graph: NavigationGraph, origin: SceneOrigin) -> Iterator[float]:
+    """The middles of lanes beside ego's, at its place, that it may change to."""
+    reach = [own.d for row in graph.reach for own in row if own is not None]
+    existing = origin.lanes.existing_at(np.array(origin.ego_s)).tolist()
+    ego_d = graph.scenario.ego.d
+    for (low, high), there in zip(pairwise(origin.lanes.straight.tolist()), existing, strict=True):
+        is_own = low <= ego_d < high
+        if there and not is_own and any(d[0] < high and d[1] > low for d in reach):
+            yield (low + high) / 2
+
+
 def _through_time(
-    graph: NavigationGraph, count: int, step_s: float
+    graph: NavigationGraph, count: int, step_s: float, beside: Iterable[float]
 ) -> Iterator[tuple[Row, Floats]]:
-    """Along ego's place across the road, at its speed, slower and faster.
+    """Along ego's place across the road, at its speed, slower and faster, and in lanes ``beside``.
 
     And then on along it: only who drives on shows which road it is on.
     """
@@ -214,12 +234,12 @@ def _through_time(
     last = max(graph.scenario.road.s[1] - _BEYOND_M, 0.0)
     times: Floats = np.arange(count, dtype=np.float64) * step_s
     after: Floats = np.arange(1.0, round(_ON_S / step_s) + 1.0) * step_s
-    own = ego.speed or 0.0
-    for speed in (own, max(own - _SLOWER_MPS, 0.0), own + _FASTER_MPS):
+    for d, more in [*((ego.d, more) for more in _SPEEDS_MPS), *((d, 0.0) for d in beside)]:
+        speed = max((ego.speed or 0.0) + more, 0.0)
         fast = max(speed, _ON_MPS)
         for_s: Floats = np.minimum(after, (fast - speed) / _ON_MPS2)
         on = speed * for_s + _ON_MPS2 * for_s**2 / 2 + fast * (after - for_s)
         s: Floats = np.concatenate((speed * times, speed * times[-1] + on)) + ego.s
         speeds = np.concatenate((np.full(count, speed), speed + _ON_MPS2 * for_s))
         kept = max(count, int(np.searchsorted(s, last)))
-        yield (s[:kept], np.full(kept, ego.d), np.zeros(kept)), speeds[:kept]
+        yield (s[:kept], np.full(kept, d), np.zeros(kept)), speeds[:kept]
