@@ -21,7 +21,7 @@ from rulec.scenario.motion import swept
 from rulec.scenario.recorded import ego_start as starts
 from rulec.scenario.recorded.ego_start import choice_error, ego_start, reference_lanelet
 from rulec.scenario.recorded.lane_coordinates import borders_along, crossings_along, lanes_along
-from rulec.scenario.recorded.reference_line import ReferenceLine, reference_line, smoothed
+from rulec.scenario.recorded.reference_line import ReferenceLine, leading_on, reference_line
 from rulec.scenario.recorded.route import REACH_M, lanelets_at, lanes_beside, route
 from rulec.scenario.recorded.scene_origin import SceneOrigin
 from rulec.scenario.recorded.traffic_obstacles import TrafficView, traffic_obstacles
@@ -77,7 +77,7 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
     own = reference_lanelet(recording, choice, start.state, file)
     way = route(recording, own, lanelets_at(recording, start.targets))
     centres = [recording.lanelets[name].centre for name in way]
-    line = reference_line(smoothed(np.concatenate(centres)))
+    line = reference_line(leading_on(np.concatenate(centres)))
     ego_s, ego_d = _place_on(own, start.state, [recording.lanelets[n] for n in way], line)
     if not 0 <= ego_s <= line.length:
         message = f"ego is not beside lanelet {own}, nor the road before and after it"

@@ -41,6 +41,7 @@ Nobody knows how it goes on there; straight on it comes by its own other parts a
 """
 
 _CLOSEST_M = 0.05
+_BACK_M = 1.0
 _PIECE_M = 5.0
 _SMOOTH_M = 5.0
 _STEP_M = 0.5
@@ -213,6 +214,19 @@ def reference_line(corners: Points) -> ReferenceLine:
         first=first,
         change=last - first,
     )
+
+
+def leading_on(corners: Points) -> Points:
+    """A line without corners to which it leads back for less than a metre, as where maps overlap.
+
+    Who is beside such a place would be as far along the line as its end.
+    """
+    kept = without_repeats(corners, _CLOSEST_M)
+    steps = np.diff(kept, axis=0)
+    leads_back = (steps[1:] * steps[:-1]).sum(axis=1) < 0.0
+    leads_back &= np.minimum(np.hypot(*steps[1:].T), np.hypot(*steps[:-1].T)) < _BACK_M
+    found: Points = kept[np.concatenate(([True], ~leads_back, [True]))]
+    return found
 
 
 def smoothed(corners: Points) -> Points:
