@@ -73,7 +73,7 @@ def cell_words(graph: NavigationGraph, rules: CompiledRulebook) -> CellWords | N
     if mirrored:
         raise other_side(graph.scenario.name, str(origin.recording.side), rules.name, rules.traffic)
     of_others = NEEDS_JUNCTION | NEEDS_CROSSING
-    probes = probe_drives(graph, origin, rules, side, of_others, OF_OTHERS)
+    probes = probe_drives(graph, origin, rules, side, of_others, in_time=OF_OTHERS)
     boxes = list(ego_boxes(graph, probes.recording.step_s))
     lanes = {
         lane
