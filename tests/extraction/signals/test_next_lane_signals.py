@@ -238,6 +238,15 @@ def two_lanes():
     return [straight(1, 0, 600, left_of=2), straight(2, 0, 600, 4, right_of=1)]
 
 
+@pytest.mark.parametrize("unseen", [range(4, 7), range(1, 9)])
+def test_one_whose_track_has_a_hole_may_be_on_the_near_lane_meanwhile(unseen):
+    """It drives beside ego at its speed, seen before and after."""
+    places = {k: (102 + 5 * k, 0) for k in range(10) if k not in unseen}
+    others = [vehicle(8, places, speed=10.0), steady(9, 0, 4, 10.0, steps=10)]
+    told = signals(two_lanes(), ego(100, y=4, steps=10), *others)["near_lane_is_free"]
+    assert told == ["?" if k in unseen else "False" for k in range(10)]
+
+
 @pytest.mark.parametrize(
     ("form", "first", "last"),
     # Of a recording of who is there at first nobody knows who has come since

@@ -275,19 +275,24 @@ def _perhaps_on_near_lane(context: DriveContext) -> Flags:
 
 
 def _unseen(context: DriveContext, most: int) -> Iterator[tuple[NDArray[intp], ...]]:
-    """The states after others were last seen in a drive, then those before they were first seen.
+    """The states after others were seen in a drive, up to where they are again, and those before.
 
     Rows, the states in which they were seen, and no more than ``most`` states for each.
     """
     spans, seen = context.spans, context.driving_along
-    ends = np.array(spans.bounds[1:], dtype=intp)
-    last = np.maximum.reduceat(np.where(seen, spans.columns, -1), spans.begins, axis=-1)
-    rows, drives = (last >= 0).nonzero()
-    edge = last[rows, drives]
-    yield _around(rows, edge, (edge + 1, np.minimum(edge + most + 1, ends[drives])))
-    first = np.where(seen, spans.columns, spans.n_states)
-    edge = np.minimum.reduceat(first, spans.begins, axis=-1)[rows, drives]
-    yield _around(rows, edge, (np.maximum(edge - most, spans.begins[drives]), edge))
+    bounds = np.array(spans.bounds, dtype=intp)
+    begins = seen.copy()
+    begins[:, 1:] &= ~seen[:, :-1] | spans.begins_here[1:]
+    ends = seen.copy()
+    ends[:, :-1] &= ~seen[:, 1:] | spans.begins_here[1:]
+    (rows, first), last = begins.nonzero(), ends.nonzero()[1]
+    drives = spans.number[first]
+    is_next = (rows[1:] == rows[:-1]) & (drives[1:] == drives[:-1])
+    until, since = bounds[drives + 1], bounds[drives]
+    until[:-1][is_next] = first[1:][is_next]
+    since[1:][is_next] = last[:-1][is_next] + 1
+    yield _around(rows, last, (last + 1, np.minimum(last + most + 1, until)))
+    yield _around(rows, first, (np.maximum(first - most, since), first))
 
 
 def _around(
