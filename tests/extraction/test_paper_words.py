@@ -4,6 +4,7 @@ import pytest
 
 from rulec.api.rulebook_compilation import machines
 from rulec.extraction.drives import Drives
+from rulec.vocabulary.partial_values import UNKNOWN
 from support.builders.drive_verdicts import violated
 from support.builders.recordings import lanelet, recording, straight, vehicle
 
@@ -31,9 +32,10 @@ TWO_LANES = [straight(1, 0, 300, left_of=2), straight(2, 0, 300, y=4, right_of=1
 
 
 def test_past_a_car_on_the_right():
-    # 8 is 4 m long at x = 60, on the left lane; the front of 7 is at 42 + 5 k
+    # 8 is 4 m long at x = 60, on the left lane; the front of 7 is at 42 + 5 k. Whether 7 had been
+    # in its lane before, and passes it, nobody saw.
     cars = [going(7, 40, 10.0), going(8, 60, 0.0, y=4.0)]
-    assert positions(cars, TWO_LANES) == ["r"] * 12
+    assert positions(cars, TWO_LANES) == [UNKNOWN] + ["r"] * 11
     assert violated(recording(TWO_LANES, cars), PAPER) == {"7": {}, "8": {}}
 
 
@@ -72,8 +74,9 @@ def test_who_reaches_into_egos_lane_is_at_its_side_or_runs_into_it(x, y, told):
     ],
 )
 def test_who_walks_has_its_own_front(y, mps, before, beside):
-    # Its frame takes up the crossing, x = 98 to 102; the front of 7 is at 82 + 5 k
+    # Its frame takes up the crossing, x = 98 to 102; the front of 7 is at 82 + 5 k. Whether 7 had
+    # been behind it before nobody saw.
     cars = [going(7, 80, 10.0, count=5), walking(8, y, mps, count=5)]
-    assert positions(cars, [straight(1, 0, 300)]) == [before] * 4 + [beside]
+    assert positions(cars, [straight(1, 0, 300)]) == [UNKNOWN] + [before] * 3 + [beside]
     found = violated(recording([straight(1, 0, 300), CROSSWALK], cars), PAPER)
     assert found["7"] == ({"R3": 2.0} if beside == "f" else {})
