@@ -11,7 +11,7 @@ import pytest
 
 import rulec
 from rulec.cli.main import main
-from rulec.diagnostics.callers_words import in_callers_words
+from rulec.diagnostics.argument_names import for_caller
 
 TRACE = rulec.Trace("t", 1.0, {}, ({"CONGESTED": True},))
 FOLLOWING = "docs/samples/following.xml"
@@ -379,4 +379,4 @@ def test_options_are_told_as_arguments(tmp_path, capsys):
         "add `--input-format csv`": "let its name end in `.csv`",
         "`rulec compile --step 1`, --fcd-output.geo": "`rulec compile --step 1`, --fcd-output.geo",
     }
-    assert {text: in_callers_words(text) for text in told} == told
+    assert {text: for_caller(text) for text in told} == told

@@ -385,27 +385,15 @@ ACROSS = [(0.0, 0.0), (0.225, 0.9), (0.9, 1.8), (1.8, 1.8), (2.7, 1.8), (3.375, 
 """Places and speeds (m, m/s) across the road, every 0.5 s, of who changes lanes to the left."""
 
 
-def test_before_a_split_somebody_is_behind_any_of_its_lanes(german):
-    """Ego changes to the left one, which is that of the one behind to its drive."""
+@pytest.mark.parametrize(("split_m", "y"), [(50, 2.0), (70, 0.0)])
+def test_somebody_before_a_split_is_behind_any_of_its_lanes(german, split_m, y):
+    """Ego changes to the left one, before the split or beyond: it is that of the one behind."""
     lanes = (
-        straight(1, 0, 50, y=2, successors=[2, 3]),
-        straight(2, 50, 300, left_of=3, predecessors=[1]),
-        straight(3, 50, 300, y=4, right_of=2, predecessors=[1]),
+        straight(1, 0, split_m, y=y, successors=[2, 3]),
+        straight(2, split_m, 300, left_of=3, predecessors=[1]),
+        straight(3, split_m, 300, y=4, right_of=2, predecessors=[1]),
     )
-    behind = vehicle(10, {k: (20.0 + k, 2.0) for k in range(25)}, speed=2.0)
-    motion = [(5.0 * k, 10.0, *own) for k, own in enumerate(ACROSS)]
-    states = driven_among([behind], german, motion, 0.0, lanes=lanes)
-    assert states[-1]["lateral"]["10"] is UNKNOWN
-
-
-def test_beyond_a_split_somebody_before_it_is_behind_any_of_its_lanes(german):
-    """Ego is in the lane to the left by then, into which the one behind it leads, too."""
-    lanes = (
-        straight(1, 0, 70, successors=[2, 3]),
-        straight(2, 70, 300, left_of=3, predecessors=[1]),
-        straight(3, 70, 300, y=4, right_of=2, predecessors=[1]),
-    )
-    behind = vehicle(10, {k: (20.0 + k, 0.0) for k in range(25)}, speed=2.0)
+    behind = vehicle(10, {k: (20.0 + k, y) for k in range(25)}, speed=2.0)
     motion = [(5.0 * k, 10.0, *own) for k, own in enumerate(ACROSS)]
     states = driven_among([behind], german, motion, 0.0, lanes=lanes)
     assert states[-1]["lateral"]["10"] is UNKNOWN

@@ -80,6 +80,8 @@ class LaneRoads:
             for road in self.roads:
                 found = road.line.coordinates(places)[:, :2]
                 beside = (found[:, 0] > 0.0) & (found[:, 0] < road.line.arc[-1])
+                if not beside.any():
+                    continue
                 if number:
                     beside &= there[:, number - 1] | there[:, number]
                     aside = np.abs(road.lanes.from_bounds(found)).min(axis=1)

@@ -15,7 +15,7 @@ from rulec.cli.exit_status import ExitStatus
 from rulec.cli.interruption import is_interrupted
 from rulec.cli.verb_table import VERB_GROUPS, VERBS, WITH_COMPILED
 from rulec.diagnostics import RulecError
-from rulec.diagnostics.callers_words import options_told
+from rulec.diagnostics.argument_names import naming_options
 from rulec.version import __version__
 
 
@@ -128,7 +128,7 @@ def rulec(context: click.Context, limits: Sequence[str]) -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command and return its exit status."""
     given = sys.argv[1:] if arguments is None else arguments
-    with options_told():
+    with naming_options():
         try:
             outcome = rulec.main(
                 args=list(given),

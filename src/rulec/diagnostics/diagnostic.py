@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
-from rulec.diagnostics.callers_words import in_callers_words
+from rulec.diagnostics.argument_names import for_caller
 from rulec.diagnostics.source_text import SourceLocation, Span, address
 from rulec.value_display import Rows, short_repr
 
@@ -101,7 +101,7 @@ class RulecError(Rows, Exception):
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """What is wrong, in the words of whoever asks."""
-        return tuple(map(_in_callers_words, self._given))
+        return tuple(map(_for_caller, self._given))
 
     def __repr__(self) -> str:
         return f"RulecError({'; '.join(d.code for d in self.diagnostics[:20])}: {self.args[0]:.80})"
@@ -144,8 +144,8 @@ def with_place(error: RulecError, place: SourceLocation | None) -> RulecError:
     )
 
 
-def _in_callers_words(diagnostic: Diagnostic) -> Diagnostic:
-    message, way_out = map(in_callers_words, (diagnostic.message, diagnostic.help))
+def _for_caller(diagnostic: Diagnostic) -> Diagnostic:
+    message, way_out = map(for_caller, (diagnostic.message, diagnostic.help))
     if (message, way_out) == (diagnostic.message, diagnostic.help):
         return diagnostic
     return replace(diagnostic, message=message, help=way_out)

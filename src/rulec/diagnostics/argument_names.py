@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-_VARIABLE = "RULEC_TELLS_OPTIONS"
+_VARIABLE = "RULEC_NAMES_OPTIONS"
 
 _ARGUMENTS = {
     "adjacency": "adjacency",
@@ -41,7 +41,7 @@ _FORMAT_OF_TRACES = re.compile(r"add `--input-format (\w+)`")
 
 
 @contextmanager
-def options_told() -> Iterator[None]:
+def naming_options() -> Iterator[None]:
     """Leave options as they are, here and in processes started meanwhile, in a block."""
     before = os.environ.get(_VARIABLE)
     os.environ[_VARIABLE] = "1"
@@ -52,7 +52,7 @@ def options_told() -> Iterator[None]:
             del os.environ[_VARIABLE]
 
 
-def in_callers_words(text: str) -> str:
+def for_caller(text: str) -> str:
     """A message, or a part of it, for whoever is told: with options, or with arguments."""
     if "--" not in text or _VARIABLE in os.environ:
         return text
