@@ -13,6 +13,7 @@ from mcap.reader import make_reader
 
 import rulec
 from rulec.diagnostics import RulecError
+from rulec.monitoring.explain.margins import Margin
 from rulec.report.verdict_findings.finding_writers import ENDINGS, finding_writer
 from rulec.report.verdict_findings.mcap_file_writer import JsonChannel, TimedMessage, write_mcap
 from rulec.report.verdict_findings.verdict_finding import (
@@ -20,6 +21,7 @@ from rulec.report.verdict_findings.verdict_finding import (
     FindingContext,
     RecordingFindings,
     VerdictFinding,
+    measured,
 )
 
 BOOK = """\
@@ -325,3 +327,22 @@ def test_hostile_names_do_no_harm(rules, form):
         assert json.loads(text)["vehicle"] == EVIL
     if form == "sarif":
         assert json.loads(text)["runs"][0]["results"][0]["properties"]["vehicle"] == EVIL
+
+
+def test_comparisons_of_several_units_are_compared_by_their_shares():
+    slow = Margin("speed_difference(v)", 4.9, "<", 10.0, "km/h")
+    near = Margin("lateral_gap(v)", 1.4, "<", 3.5, "m")
+    # 2.1 m is the smaller number, but three fifths of 3.5 m; 5.1 km/h is half of 10 km/h.
+    assert measured([near, slow])["unit"] == "km/h"
+
+
+def test_comparisons_of_one_unit_are_compared_as_they_are():
+    slow, fast = Margin("speed", 4.0, ">", 2.0, "km/h"), Margin("speed", 90.0, ">", 85.0, "km/h")
+    # 5 km/h are a smaller share than 2 km/h here, but it is the 2 km/h that a driver has to lose.
+    assert measured([fast, slow])["by"] == 2.0
+
+
+def test_a_limit_of_nothing_is_a_limit():
+    still, near = Margin("speed", 3.0, ">", 0.0, "km/h"), Margin("gap(v)", 2.0, "<", 8.0, "m")
+    assert measured([near, still])["unit"] == "m"
+    assert measured([still])["by"] == 3.0

@@ -52,6 +52,11 @@ class Margin:
         return _without_noise(abs(self.value - self.limit))
 
     @property
+    def share(self) -> float:
+        """``by`` as a share of the greater of the two sides, 0 to 2, whatever their unit."""
+        return self.by / (max(abs(self.value), abs(self.limit)) or 1.0)
+
+    @property
     def at_least(self) -> float:
         """By how much for sure."""
         return _without_noise(max(abs(self.value - self.limit) - self.error, 0.0))

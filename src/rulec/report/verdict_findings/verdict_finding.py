@@ -89,9 +89,12 @@ def named_rule(rule: CompiledRule) -> dict[str, Any]:
 
 def measured(margins: Iterable[Margin]) -> dict[str, Any]:
     """The columns on the comparison that decides most narrowly, if there is one."""
-    margin = min(margins, key=lambda margin: margin.by, default=None)
-    if margin is None:
+    every = list(margins)
+    if not every:
         return {}
+    # Metres and km/h compare only as shares of what is compared.
+    are_alike = len({margin.unit for margin in every}) == 1
+    margin = min(every, key=lambda margin: margin.by if are_alike else margin.share)
     return {"by": margin.rounded().by, "unit": margin.unit, "measure": str(margin)}
 
 
