@@ -16,6 +16,7 @@ from rulec import Maneuver, RulecError, compile_rulebook, find_maneuvers, verify
 from rulec.cell_words.place_words import PlaceWords, SceneWords
 from rulec.cell_words.probe_drives import LaneProbe, probe_drives
 from rulec.cell_words.road_frame import RoadFrame
+from rulec.extraction.tracks.mirror import mirrored_recording
 from rulec.scenario import Choice
 from rulec.scenario.recorded.recorded_scene import seen_from_ego
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf
@@ -111,12 +112,47 @@ def check_sampled(found, number, chance, *, words=False):
     return compared_so_far
 
 
-def test_rules_of_the_other_side_are_refused():
-    """No word would be told, so that every maneuver would count as keeping them."""
-    scene = seen_from_ego(replace(recording(LANES, ego=(60, 0)), side="right"), Choice(), "f.xml")
+OVERTAKEN = vehicle(10, {k: (75.0 + k, 0.0) for k in range(41)}, speed=10.0)
+"""A slow car ahead of ego, in the lane that is nearer to the kerb in either country."""
+
+
+@pytest.mark.parametrize("prediction", ["recorded", "constant"])
+def test_a_scene_is_mirrored_for_rules_of_the_other_side(prediction):
+    made = replace(recording(LANES, [OVERTAKEN], ego=(60, 0)), side="right")
+    choice, british = Choice(prediction=prediction), compile_rulebook("gb")
+    here = find_maneuvers(seen_from_ego(made, choice, "f.xml"), british)
+    there = find_maneuvers(seen_from_ego(mirrored_recording(made), choice, "f.xml"), british)
+    assert here.graph.scenario.account.mirrored
+    assert not there.graph.scenario.account.mirrored
+    assert (here.traces, here.satisfying, here.violating, here.open) == (
+        there.traces,
+        there.satisfying,
+        there.violating,
+        there.open,
+    )
+    assert {one.rule.name for one in here.rule_outcomes() if one.judged} == {
+        one.rule.name for one in there.rule_outcomes() if one.judged
+    }
+
+
+def test_a_scene_of_the_rules_side_is_not_mirrored():
+    made = recording(LANES, [OVERTAKEN], ego=(60, 0))
+    for side in ("right", None):
+        scene = seen_from_ego(replace(made, side=side), Choice(), "f.xml")
+        assert not find_maneuvers(scene, compile_rulebook("de")).graph.scenario.account.mirrored
+    unsaid = seen_from_ego(replace(made, side=None), Choice(), "f.xml")
+    assert not find_maneuvers(unsaid, compile_rulebook("gb")).graph.scenario.account.mirrored
+
+
+def test_a_mirrored_scene_keeps_its_step_and_horizon_and_other_changes_are_refused():
+    made = replace(recording(LANES, [OVERTAKEN], ego=(60, 0)), side="right")
+    scene = seen_from_ego(made, Choice(), "f.xml")
+    shorter = find_maneuvers(replace(scene, horizon_s=2.0, step_s=1.0), compile_rulebook("gb"))
+    assert [layer.start_s for layer in shorter.graph.layers] == [0, 1, 2]
+    emptied = replace(scene, obstacles=())
     with pytest.raises(RulecError, match="R0418"):
-        find_maneuvers(scene, compile_rulebook("gb"))
-    assert find_maneuvers(scene, compile_rulebook("de")).judges
+        find_maneuvers(emptied, compile_rulebook("gb"))
+    assert find_maneuvers(emptied, compile_rulebook("de")).judges
 
 
 @pytest.mark.parametrize(("kind", "lacking"), [("bus", True), ("car", False)])
@@ -466,17 +502,18 @@ def test_who_passes_a_cycle_may_overtake(german):
 
 @pytest.mark.skipif(not FILES, reason="CommonRoad's scenarios are not here")
 @pytest.mark.parametrize(
-    ("file", "most"),
+    ("book", "file", "most"),
     [
-        *((file, 2) for file in FILES[:2]),
-        *(pytest.param(file, 12, marks=pytest.mark.long) for file in FILES),
+        *(("de", file, 2) for file in FILES[:2]),
+        *(("gb", file, 2) for file in FILES[:2]),
+        *(pytest.param("de", file, 12, marks=pytest.mark.long) for file in FILES),
+        *(pytest.param("gb", file, 12, marks=pytest.mark.long) for file in FILES),
     ]
-    or [("", 0)],
+    or [("", "", 0)],
     ids=lambda item: getattr(item, "stem", None),
 )
-def test_recordings(german, file, most):
-    found = find_maneuvers(file, german)
-    check(found, most)
+def test_recordings(book, file, most):
+    check(find_maneuvers(file, compile_rulebook(book)), most)
 
 
 @pytest.mark.long

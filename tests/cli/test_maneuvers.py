@@ -675,3 +675,23 @@ def test_predictions_that_are_one_motion_are_one_world_and_said_to_be(tmp_path, 
     data = json.loads(capsys.readouterr().out)
     assert (data["likeliest"], data["worlds"]) == (1, [])
     assert data["maneuvers"][0]["chances"]["clear"] == 1
+
+
+def test_what_is_mirrored_is_said(tmp_path, capsys):
+    """The sample's traffic keeps to the right, gb's to the left."""
+    scene = ["docs/samples/following.xml", "--ego", "1"]
+    line = "mirrored    recorded where traffic keeps to the right, judged as if it kept to the left"
+    assert main(["maneuvers", *scene, "-r", "gb"]) == 0
+    assert line in capsys.readouterr().out.splitlines()
+    assert main(["maneuvers", *scene, "-r", "gb", "-r", "de", "--json"]) == 0
+    british, german = map(json.loads, capsys.readouterr().out.splitlines())
+    assert (british["scene"]["mirrored"], german["scene"]["mirrored"]) == (True, False)
+    table = tmp_path / "bounds.csv"
+    assert main(["envelopes", *scene, "-r", "gb", "-o", str(table)]) == 0
+    assert "mirrored: d is positive to the right" in capsys.readouterr().err
+    for picture in ("scene", "graph"):
+        drawing = tmp_path / f"{picture}.svg"
+        assert main(["draw", picture, *scene, "-r", "gb", "-o", str(drawing)]) == 0
+        assert "mirror image" in drawing.read_text()
+        assert main(["draw", picture, *scene, "-r", "de", "-o", str(drawing)]) == 0
+        assert "mirror image" not in drawing.read_text()

@@ -61,8 +61,8 @@ class ScenarioVerbs(SessionSettings):
         ``Monitor``, or its snapshot. Without a ``partition`` it is the one whose relations the
         rules read. The ``assumptions`` are about what the scenario leaves unknown or does not
         mention; what else it does not mention has its default, or with ``told_only`` is unknown.
-        Source: algorithm 1 of the paper. Raises RulecError, R0418 of a recorded scene whose traffic
-        keeps to the other side than the rules'.
+        A recorded scene whose traffic keeps to the other side than the rules' is mirrored. Source:
+        algorithm 1 of the paper. Raises RulecError.
         """
         from rulec.monitoring.assumptions import Assumptions, check_assumed
         from rulec.planning import SceneReading, evaluate, partition_for
@@ -71,12 +71,18 @@ class ScenarioVerbs(SessionSettings):
         compiled = self._compiled(rules)
         check_assumed(reading.assumptions.values, compiled.vocabulary, "values")
         options["partition"] = partition_for(compiled, options.get("partition"))
-        graph = self.navigation_graph(scenario, **options)
+        scene = self.load_scenario(scenario) if isinstance(scenario, str | Path) else scenario
+        if scene.account is not None:
+            # Extraction, 100 ms: only of recorded scenes
+            from rulec.cell_words import on_side_of
+
+            scene = on_side_of(compiled, scene)
+        graph = self.navigation_graph(scene, **options)
         account, words = graph.scenario.account, None
         # The paper's words are those of the paper's cells
         is_papers = graph.partition == "paper" or graph.bounds is None
         if account is not None and account.origin is not None and not is_papers:
-            # Extraction, 100 ms: only of recorded scenes
+            # As above
             from rulec.cell_words import cell_words
 
             words = cell_words(graph, compiled)

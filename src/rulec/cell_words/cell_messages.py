@@ -1,25 +1,26 @@
-"""Messages about what is said in the cells of recorded scenes."""
+"""Messages about recorded scenes that rules are asked of."""
 
 from __future__ import annotations
 
 from rulec.diagnostics import RulecError, SourceLocation
 from rulec.diagnostics.code import Code
 
-OTHER_SIDE = Code(
+CHANGED_SCENE = Code(
     "R0418",
-    title="maneuvers are asked of a rulebook of the other side of the road",
-    why="The maneuvers of a recorded scene are on its own road, so they are judged by rules of "
-    "traffic that keeps to the side that it keeps to. Only drives that were recorded are "
-    "judged as their mirror image, by `rulec verify`.",
+    title="a recorded scene that was changed cannot be mirrored",
+    why="Where a recording's traffic keeps to the other side of the road than the rulebook's, its "
+    "mirror image is judged. The mirror image is made from the recording, so it would lack what "
+    "was changed in the scene afterwards, except its step and its horizon.",
     kind="circumstance",
 )
 
 
-def other_side(scene: str, recorded: str, rulebook: str, side: str) -> RulecError:
-    """A scene in which no word of a rulebook would be told."""
-    return OTHER_SIDE.error(
-        SourceLocation(scene),
-        f"traffic keeps to the {recorded} here, and in `{rulebook}` to the {side}",
-        help=f"choose a rulebook of traffic that keeps to the {recorded}; `rulec verify` judges "
-        "recorded drives as their mirror image",
+def changed_scene(file: str, recorded: str, rulebook: str, side: str) -> RulecError:
+    """A changed scene, recorded on one side, for a rulebook of the other one."""
+    return CHANGED_SCENE.error(
+        SourceLocation(file),
+        f"traffic keeps to the {recorded} here, and in `{rulebook}` to the {side}, and the scene "
+        "was changed after it was read from its recording: it cannot be mirrored",
+        help=f"change the recording instead, or use a rulebook of traffic that keeps to the "
+        f"{recorded}",
     )

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from rulec.automata.bundle.compiled_rulebook import CompiledRulebook
-from rulec.cell_words.cell_messages import other_side
 from rulec.cell_words.conduct_words import CONDUCT, ConductWords
 from rulec.cell_words.ego_boxes import EgoBoxes, body_size, ego_boxes
 from rulec.cell_words.line_words import LineWords
@@ -63,15 +62,13 @@ class CellWords:
 def cell_words(graph: NavigationGraph, rules: CompiledRulebook) -> CellWords | None:
     """The words that rules read, in the cells of a recorded scene; None of any other scene.
 
-    Raises RulecError R0418 where the recording would have to be mirrored.
+    The scene's traffic keeps to the rules' side (``mirrored_scene.on_side_of``).
     """
     account = graph.scenario.account
     origin = None if account is None else account.origin
     if not isinstance(origin, SceneOrigin):
         return None
-    side, mirrored = chosen_side(origin.recording, RequestedDrives(), rules.traffic)
-    if mirrored:
-        raise other_side(graph.scenario.name, str(origin.recording.side), rules.name, rules.traffic)
+    side, _ = chosen_side(origin.recording, RequestedDrives(), rules.traffic)
     of_others = NEEDS_JUNCTION | NEEDS_CROSSING
     probes = probe_drives(graph, origin, rules, side, of_others, in_time=OF_OTHERS)
     boxes = list(ego_boxes(graph, probes.recording.step_s))

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
-from typing import Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 from rulec.diagnostics import SourceLocation
 from rulec.diagnostics.argument_kinds import expected_fields, finite
@@ -18,6 +18,10 @@ from rulec.scenario.geometry import Box, centred
 from rulec.scenario.motion_bounds import MotionBounds
 from rulec.value_display import short_repr
 from rulec.vocabulary.partial_values import PartialValue
+
+if TYPE_CHECKING:
+    # NumPy, 80 ms: scenarios in TOML do without.
+    from rulec.recordings.recording import Recording
 
 Surface = Literal["carriageway", "crossing"]
 SURFACES: tuple[Surface, ...] = get_args(Surface)
@@ -184,8 +188,10 @@ class Account:
     lanelet ego starts from; ``until_s`` is when the recording ends, and from when on who was still
     there goes on as before; ``derived`` says how each derived signal came about,
     ``remarks`` what the file leaves open, and is taken to be. ``map_ends`` if it does so ahead of
-    ego, which gets there at its speed when the horizon is over, or soon after. ``origin`` is what
-    it was made of (``recorded.scene_origin.SceneOrigin``), None unless others do what was recorded.
+    ego, which gets there at its speed when the horizon is over, or soon after. A ``mirrored``
+    scene has left and right exchanged. ``source`` is the recording that it was read from, and
+    ``origin`` its road in that (``recorded.scene_origin.SceneOrigin``), None unless others do what
+    was recorded.
     """
 
     reference: str
@@ -195,6 +201,8 @@ class Account:
     derived: Mapping[str, str]
     remarks: tuple[str, ...] = ()
     map_ends: bool = False
+    mirrored: bool = False
+    source: SceneSource | None = field(default=None, compare=False, repr=False)
     origin: object = field(default=None, compare=False, repr=False)
 
 
@@ -258,6 +266,15 @@ class Choice:
         expected_fields(self)
         for name in ("at_s", "congested_below_kmh", "ego_width_m"):
             finite(name, getattr(self, name))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class SceneSource:
+    """The recording that a scene is read from, with what was chosen in it and its file's name."""
+
+    recording: Recording
+    choice: Choice
+    file: str
 
 
 _ROUNDING = Fraction(1, 1000)

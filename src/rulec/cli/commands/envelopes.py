@@ -19,6 +19,7 @@ from rulec.cli.options.scenario_options import (
 from rulec.cli.options.verb_class import Verb
 from rulec.cli.output import output_stream, print_written, read_machines
 from rulec.diagnostics import SourceLocation, placed_at
+from rulec.report.text.console import print_remark
 from rulec.report.text.terminal_text import shown_count
 
 if TYPE_CHECKING:
@@ -64,6 +65,9 @@ def command(
         cheapest = maneuvers.cheapest(number, perhaps=True)
     with output_stream(to) as (stream, name):
         write_envelopes(maneuvers.graph, cheapest, stream, name, cast("Format", to.form))
+    account = maneuvers.graph.scenario.account
+    if account is not None and account.mirrored:
+        print_remark("rulec: mirrored: d is positive to the right of what was recorded")
     legal = shown_count(maneuvers.satisfying + maneuvers.open)
     outcome = "satisfying or open" if maneuvers.open else "satisfying"
     print_written(f"{len(cheapest):,} of {legal} {outcome} maneuvers to {to.path}", to)

@@ -26,6 +26,7 @@ class SceneData(JsonPart, frozen=True, kw_only=True):
     reference: str
     obstacles: int
     left_out: int
+    mirrored: bool
     recorded_until_s: float
     remarks: Sequence[str]
     derived: Mapping[str, DerivedSignal]

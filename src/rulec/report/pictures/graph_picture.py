@@ -57,7 +57,8 @@ def graph_picture(
         *_times(graph, columns),
     )
     below = captions.legend(
-        list(_entries(graph, edges, maneuver, judged=judged)), [_note(graph, columns)]
+        list(_entries(graph, edges, maneuver, judged=judged)),
+        [_note(graph, columns), *captions.mirrored(graph)],
     )
     title = f"{graph.scenario.name}, the navigation graph"
     return canvas.stacked(title, [Picture(title, canvas.WIDTH, columns.bottom, marks), below])

@@ -133,3 +133,11 @@ def meaning(graph: NavigationGraph) -> str:
     names = list(graph.objects)
     objects = f"of {names[0]}" if len(names) == 1 else f"of {', '.join(names)} in this order"
     return f"{_MEANING[graph.partition]}; {objects}"
+
+
+def mirrored(graph: NavigationGraph) -> list[str]:
+    """A note that the scene is a mirror image, if it is one."""
+    account = graph.scenario.account
+    if account is None or not account.mirrored:
+        return []
+    return ["the mirror image of what was recorded: the rules' traffic keeps to the other side"]

@@ -49,7 +49,7 @@ def scene_legend(graph: NavigationGraph, maneuver: Maneuver | None) -> Picture:
         entries.append(("goal", "the goal"))
     frame = _frame(graph)
     ratio = f"; across the road {frame.across / frame.along:.2g} times as large as along it"
-    notes = [f"s along the road in m{ratio}"]
+    notes = [f"s along the road in m{ratio}", *captions.mirrored(graph)]
     if len(graph.objects) > captions.MOST_SPELLED:
         notes.insert(0, "numbers of cells as in the graph and in JSON")
     elif graph.objects:

@@ -168,6 +168,15 @@ def counted(number: int, noun: str, several: str = "") -> str:
     return f"{number:,} {noun if number == 1 else several or f'{noun}s'}"
 
 
+def mirrored_line(side: str) -> str:
+    """The line of a report about a mirror image, whose traffic keeps to this side."""
+    before = "right" if side == "left" else "left"
+    return (
+        f"mirrored    recorded where traffic keeps to the {before}, "
+        f"judged as if it kept to the {side}"
+    )
+
+
 def first_of(names: Sequence[str], most: int) -> str:
     """So many names, and how many more there are."""
     more = f" and {len(names) - most} more" if len(names) > most else ""

@@ -8,7 +8,7 @@ from textwrap import shorten, wrap
 from rulec.automata.bundle.compiled_rulebook import CompiledRule
 from rulec.extraction.drives import NoDrive
 from rulec.extraction.recording_verdicts import RecordingVerdicts, ViolationTally
-from rulec.report.text.terminal_text import counted, first_of, table_lines, visible
+from rulec.report.text.terminal_text import counted, first_of, mirrored_line, table_lines, visible
 from rulec.report.verdicts import verdict_report
 
 MOST_DEFAULTS = 4
@@ -34,11 +34,7 @@ def as_text(verdicts: RecordingVerdicts, tally: ViolationTally, width: int) -> s
         *_not_judged(tally.not_judged),
     ]
     if verdicts.mirrored:
-        before = "right" if recording.side == "left" else "left"
-        lines.append(
-            f"mirrored    recorded where traffic keeps to the {before}, "
-            f"judged as if it kept to the {recording.side}"
-        )
+        lines.append(mirrored_line(str(recording.side)))
     elif recording.side is None and verdicts.rules.traffic == "left":
         lines.append("side        nothing tells on which side traffic keeps: taken to be the left")
     defaults = defaulted_names(verdicts, tally.words or frozenset())

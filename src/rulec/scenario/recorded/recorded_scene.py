@@ -33,6 +33,7 @@ from rulec.scenario.scenario_model import (
     Obstacle,
     Road,
     Scenario,
+    SceneSource,
     SignalValue,
     Stretch,
 )
@@ -72,6 +73,7 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
     Raises RulecError R0612 if what is chosen is not in it, ValueError if its lanes cannot be laid
     out along a line.
     """
+    source = SceneSource(recording, choice, file)
     recording = mended(recording)
     start = ego_start(recording, choice, file)
     own = reference_lanelet(recording, choice, start.state, file)
@@ -150,6 +152,7 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
             derived={name: how for name, (_, how) in derived.items()},
             remarks=remarks,
             map_ends=map_ends,
+            source=source,
             origin=SceneOrigin(recording, start, line, lanes, ego_s=ego_s, way=tuple(way))
             if choice.prediction == "recorded"
             else None,
