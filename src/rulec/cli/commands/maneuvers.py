@@ -207,7 +207,11 @@ class ManeuverQuestions:
         classes = None
         if self.n_classes is not None:
             classes = (maneuvers.classes(), maneuvers.variants(self.n_classes))
+        judged = None
+        if maneuvers.words is not None:
+            judged = [own.rule.name for own in maneuvers.rule_outcomes() if own.judged]
         return ManeuverAnswers(
+            judged=judged,
             listed=listed,
             best=best,
             ranked=ranked,

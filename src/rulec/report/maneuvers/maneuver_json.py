@@ -70,7 +70,7 @@ def as_json(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
             violating=maneuvers.violating,
             open=maneuvers.open,
             exact=maneuvers.exact,
-            judged=_judged(maneuvers),
+            judged=answers.judged,
             unknown=maneuvers.unknown,
             not_judged=not_judged_data(maneuvers.not_judged, maneuvers.rules),
             by_default=maneuvers.by_default,
@@ -106,13 +106,6 @@ def _dead_end(maneuvers: Maneuvers) -> DeadEndData | None:
         return None
     last_s = maneuvers.graph.layers[end.layer].start_s
     return DeadEndData(last_s=last_s, closed_by=end.closed_by, opened_by=end.opened_by)
-
-
-def _judged(maneuvers: Maneuvers) -> list[str] | None:
-    """The rules that the words of cells judge; None where cells have none."""
-    if maneuvers.words is None:
-        return None
-    return [outcomes.rule.name for outcomes in maneuvers.rule_outcomes() if outcomes.judged]
 
 
 def _each(items: Iterable[Item] | None, data: Callable[[Item], Data]) -> list[Data] | UnsetType:

@@ -34,9 +34,11 @@ class ManeuverAnswers:
 
     ``best`` are the least violating maneuvers, where none satisfies every hard rule and there is no
     longer list of them in ``ranked``. ``chances`` and ``verdicts`` are those of maneuvers, given by
-    their nodes; the latter where not all is known.
+    their nodes; the latter where not all is known. ``judged`` are the names of the rules that the
+    words of cells judge, None where cells have none.
     """
 
+    judged: Sequence[str] | None = None
     listed: Sequence[Maneuver] | None = None
     best: Sequence[RankedManeuver] | None = None
     ranked: Sequence[RankedManeuver] | None = None
@@ -106,7 +108,7 @@ def as_text(maneuvers: Maneuvers, answers: ManeuverAnswers, seconds: float) -> s
         f"graph       {graph.nodes:,} nodes, {graph.edges:,} edges",
         f"maneuvers   {_paths(maneuvers)}",
         *_shut_in(maneuvers),
-        *_judged(maneuvers),
+        *_judged(maneuvers, answers),
         f"satisfying  {satisfying}",
         *_without_rules(maneuvers),
         *_doubts(maneuvers),
@@ -154,11 +156,10 @@ def _paths(maneuvers: Maneuvers) -> str:
     return f"{shown_count(maneuvers.traces)} {paths} through {cells}"
 
 
-def _judged(maneuvers: Maneuvers) -> Iterator[str]:
+def _judged(maneuvers: Maneuvers, answers: ManeuverAnswers) -> Iterator[str]:
     """How many rules the words of cells judge."""
-    if maneuvers.words is not None and maneuvers.traces:
-        judged = sum(outcomes.judged for outcomes in maneuvers.rule_outcomes())
-        every = f"{judged} of {len(maneuvers.rules.rules)} could be judged"
+    if answers.judged is not None and maneuvers.traces:
+        every = f"{len(answers.judged)} of {len(maneuvers.rules.rules)} could be judged"
         yield f"rules       {every}: kept or violated on half of the maneuvers or more"
 
 
