@@ -52,6 +52,7 @@ def test_json(answer):
     assert not set(found["judged"]) & {rule["rule"] for rule in found["not_judged"]}
     assert scene.pop("derived") == {}
     counted = {"reference": "1", "obstacles": 1, "left_out": 0, "recorded_until_s": 0.0}
+    counted["mirrored"] = False
     assert scene == {**counted, "remarks": []}
 
 

@@ -30,8 +30,8 @@ def _require_signed(context: click.Context, _: click.Parameter, key: str | None)
 _REQUIRE_SIGNED = click.Option(
     ["--require-signed"],
     metavar="PUBLIC_KEY",
-    help="Take only compiled rulebooks that are signed by a key in minisign's format, given by its "
-    "file or as it is.",
+    help="Accept only compiled rulebooks signed with this minisign key: the key itself or the path "
+    "of its file.",
     expose_value=False,
     callback=_require_signed,
 )
@@ -48,7 +48,7 @@ def _color(context: click.Context, _: click.Parameter, choice: str | None) -> No
 COLOR = click.Option(
     ["--color"],
     type=click.Choice(["auto", "always", "never"]),
-    help="Colour in text.  [default: auto, which is on a terminal, unless NO_COLOR is set]",
+    help="Use colour in text.  [default: auto, that is, on a terminal unless NO_COLOR is set]",
     expose_value=False,
     is_eager=True,
     callback=_color,
@@ -100,8 +100,8 @@ class _Verbs(click.Group):
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     params=[COLOR],
-    epilog="`rulec help COMMAND` says more of a command.  Exit status: 0 all is well, 1 a hard "
-    "rule is violated or a mistake found, 2 could not be answered, 70 a bug in rulec.",
+    epilog="`rulec help COMMAND` describes a command.  Exit status: 0 success, 1 a hard rule is "
+    "violated or a mistake was found, 2 no answer was possible, 70 a bug in rulec.",
 )
 @click.version_option(__version__, "-V", "--version", message="rulec %(version)s")
 @click.option(
@@ -109,12 +109,12 @@ class _Verbs(click.Group):
     "limits",
     multiple=True,
     metavar="NAME=NUMBER",
-    help="Lift or lower a limit on what a question may cost, such as choices=5000000; several "
-    "times.  [default: what RULEC_LIMITS says]",
+    help="Raise or lower a limit on the cost of a computation, such as choices=5000000; may be "
+    "given several times.  [default: RULEC_LIMITS]",
 )
 @click.pass_context
 def rulec(context: click.Context, limits: Sequence[str]) -> None:
-    """Compile traffic law, and judge traces and maneuvers by it."""
+    """Compile traffic law into automata, and judge traces and maneuvers with them."""
     context.with_resource(keeping())
     if limits:
         # 2 ms: only where limits are set.

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 VERB_GROUPS = {
     "Write rules": {
-        "new": "Write a rulebook to start from.",
+        "new": "Create a rulebook to start from.",
         "check": "Check rulebooks and vocabularies.",
         "fmt": "Format rulebooks and vocabularies.",
         "test": "Run the examples of rulebooks.",
-        "show": "Show a rule in English, as a formula, as an automaton, by examples.",
-        "explain": "Explain a code of a message, or a word.",
-        "lsp": "Answer an editor: diagnostics, completion, renaming and the like.",
-        "list": "List the rulebooks, vocabularies, scenarios or codes that there are.",
+        "show": "Show a rule in English, as a formula, as an automaton, with examples.",
+        "explain": "Explain the code of a message, or a word.",
+        "lsp": "Serve an editor: diagnostics, completion, renaming and more.",
+        "list": "List the available rulebooks, vocabularies, scenarios or codes.",
     },
     "Judge traffic": {
         "verify": "Judge traces and recorded traffic by rulebooks.",
@@ -19,28 +19,27 @@ VERB_GROUPS = {
         "monitor": "Judge a running trace by a rulebook, state by state.",
         "maneuvers": "Count and list the maneuvers that satisfy a rulebook.",
         "fleet": "Judge all drives of a fleet: many files, on one machine or on Ray or Spark.",
-        "rates": "Say how often rules are violated: per hour, per 1000 km, per opportunity.",
+        "rates": "Compute how often rules are violated: per hour, per 1000 km, per opportunity.",
         "draw": "Draw drives, scenes over time, navigation graphs and traces.",
-        "formats": "List the formats of recorded traffic and of maps, and what each can tell.",
+        "formats": "List the formats of recorded traffic and maps, and what each provides.",
     },
     "Compare laws": {
         "diff": "Compare two rulebooks: which is stricter where, with traces that show it.",
         "tree": "Show what a rulebook inherits, overrides and drops.",
         "analyze": "Find rules that have no effect, contradict each other, or weaken a treaty.",
-        "audit": "Say what rulebooks rest on: rules without a source or examples, "
-        "what was left out.",
+        "audit": "Report what rulebooks are based on: missing sources and examples, omissions.",
     },
     "Hand over": {
         "doc": "Write a rulebook as a document for lawyers.",
         "compile": "Compile a rulebook to automata files.",
-        "verify-compiled": "Prove that compiled tables do what their formulas say.",
+        "verify-compiled": "Prove that compiled tables are equivalent to their formulas.",
         "traces": "Write all maneuvers of a scenario as traces.",
         "envelopes": "Write the bounds of the cheapest satisfying maneuvers as a table.",
     },
     "Use rulec": {
         "help": "Show the help of a command.",
         "man": "Write a manual page.",
-        "completion": "Print the script that completes rulec's commands in a shell.",
+        "completion": "Print a shell script that completes rulec's commands.",
     },
 }
 

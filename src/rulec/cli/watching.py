@@ -25,7 +25,7 @@ _CLEAR = "\x1b[2J\x1b[3J\x1b[H"
 watch_option = click.option(
     "--watch",
     is_flag=True,
-    help="Go on, and do it again whenever a source changes; Ctrl-C ends it.",
+    help="Keep running, and repeat whenever a source changes; Ctrl-C stops.",
 )
 
 

@@ -35,7 +35,7 @@ _LONG_S = 20
 @click.command(cls=Verb)
 @shared.rulebooks_argument()
 @shared.findings_options
-@shared.jobs_option("Answer questions about rules side by side")
+@shared.jobs_option("Analyze N rules in parallel")
 @shared.no_cache_option
 @shared.at_option
 def command(
@@ -47,13 +47,13 @@ def command(
     no_cache: bool,
     at: str,
 ) -> int:
-    """Find out what is odd in RULEBOOKs (names, or paths of sources) by their automata.
+    """Analyze the automata of RULEBOOKs (names, or paths of sources) for mistakes.
 
-    That is: rules that nothing can violate or keep, that others imply, or that wait for what never
-    happens; hard rules that cannot both be kept; and rules weaker than those of the rulebook that
-    is extended. With traces that show it.
+    Finds rules that nothing can violate or satisfy, rules implied by others, triggers that never
+    occur, hard rules that contradict each other, and rules weaker than those of the rulebook being
+    extended. Each finding comes with a trace that shows it.
 
-    Exit status: 0 no mistakes, 1 there are some, 2 a question could not be answered.
+    Exit status: 0 no mistakes found, 1 mistakes found, 2 a question could not be answered.
     """
     # Automata and their analysis, 150 ms: not for --help.
     from rulec.analysis.lint.finding_messages import NOT_DECIDED

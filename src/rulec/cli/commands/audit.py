@@ -31,34 +31,36 @@ if TYPE_CHECKING:
     type=click.Choice([*KINDS, "any"]),
     multiple=True,
     metavar="KIND",
-    help="A kind of finding that makes the exit status 1; may be given several times, `any` is "
+    help="A kind of finding that makes the exit status 1; may be given several times; `any` means "
     "every kind. With --compare only new findings count.",
 )
-@click.option("--examples", "run", is_flag=True, help="Run the examples, and name those that fail.")
+@click.option(
+    "--examples", "run", is_flag=True, help="Also run the examples and name those that fail."
+)
 @click.option(
     "--compare",
     metavar="OLD",
     callback=read_as_file,
     shell_complete=complete_rulebooks,
-    help="Say what has changed since an older audit (.json), or against another rulebook.",
+    help="List what has changed since an older audit (.json), or compared to another rulebook.",
 )
 @click.option(
     "--source",
     metavar="FILE|FORMAT",
-    help="Say which rules can be judged on what a recording tells, or files of a format, one of "
-    "`rulec formats`, and which words the others lack.",
+    help="List which rules can be judged from a recording, or from files of a format (one of "
+    "`rulec formats`), and which words the other rules lack.",
 )
 @click.option(
     "--law",
     type=click.Path(dir_okay=False),
     callback=read_as_file,
-    help="Look for what the rules of one RULEBOOK cite in the text of its law (Markdown or plain).",
+    help="Look up what the rules of one RULEBOOK cite in this text of the law (Markdown or plain).",
 )
 @click.option(
     "--law-now",
     type=click.Path(dir_okay=False),
     callback=read_as_file,
-    help="With --law: name the rules that rest on what has changed since in this text.",
+    help="With --law: the newer text; name the rules that rest on provisions changed in it.",
 )
 @recording_options
 @shared.at_option
@@ -74,12 +76,12 @@ def command(
     at: str,
     **options: Any,
 ) -> int:
-    """Say what every RULEBOOK (a name, or the path of a source) rests on.
+    """Report what each RULEBOOK (a name, or the path of a source) is based on.
 
-    That is: rules that cite no provision, that lack examples or were never verified, what is soft,
-    dropped, left out or in force for a time only, the provisions covered, and words in no rule.
+    Lists rules that cite no provision, lack examples or were never verified; rules that are soft,
+    dropped, left out or in force only for a time; the provisions covered; and unused words.
 
-    Exit status: 0 done, 1 --fail-on says so, 2 a rulebook could not be read.
+    Exit status: 0 done, 1 a finding named by --fail-on, 2 a rulebook could not be read.
     """
     # Rulebooks and their automata, 180 ms: not for --help.
     from rulec.analysis.audit.rulebook_audit import compare_audits

@@ -36,14 +36,13 @@ if TYPE_CHECKING:
 @click.option(
     "--fix",
     is_flag=True,
-    help="Write into the files the edits that messages offer. They may change what rules mean: "
-    "read them.",
+    help="Apply the edits that messages suggest. They may change what rules mean: review them.",
 )
 @click.option(
     "--lock",
     is_flag=True,
-    help="Write into rulec.lock what ships with rulec and these build upon, by its hash; `check` "
-    "says from then on what is another one.",
+    help="Record in rulec.lock the hashes of the shipped rulebooks that these build upon; later "
+    "checks report any that have changed.",
 )
 @verbose_option
 @watch_option
@@ -60,14 +59,13 @@ def command(
     verbose: bool,
     watch: bool,
 ) -> int:
-    """Check rulebooks and vocabularies, and write nothing but fixes that are asked for.
+    """Check rulebooks and vocabularies for mistakes, without changing any file unless asked.
 
-    Each is a name, a file, a pattern, a folder (the sources in and below it, but for what git
-    ignores or rulec.toml excludes, and for environments), or `-` for standard input; without one it
-    is the working folder. Examples are not run: `rulec test` does that, and names rules that have
-    none.
+    Each argument is a name, a file, a pattern, a folder (its sources at any depth, except what git
+    ignores, rulec.toml excludes, or belongs to a Python environment), or `-` for standard input;
+    the default is the working folder. Examples are not run: use `rulec test` for that.
 
-    Exit status: 0 no mistakes, 1 there are some, 2 a file could not be read.
+    Exit status: 0 no mistakes found, 1 mistakes found, 2 a file could not be read.
     """
     sources = sources or (".",)
     if fix and "-" in sources:

@@ -38,21 +38,21 @@ def _bounds(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dic
 @click.command(cls=Verb)
 @shared.rulebooks_argument()
 @shared.steps_option(
-    "The step of the traces to be judged, in s: a decimal, or a fraction such as 1/3; several "
-    "times for several steps. It matters to rules with bounds in seconds.  [default: that of "
-    "their examples]",
+    "The time step of the traces to be judged, in s: a decimal, or a fraction such as 1/3. Give "
+    "it several times for several steps. It matters only for rules with bounds in seconds.  "
+    "[default: the step of their examples]",
 )
 @click.option(
     "-o",
     "--output",
     required=True,
     metavar="DIR",
-    help="The folder for the files, made if need be.",
+    help="The folder to write to; it is created if necessary.",
 )
 @shared.choice_option(
     "--emit",
     ["automata", "c", "rust", "ros2", "ltl"],
-    "What is written: automata and the compiled rulebook, a monitor in C, Rust, or for ROS 2, or "
+    "What to write: automata and the compiled rulebook; a monitor in C, in Rust or for ROS 2; or "
     "formulas in linear temporal logic for other tools.",
 )
 @click.option(
@@ -60,18 +60,20 @@ def _bounds(_: click.Context, __: click.Parameter, values: Sequence[str]) -> dic
     metavar="TYPE=N",
     multiple=True,
     callback=_bounds,
-    help="How many objects of a type a monitor watches at a time; several times.  [default: "
-    "16 of each type that is below no other]",
+    help="The most objects of a type that a monitor watches at once; may be given several times.  "
+    "[default: 16 of each top-level type]",
 )
 @click.option(
     "--prove",
     is_flag=True,
-    help="Compile the monitor, hold it against its tables and write a report of that, too.",
+    help="Also compile the monitor with a C compiler, check it against its tables and write a "
+    "report.",
 )
 @click.option(
     "--no-certificate",
     is_flag=True,
-    help="Leave out to compile again by a second compiler, which takes about as long as the first.",
+    help="Skip the second, independent compilation that certifies the first; it takes about as "
+    "long.",
 )
 @shared.at_option
 def command(
@@ -87,13 +89,12 @@ def command(
 ) -> int:
     """Compile each RULEBOOK: a name, or the path of a source.
 
-    Writes RULE.hoa for every rule, in the Hanoi Omega-Automata format, and one compiled rulebook
-    RULEBOOK.json, which every other command takes in place of the source and which runs without
-    Spot. With `--emit c` it writes header, source, Makefile and CMakeLists.txt of a monitor in C99
-    instead, with `--emit rust` a crate, with `--emit ros2` a package around the C;
-    with `--emit ltl` all formulas for Spot, PRISM and nuXmv, and what their propositions mean. Each
-    file appears whole or not at all. Of several rulebooks, of a folder and of a pattern each has a
-    folder of its own in DIR.
+    Writes RULE.hoa for every rule, in the Hanoi Omega-Automata format, and the compiled rulebook
+    RULEBOOK.json, which every other command accepts in place of the source and which runs without
+    Spot. Instead, `--emit c` writes a monitor in C99 with its Makefile and CMakeLists.txt,
+    `--emit rust` a crate, `--emit ros2` a package around the C monitor, and `--emit ltl` all
+    formulas for Spot, PRISM and nuXmv with the meaning of their propositions. Every file is written
+    completely or not at all. If there are several rulebooks, each gets its own folder in DIR.
     """
     if (objects or prove) and emit in ("automata", "ltl"):
         name = "--objects" if objects else "--prove"

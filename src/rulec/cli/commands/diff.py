@@ -40,9 +40,9 @@ if TYPE_CHECKING:
     "--all",
     "every",
     is_flag=True,
-    help="Compare every two of the rulebooks named, or of all that there are.",
+    help="Compare every pair of the named rulebooks, or of all available ones.",
 )
-@shared.rules_option("Only rules like PATTERN")
+@shared.rules_option("Compare only rules that match PATTERN")
 @click.option(
     "--pair",
     "paired",
@@ -51,20 +51,20 @@ if TYPE_CHECKING:
     help="Compare rule A of the first with rule B of the second. May be given several times.",
 )
 @shared.step_option(
-    "The step of the traces that rules with bounds in seconds are compared on, in s.  "
-    "[default: one that divides the steps of their examples]",
+    "The time step, in s, on which rules with bounds in seconds are compared.  [default: one "
+    "that divides the steps of their examples]",
 )
 @shared.number_option(
     "--witnesses",
     "n_witnesses",
-    "Show up to N traces for every difference, each for a reason of its own.",
+    "Show up to N traces for every difference, each for a different reason.",
     least=1,
     most=100,
     default=3,
 )
 @output_options(
     endings_of("text", "markdown", "json", "html", "csv"),
-    "the comparison: text, Markdown, JSON, a page, or a row for each rule",
+    "the comparison: text, Markdown, JSON, an HTML page, or CSV with a row per rule",
 )
 @click.option(
     "--witness",
@@ -86,12 +86,12 @@ def command(
     no_cache: bool,
     at: str,
 ) -> int:
-    """Say which rules of a first RULEBOOK are stricter or laxer than those of a second, or neither.
+    """Compare two RULEBOOKs: which rules of the first are stricter or laxer than the second's.
 
-    Both are names or paths of sources. For every difference there are short traces that one of
-    them forbids and the other one allows. With --all there is an overview of many rulebooks.
+    Both are names or paths of sources. Every difference is shown by short traces that one rulebook
+    forbids and the other allows. With --all, many rulebooks are compared in an overview.
 
-    Exit status: 0 no difference, 1 there are some, 2 a question could not be answered.
+    Exit status: 0 no difference, 1 differences found, 2 a question could not be answered.
     """
     rulebooks = sources_of_rulebooks(rulebooks, "cannot be compared")
     if every:

@@ -35,15 +35,15 @@ _ENDINGS = endings_of("html", "markdown")
     type=click.Choice(LANGUAGES),
     default="en",
     show_default=True,
-    help="The language of its sentences and headings. What an author wrote stays as it is.",
+    help="The language of headings and generated sentences. What the author wrote is kept as is.",
 )
 @shared.at_option
 def command(rulebooks: tuple[str, ...], to: Output, language: str, at: str) -> int:
     """Write each RULEBOOK (a name, or the path of a source) as a document for lawyers.
 
-    It has every rule with its provision, in plain language, as a formula and by its examples, in
-    the page with pictures; what was changed of inherited rules and what was left out; values,
-    definitions, words and an index. Of several, `-o DIR/` writes DIR/NAME.html for each.
+    It contains every rule with its provision, in plain language, as a formula, and with its
+    examples (in HTML with pictures); which inherited rules were changed or left out; and values,
+    definitions, words and an index. For several rulebooks, `-o DIR/` writes one DIR/NAME.html each.
     """
     books = sources_of_rulebooks(rulebooks, "cannot be made a document of")
     form, tongue = cast("Format", to.form), cast("LanguageCode", language)

@@ -73,10 +73,10 @@ _judging_options = shared.combined(
 @click.group(cls=VerbGroup, invoke_without_command=True)
 @click.pass_context
 def command(context: click.Context) -> None:
-    """Draw a recorded drive, the scene over time, the navigation graph, or a trace.
+    """Draw a recorded drive, a scene over time, a navigation graph, or a trace.
 
-    As SVG, PNG, PDF or a page (HTML). SVG and HTML need nothing else and come in light and dark, as
-    the reader prefers; PNG and PDF take the extra `pictures`: in a checkout
+    The picture is SVG, PNG, PDF or an HTML page. SVG and HTML need no further package and follow
+    the reader's light or dark theme; PNG and PDF need the extra `pictures`: in a checkout
     `.venv/bin/python -m pip install -e '.[pictures]'`.
     """
     if context.invoked_subcommand is None:
@@ -89,21 +89,21 @@ def command(context: click.Context) -> None:
 @click.option(
     "--trace", "trace_id", metavar="ID", help="Draw the trace with this id.  [default: the first]"
 )
-@shared.rules_option("Only what rules like PATTERN read")
+@shared.rules_option("Draw only what rules that match PATTERN read")
 @click.option(
     "--object",
     "only",
     multiple=True,
     metavar="ID",
-    help="Of the objects only this one. May be given several times.",
+    help="Draw only this object. May be given several times.",
 )
 @click.option(
     "--all",
     "every_row",
     is_flag=True,
-    help="Draw what any rule reads, not only what the violated ones do.",
+    help="Draw what any rule reads, not only the violated rules.",
 )
-@input_format_option(TRACE_FORMATS, "the traces.  [default: what FILE ends with, else jsonl]")
+@input_format_option(TRACE_FORMATS, "the traces.  [default: by the extension of FILE, else jsonl]")
 @shared.at_option
 @_picture_options
 def trace(
@@ -117,10 +117,10 @@ def trace(
     at: str,
     to: Output,
 ) -> None:
-    """Draw a trace of FILE (JSON Lines, CSV or Parquet): what violated rules read, over time.
+    """Draw a trace of FILE (JSON Lines, CSV or Parquet): the values that violated rules read.
 
-    Without a violation, what any rule reads. Violations are marked where they are decided, with the
-    rule and its article.
+    If no rule is violated, the values that any rule reads are drawn. A violation is marked at the
+    state where it is decided, with the rule and its article.
     """
     # Verdicts and pictures, 150 ms: not for --help.
     from rulec.api.pictures import trace_drawing
@@ -144,24 +144,24 @@ def trace(
     "--ego",
     default="",
     metavar="ID",
-    help="The vehicle, or one of its drives such as 373#2.  [default: the first in time "
-    "that violates a rule]",
+    help="The vehicle, or one of its drives such as 373#2.  [default: the first one to violate "
+    "a rule]",
 )
-@shared.rules_option("Only violations of rules like PATTERN")
+@shared.rules_option("Show only violations of rules that match PATTERN")
 @click.option(
     "--at-time",
     "at_s",
     type=float,
     callback=shared.finite,
     metavar="S",
-    help="The moment to draw, in s of the recording.  [default: the first violation]",
+    help="The time to draw, in s of the recording.  [default: the first violation]",
 )
 @click.option(
     "--theme",
     type=click.Choice(["auto", "light", "dark"]),
     default="auto",
     show_default=True,
-    help="Light or dark; `auto` is as the reader prefers, and light in PNG and PDF.",
+    help="Light or dark; `auto` follows the reader's theme, and is light in PNG and PDF.",
 )
 @drives_options
 @recording_options
@@ -178,10 +178,10 @@ def drive(
     to: Output,
     **options: Any,
 ) -> None:
-    """Draw a drive of the recording FILE from above: the road, everybody on it, the violations.
+    """Draw a drive of the recording FILE from above: the road, all traffic, the violations.
 
     FILE is recorded traffic, in one of `rulec formats`. A picture shows the moment of the first
-    violation; a page (HTML) plays all moments and lists all violations.
+    violation; an HTML page plays the whole drive and lists all violations.
     """
     # Recordings, verdicts and pictures, 400 ms: not for --help.
     from rulec.api.pictures import drive_drawing
@@ -202,7 +202,7 @@ def drive(
 @shared.number_option(
     "--layer",
     "layers",
-    "Draw layer P alone, counted from 0; may be repeated.  [default: all]",
+    "Draw only layer P, counted from 0; may be given several times.  [default: all]",
     multiple=True,
     metavar="P",
 )
@@ -210,8 +210,8 @@ def drive(
 def scene(layers: tuple[int, ...], to: Output, **options: Any) -> None:
     """Draw SCENARIO (a name or a file) over time: cells with signatures, obstacles, a maneuver.
 
-    With a rulebook the cheapest maneuver that satisfies it is shown by its cells, whose bounds are
-    its envelope. A page (HTML) has a slider for the time.
+    With a rulebook, the cells of the cheapest satisfying maneuver are highlighted; their bounds are
+    its envelope. An HTML page has a time slider.
     """
     # Cells, maneuvers and pictures, 150 ms: not for --help.
     from rulec.api.pictures import scene_drawing
@@ -231,8 +231,8 @@ def scene(layers: tuple[int, ...], to: Output, **options: Any) -> None:
 def graph(to: Output, **options: Any) -> None:
     """Draw the navigation graph of SCENARIO (a name or a file), layer by layer.
 
-    With a rulebook the steps of satisfying maneuvers are told from those of rejected ones, and the
-    cheapest satisfying maneuver is shown.
+    With a rulebook, the edges of satisfying maneuvers are drawn differently from those of rejected
+    ones, and the cheapest satisfying maneuver is highlighted.
     """
     # As for ``scene``.
     from rulec.api.pictures import graph_drawing

@@ -48,11 +48,11 @@ def command(
 ) -> int:
     """Write the envelopes of the cheapest satisfying maneuvers of SCENARIO (a name or a file).
 
-    A table in JSON Lines, CSV or Parquet: what bounds a maneuver in each layer, piece by piece.
-    Where not all is known those that are open are among them.
+    The table (JSON Lines, CSV or Parquet) has the bounds of each maneuver in each layer, stretch by
+    stretch. Where values are unknown, open maneuvers are included.
 
-    Exit status: 0 there is a satisfying or an open maneuver, 1 there is none, 2 it could not be
-    answered.
+    Exit status: 0 there is a satisfying or open maneuver, 1 there is none, 2 the scenario could not
+    be evaluated.
     """
     # Maneuvers and the formats of tables, 100 ms: not for --help.
     from rulec.report.maneuvers.envelope_table import write_envelopes

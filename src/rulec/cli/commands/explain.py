@@ -32,10 +32,10 @@ _ALIKE = 0.75
     "the explanation: text, JSON, or Markdown (with --all the page docs/codes.md)",
 )
 def command(names: tuple[str, ...], every: bool, to: Output) -> None:
-    """Explain each CODE, such as R0104: what it means, a bad example, and the mended one.
+    """Explain each CODE, such as R0104: what it means, with a bad example and its correction.
 
-    Of a WORD of a vocabulary, such as `gap`, say how it is declared, what it stands for, and which
-    recordings can tell it.
+    For a WORD of a vocabulary, such as `gap`, show how it is declared, what it means, and which
+    recordings provide it.
     """
     if every == bool(names):
         raise click.UsageError("give a code, or --all")

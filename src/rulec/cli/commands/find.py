@@ -48,16 +48,18 @@ FORMATS = {**endings_of("text", "json"), **TABLES}
     default="",
     metavar="NAME",
     callback=not_standard_input("a vocabulary is found by its name; give a rulebook, as `-r -`"),
-    help="The vocabulary whose words the formula is in.  [default: road, or the rulebook's]",
+    help="The vocabulary that the formula uses.  [default: road, or the rulebook's]",
 )
 @shared.rulebook_option(
     "a formula is in the words of one rulebook",
-    "A rulebook, name or source, whose words, definitions and parameters the formula is in, "
-    "beside those of --use.",
+    "A rulebook (name or source) whose words, definitions and parameters the formula may use, in "
+    "addition to those of --use.",
     required=False,
 )
 @click.option(
-    "--sure", is_flag=True, help="Only what holds for sure, whatever may be true of the unknown."
+    "--sure",
+    is_flag=True,
+    help="List only moments that are certain, whatever the unknown values are.",
 )
 @scenario_options.egos_option
 @scenario_options.drives_options
@@ -78,13 +80,13 @@ def command(
 ) -> int:
     """List the moments at which FORMULA holds in FILE..., recorded traffic or traces.
 
-    FORMULA is one of the rule language. Its variables stand before it with their types, as in the
-    head of a rule: '(v: vehicle) same_lane(v) and gap(v) < 5 m'. It is asked of every state of
-    every drive, for every choice of different objects; operators of time look back and ahead from
-    there.
+    FORMULA is written in the rule language. Its variables and their types come first, as in the
+    head of a rule: '(v: vehicle) same_lane(v) and gap(v) < 5 m'. It is evaluated in every state of
+    every drive, for every choice of distinct objects; temporal operators look back and ahead from
+    that state.
 
-    Each moment is said with its drive, its objects, from when to when it is in seconds, and in
-    which states. What is not known for sure is said, too, unless --sure leaves it out.
+    Each moment is listed with its drive, its objects, its start and end in seconds, and its states.
+    Moments that are uncertain are marked as such; --sure leaves them out.
 
     Exit status: 0, or 2 if a file or a trace could not be read.
     """

@@ -41,13 +41,13 @@ if TYPE_CHECKING:
     required=True,
     metavar="DIR",
     type=click.Path(file_okay=False, path_type=Path),
-    help="The folder of the findings; by several rulebooks, of a folder for each. A run that was "
-    "stopped goes on there.",
+    help="The folder for the findings; with several rulebooks it gets a folder for each. An "
+    "interrupted run is resumed from it.",
 )
 @shared.choice_option(
-    "--on", ["local", "ray", "spark"], "Who gives the work to processes.", former=["--engine"]
+    "--on", ["local", "ray", "spark"], "What distributes the work.", former=["--engine"]
 )
-@shared.jobs_option("Judge so many recordings, or pieces of tables, at a time")
+@shared.jobs_option("Judge N recordings, or pieces of tables, in parallel")
 @shared.end_option
 @scenario_options.drives_options
 @scenario_options.recording_options
@@ -62,19 +62,19 @@ def command(
     at: str,
     **options: Any,
 ) -> int:
-    """Judge all drives in INPUT..., and write findings as Parquet into DIR.
+    """Judge all drives in INPUT... and write the findings as Parquet files to DIR.
 
-    INPUT is a Parquet table of traces, or of tracks with a column `recording`, or recorded traffic
-    of any format that `rulec formats` lists, or a folder of such files, or a pattern. Rows of a
-    drive may be spread over tables.
+    INPUT is a Parquet table of traces, a Parquet table of tracks with a column `recording`,
+    recorded traffic in any format listed by `rulec formats`, a folder of such files, or a pattern.
+    The rows of a drive may be spread over several tables.
 
-    DIR gets a manifest and the folder `book=HASH` with a file for each recording and piece
-    of a table: a row for each drive, for each rule of it, and for each finding (docs/fleet.md).
-    Started again, the same command judges only what is missing. By several rulebooks, as in
-    -r de -r fr or -r laws/, each has a folder DIR/RULEBOOK, and a table compares them.
+    DIR gets a manifest and a folder `book=HASH` with a file for each recording or piece of a table;
+    it has a row for each drive, for each rule of the drive, and for each finding (docs/fleet.md).
+    Run again, the same command judges only what is missing. With several rulebooks, as in -r de
+    -r fr or -r laws/, each has a folder DIR/RULEBOOK, and a table compares them.
 
-    Exit status: 0 no hard rule is violated, 1 one is, 2 a file, a recording or a trace could not be
-    judged, or no drive.
+    Exit status: 0 no hard rule is violated, 1 some are, 2 a file, recording or trace could not be
+    judged, or no drive could.
     """
     # numpy, shapely and formats of recordings, 250 ms: not for --help.
     from rulec.fleet.runs.fleet_run import FleetSettings, run_fleet

@@ -33,13 +33,13 @@ if TYPE_CHECKING:
 def command(paths: tuple[str, ...], *, check: bool, diff: bool, verbose: bool) -> int:
     """Format rulebooks and vocabularies in place.
 
-    Each PATH is a file, a pattern or a folder (the sources in it and below it, but for what git
-    ignores or rulec.toml excludes, and for environments); without one it is the working folder. `-`
+    Each PATH is a file, a pattern or a folder (its sources at any depth, except what git ignores,
+    rulec.toml excludes, or belongs to a Python environment); the default is the working folder. `-`
     formats standard input to standard output.
 
-    A file that breaks the grammar is left as it is, and its mistakes are shown. Form is all that
-    is looked at: misspelt names are what `rulec check` finds. What is written means the same and
-    has the same comments, or nothing is written.
+    A file with syntax errors is left unchanged, and the errors are shown. Only the layout is
+    checked; misspelt names are found by `rulec check`. Formatting never changes the meaning or the
+    comments of a file.
 
     Exit status: 0 done, 1 --check or --diff found something to change, 2 a file could not be
     formatted.

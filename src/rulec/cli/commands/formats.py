@@ -16,7 +16,7 @@ from rulec.diagnostics import did_you_mean
 @click.option(
     "--words",
     is_flag=True,
-    help="Say also which words of the vocabulary `road` some file of each format can tell.",
+    help="Also list which words of the vocabulary `road` each format can provide.",
 )
 @output_options(endings_of("text", "markdown", "json"), "the list")
 def command(
@@ -24,10 +24,10 @@ def command(
     words: bool,
     to: Output,
 ) -> None:
-    """List the formats of recorded traffic, and of maps, that are read; all of them, or NAME.
+    """List the supported formats of recorded traffic and of maps, or describe NAME.
 
-    With --words also what they can tell: which words a rulebook may be judged by. A particular file
-    may tell less; `rulec audit R --source FILE` says what it does.
+    With --words also the words that each format can provide to a rulebook. A particular file may
+    provide fewer; `rulec audit R --source FILE` lists those.
     """
     # Words that are derived from recordings, and msgspec, 250 ms: not for --help.
     from rulec.report.recordings import format_listing

@@ -22,7 +22,7 @@ def _verbs(_: click.Context, __: click.Parameter, incomplete: str) -> list[Compl
 @click.argument("words", nargs=-1, metavar="[COMMAND]", shell_complete=_verbs)
 @click.pass_context
 def command(context: click.Context, words: tuple[str, ...]) -> None:
-    """Show what COMMAND does and takes, such as `check` or `draw drive`; without it all of them."""
+    """Show the help of COMMAND, such as `check` or `draw drive`; without COMMAND list all."""
     here = context.find_root()
     for word in words:
         known = here.command.list_commands(here) if isinstance(here.command, click.Group) else []

@@ -23,7 +23,7 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 @click.argument("kind", type=click.Choice(KINDS), required=False)
 @output_options(endings_of("text", "json"), "the list")
 def command(kind: Kind | None, to: Output) -> None:
-    """List what can be asked for by name, with a title; without KIND all of it but the codes."""
+    """List everything that can be named, with its title; without KIND all kinds except codes."""
     # msgspec, 7 ms: not for --help.
     from rulec.report.text.listing import as_json, as_text
 

@@ -14,14 +14,16 @@ from rulec.language_server.editor_settings import EDITORS, editor_settings
     "--settings",
     "editor",
     type=click.Choice([*EDITORS]),
-    help="Print what to put into this editor's settings, and end.",
+    help="Print the settings for this editor, and exit.",
 )
-@click.option("--stdio", is_flag=True, help="What some editors add, and what it does anyway.")
+@click.option(
+    "--stdio", is_flag=True, help="Accepted because some editors pass it; it has no effect."
+)
 def command(*, editor: str | None, stdio: bool) -> int:  # noqa: ARG001 - it does so anyway
-    """Answer an editor: diagnostics, completion, renaming and the like.
+    """Serve an editor: diagnostics, completion, renaming and more.
 
-    Editors start it themselves and speak the Language Server Protocol with it, over standard input
-    and output; `--settings` prints how each is told. To answer, not to print, it takes the extra
+    The editor starts this command and speaks the Language Server Protocol with it over standard
+    input and output; `--settings` prints the configuration for each editor. Serving needs the extra
     `lsp`: in a checkout `.venv/bin/python -m pip install -e '.[lsp]'`.
     """
     if editor is not None:

@@ -13,7 +13,7 @@ from rulec.cli.output import put_answer
 @output_options(endings_of("roff"), "the page")
 @click.pass_context
 def command(context: click.Context, to: Output) -> None:
-    """Write the manual page rulec(1), which has every command with its options.
+    """Write the manual page rulec(1), with every command and its options.
 
     \b
     rulec man -o ~/.local/share/man/man1/rulec.1    for `man rulec`

@@ -47,14 +47,14 @@ if TYPE_CHECKING:
 @shared.number_option(
     "--rank",
     "n_ranked",
-    "List the N best maneuvers: by what they violate, hard rules above soft ones, by "
-    "levels and weights; then by cost.",
+    "List the N best maneuvers: ranked by what they violate (hard rules before soft ones, by "
+    "level and weight), then by cost.",
 )
 @click.option(
     "--why",
     is_flag=True,
-    help="Say for every rule how many maneuvers violate it, how many violate no other hard rule, "
-    "and give an example.",
+    help="Show for every rule how many maneuvers violate it, how many violate no other hard rule, "
+    "and an example.",
 )
 @shared.number_option(
     "--classes",
@@ -64,16 +64,16 @@ if TYPE_CHECKING:
 @click.option(
     "--worlds",
     is_flag=True,
-    help="Where obstacles have several predictions: count also what is left if one of them does "
-    "something less likely.",
+    help="If obstacles have several predictions, also count the maneuvers that remain when one of "
+    "them does something less likely.",
 )
 @shared.file_option(
     "--after",
-    "What was before: a file with one trace, or a monitor that was saved (.json).",
+    "The past to continue from: a file with one trace, or a saved monitor (.json).",
 )
 @scenario_options.reading_options
 @click.option(
-    "--strict", is_flag=True, help="Exit with 1 if no maneuver keeps every hard rule for sure."
+    "--strict", is_flag=True, help="Exit with 1 if no maneuver certainly satisfies every hard rule."
 )
 @output_options(endings_of("text", "json"), "the answer")
 @shared.at_option
@@ -88,18 +88,19 @@ def command(
 ) -> int:
     """Count the maneuvers of each SCENARIO (a name or a file) that satisfy every hard rule.
 
-    If none does, the least violating ones are shown. A folder is all recordings in and below it,
-    and a pattern, in which `*` is wild, all files that are called so. Of several scenarios, or by
-    several rulebooks, there is a table at the end, and in JSON a line for each.
+    If none does, the least violating ones are shown. A folder stands for all recordings in it, at
+    any depth, and a pattern such as `*.xml` for all files that match. For several scenarios or
+    rulebooks a table follows at the end; JSON has one line each.
 
-    With --after they go on where a past has ended: its last state comes one step before the
-    scenario begins. What was violated for good by then is said, and not counted against them.
+    With --after, maneuvers continue a past whose last state lies one step before the scenario
+    begins. What the past already violates is reported, and not counted against the maneuvers.
 
-    Where not all is known, those that keep them whatever that may be are satisfying, and those that
-    may keep them open; the list has both, and ranks suppose the worst.
+    Where values are unknown, a maneuver is satisfying if it satisfies the rules whatever those
+    values are, and open if it does for some of them. The list contains both; ranking assumes the
+    worst.
 
-    Exit status: 0 there is a satisfying or an open maneuver in each, 1 in some there is none, 2 it
-    could not be answered, or no hard rule be judged.
+    Exit status: 0 each scenario has a satisfying or open maneuver, 1 some scenario has none, 2 a
+    scenario could not be evaluated, or no hard rule could be judged.
     """
     # Maneuvers, 130 ms: not for --help.
     from rulec.report.maneuvers.maneuver_table import ManeuverCounts

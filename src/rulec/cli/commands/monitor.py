@@ -37,25 +37,25 @@ def _no_states(_: click.Context, __: click.Parameter, value: str) -> str:
 @click.command(cls=Verb)
 @click.argument("rulebook", callback=_no_states, shell_complete=complete_rulebooks)
 @shared.step_option(
-    "Seconds from one state to the next: a decimal, or a fraction such as 1/3. It matters to "
-    "rules with bounds in seconds.  [default: that of their examples, or of --restore]",
+    "The time step between states, in s: a decimal, or a fraction such as 1/3. It matters only "
+    "for rules with bounds in seconds.  [default: that of their examples, or of --restore]",
 )
 @click.option(
     "--restore",
     metavar="FILE",
     type=click.Path(dir_okay=False, allow_dash=True),
-    help="Go on where the monitor stood that was saved in FILE; `-` is the first line of standard "
-    "input, before the states.",
+    help="Resume the monitor saved in FILE; `-` reads it from the first line of standard input, "
+    "before the states.",
 )
 @click.option(
     "--save",
     metavar="FILE",
     type=click.Path(dir_okay=False, allow_dash=True),
-    help="Save in FILE where the monitor stands when it ends, however it ends.",
+    help="Save the monitor to FILE when it ends, however it ends.",
 )
 @output_options(
     {**endings_of("text"), "json": (".jsonl", ".ndjson", ".json")},
-    "the verdicts, a line for each state,",
+    "the verdicts, one line per state,",
 )
 @shared.at_option
 def command(
@@ -66,15 +66,15 @@ def command(
     to: Output,
     at: str,
 ) -> int:
-    """Judge by RULEBOOK the states that come on standard input, one JSON object a line.
+    """Judge states from standard input, one JSON object per line, as they arrive.
 
-    Prints a line for each, at once: is the trace, as far as it has come, satisfied or violated for
-    good, does it hold so far, or is something pending? A line that cannot be judged is reported and
-    changes nothing.
+    Immediately prints one line per state with the verdict of RULEBOOK on the trace so far:
+    satisfied or violated for good, satisfied so far, or pending. A line that cannot be judged is
+    reported and otherwise ignored.
 
-    Exit status: 0 every hard rule is kept if the trace ends here, 1 one is violated, 2 a state
-    could not be judged, or none came. With --save the trace is not over, and what is pending is
-    no violation.
+    Exit status: 0 every hard rule is satisfied if the trace ends here, 1 some are violated, 2 a
+    state could not be judged, or none arrived. With --save the trace is taken to continue, so
+    pending rules do not count as violated.
     """
     # Monitors and the reader of states, 60 ms: not for --help.
     from rulec.monitoring.online import monitor_sources

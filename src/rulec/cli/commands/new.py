@@ -25,19 +25,19 @@ from rulec.settings import search_path
     default=".",
     metavar="DIR",
     show_default="the working folder",
-    help="The folder for NAME.rules, made if need be.",
+    help="The folder for NAME.rules; it is created if necessary.",
 )
 @click.option(
     "--extends",
     "base",
     metavar="R",
-    help="Build upon this rulebook: its name.",
+    help="The name of a rulebook to extend.",
     shell_complete=complete_rulebooks,
 )
 def command(name: str, output: str, base: str | None) -> None:
-    """Write NAME.rules, a rulebook that checks and tests, to be changed into your own.
+    """Create NAME.rules, a small valid rulebook with examples, as a starting point.
 
-    An existing file is left alone.
+    An existing file is not overwritten.
     """
     refuse_standard_output(output)
     name = name.removesuffix(".rules")

@@ -38,7 +38,7 @@ def _confidence(_: click.Context, __: click.Parameter, value: float) -> float:
     "--by",
     multiple=True,
     type=click.Choice(GROUPS),
-    help="Tell drives apart by this. May be given several times.",
+    help="Group drives by this. May be given several times.",
 )
 @click.option(
     "--confidence",
@@ -47,15 +47,17 @@ def _confidence(_: click.Context, __: click.Parameter, value: float) -> float:
     show_default=True,
     callback=_confidence,
     metavar="P",
-    help="The confidence of intervals.",
+    help="The confidence level of the intervals.",
 )
-@shared.number_option("--seed", "seed", "Draw drives by this seed.", default=0, most=2**32 - 1)
+@shared.number_option(
+    "--seed", "seed", "The random seed of the bootstrap over drives.", default=0, most=2**32 - 1
+)
 @click.option(
     "--per",
     type=click.Choice(PER),
     default=PER[0],
     show_default=True,
-    help="In a picture: the rate that it shows.",
+    help="The rate that a picture shows.",
 )
 @output_options(endings_of("text", "markdown", "csv", "json", *PICTURES), "the rates")
 def command(
@@ -66,14 +68,15 @@ def command(
     per: str,
     to: Output,
 ) -> None:
-    """Say how often rules are violated: per hour, per 1000 km, and per opportunity.
+    """Compute how often rules are violated: per hour, per 1000 km, and per opportunity.
 
-    FINDINGS are what `rulec verify --exposure -o FILE` writes, as JSON Lines, CSV or Parquet, and
-    folders of `rulec fleet`. All drives have to be judged alike; with --by rulebook there may be
-    several rulebooks.
+    FINDINGS are files written by `rulec verify --exposure -o FILE` (JSON Lines, CSV or Parquet) or
+    folders written by `rulec fleet`. All drives must have been judged in the same way; several
+    rulebooks are allowed only with --by rulebook.
 
-    Each rate has two intervals: an exact one for independent opportunities, and one over drives.
-    Takes the extra `rates`: in a checkout `.venv/bin/python -m pip install -e '.[rates]'`.
+    Each rate has two confidence intervals: an exact one for independent opportunities, and a
+    bootstrap over drives. This needs the extra `rates`: in a checkout
+    `.venv/bin/python -m pip install -e '.[rates]'`.
     """
     # numpy, Arrow and what shows rates, 150 ms: not for --help.
     from rulec.rates.rates_of_findings import rates_of_findings

@@ -40,7 +40,7 @@ _MOST_NAMED = 6
 @click.option(
     "--automaton",
     type=click.Choice(["text", "dot", "svg"]),
-    help="The rule's automaton alone: as text, for Graphviz, or as a picture.",
+    help="Show only the rule's automaton: as text, for Graphviz, or as a picture.",
 )
 @output_options(
     endings_of("text", "json", "dot", "svg"),
@@ -55,11 +55,11 @@ def command(
     to: Output,
     at: str,
 ) -> int:
-    """Show a RULE of a RULEBOOK: in plain English, as a formula, as an automaton, by examples.
+    """Show a RULE of a RULEBOOK: in plain English, as a formula, as an automaton, with examples.
 
-    The sentence in English is made from the formula, and has one reading only. Without RULE every
-    rule is shown in brief, a rulebook's only one in full. Of several RULEBOOKs, which may also be
-    folders and patterns, the RULE is shown as it is in each, in JSON in a line for each.
+    The English sentence is generated from the formula and is unambiguous. Without RULE every rule
+    is shown briefly; a rulebook's only rule is shown in full. With several RULEBOOKs, folders or
+    patterns, the RULE is shown for each; JSON has one line each.
     """
     books, rule = _books_and_rule((rulebook, *others))
     if automaton is not None or to.form in ("dot", "svg"):

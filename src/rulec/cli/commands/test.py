@@ -30,17 +30,17 @@ if TYPE_CHECKING:
 @click.command(cls=Verb)
 @shared.rulebooks_argument("[RULEBOOK]...", required=False)
 @shared.rules_option(
-    "Only examples whose RULE or RULE/LABEL is like PATTERN, by its number one without a label",
+    "Run only examples whose RULE or RULE/LABEL matches PATTERN (RULE/NUMBER if it has no label)",
     former=["--run"],
 )
 @output_options(endings_of("full", "json", "junit"), "the outcomes: text, JSON, or JUnit XML")
-@click.option("--fail-on-empty", is_flag=True, help="Fail if there is no example to run.")
+@click.option("--fail-on-empty", is_flag=True, help="Fail if there are no examples to run.")
 @click.option(
     "--coverage",
     "with_coverage",
     is_flag=True,
-    help="Say which edges of each rule's automaton no example takes, and which atoms none sees "
-    "both true and false.",
+    help="List the edges of each rule's automaton that no example takes, and the atoms that are "
+    "never both true and false in examples.",
 )
 @click.option(
     "--fail-under",
@@ -50,9 +50,9 @@ if TYPE_CHECKING:
     type=click.FloatRange(0, 100),
     callback=shared.finite,
     metavar="PERCENT",
-    help="Fail if the examples cover less of own rules; implies --coverage.",
+    help="Fail if the examples cover less than this of a rulebook's own rules; implies --coverage.",
 )
-@shared.jobs_option("Test so many rulebooks at a time")
+@shared.jobs_option("Test N rulebooks in parallel")
 @watch_option
 @shared.at_option
 def command(
@@ -68,11 +68,11 @@ def command(
 ) -> int:
     """Run the accept and reject examples of every RULEBOOK.
 
-    It is a name, the path of a source, a pattern, or a folder: all rulebooks in and below it.
-    Without one it is the working folder.
+    RULEBOOK is a name, the path of a source, a pattern, or a folder with rulebooks at any depth;
+    the default is the working folder.
 
-    Exit status: 0 all pass, 1 one fails, or --fail-on-empty or --fail-under says so, 2 a rulebook
-    could not be read or compiled, or --rule matches nothing.
+    Exit status: 0 all examples pass, 1 some fail, or --fail-on-empty or --fail-under applies, 2 a
+    rulebook could not be read or compiled, or --rule matches nothing.
     """
     references = rulebooks or (".",)
     measured = with_coverage or percent is not None

@@ -38,24 +38,24 @@ Piece = TypeVar("Piece")
 @scenario_options.graph_options
 @shared.rulebook_option(
     "a file of traces is in the words of one rulebook",
-    "Write the traces in this rulebook's words, with the partition that it reads.",
+    "Write the traces in this rulebook's words, with the partition that it needs.",
     required=False,
 )
 @output_options(TABLES, "the traces", required=True, former=["--format"])
 @shared.number_option(
     "--first",
     "first",
-    f"Write the first N only; needed where there are more than {MOST_TRACES:,}.",
+    f"Write only the first N; required if there are more than {MOST_TRACES:,}.",
     least=1,
     former=["--limit"],
 )
 @click.option(
     "--recorded",
     is_flag=True,
-    help="Of recorded traffic: write what its vehicles did, every one or that of --ego, instead of "
-    "what ego could do.",
+    help="For recorded traffic: write what the vehicles did (all of them, or only --ego) instead "
+    "of what ego could do.",
 )
-@shared.jobs_option("With --recorded: write so many vehicles' drives at a time")
+@shared.jobs_option("With --recorded: write the drives of N vehicles in parallel")
 @scenario_options.drives_options
 def command(
     scenario: str,
@@ -68,8 +68,8 @@ def command(
 ) -> None:
     """Write every maneuver of SCENARIO (a name or a file) as a trace: JSON Lines, CSV or Parquet.
 
-    With --recorded, what the vehicles of recorded traffic did. `rulec verify` reads the file. It
-    appears whole or not at all.
+    With --recorded, write what the vehicles of recorded traffic did. `rulec verify` reads the file.
+    It is written completely or not at all.
     """
     if recorded:
         file = Path(file_named(scenario))

@@ -17,14 +17,14 @@ from rulec.settings import search_path
 
 @click.command(cls=Verb)
 @shared.rulebooks_argument("[RULEBOOK...]", required=False)
-@shared.rules_option("Only rules like PATTERN")
+@shared.rules_option("Show only rules that match PATTERN")
 @output_options(endings_of("text", "json"), "the tree")
 @shared.at_option
 def command(rulebooks: tuple[str, ...], patterns: tuple[str, ...], to: Output, at: str) -> None:
-    """Show what a RULEBOOK inherits, overrides, softens and drops, and which book set what.
+    """Show what a RULEBOOK inherits, overrides, softens and drops, and from which book.
 
-    It is given by its name or the path of its source. Of several RULEBOOKs, or without any of all
-    that there are, it shows which one extends which.
+    RULEBOOK is a name or the path of a source. With several RULEBOOKs, or none for all available
+    ones, show which one extends which.
     """
     # Rulebooks and their colours, 80 ms: not for --help.
     from rulec.analysis.lineage.book_lineage import book_header

@@ -51,31 +51,34 @@ _OF_SEVERAL_BOOKS = ("text", "json", "jsonl", "csv", "parquet")
 @shared.number_option(
     "--explain",
     "n_explained",
-    "Explain the first N violations of each file state by state.  [default: 1 of a single file; "
-    "with --json 0]",
+    "Explain the first N violations of each file state by state.  [default: 1 for a single file, "
+    "0 with --json]",
 )
 @click.option(
     "--every-part",
     is_flag=True,
-    help="Explain by every part of a formula and every state, however large the table becomes.",
+    help="Show every part of the formula and every state in explanations, however large the table.",
 )
 @click.option(
     "--strict",
     is_flag=True,
-    help="Count hard rules that are open, for want of values or of an end, as violated.",
+    help="Count open hard rules as violated: those undecided because values are unknown or the "
+    "trace is cut.",
 )
 @shared.end_option
 @shared.step_option(
-    "Of traces: take S for the seconds from state to state where a trace's own differ by at most a "
-    "twentieth, as a logger's clock makes them; others are not judged."
+    "For traces: use S seconds as the time step. A trace whose own step differs by more than 5 % "
+    "(more than the jitter of a logger's clock) is not judged."
 )
 @scenario_options.egos_option
 @scenario_options.drives_options
 @scenario_options.recording_or_trace_options
 @shared.choice_option(
-    "--engine", ["python", "c"], "What judges traces: in C your own compiler compiles the monitor."
+    "--engine",
+    ["python", "c"],
+    "What judges traces: Python, or a C monitor built with your C compiler.",
 )
-@shared.jobs_option("Judge so many recordings, or parts of a long one, at a time")
+@shared.jobs_option("Judge N recordings, or parts of a long one, in parallel")
 @output_options(
     FORMATS,
     "the answer",
@@ -85,8 +88,8 @@ _OF_SEVERAL_BOOKS = ("text", "json", "jsonl", "csv", "parquet")
 @click.option(
     "--exposure",
     is_flag=True,
-    help="Write to .jsonl, .csv and .parquet also a row for each drive, and for each rule of it: "
-    "how often there was an opportunity to violate it. `rulec rates` adds them up.",
+    help="In .jsonl, .csv and .parquet also write a row per drive, and per rule with how often "
+    "there was an opportunity to violate it, as input for `rulec rates`.",
 )
 @shared.at_option
 def command(
@@ -111,19 +114,20 @@ def command(
     Prints the violations of every trace and a summary; with --json one line per trace. A trace that
     cannot be judged is reported and does not stop the others.
 
-    FILE may also be recorded traffic, of any format that `rulec formats` lists. Then every vehicle
-    is judged by what it did, and a table says who violated what. A folder is all recordings in and
-    below it, and a pattern, in which `*` is wild, all files that are called so; of several there is
-    a line each, and one table of all.
+    FILE may also be recorded traffic in any format listed by `rulec formats`. Then the drive of
+    every vehicle is judged, and a table shows who violated what. A folder stands for all recordings
+    in it, at any depth, and a pattern such as `*.xml` for all files that match; several files get
+    one line each and a common table.
 
-    By several rulebooks, as in -r de -r fr or -r laws/, everything is judged by each, and a table
-    compares them.
+    With several rulebooks, as in -r de -r fr or -r laws/, everything is judged by each of them, and
+    a table compares the results.
 
-    -o FILE writes the findings, one for each violation and for what is open or not judged: .jsonl,
-    .csv, .parquet, .xml (JUnit), .sarif, .xqar (ASAM's Quality Checker) or .mcap (events beside the
-    recording); with .json verdicts, as --json does, with .txt the text.
+    -o FILE writes findings: one per violation, open verdict or rule that could not be judged, as
+    .jsonl, .csv, .parquet, .xml (JUnit), .sarif, .xqar (ASAM Quality Checker) or .mcap (events for
+    playback beside the recording). With .json it writes verdicts, like --json; with .txt the text.
 
-    Exit status: 0 no hard rule is violated, 1 one is, 2 a trace could not be judged, or no rule.
+    Exit status: 0 no hard rule is violated, 1 some are, 2 a trace, or every rule, could not be
+    judged.
     """
     # Formats of recordings, 80 ms: not for --help.
     from rulec.recordings.recording_inputs import input_files

@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 @click.command(cls=Verb)
 @click.argument("files", nargs=-1, required=True, metavar="FILE...", callback=read_as_file)
-@output_options(endings_of("text", "json"), "what is proved")
+@output_options(endings_of("text", "json"), "the results")
 def command(files: tuple[str, ...], to: Output) -> int:
-    """Prove that every table of compiled rulebooks does what its formula says.
+    """Prove that every table in compiled rulebooks is equivalent to its formula.
 
-    Each table is held against a machine that is made of the formula anew, on all words, by a
-    program that shares nothing with the compiler; nothing is taken from an earlier run. A folder is
-    all compiled rulebooks in and below it, and a pattern, in which `*` is wild, all files that are
-    called so.
+    Each table is compared, on all words, to a machine built afresh from the formula by a program
+    that shares no code with the compiler; no results of earlier runs are used. A folder stands for
+    all compiled rulebooks in it, at any depth, and a pattern such as `*.json` for all files that
+    match.
 
     Exit status: 0 all rules are proved, 1 some are not, 2 a file could not be read.
     """

@@ -146,8 +146,9 @@ def output_options(
             multiple=True,
             metavar="FILE",
             type=click.Path(dir_okay=folders, allow_dash=True),
-            help=f"Write {content} to FILE, whose ending says the format; `-` is standard output."
-            + (" Several go to a folder, `DIR/`." if folders else "")
+            help=f"Write {content} to FILE, whose extension selects the format; `-` is standard "
+            "output."
+            + (" Several are written to a folder, `DIR/`." if folders else "")
             + (" May be given several times." if multiple else "")
             + ("" if required else "  [default: standard output]"),
         ),
@@ -157,8 +158,8 @@ def output_options(
             cls=RenamedOption,
             former=former,
             type=click.Choice(list(endings)),
-            help=f"The format of {content}.  [default: what FILE ends with; {default} on standard "
-            "output]",
+            help=f"The format of {content}.  [default: by the extension of FILE; {default} on "
+            "standard output]",
         ),
     ]
     if has_json:

@@ -63,20 +63,20 @@ _roads_options = combined(
             former=["--net"],
             metavar="FILE",
             type=click.Path(dir_okay=False, path_type=Path),
-            help="For recorded traffic without roads of its own: the map.  [default: for SUMO's "
-            "data the net that they name, or the only one ending in .net.xml beside them]",
+            help="The map, for recorded traffic that contains no roads.  [default: for SUMO data, "
+            "the net that the file names, or the only .net.xml file beside it]",
         ),
         click.option(
             "--scenario",
             "scenario_id",
             metavar="ID",
-            help="Of a file that holds several recordings: only this one.",
+            help="Read only this recording of a file that contains several.",
         ),
     ]
 )
 
 _RECORDING_FORMATS = tuple(form.name for form in FORMATS)
-_SHOWN = "[default: the one that the file shows]"
+_SHOWN = "[default: detected from the file]"
 
 recording_options = combined(
     [
@@ -93,8 +93,8 @@ recording_or_trace_options = combined(
         _roads_options,
         input_format_option(
             (*_RECORDING_FORMATS, *TRACE_FORMATS),
-            "traces: jsonl, csv or parquet; or of recorded traffic, one of `rulec formats`.  "
-            "[default: what the file shows, of traces what it ends with, else jsonl]",
+            "traces (jsonl, csv or parquet) or of recorded traffic (one of `rulec formats`).  "
+            "[default: detected from the file; for traces its ending, else jsonl]",
             former=["--format"],
         ),
     ]
@@ -132,40 +132,42 @@ cell_options = combined(
             "--step", "step_s", type=float, metavar="S", help="The planning interval, in s."
         ),
         click.option(
-            "--horizon", "horizon_s", type=float, metavar="T", help="How far to look ahead, in s."
+            "--horizon", "horizon_s", type=float, metavar="T", help="The planning horizon, in s."
         ),
         click.option(
             "--partition",
             type=click.Choice(["paper", "fine"]),
-            help="Four regions around an obstacle, or eight.  [default: what the rulebook reads; "
-            "paper without one]",
+            help="Divide the space around an obstacle into four regions (paper) or eight (fine).  "
+            "[default: what the rulebook needs; paper without a rulebook]",
         ),
         click.option(
             "--extent",
             type=click.Choice(["lane", "clearance", "body"]),
-            help="How wide obstacles are: all of the lanes that they touch; those, but for where "
-            "ego has room beside them in a lane; or what they sweep, and half of ego's width to "
-            "either side.  [default: clearance in a recorded scene with bounds, else lane]",
+            help="How much space an obstacle occupies across the road: `lane` is every lane it "
+            "touches; `clearance` is the same, except where ego fits beside it within a lane; "
+            "`body` is the area its body sweeps plus half of ego's width on either side.  "
+            "[default: clearance in a recorded scene with bounds, else lane]",
         ),
         choice_option(
             "--adjacency",
             ["touch", "edge", "forward"],
-            "Which cells are neighbours: those that meet in a point, along a border, "
-            "or along a border and not only behind.",
+            "Which cells are neighbours: those that touch, even in a single point; those that "
+            "share an edge; or those that share an edge and do not lie only behind.",
         ),
         click.option(
             "--bounds",
             metavar="BOUNDS",
-            help="Keep only what ego can drive: the bounds of a type of vehicle, as in `truck`, "
-            "numbers, as in `braking=6,acceleration=3`, or both; `none` for all paths through "
-            "cells.  [default: the scenario's; of recorded scenes those of ego's type]",
+            help="Keep only maneuvers that ego can drive within these motion bounds: a vehicle "
+            "type, as in `truck`, numbers, as in `braking=6,acceleration=3`, or both; `none` keeps "
+            "all paths through cells.  [default: the scenario's own; in recorded scenes those of "
+            "ego's vehicle type]",
         ),
         # What can be chosen about a recorded scene; the keywords are those of `Choice`.
         click.option(
             "--ego",
             metavar="ID",
-            help="In a recorded scene: the planning problem or the vehicle that is ego.  "
-            "[default: the first planning problem]",
+            help="Recorded scenes: the vehicle or planning problem to take as ego.  [default: the "
+            "first planning problem]",
         ),
         click.option(
             "--at-time",
@@ -173,14 +175,14 @@ cell_options = combined(
             type=float,
             callback=finite,
             metavar="S",
-            help="In a recorded scene: the moment to start from, in s.  [default: that of the "
-            "planning problem, or the vehicle's first]",
+            help="Recorded scenes: the time to start from, in s.  [default: that of the planning "
+            "problem, or when the vehicle first appears]",
         ),
         click.option(
             "--reference",
             metavar="LANELET",
-            help="In a recorded scene: the lanelet whose middle is the line along the road.  "
-            "[default: the one ego is on]",
+            help="Recorded scenes: the lanelet whose centre line is the reference line along the "
+            "road.  [default: the one ego is on]",
         ),
         click.option(
             "--prediction",
@@ -188,8 +190,8 @@ cell_options = combined(
             default="recorded",
             show_default=True,
             metavar="KIND",
-            help="In a recorded scene: others move as `recorded`, or with `constant` acceleration, "
-            "or do the one or the other, as in `recorded=0.7,constant=0.3`.",
+            help="Recorded scenes: other traffic moves as `recorded`, or with `constant` "
+            "acceleration, or either with a probability, as in `recorded=0.7,constant=0.3`.",
         ),
         click.option(
             "--ego-width",
@@ -197,9 +199,9 @@ cell_options = combined(
             type=click.FloatRange(min=0, max=100),
             callback=finite,
             metavar="M",
-            help="In a recorded scene: how wide ego is, in m, which counts with `--extent "
-            "clearance` and `body`.  [default: as wide as the vehicle that it is, if any; else as "
-            "its bounds say with `clearance`, and a point with `body`]",
+            help="Recorded scenes: ego's width in m, used with `--extent clearance` and `body`.  "
+            "[default: the width of the recorded vehicle, if ego is one; else the one in its "
+            "bounds with `clearance`, and a point with `body`]",
         ),
         click.option(
             "--congested-below",
@@ -209,7 +211,7 @@ cell_options = combined(
             default=30.0,
             show_default=True,
             metavar="KMH",
-            help="In a recorded scene: traffic counts as congested below this median speed.",
+            help="Recorded scenes: below this median speed traffic counts as congested.",
         ),
         recording_options,
     ]
@@ -236,13 +238,14 @@ reading_options = combined(
             "assumed",
             multiple=True,
             metavar="NAME=VALUE",
-            help="What holds wherever the scenario does not tell, such as built_up=true; or "
-            "`defaults`: what it says is unknown has its default.",
+            help="A value to assume wherever the scenario does not provide one, such as "
+            "built_up=true; or `defaults`, which gives unknown values their default.",
         ),
         click.option(
             "--told-only",
             is_flag=True,
-            help="What the scenario does not mention is unknown, instead of having its default.",
+            help="Treat values that the scenario does not mention as unknown instead of giving "
+            "them their default.",
         ),
     ]
 )
@@ -253,7 +256,7 @@ egos_option = click.option(
     "egos",
     multiple=True,
     metavar="ID",
-    help="In recorded traffic: only this vehicle's drive.  [default: everybody's]",
+    help="Recorded traffic: use only this vehicle's drive.  [default: every vehicle's]",
 )
 
 drives_options = combined(
@@ -263,21 +266,22 @@ drives_options = combined(
             "assumed",
             multiple=True,
             metavar="NAME=VALUE",
-            help="What holds wherever a trace does not tell, in recorded traffic always, such as "
-            "built_up=true; or `defaults`: what is not told has its default, and the end is one.",
+            help="A value to assume, such as built_up=true: in traces wherever they do not provide "
+            "one, in recorded traffic always. Or `defaults`: missing values get their default, and "
+            "every trace is complete.",
         ),
         click.option(
             "--threshold",
             "thresholds",
             multiple=True,
             metavar="NAME=NUMBER",
-            help="In recorded traffic: one of the numbers by which words are derived.",
+            help="Recorded traffic: set a threshold used to derive words, such as near_m=200.",
         ),
         click.option(
             "--as-recorded",
             is_flag=True,
-            help="In recorded traffic: do not mirror it where the rulebook's traffic keeps to the "
-            "other side.",
+            help="Recorded traffic: do not mirror it, even if the rulebook's traffic keeps to the "
+            "other side of the road.",
         ),
     ]
 )

@@ -24,7 +24,8 @@ from rulec.report.findings.finding_formats import FORMATS
 Decorated = TypeVar("Decorated", bound=Callable[..., Any])
 
 RULEBOOK_HELP = (
-    "A rulebook: its name, its source (.rules) or a compiled one (.json); `-` is standard input."
+    "The rulebook: its name, its source (.rules) or its compiled form (.json); `-` is standard "
+    "input."
 )
 
 MOST_JOBS = 256
@@ -218,7 +219,7 @@ def rules_option(help_text: str, former: Sequence[str] = ()) -> Callable[[Decora
         former=former,
         multiple=True,
         metavar="PATTERN",
-        help=f"{help_text}; `*` and `?` are wild. May be given several times.",
+        help=f"{help_text}; `*` and `?` are wildcards. May be given several times.",
     )
 
 
@@ -226,8 +227,8 @@ end_option = click.option(
     "--end",
     "ends",
     type=click.Choice(["cut", "complete"]),
-    help="Of traces: cut out of something longer, or over at their end.  [default: as they say, "
-    "else complete]",
+    help="Whether traces are cut out of a longer drive or complete when they end.  [default: what "
+    "each trace says, else complete]",
 )
 
 
@@ -256,8 +257,8 @@ def jobs_option(task: str) -> Callable[[Decorated], Decorated]:
         callback=_jobs,
         envvar="RULEC_JOBS",
         metavar="N",
-        help=f"{task}, in processes of their own; 0 is as many as there are processors.  "
-        "[default: RULEC_JOBS; else as many as there are processors, where it is worth it]",
+        help=f"{task}; 0 means one per processor.  [default: RULEC_JOBS, else one per processor "
+        "where that pays off]",
     )
 
 
@@ -266,8 +267,8 @@ at_option = click.option(
     default="",
     callback=_day,
     metavar="DATE",
-    help="The day whose law it is: rules and parameters that were not in force then are left "
-    "out.  [default: that of the rulebook's `law` line, else today]",
+    help="Apply the law of this day: rules and parameters not in force then are left out.  "
+    "[default: the day in the rulebook's `law` line, else today]",
 )
 
 
@@ -281,21 +282,25 @@ no_cache_option = click.option(
     "--no-cache",
     is_flag=True,
     callback=_without_cache,
-    help="Answer anew also what has not changed since the last time.",
+    help="Do not reuse earlier answers; compute everything again.",
 )
 
 verbose_option = click.option(
-    "-v", "--verbose", is_flag=True, help="Name each file and folder that is left alone, and why."
+    "-v", "--verbose", is_flag=True, help="Name each file and folder that is skipped, and why."
 )
 
 findings_options = combined(
     [
         output_options(
             endings_of(*FORMATS),
-            "what is found: text with the lines in question, a line each, JSON, GitHub "
+            "the findings: text that quotes the source lines, one line each, JSON, GitHub "
             "annotations, or SARIF 2.1.0",
         ),
-        choice_option("--fail-on", ["error", "warning"], "What makes the exit status 1."),
+        choice_option(
+            "--fail-on",
+            ["error", "warning"],
+            "The least severe finding that makes the exit status 1.",
+        ),
     ]
 )
 """How findings are written, and which of them make the exit status 1."""
