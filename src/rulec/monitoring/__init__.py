@@ -1,1 +1,1 @@
-"""Verdicts of compiled rulebooks on traces: whole, many together, or still running."""
+"""Judges traces by compiled rulebooks: single traces, many at once, or still running."""

@@ -1,4 +1,4 @@
-"""Assumptions about values and ends that traces leave open."""
+"""Assumptions about unknown values and about how traces end."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
 _NOT_TOLD = UNKNOWN_TYPES - {Interval}
 
 JITTER = 0.05
-"""By so much of a step another may differ that is taken for it: what a logger's clock does."""
+"""The largest relative difference between two time steps that counts as a logger's clock jitter."""
 
 
 @dataclass(frozen=True, slots=True)
 class Assumptions:
-    """How traces end, and values of what is unknown in them.
+    """How traces end, and which values to assume where traces leave them unknown.
 
-    ``values`` are of names that are about no object. With ``defaults`` all else that is unknown has
-    its default, a number within bounds is their middle, and the end of a trace is the end of what
-    happened, unless ``ends`` says otherwise. ``step_s`` is taken for the step (s) of traces whose
-    own differs from it by at most ``JITTER`` of it; others are refused.
+    ``values`` are for names that are not about objects. With ``defaults``, all other unknown values
+    take their default, a number within bounds takes the middle of these, and traces are complete
+    unless ``ends`` says otherwise. ``step_s`` replaces the step (s) of traces whose own step
+    differs from it by at most the fraction ``JITTER``; other traces are refused.
     """
 
     ends: Ending | None = None
@@ -47,7 +47,10 @@ class Assumptions:
         return given or bool(self.values) or self.defaults
 
     def applied(self, trace: Trace) -> Trace:
-        """The trace with these assumptions; what it tells stays. Raises RulecError R0724."""
+        """The trace with these assumptions; values that it contains are kept.
+
+        Raises RulecError R0724.
+        """
         told: object = trace.told
         if not isinstance(told, frozenset | tuple | None):
             return trace  # what is no trace is said by whoever judges
@@ -78,7 +81,7 @@ class Assumptions:
         return self.step_s
 
     def of(self, traces: Sequence[Trace | RulecError]) -> Sequence[Trace | RulecError]:
-        """Traces with these assumptions; without any the same sequence."""
+        """The traces with these assumptions; the same sequence if there are none."""
         if not self:
             return traces
         return [self._or_reason(item) for item in traces]
@@ -103,7 +106,7 @@ class Assumptions:
 def check_assumed(
     values: Mapping[str, Value], vocabulary: Vocabulary, given: str = "assumed"
 ) -> None:
-    """Refuse values that no state of no object has. Raises RulecError R0502 or R0503."""
+    """Refuse values that fit no declaration about the world. Raises RulecError R0502 or R0503."""
     for name in values:
         declaration = vocabulary.declarations.get(name)
         if declaration is not None and declaration.parameters:

@@ -1,4 +1,4 @@
-"""Axioms: states that contradict what the vocabulary knows of every state."""
+"""Checks of axioms: finds states that contradict what the vocabulary says of every state."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from rulec.trace import Value
 
 
 class ImpossibleStateError(RulecError):
-    """A state contradicts what the vocabulary knows of every state (R0508)."""
+    """A state contradicts what the vocabulary says of every state (R0508)."""
 
     def __init__(self, diagnostic: Diagnostic, number: int) -> None:
         super().__init__(diagnostic)
@@ -32,7 +32,7 @@ class ImpossibleStateError(RulecError):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _AxiomInstance:
-    """An axiom about certain objects."""
+    """An axiom for particular objects."""
 
     axiom: CompiledAxiom
     bound: Mapping[str, str]
@@ -41,12 +41,12 @@ class _AxiomInstance:
         return f"`{formula_text(rename_variables(self.axiom.formula, self.bound))}`"
 
     def truth(self, view: StateView) -> bool | Unknown:
-        """Truth value of the axiom in a state."""
+        """The truth value of the axiom in a state."""
         return holds(self.axiom.formula, self.bound, view)
 
 
 class StatePlace(NamedTuple):
-    """A state's number, what messages call it, and where it was read."""
+    """A state's number, its name in messages, and where it was read."""
 
     number: int
     name: str
@@ -60,7 +60,7 @@ def impossible_state(
     view: StateView,
     place: StatePlace,
 ) -> ImpossibleStateError:
-    """The error about a state whose letter, for objects of these types, no possible state has."""
+    """The error for a state whose letter, for objects of these types, no possible state has."""
     about_letters = [axiom for axiom in axioms if not counts(axiom.formula)]
     truths = {instance: instance.truth(view) for instance in _instances(about_letters, types, view)}
     broken = [instance for instance, truth in truths.items() if truth is False][:1]
@@ -78,7 +78,7 @@ def check_counting_axioms(
 ) -> None:
     """Check the counting axioms in every state, for the objects present.
 
-    Only those that speak of something that a rule reads: machines know nothing of such axioms.
+    Checks only axioms about something that a rule reads: the machines do not know these axioms.
     Raises RulecError R0508.
     """
     counting = [axiom for axiom in rulebook.axioms if counts(axiom.formula)]

@@ -13,8 +13,10 @@ from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.vocabulary_model import number_of_choices
 
 MANY = 1 << 13
-"""From so many choices of objects for three variables and more on, only those are made that may
-not be kept."""
+"""From this many choices of objects for three or more variables on, only some are built.
+
+These are the choices that may not be kept.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,9 +30,9 @@ class Binding:
 
 @dataclass(frozen=True, slots=True)
 class Cast:
-    """The objects of a trace with their types, and in which of its states they are ``present``.
+    """The objects of a trace with their types, and the states in which they are ``present``.
 
-    Those that have no stretch there are in all states. ``place`` is where they were read.
+    Objects without a stretch in ``present`` are in all states. ``place`` is where they were read.
     """
 
     objects: Mapping[str, str]
@@ -42,8 +44,8 @@ class Cast:
     def bindings(self, rule: CompiledRule) -> Iterator[Binding]:
         """All bindings of a rule's variables to distinct objects of their types.
 
-        A binding counts on the stretch in which all its objects are present; one whose objects are
-        never present together is left out. A rule without variables has one binding, the empty one.
+        A binding applies to the stretch in which all its objects are present; it is left out if its
+        objects are never present together. A rule without variables has one binding, the empty one.
 
         Raises RulecError R0718 if there are more than the limit `choices`.
         """
@@ -57,7 +59,7 @@ class Cast:
                 yield binding
 
     def has_many(self, types: Sequence[str]) -> bool:
-        """Whether the choices of objects for these types are too many to make them all."""
+        """Whether there are too many choices of objects of these types to build them all."""
         return len(types) > 2 and number_of_choices(types, self.objects, self.vocabulary) > MANY
 
 
@@ -67,12 +69,12 @@ def types_of(rule: CompiledRule) -> tuple[str, ...]:
 
 
 def in_usual_order(chosen: Iterable[tuple[str, ...]], cast: Cast) -> list[tuple[str, ...]]:
-    """Choices of objects in the order in which all are made."""
+    """Choices of objects in the order of ``Cast.bindings``."""
     return sorted(chosen, key=usual_order(cast))
 
 
 def usual_order(cast: Cast) -> Callable[[tuple[str, ...]], list[int]]:
-    """The key of that order."""
+    """The sort key of that order."""
     place_of = {item: place for place, item in enumerate(cast.objects)}
     return lambda items: [place_of[item] for item in items]
 
@@ -80,7 +82,7 @@ def usual_order(cast: Cast) -> Callable[[tuple[str, ...]], list[int]]:
 def binding_of(
     objects: Mapping[str, str], present: Mapping[str, tuple[int, int]], n_states: int
 ) -> Binding:
-    """The binding to these objects, which ends before it begins if they never meet."""
+    """The binding to these objects; it ends before it begins if they are never present together."""
     stretches = [present.get(item, (0, n_states - 1)) for item in objects.values()]
     first = max((start for start, _ in stretches), default=0)
     last = min((end for _, end in stretches), default=n_states - 1)

@@ -1,4 +1,4 @@
-"""Constants of a trace: what one state says of them holds in all."""
+"""Constants of a trace: a value in one state holds in all states."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ _Subject: TypeAlias = tuple[str, ...]
 """The objects that a value is about; none for the world."""
 
 _Stated: TypeAlias = dict[_Subject, tuple[Any, int]]
-"""What is known of a name by subject, and the first state that says so."""
+"""The known values of a name by subject, each with the first state that contains it."""
 
 
 def with_constants(
     trace: Trace, vocabulary: Vocabulary, where: Callable[[int], str] = "state {}".format
 ) -> Trace:
-    """The trace of valid states in which every state says what some state says of a constant.
+    """A trace of valid states, with every constant's value filled in in all states.
 
-    That is its value if one is known, else the interval that is left, else that it is unknown.
-    What no state mentions has its default. Raises RulecError R0503 for two values.
+    The value is the one that some state contains, else the interval that remains, else unknown. A
+    constant that no state mentions has its default. Raises RulecError R0503 for two values.
     """
     states = trace.states
     for name in vocabulary.constants:
@@ -96,7 +96,7 @@ def display(value: object) -> str:
 
 
 def _agreed(first: Any, second: Any) -> Any:
-    """What is known by two values together; None if they contradict each other."""
+    """What two values of a constant imply together; None if they contradict each other."""
     if first is UNKNOWN or second is UNKNOWN:
         return second if first is UNKNOWN else first
     bounds = [(x.low, x.high) if isinstance(x, Interval) else (x, x) for x in (first, second)]

@@ -1,4 +1,4 @@
-"""Traces of one shape as columns, from whatever they were read."""
+"""Traces of one shape as columns, whatever source they were read from."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ from rulec.vocabulary import Vocabulary
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AlikeTraces:
-    """Traces of one shape as columns, with the first one's objects.
+    """Traces of one shape as columns, with the object names of the first trace.
 
-    ``places`` are where they stand among what was read, in the order of the columns; ``names`` says
-    of such a number what the trace's objects are called.
+    ``places`` are the positions of the traces among all that were read, in the order of the
+    columns; ``names`` maps such a position to the object names of that trace.
     """
 
     places: Sequence[int]
@@ -41,9 +41,9 @@ class AlikeTraces:
 def alike_traces(
     items: Sequence[Trace | RulecError], wanted: Sequence[int], vocabulary: Vocabulary
 ) -> Iterator[AlikeTraces]:
-    """Those of the ``wanted`` items, which have been judged, that can be given as columns.
+    """The ``wanted`` items, already judged, as far as they can be given as columns.
 
-    There may be others with them that are alike.
+    The groups may contain further traces of the same shape.
     """
     makers: list[Callable[[], AlikeTraces]] = []
     if isinstance(items, Block) and items.outline is not None:
@@ -67,7 +67,7 @@ def alike_traces(
 
 
 def traces_of_group(group: BlockGroup, vocabulary: Vocabulary) -> AlikeTraces:
-    """The traces of one shape of a block. Raises UnencodableError."""
+    """The traces of one shape in a block. Raises UnencodableError."""
     columns = columnize_block(group, vocabulary)
     _check_nothing_derived(columns, vocabulary)
     traces = group.traces.tolist()
@@ -75,7 +75,7 @@ def traces_of_group(group: BlockGroup, vocabulary: Vocabulary) -> AlikeTraces:
 
 
 def traces_of_lines(lines: AlikeLines, vocabulary: Vocabulary) -> AlikeTraces:
-    """The traces of lines, ``places`` being those of the lines. Raises UnencodableError."""
+    """The traces of some lines; ``places`` are those of the lines. Raises UnencodableError."""
     order, columns = columnize_lines(lines, vocabulary)
     _check_nothing_derived(columns, vocabulary)
     headings = [lines.headings[place] for place in order.tolist()]
@@ -102,7 +102,7 @@ def _of_traces(placed: Sequence[tuple[int, Trace]], vocabulary: Vocabulary) -> A
 
 
 def _check_nothing_derived(columns: TraceColumns, vocabulary: Vocabulary) -> None:
-    """Raises UnencodableError if facts tell more than columns that were read from a file."""
+    """Raise UnencodableError if axioms imply more than the columns of a file contain."""
     for (name, _), values in columns.values.items():
         if name in vocabulary.constants and _changes(values, columns.layout):
             raise UnencodableError
@@ -112,7 +112,7 @@ def _check_nothing_derived(columns: TraceColumns, vocabulary: Vocabulary) -> Non
 
 
 def _changes(values: Array, layout: Layout) -> bool:
-    """Whether a column's value changes within a trace."""
+    """Whether the values of a column change within a trace."""
     first = values[: layout.n_traces]
     return any(
         bool(
@@ -126,7 +126,7 @@ def _changes(values: Array, layout: Layout) -> bool:
 
 
 def _lacks(columns: TraceColumns, cause: str, effect: str) -> bool:
-    """Whether in some state a signal is true and another one, which it implies, is not said."""
+    """Whether some state has a true signal but lacks another signal that it implies."""
     values = columns.values
     return any(
         bool(truths.any())

@@ -1,6 +1,7 @@
-"""Verification of many traces together, with verdicts equal to ``verify``'s.
+"""Verification of many traces together, with the same verdicts as ``verify``.
 
-Whatever is odd about a trace, from an unknown name to a missing value, is left to ``verify``.
+Any irregular trace, for instance one with an unknown name or a missing value, is left to
+``verify``.
 """
 
 from __future__ import annotations
@@ -47,21 +48,24 @@ FEWEST = 4
 """Fewer traces of one shape are judged one by one."""
 
 _LONG = 1 << 6
-"""Fewer of them are judged together, too, if they have so many states."""
+"""Fewer traces are judged together, too, if they have at least this many states."""
 
 _MADE_TOGETHER = 1 << 12
-"""Reasons why a trace is refused take a kilobyte or two, and a block may have as many as rows."""
+"""How many reasons for refusing traces are built at once.
+
+Each takes one or two kilobytes, and a block may need one per row.
+"""
 
 _SHARED = 4
-"""Where a state is met so many times, on average, what it means is worked out once."""
+"""If a state occurs this often on average, its meaning is computed once and shared."""
 
 Answer = Verdict | NotJudged
 
 _Placed = tuple[int, Trace]
-"""A trace, and its place among all."""
+"""A trace with its position among all traces."""
 
 _FEWEST_ROWS = 200
-"""Where a shape of a block has fewer rows, on average, its traces are read row by row."""
+"""If a shape in a block has fewer rows on average, its traces are read row by row."""
 
 Items = Sequence[Trace | RulecError]
 
@@ -71,8 +75,8 @@ def verify_many(
 ) -> Iterator[Answer]:
     """Answers for many traces in order: a verdict, or a ``NotJudged``.
 
-    Traces are read some thousands at a time, fewer if they are long, so there may be any number of
-    them. A ``RulecError`` in place of a trace, as from ``read_traces``, becomes a ``NotJudged``.
+    Traces are read some thousands at a time (fewer if they are long), so their number is unlimited.
+    A ``RulecError`` in place of a trace, as from ``read_traces``, becomes a ``NotJudged``.
     """
     chunk: list[Trace | RulecError] = []
     n_states = 0
@@ -93,7 +97,7 @@ def _n_states(item: Trace | RulecError) -> int:
 def verify_chunk(
     items: Sequence[Trace | RulecError], rulebook: CompiledRulebook, fewest: int = FEWEST
 ) -> list[Answer]:
-    """Answers for some traces, together from ``fewest`` of one shape on."""
+    """Answers for some traces; at least ``fewest`` of one shape are judged together."""
     answers: list[Answer | None] = [None] * len(items)
     shapes: dict[trace_groups.Shape, list[_Placed]] = {}
     for place, item in enumerate(items):
@@ -168,7 +172,7 @@ def _verify_columns(
     rules: CompiledRulebook,
     answers: list[Answer | None],
 ) -> bool:
-    """Judge traces in columns; False if something about one of them is odd."""
+    """Judge traces as columns; False if one of them is irregular."""
     if any(counts(axiom.formula) for axiom in rules.axioms):
         return False
     example = traces[0][1]
@@ -226,9 +230,10 @@ def _with_derived_values(trace: Trace, vocabulary: Vocabulary) -> Trace:
 
 
 def rules_for(trace: Trace, rulebook: CompiledRulebook) -> CompiledRulebook:
-    """Rulebook for traces of this shape.
+    """The rulebook fitted to traces of this shape.
 
-    Raises RulecError if it cannot judge, UnencodableError if it has too many bindings for columns.
+    Raises RulecError if it cannot judge them, UnencodableError if it has too many bindings for
+    columns.
     """
     rules = rulebook_for_trace(trace, rulebook)
     for rule in rules.rules:
@@ -273,9 +278,10 @@ def violations_in(
 def verify_items(
     items: Items, rulebook: CompiledRulebook
 ) -> Iterator[tuple[Items, Iterable[Answer]]]:
-    """Traces as they were read, perhaps a block, and their answers; of an odd block part by part.
+    """Yield traces as they were read, possibly as a block, with their answers.
 
-    What is judged by itself is so when it is asked for.
+    An irregular block is yielded in parts. Answers for traces that are judged one by one are
+    computed on demand.
     """
     if isinstance(items, LineBlock):
         yield items, _verify_lines(items, rulebook)
@@ -292,7 +298,7 @@ def verify_items(
 def _with_others(
     answers: Sequence[Answer | None], block: Block, rulebook: CompiledRulebook
 ) -> Iterator[Answer]:
-    """Answers in order; those that are missing are made as they are asked for."""
+    """Answers in order; missing ones are computed on demand."""
     for start in range(0, len(answers), _MADE_TOGETHER):
         some = answers[start : start + _MADE_TOGETHER]
         left = [start + number for number, answer in enumerate(some) if answer is None]
@@ -324,9 +330,9 @@ def _verify_alike(
     ids: Callable[[int], str],
     answers: list[Answer | None],
 ) -> None:
-    """Answer for those traces that were read from a file and whose values are all readable.
+    """Fill in the answers for traces read from a file whose values are all readable.
 
-    ``ids`` gives the id of the trace at a place. Raises UnencodableError, NotGivenError.
+    ``ids`` gives the id of the trace at a position. Raises UnencodableError, NotGivenError.
     """
     if any(counts(axiom.formula) for axiom in rules.axioms):
         raise UnencodableError
@@ -339,12 +345,15 @@ def _verify_alike(
 
 
 def rulebook_for(items: Items, place: int, rulebook: CompiledRulebook) -> CompiledRulebook:
-    """The rulebook that one of ``verify_items`` was judged by; of two roundings the lower."""
+    """The rulebook by which an item of ``verify_items`` was judged.
+
+    Of two roundings it is the lower one.
+    """
     return rulebook.rounded_to(step_of(items, place))[0]
 
 
 def step_of(items: Items, place: int) -> float:
-    """The step of a trace that has been judged (s)."""
+    """The time step (s) of a trace that has been judged."""
     if isinstance(items, Block):
         return items.step_s(place)
     trace = items[place]
@@ -355,7 +364,7 @@ def step_of(items: Items, place: int) -> float:
 def _verify_block(
     block: Block, rulebook: CompiledRulebook
 ) -> tuple[Block, Iterator[Answer]] | None:
-    """The block with its outline, and its answers; None if something is odd about it."""
+    """The block with its outline, and its answers; None if it is irregular."""
     answers: list[Answer | None] = [None] * len(block)
     try:
         presence = outlined(block)

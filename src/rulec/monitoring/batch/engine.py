@@ -1,4 +1,4 @@
-"""Batch engine: all rules and bindings on traces of one shape."""
+"""The batch engine: all rules and bindings on traces of one shape."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from rulec.trace.trace_columns import TraceCells, TraceColumns
 def verify_columns(columns: TraceColumns, rulebook: CompiledRulebook) -> list[VerdictColumns]:
     """Verdicts on traces as columns, in the order of rules and objects.
 
-    Raises NotGivenError where a rule needs what is neither given nor has a default.
+    Raises NotGivenError if a rule needs a value that is not given and has no default.
     """
     bound_rules = rule_bindings(columns, rulebook)
     reader = ColumnReader(columns, rulebook.vocabulary)
@@ -74,9 +74,9 @@ def _verdicts(
 def _letters_by_cell(
     traces: TraceCells, bound_rules: Sequence[RuleBinding], rulebook: CompiledRulebook
 ) -> list[list[int]]:
-    """For each binding the letter class of each cell; -1 where there is none to read.
+    """For each binding the letter class of each cell; -1 where there is nothing to read.
 
-    Where an object of the binding is not there its machine does not run; any letter will do.
+    Where an object of the binding is absent, its machine does not run, so any letter will do.
     """
     # States in which the same objects are there are read together.
     scenes: dict[tuple[tuple[str, str], ...], list[int]] = {}

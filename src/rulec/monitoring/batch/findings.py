@@ -1,6 +1,7 @@
-"""What many traces do not keep: columns, of which verdicts are made when somebody asks for them.
+"""The findings on many traces, in columns from which verdicts are built on demand.
 
-Of most traces nobody asks for more than how much they violate, which is sooner counted than told.
+Most callers only need to know how many violations there are, which is cheaper to count than to
+list.
 """
 
 from __future__ import annotations
@@ -27,25 +28,25 @@ from rulec.trace.trace_arrays import TraceArrays
 ViolationOrOpen: TypeAlias = Violation | OpenVerdict
 
 Place: TypeAlias = tuple[int, ...]
-"""The place of what is not kept: of its rule, and of its objects."""
+"""The place of a finding: of its rule and of its objects."""
 
 _PLACE = itemgetter(0)
 
 
 class JudgedTrace(NamedTuple):
-    """A trace of which it is known what it does not keep: its number among the ``findings``."""
+    """A trace whose findings are known, with its number among the ``findings``."""
 
     findings: Findings
     number: int
 
     def nameless(self) -> Verdict:
-        """The verdict on it, without what it is called and what is presumed of it."""
+        """The verdict on it, without its name and the values presumed of it."""
         violations, doubtful = self.findings.of(self.number)
         return Verdict("", violations, doubtful, self.findings.not_judged(self.number))
 
 
 class Reasons(NamedTuple):
-    """Why a rule is open for one of some choices of objects, as ``OpenVerdict`` is told it."""
+    """Why a rule is open for each of some choices of objects, as arguments of ``OpenVerdict``."""
 
     of: Callable[[int], OpenReasons]
     beyond: Callable[[int, Set[str]], frozenset[str]]
@@ -53,10 +54,10 @@ class Reasons(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class RuleFindings:
-    """The choices of objects for which a rule is not kept, and what it comes to for each.
+    """The choices of objects for which a rule is violated or open, and its outcome for each.
 
-    ``number`` is the rule's; ``begins`` are the states of the ``traces`` that it is judged from,
-    ``objects`` has an array for each of its variables, ``places`` are those that ``reasons`` go by.
+    ``number`` is the rule's; ``begins`` are the states of the ``traces`` from which it is judged,
+    ``objects`` has an array for each of its variables, and ``places`` index the ``reasons``.
     """
 
     number: int
@@ -70,7 +71,7 @@ class RuleFindings:
 
 
 class ChargedTraces(NamedTuple):
-    """The traces that do not keep a rule, one for each choice of objects, and which violate it."""
+    """Traces that do not keep a rule, one per choice of objects, and which of them violate it."""
 
     rule: str
     traces: NDArray[intp]
@@ -78,13 +79,13 @@ class ChargedTraces(NamedTuple):
 
 
 _Row: TypeAlias = tuple[RuleFindings, int, int, Place]
-"""One of a rule's findings, the state that it is judged from, and its objects."""
+"""One of a rule's findings, the state from which it is judged, and its objects."""
 
 
 class Findings:
-    """What so many traces, by number, do not keep of ``rules``; objects have these ``names``.
+    """The findings on numbered traces for ``rules``; ``names`` are those of the objects.
 
-    Of traces that are ``whole`` all is known.
+    Everything is known about the traces that are ``whole``.
     """
 
     def __init__(
@@ -106,17 +107,17 @@ class Findings:
         self._single[trace].append((place, finding))
 
     def forget_reasons(self) -> None:
-        """Forget why what is open is so, for which all that traces say is kept."""
+        """Discard the reasons for open verdicts, which keep all values of the traces alive."""
         self._of_rules = [replace(own, reasons=None) for own in self._of_rules]
         self.__dict__.pop("_by_trace", None)
 
     def binding(self, rule: CompiledRule, chosen: Place) -> dict[str, str]:
-        """The names of objects for a rule's variables."""
+        """The names of the objects for a rule's variables."""
         names = [self._names[item] for item in chosen]
         return dict(zip([variable.name for variable in rule.variables], names, strict=True))
 
     def charged(self) -> Iterator[ChargedTraces]:
-        """What is not kept, rule by rule."""
+        """The traces with findings, rule by rule."""
         for own in self._of_rules:
             are_violated = np.array([answer.best == VIOLATED for answer in own.answers], dtype=bool)
             yield self._known(own.rule.name, own.traces, are_violated)
@@ -128,14 +129,17 @@ class Findings:
     def _known(
         self, rule: str, traces: NDArray[intp], are_violated: NDArray[bool_]
     ) -> ChargedTraces:
-        """What is not kept of a rule, without what is open where all is known."""
+        """The traces with findings for a rule.
+
+        Open ones are left out where everything is known.
+        """
         if not self._whole:
             return ChargedTraces(rule, traces, are_violated)
         kept = are_violated | ~np.isin(traces, list(self._whole))
         return ChargedTraces(rule, traces[kept], are_violated[kept])
 
     def verdict(self, number: int, trace: TraceArrays) -> Verdict:
-        """The verdict on a trace, which has this number."""
+        """The verdict on a trace with this number."""
         violations, doubtful = self.of(number)
         if number in self._whole:
             return Verdict(trace.id, violations)
@@ -143,11 +147,11 @@ class Findings:
         return Verdict(trace.id, violations, doubtful, self._rules.not_judged, presumed)
 
     def not_judged(self, number: int) -> tuple[RuleNotJudged, ...]:
-        """The rules that a trace tells too little for."""
+        """The rules that cannot be judged because the trace lacks values."""
         return () if number in self._whole else self._rules.not_judged
 
     def of(self, number: int) -> tuple[tuple[Violation, ...], tuple[OpenVerdict, ...]]:
-        """What a trace violates, and what is open."""
+        """The violations of a trace, and its open verdicts."""
         made = [self._made(row) for row in self._by_trace.get(number, ())]
         made += self._single.get(number, ())
         findings = [result for _, result in sorted(made, key=_PLACE)]

@@ -1,4 +1,4 @@
-"""Joint codes: one number (cell) for everything that rules read."""
+"""Joint codes: one number (cell) for everything that rules read in a state."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.vocabulary_model import values_of
 
 MOST_CELLS = 1 << 16
-"""More combinations of what is read than these are not told apart by one number."""
+"""If there are more combinations of values, no single number is used for them."""
 
 _BYTE = 256
 
@@ -26,7 +26,7 @@ _Key = tuple[object, ...]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Digit:
-    """Joint read's numbers: a column, or a constant for all.
+    """The numbers of a joint read: a column, or one constant for all states.
 
     ``meanings`` are the digits of a machine's letter that these numbers stand for.
     """
@@ -61,7 +61,8 @@ def joint_cells_of(
 ) -> Iterator[JointCells]:
     """Cells from which all bindings can be verified. Raises NotGivenError.
 
-    Tasks about the same objects on the same stretch share one, unless they read too much.
+    Tasks about the same objects on the same stretch share one cell column, unless they read too
+    much.
     """
     together: dict[_Key, list[RuleBinding]] = {}
     for binding in bindings:

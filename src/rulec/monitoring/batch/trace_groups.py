@@ -1,4 +1,4 @@
-"""Groups of traces that are alike but for their objects' names, as cells of shared states."""
+"""Groups of traces that differ only in their objects' names, as cells of shared states."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from rulec.trace.trace_columns import TraceCells, layout_of, smallest_unsigned
 Shape: TypeAlias = tuple[object, ...]
 
 Names: TypeAlias = tuple[str, ...]
-"""The objects of a trace, in its order."""
+"""The objects of a trace, in their order."""
 
 _PLAIN = frozenset((bool, int, float, str))
 
 
 def shape_of(trace: Trace) -> Shape:
-    """Shape of a trace: step, object types in order, presence; no names."""
+    """The shape of a trace: step, object types in order, and presence, without names."""
     places = {name: place for place, name in enumerate(trace.objects)}
     stretches = [(places[name], stretch) for name, stretch in trace.present.items()]
     return trace.step_s, tuple(trace.objects.values()), tuple(sorted(stretches))

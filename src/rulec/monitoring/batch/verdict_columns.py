@@ -17,9 +17,10 @@ from rulec.value_display import short_repr
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RuleBinding:
-    """Rule bound to ``objects`` from step ``first`` to ``last`` (inclusive).
+    """A rule bound to ``objects`` from step ``first`` to ``last`` (inclusive).
 
-    ``last`` is None for each trace's own end. Bindings are compared by identity: they are keys.
+    ``last`` is None for each trace's own end. Bindings are compared by identity, since they are
+    keys.
     """
 
     rule: CompiledRule
@@ -35,10 +36,10 @@ class RuleBinding:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JointCells:
-    """Column of cells, and the letters of some bindings in them.
+    """A column of cells, and the letters of some bindings in them.
 
-    ``letters[k][cell]`` is the letter class that the k-th binding's machine reads there; below
-    0 if it reads none: a value is missing, or what is read cannot be the case.
+    ``letters[k][cell]`` is the letter class that the k-th binding's machine reads there; it is
+    negative if there is none, because a value is missing or the values are impossible.
     """
 
     layout: Layout
@@ -51,8 +52,8 @@ class JointCells:
 class VerdictColumns:
     """Verdicts for a binding; ``accepted`` follows the layout's order of traces.
 
-    ``unread`` are traces with a state, on the binding's stretch, that the machine reads no letter
-    of; their verdicts mean nothing.
+    ``unread`` are traces with a state, on the binding's stretch, for which the machine has no
+    letter; their verdicts are meaningless.
     """
 
     __repr__ = short_repr
@@ -70,9 +71,9 @@ class VerdictColumns:
         return np.flatnonzero(~self.accepted)
 
     def lost_at(self) -> NDArray[np.int64]:
-        """First state that loses the rule for each of ``violated``, or -1.
+        """The first state that loses the rule for each of ``violated``, or -1.
 
-        -1 if only the end of the trace, or of the objects' stretch, decides.
+        It is -1 if only the end of the trace, or of the objects' stretch, decides.
         """
         chosen, layout = self.violated, self._layout
         first, last = self.task.stretch
@@ -113,7 +114,7 @@ def verdict_columns(cells: JointCells) -> Iterator[VerdictColumns]:
 
 
 def _read(cells: JointCells, letters: Sequence[int]) -> tuple[NDArray[np.intp], tuple[int, ...]]:
-    """The unread traces, and the letters with 0 for cells without one, met only there."""
+    """The unread traces, and the letters, with 0 for cells without one, which occur only there."""
     if min(letters, default=0) >= 0:
         return np.empty(0, dtype=np.intp), tuple(letters)
     (first, last), layout = cells.bindings[0].stretch, cells.layout

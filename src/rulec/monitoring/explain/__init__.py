@@ -1,1 +1,1 @@
-"""Explanations of violations, and the nearest trace that keeps the rule."""
+"""Explanations of violations, and the nearest trace that satisfies the rule."""

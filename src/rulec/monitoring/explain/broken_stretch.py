@@ -1,4 +1,4 @@
-"""Over which states what always, or never, has to be is broken."""
+"""The states over which a condition that must hold always, or never, is broken."""
 
 from __future__ import annotations
 
@@ -20,9 +20,10 @@ def broken_stretch(
 ) -> tuple[int, int]:
     """The stretch around a state in which the body of an outermost always or never is broken.
 
-    ``decisive`` is the index of that state, ``truths`` are those of propositions. What never must
-    be and is done in phases, such as passing somebody, lasts from where it begins at the latest up
-    to there. The stretch ends where states, whose ``numbers`` these are, have been left out.
+    ``decisive`` is the index of that state, ``truths`` are those of propositions. A forbidden
+    sequence of phases, such as overtaking, lasts from the latest state in which it can have begun
+    to the decisive one. The stretch ends where states, whose ``numbers`` are given, have been left
+    out.
     """
     for part, wanted in _bodies(formula):
         if not wanted and _has_phases(part):
@@ -53,14 +54,14 @@ def broken_stretch(
 def is_broken_before(
     first: int, formula: ltl.Formula, values: Mapping[ltl.Formula, list[bool]]
 ) -> bool:
-    """Whether the body of an outermost always or never is broken in a state before one."""
+    """Whether the body of an outermost always or never is broken in a state before ``first``."""
     return any(
         wanted is not value for part, wanted in _bodies(formula) for value in values[part][:first]
     )
 
 
 def _bodies(formula: ltl.Formula) -> Iterator[tuple[ltl.Formula, bool]]:
-    """What has to be true, or false, in all states, and which of both."""
+    """The conditions that must be true, or false, in all states, each with which of both."""
     match formula:
         case ltl.Unary(ltl.UnaryOperator.ALWAYS, body, None):
             yield body, True

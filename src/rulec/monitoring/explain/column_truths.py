@@ -1,4 +1,4 @@
-"""Truth of a rule's atoms by state, from columns of a trace."""
+"""The truth of a rule's atoms by state, from the columns of a trace."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ from rulec.vocabulary.partial_values import Interval
 from rulec.vocabulary.vocabulary_model import default_value
 
 _HAIR = 1e-8
-"""Sums of floats closer to a limit than this share of what is summed are formed exactly."""
+"""Float sums closer to a limit than this share of their terms are computed exactly."""
 
 
 class _Column(NamedTuple):
-    """Values in the states of a stretch, and where they are unknown, or not said.
+    """Values in the states of a stretch, and where they are unknown or missing.
 
-    Of a number that has bounds they are the lower ones, and ``high`` are the others.
+    For numbers with bounds, the values are the lower bounds and ``high`` the upper ones.
     """
 
     values: NDArray[Any]
@@ -44,7 +44,7 @@ class _Column(NamedTuple):
 
     @property
     def open(self) -> Flags | None:
-        """Where they are unknown or not said."""
+        """Where the values are unknown or missing."""
         if self.unknown is None or self.unsaid is None:
             return self.unsaid if self.unknown is None else self.unknown
         return self.unknown | self.unsaid
@@ -52,10 +52,10 @@ class _Column(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ColumnTruths:
-    """Truths of propositions in the states of a ``binding``.
+    """The truth of propositions in the states of a ``binding``.
 
-    What is ``supposed`` stands for the unknown, and of names that are ``untold`` for what is not
-    said, too. Else that has its default or least value.
+    ``supposed`` values replace unknown ones and, for names that are ``untold``, missing ones, too.
+    Other missing values take their default or least value.
     """
 
     arrays: TraceArrays
@@ -92,7 +92,7 @@ class ColumnTruths:
         return truths
 
     def of_counted(self, count: ltl.Count) -> Iterator[tuple[slice, ColumnTruths]]:
-        """For each object that may count where it is among the states, and the truths there."""
+        """For each object that may count, its slice of the states and the truths there."""
         own, objects = self.binding, self.arrays.objects
         alias = alias_of(count.variable, count.body)
         candidates = objects if alias is None else (own.objects[alias],)
@@ -114,7 +114,7 @@ class ColumnTruths:
         return counts
 
     def _holds(self, formula: ltl.Formula) -> Flags:
-        """Where a formula of single states holds."""
+        """Where a non-temporal formula holds."""
         objects = self.binding.objects
         algebra: Algebra[Flags] = Algebra(
             proposition=self.of,
@@ -140,7 +140,7 @@ class ColumnTruths:
         return name in self.arrays.world or name in self.arrays.about
 
     def is_steady(self, name: str, arguments: Sequence[str]) -> bool:
-        """Whether all states say the same by a name."""
+        """Whether a name has the same value in all states."""
         cells = self._cells(name, arguments)
         if cells is None:
             return True
@@ -149,7 +149,7 @@ class ColumnTruths:
         return all(part is None or bool((part == part[0]).all()) for part in parts)
 
     def _cells(self, name: str, arguments: Sequence[str]) -> slice | None:
-        """Where the values of a name are, of what variables stand for."""
+        """The cells of a name's values for what the variables stand for."""
         first, last = self.binding.first, self.binding.last
         if name in self.arrays.world:
             return slice(first, last + 1)
@@ -176,7 +176,7 @@ class ColumnTruths:
         return _Column(values, unknown, unsaid, high)
 
     def _compared(self, comparison: ltl.Comparison) -> Flags:
-        """Decided by floats, but where rounding, which is far below a hair, could matter."""
+        """Decided by floats, except where rounding, which is far below ``_HAIR``, could matter."""
         relation, limit = comparison.relation, comparison.limit
         total = np.zeros(self.n_states)
         size = np.full(self.n_states, 1 + abs(float(limit)))
@@ -208,7 +208,7 @@ class _Counts:
     counts: NDArray[np.intp]
 
     def about(self) -> NDArray[np.float64]:
-        """As floats."""
+        """The numbers as floats."""
         return self.counts.astype(float)
 
     def exactly(self, state: int) -> Fraction:
@@ -228,7 +228,7 @@ class _Numbers:
         self._n_states = truths.n_states
 
     def about(self) -> NDArray[np.float64]:
-        """As floats, to a billionth."""
+        """The numbers as floats, with a relative error of a billionth at most."""
         if self._column is None:
             return np.full(self._n_states, float(self._default))
         values, high, is_open = self._column.values, self._column.high, self._column.open
@@ -238,7 +238,7 @@ class _Numbers:
         return own if is_open is None else np.where(is_open, float(self._default), own)
 
     def exactly(self, state: int) -> Fraction:
-        """The number that its decimal says."""
+        """The exact number that the decimal stands for."""
         if self._column is None:
             return exact(self._default)
         values, high, is_open = self._column.values, self._column.high, self._column.open

@@ -1,4 +1,4 @@
-"""Explanations of violations by traces in arrays: what is shown alone is made into states."""
+"""Explanations of violations by traces in arrays: only the states shown are built."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ def explain_arrays(
     rulebook: CompiledRulebook,
     decided_by: Mapping[str, Deciding],
 ) -> Explanation | None:
-    """What ``explain`` says of a cut trace, without a repair.
+    """The explanation by ``explain`` of a violation in a cut trace, without a repair.
 
-    None where it takes all states: of very long traces, of values that follow from others or from
-    other states.
+    None if it needs all states: for very long traces, and for values that follow from others or
+    from other states.
     """
     rule = next(rule for rule in rulebook.rules if rule.name == violation.rule)
     spans = zip(arrays.objects, arrays.spans.tolist(), strict=True)
@@ -69,7 +69,7 @@ def explain_arrays(
 
 
 def _is_plain(formula: ltl.Formula, truths: ColumnTruths) -> bool:
-    """Whether each state tells by itself what a formula reads."""
+    """Whether the values that a formula reads in a state depend on that state alone."""
     vocabulary = truths.vocabulary
     effects: set[str] = set()
     ahead = [name for name in vocabulary.implied if truths.says(name)]
@@ -100,8 +100,8 @@ def _read_by(
 class _Vocabularies:
     """A rulebook's words for one rule: as declared, as completed, and as they are given.
 
-    What is ``untold`` is unknown as ``given`` says. As ``completed`` says it has what is
-    ``supposed`` of the unknown.
+    In ``given``, names that are ``untold`` are unknown. In ``completed``, they have the values that
+    are ``supposed`` for unknown ones.
     """
 
     declared: Vocabulary
@@ -114,7 +114,7 @@ class _Vocabularies:
     def of(
         rulebook: CompiledRulebook, rule: CompiledRule, told: frozenset[str] | None
     ) -> _Vocabularies:
-        """Those of traces from sources that tell the same."""
+        """The vocabularies for traces from sources that provide the same names."""
         key = _Vocabularies, rule.name, told
         vocabularies: _Vocabularies | None = rulebook.prepared.get(key)
         if vocabularies is None:
@@ -134,18 +134,18 @@ class _Vocabularies:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _ObservedColumns(ObservedStates):
-    """States of which truths are told by columns."""
+    """States whose truths are computed from columns."""
 
     find_truths: Callable[[ltl.Proposition], Flags]
 
     def truths(self, proposition: ltl.Proposition) -> list[bool]:
-        """Truth of a proposition in each state."""
+        """The truth of a proposition in each state."""
         truths: list[bool] = self.find_truths(proposition).tolist()
         return truths
 
 
 class _Views(Sequence[StateView]):
-    """Views of the states of a binding, those that have been looked at being made together."""
+    """Views of the states of a binding; those looked at together are built together."""
 
     def __init__(
         self, arrays: TraceArrays, binding: Binding, formula: ltl.Formula, words: _Vocabularies
@@ -158,7 +158,7 @@ class _Views(Sequence[StateView]):
         self._made: dict[int, tuple[StateView, StateView]] = {}
 
     def look_at(self, indices: Set[int]) -> None:
-        """Make the views of some states."""
+        """Build the views of some states."""
         chosen, words = sorted(indices), self._vocabularies
         part = self._arrays.at([self._binding.first + index for index in chosen])
         given = with_implied_values(part.trace(), words.declared)
@@ -171,7 +171,7 @@ class _Views(Sequence[StateView]):
             )
 
     def given(self, index: int) -> StateView:
-        """A state as it is given, whose values may be unknown."""
+        """A state as it is given, possibly with unknown values."""
         return self._view_pair(index)[1]
 
     def _view_pair(self, index: int) -> tuple[StateView, StateView]:

@@ -1,4 +1,4 @@
-"""What an explanation has by state: values that a rule reads, and its formula's parts."""
+"""The rows of an explanation by state: values that a rule reads, and parts of its formula."""
 
 from __future__ import annotations
 
@@ -18,14 +18,13 @@ from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """Read of a rule, such as ``position(v1)``, with its values by state.
+    """A read of a rule, such as ``position(v1)``, with its values by state.
 
-    A value that is unknown is None, a number may be an interval. ``unit`` is a quantity's.
-    ``objects`` are, for a count, those that counted in each state. ``margins`` are, for a signal
-    that was decided by a number, by how much, as far as is known, ``measured`` is the one where the
-    signal decides last.
-    ``changed``: does the rule tell the value in the decisive state from the one before?
-    ``decides``: does a part that decides read it?
+    An unknown value is None, a number may be an interval. ``unit`` is that of a quantity. For a
+    count, ``objects`` are those that counted in each state. For a signal that was decided by a
+    number, ``margins`` are its known margins by state, and ``measured`` is the one where the signal
+    last decides. ``changed``: the rule distinguishes the value in the decisive state from the one
+    before. ``decides``: a part that decides reads it.
     """
 
     text: str
@@ -40,11 +39,11 @@ class Observation:
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """Subformula at a ``depth`` of nesting, with its truth by state.
+    """A subformula at a ``depth`` of nesting, with its truth by state.
 
-    ``changed``: is its value in the decisive state another than in the one before? ``decides``: is
-    it one of those that, at some instant, make the formula come out as it does? ``margins`` are a
-    comparison's by state, ``measured`` is that of the last state up to the decisive one, shown or
+    ``changed``: its value in the decisive state differs from the one before. ``decides``: at some
+    instant it is one of the parts that determine the outcome of the formula. ``margins`` are a
+    comparison's by state; ``measured`` is that of the last state up to the decisive one, shown or
     not, in which it decides.
     """
 

@@ -1,4 +1,4 @@
-"""Columns of values from blocks of tables without oddities."""
+"""Columns of values from blocks of regular tables."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from rulec.trace.trace_columns import Array, Key, Layout, TraceColumns, layout_o
 from rulec.vocabulary import Declaration, Enumeration, Signal, Vocabulary
 
 _MOST_EMPTY = 64
-"""So many times as many cells as there are rows may be left empty."""
+"""How many cells per row may be empty."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BlockGroup:
-    """Traces of one shape in a block, with one trace's object names.
+    """Traces of one shape in a block, with the object names of one trace.
 
-    ``traces`` are their places in the block, in the order of the ``layout``; ``rows`` those of the
-    block that are theirs, ``state`` where these rows' states stand in a column.
+    ``traces`` are their positions in the block, in the order of the ``layout``; ``rows`` are their
+    rows in the block, and ``state`` is the position of each of these rows' states in a column.
     """
 
     block: Block
@@ -38,7 +38,7 @@ class BlockGroup:
 
 
 def groups_of(block: Block, presence: BlockPresence) -> list[BlockGroup]:
-    """The traces of a block of which all is known, by their shape."""
+    """The traces of a block of which everything is known, grouped by shape."""
     shapes: dict[tuple[object, ...], list[int]] = {}
     for trace in sorted(set(range(len(block))) - block.partial):
         shapes.setdefault(presence.shape_of(trace), []).append(trace)
@@ -95,11 +95,11 @@ def columnize_block(group: BlockGroup, vocabulary: Vocabulary) -> TraceColumns:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Placement:
-    """Where values that are ``given`` in some rows stand in columns for objects.
+    """Positions in the columns for objects of values that are ``given`` in some rows.
 
-    ``choices`` are the objects that there are columns for, as one number each, their places being
-    its digits. ``rows`` are those of the block, ``cells`` where they stand in all columns together,
-    which ``are_given`` there (columns x states).
+    ``choices`` are the choices of objects that have columns, each encoded as one number whose
+    digits are the objects' places. ``rows`` are those of the block, ``cells`` their positions in
+    all columns together, and ``are_given`` the mask of these positions (columns x states).
     """
 
     given: NDArray[np.bool_]
@@ -110,7 +110,7 @@ class _Placement:
     are_given: NDArray[np.bool_]
 
     def is_of(self, given: NDArray[np.bool_], n_parameters: int) -> bool:
-        """Whether it is that of what is given in these rows."""
+        """Whether this placement is that of the values given in these rows."""
         return self.n_parameters == n_parameters and np.array_equal(self.given, given)
 
 
@@ -169,7 +169,7 @@ def _by_objects(
 
 
 def encode_column(column: Column, rows: NDArray[np.int64], declaration: Declaration) -> Array:
-    """The values in some rows, which are given. Raises UnencodableError."""
+    """The given values in some rows, encoded. Raises UnencodableError."""
     if isinstance(column, Coded):
         codes = column.codes[rows]
         used = np.bincount(codes, minlength=len(column.values)) > 0

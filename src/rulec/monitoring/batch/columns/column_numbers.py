@@ -1,4 +1,4 @@
-"""Numbers that rules read, as digits: how many thresholds they pass, in many states at once."""
+"""Numbers that rules read as digits: how many thresholds they pass, for many states at once."""
 
 from __future__ import annotations
 
@@ -23,19 +23,22 @@ from rulec.vocabulary.partial_values import UNKNOWN, Interval, PartialValue
 Mask = NDArray[np.bool_] | np.bool_
 
 Summand = tuple[Fraction, Array | float]
-"""A coefficient, and a column of numbers (floats or whole numbers) or one number for all states."""
+"""A coefficient with a column of numbers (floats or integers), or with one number for all states.
+
+
+"""
 
 _UNIT = 2.0**-52
-"""Twice the relative error of one rounding."""
+"""Twice the relative error of a single rounding."""
 
 _TINY = 1e-300
-"""Far more than what is lost where results are too small to be normal floats."""
+"""An error bound that covers results too small to be normal floats."""
 
 
 def digits_of(
     ready: ThresholdScale, summands: Sequence[Summand], n_states: int, ignored: Mask = np.False_
 ) -> Array:
-    """For each state how many thresholds a number passes; any if it is ignored."""
+    """The number of thresholds passed in each state; arbitrary where the state is ignored."""
     match ready.read.terms:
         case ((_, ltl.Count()),):
             ((_, counted),) = summands
@@ -52,11 +55,11 @@ def digits_of(
 
 
 Bounds = tuple[Fraction, Array | float, Array | float, Mask | None]
-"""A coefficient, the least and the most that its term may be, and where that is unknown, if so."""
+"""A coefficient, its term's least and greatest value, and the mask where these are unknown."""
 
 
 def numbers_between(ready: ThresholdScale, bounds: Iterable[Bounds], n_states: int) -> Numbers:
-    """The numbers, as of ``meanings_of``, of a sum of whose terms bounds are known."""
+    """The numbers, as in ``meanings_of``, of a sum whose terms have known bounds."""
     lows: list[Summand] = []
     highs: list[Summand] = []
     unknown: Mask | None = None
@@ -88,7 +91,10 @@ def _digits_of_sum(
     n_states: int,
     ignored: Mask,
 ) -> Array:
-    """For each state how many of the read's thresholds the sum passes; any if it is ignored."""
+    """For each state the number of the read's thresholds that the sum passes.
+
+    The number is arbitrary where the state is ignored.
+    """
     total = np.zeros(n_states)
     size = np.zeros(n_states)
     with np.errstate(all="ignore"):
@@ -116,7 +122,7 @@ def _digits_of_sum(
 
 
 def _digits_of_count(read: NumberRead, counted: Array) -> Array:
-    """For each state how many of the read's thresholds the number of objects passes."""
+    """The number of the read's thresholds that the number of objects passes in each state."""
     digits = [read.digit(Fraction(n)) for n in range(int(counted.max(initial=0)) + 1)]
     return np.array(digits, dtype=smallest_unsigned(read.size)).take(counted)
 
@@ -134,7 +140,7 @@ def _exactly(summands: Sequence[Summand], numbers: Sequence[float]) -> Fraction:
 
 
 def _nearest(number: Fraction) -> float:
-    """Float nearest to a number; infinity, which decides nothing, on overflow."""
+    """The float nearest to a number; infinity, which decides nothing, on overflow."""
     try:
         return float(number)
     except OverflowError:
@@ -142,15 +148,15 @@ def _nearest(number: Fraction) -> float:
 
 
 _SIDES = {"<": (0,), "<=": (0, 1), "=": (1,), "!=": (0, 2), ">=": (1, 2), ">": (2,)}
-"""The sides of a limit on which comparisons hold: 0 below it, 1 at it, 2 above it."""
+"""The sides of the limit on which a comparison holds: 0 below it, 1 at it, 2 above it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ComparisonSides:
-    """A comparison with its limit as thresholds, and what each pair of sides of it comes to.
+    """A comparison, with its limit as thresholds and its outcome for each pair of sides.
 
-    ``every`` and ``some`` (3 x 3) say for the lowest and the highest side that a number may be on
-    whether the comparison holds on all sides between them, and on some.
+    ``every`` and ``some`` (3 x 3, lowest by highest side that the number may be on) say whether the
+    comparison holds on all sides between the two, and on some.
     """
 
     scale: ThresholdScale
@@ -162,7 +168,7 @@ class ComparisonSides:
 def comparison_sides(
     terms: tuple[tuple[Fraction, ltl.Term], ...], relation: ltl.Relation, limit: Fraction
 ) -> ComparisonSides:
-    """The sides of a comparison of these terms with a limit."""
+    """The sides for the comparison of these terms with a limit."""
     thresholds = tuple(Threshold(limit, inclusive) for inclusive in (True, False))
     holds = np.isin(np.arange(3), _SIDES[relation])
     pairs = [[holds[low : high + 1] for high in range(3)] for low in range(3)]
@@ -174,7 +180,7 @@ def comparison_sides(
 
 
 def alike_places(columns: Iterable[NDArray[Any]], n_places: int) -> NDArray[np.intp]:
-    """Numbers from 0 for places, equal for those where each column has the same."""
+    """Numbers from 0 for positions; two are equal where all columns have the same values there."""
     group_of = np.zeros(n_places, dtype=np.intp)
     for column in columns:
         codes = places_among(column)
@@ -188,7 +194,7 @@ def partial_values(
     unknown: NDArray[np.bool_] | None,
     declaration: Declaration,
 ) -> list[PartialValue | None]:
-    """What states say by values, or places of values, the most that numbers may be, and flags."""
+    """The values of states, given as columns of values or places, of upper bounds, and of flags."""
     cells: list[Any] = values.tolist()
     if isinstance(declaration, Enumeration):
         cells = [declaration.values[place] for place in cells]

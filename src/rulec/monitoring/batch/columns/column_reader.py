@@ -1,6 +1,6 @@
 """Reader of columns: values, numbers and counts as digits of letters.
 
-Truth is that of Kleene's strong three-valued logic, as ``StateView`` has it for one state.
+Truth values follow Kleene's strong three-valued logic, as in ``StateView`` for a single state.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from rulec.vocabulary import Enumeration, Vocabulary
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Truth:
-    """Truth known to be true, and known to be false, as masks."""
+    """Two masks: where something is known to be true, and where it is known to be false."""
 
     true: Mask
     false: Mask
@@ -32,7 +32,7 @@ UNKNOWN = Truth(np.False_, np.False_)
 
 
 def known(values: Mask) -> Truth:
-    """Truth that is known in every state."""
+    """A truth value that is known in every state."""
     return Truth(values, ~values)
 
 
@@ -51,11 +51,11 @@ KLEENE_COLUMNS: Algebra[Truth] = Algebra(
     disjunction=lambda left, right: Truth(left.true | right.true, left.false & right.false),
     equivalence=_equivalence,
 )
-"""The operators; what a proposition is depends on the columns."""
+"""The operators; the values of propositions depend on the columns."""
 
 
 class NotGivenError(Exception):
-    """A rule needs a value that has neither column nor default."""
+    """A rule needs a value that has neither a column nor a default."""
 
     def __init__(self, name: str, objects: tuple[str, ...]) -> None:
         super().__init__(name)
@@ -64,7 +64,7 @@ class NotGivenError(Exception):
 
 
 class ColumnReader:
-    """Caching reader of columns for the rules of a vocabulary."""
+    """A caching reader of columns for the rules of a vocabulary."""
 
     def __init__(self, columns: TraceColumns, vocabulary: Vocabulary) -> None:
         self.columns = columns
@@ -72,9 +72,9 @@ class ColumnReader:
         self._known: dict[tuple[object, ...], Array] = {}
 
     def values(self, name: str, items: tuple[str, ...]) -> Array | bool | float | None:
-        """Column of a name, or its default; None if there is neither.
+        """The column of a name, or its default; None if it has neither.
 
-        The default of an enumeration is its place among the declared values.
+        The default of an enumeration is given as its place among the declared values.
         """
         column = self.columns.values.get((name, items))
         if column is not None:
@@ -87,14 +87,14 @@ class ColumnReader:
         return default
 
     def given(self, name: str, items: tuple[str, ...]) -> Array | bool | float:
-        """Column of a name, or its default. Raises NotGivenError."""
+        """The column of a name, or its default. Raises NotGivenError."""
         values = self.values(name, items)
         if values is None:
             raise NotGivenError(name, items)
         return values
 
     def digits(self, read: NumberRead, bound: ObjectBinding) -> Array:
-        """Number of thresholds passed in each state. Raises NotGivenError."""
+        """The number of thresholds passed in each state. Raises NotGivenError."""
         return self._digits(scale(read), bound)
 
     def _digits(self, ready: ThresholdScale, bound: ObjectBinding) -> Array:
@@ -106,13 +106,13 @@ class ColumnReader:
         return self._known[key]
 
     def _summand(self, term: ltl.Term, bound: ObjectBinding) -> Array | float:
-        """Value of a sum's term. Raises NotGivenError."""
+        """The value of a term of a sum. Raises NotGivenError."""
         if isinstance(term, ltl.Count):
             return self._counted(term, bound)
         return self.given(term.name, tuple([bound[variable] for variable in term.arguments]))
 
     def _counted(self, count: ltl.Count, bound: ObjectBinding) -> Array:
-        """Value of a count in each state. Raises NotGivenError if not known."""
+        """The value of a count in each state. Raises NotGivenError if it is not known."""
         total, undecided = self.count(count, bound)
         for inner, where in undecided:
             if np.any(where):
@@ -122,7 +122,7 @@ class ColumnReader:
     def count(
         self, count: ltl.Count, bound: ObjectBinding
     ) -> tuple[Array, list[tuple[ObjectBinding, Mask]]]:
-        """How many objects count in each state, and where it is not known whether one does."""
+        """How many objects surely count in each state, and where it is unknown if one does."""
         total: Array = np.zeros(self.columns.layout.n_states, dtype=np.int64)
         undecided: list[tuple[ObjectBinding, Mask]] = []
         for name, kind in self.columns.objects.items():
@@ -152,7 +152,7 @@ class ColumnReader:
         return there
 
     def _truth(self, formula: ltl.Formula, bound: ObjectBinding) -> Truth:
-        """Three-valued truth of a non-temporal formula in each state."""
+        """The three-valued truth of a non-temporal formula in each state."""
 
         def proposition(part: ltl.Proposition) -> Truth:
             if isinstance(part, ltl.Comparison):
@@ -172,12 +172,12 @@ class ColumnReader:
             return UNKNOWN
 
     def compared(self, comparison: ltl.Comparison, bound: ObjectBinding) -> Mask:
-        """Truth of a comparison in each state. Raises NotGivenError."""
+        """The truth of a comparison in each state. Raises NotGivenError."""
         sides = comparison_sides(comparison.terms, comparison.relation, comparison.limit)
         return sides.every.diagonal().take(self._digits(sides.scale, bound))
 
     def atom(self, name: str, items: tuple[str, ...], expected: str | None) -> Truth:
-        """Three-valued truth of an atom in each state."""
+        """The three-valued truth of an atom in each state."""
         values = self.values(name, items)
         if values is None:
             return UNKNOWN

@@ -1,4 +1,4 @@
-"""Columns made of states, unless something about them is unusual."""
+"""Columns built from states, unless a state is irregular."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _EMPTY: Mapping[str, Any] = {}
 
 
 class UnencodableError(Exception):
-    """State with an invalid, missing or unusual value."""
+    """A state has an invalid, missing or unusual value."""
 
 
 def columnize(
@@ -34,10 +34,10 @@ def columnize(
 ) -> TraceColumns:
     """Turn traces that are given as cells into columns.
 
-    ``names`` has for each state what the objects are called there, unless they have their names.
+    ``names`` gives for each state the names of the objects in it, if they differ from their own.
 
-    Raises UnencodableError if ``check_state`` would refuse a state, or a value is given in some
-    states only and has no default; sometimes, too, if a value is of an unusual type.
+    Raises UnencodableError if ``check_state`` would refuse a state, or if a value without default
+    is given in some states only; in some cases also for a value of an unusual type.
     """
     if not set(map(type, traces.states)) <= {dict}:
         raise UnencodableError
@@ -76,7 +76,7 @@ class _Columnizer:
         parameters: Sequence[str],
         items: tuple[str, ...],
     ) -> None:
-        """Add the columns of a name for some objects and further ones."""
+        """Add the columns of a name, for some objects and for further ones."""
         if not parameters:
             self._add_column(values, declaration, items)
             return
@@ -105,9 +105,9 @@ class _Columnizer:
     def _if_of_the_same(
         self, maps: Sequence[Mapping[str, Any]]
     ) -> Sequence[tuple[str, Sequence[Any]]]:
-        """Values by object, if all states mention the same; KeyError otherwise.
+        """The values by object, if all states mention the same objects; else raises KeyError.
 
-        ValueError if the first state mentions something that is no object.
+        Raises ValueError if the first state mentions something that is not an object.
         """
         if not self._names:
             return [(item, list(map(itemgetter(item), maps))) for item in maps[0]]
@@ -121,7 +121,7 @@ class _Columnizer:
         ]
 
     def _of_each(self, value: Any, place: int, kind: str) -> Any:
-        """What is unknown of everybody is so of each one."""
+        """One object's value of a value given for all: unknown for all is unknown for each."""
         if value is not UNKNOWN:
             return value
         objects = self._traces.objects
@@ -175,7 +175,7 @@ def _under(about: Mapping[str, Any], names: Mapping[str, str]) -> Mapping[str, A
 
 
 def column_dtype(declaration: Declaration) -> np.dtype[Any]:
-    """The numbers that the column of a name holds: see ``TraceColumns``."""
+    """The data type of a name's column: see ``TraceColumns``."""
     if isinstance(declaration, Enumeration):
         return smallest_unsigned(len(declaration.values))
     return np.dtype(bool if isinstance(declaration, Signal) else np.float64)
@@ -184,7 +184,7 @@ def column_dtype(declaration: Declaration) -> np.dtype[Any]:
 def _with_unknown(
     values: Sequence[Any], kinds: Set[type], declaration: Declaration
 ) -> tuple[Array, NDArray[np.bool_]]:
-    """Values encoded, and where they are unknown. Raises UnencodableError."""
+    """Encoded values, and the mask of unknown ones. Raises UnencodableError."""
     if isinstance(declaration, Quantity):
         unknown = np.array([value is UNKNOWN for value in values])
         known = [0.0 if value is UNKNOWN else value for value in values]

@@ -1,4 +1,4 @@
-"""Columns of values from lines of JSON that are written alike."""
+"""Columns of values from JSON lines that share one layout."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rulec.vocabulary import Vocabulary
 def columnize_lines(
     lines: AlikeLines, vocabulary: Vocabulary
 ) -> tuple[NDArray[np.int64], TraceColumns]:
-    """The traces as columns, with the first one's objects, and which trace stands where.
+    """The traces as columns, with the first one's objects, and which trace is at each position.
 
     Raises UnencodableError.
     """

@@ -1,4 +1,4 @@
-"""Products of machines, with joint letters and all their verdicts."""
+"""Products of machines, with joint letters and the verdicts of all machines."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from rulec.automata.mealy_monitor import MealyMonitor
 from rulec.automata.tables import minimise
 
 MOST_ENTRIES = 256
-"""The states times the letters of a joint machine: as many as a byte can name."""
+"""The most states times letters of a joint machine: what one byte can number."""
 
 MOST_VERDICTS = 8
-"""Machines joined into one: as many as a byte has bits."""
+"""The most machines in one joint machine: the bits of a byte."""
 
 
 @dataclass(frozen=True, slots=True)
 class JointMachine:
-    """Machines that run together.
+    """Machines that run together as one.
 
-    ``members`` are the machines' places among those that were given. ``letters[cell]`` is the
-    letter of a cell, ``successors[state][letter]`` the next state, ``verdicts[state][letter]`` a
-    whole number: its bit k says whether the k-th member accepts a word that ends with this letter
-    read in this state. Runs start in state 0.
+    ``members`` are the places of the machines among those given. ``letters[cell]`` is the letter of
+    a cell, ``successors[state][letter]`` the next state, and ``verdicts[state][letter]`` an integer
+    whose bit k says whether the k-th member accepts a word that ends with this letter, read in this
+    state. Runs start in state 0.
     """
 
     members: tuple[int, ...]
@@ -44,8 +44,8 @@ LetteredMachine = tuple[MealyMonitor, tuple[int, ...]]
 def join_machines(machines: Sequence[LetteredMachine]) -> Iterator[JointMachine]:
     """Join neighbouring machines into products, in their order.
 
-    Neighbours are joined as long as what comes out has no more than ``MOST_ENTRIES``; a machine
-    that is larger by itself stays alone.
+    Neighbours are joined while the product has at most ``MOST_ENTRIES``; a machine that is larger
+    by itself stays alone.
     """
     for start in range(0, len(machines), MOST_VERDICTS):
         members = tuple(range(start, min(start + MOST_VERDICTS, len(machines))))
@@ -81,9 +81,9 @@ def _joined(members: tuple[int, ...], machines: Sequence[LetteredMachine]) -> Jo
 
 @lru_cache(maxsize=256)
 def _join(members: tuple[int, ...], machines: tuple[LetteredMachine, ...]) -> JointMachine | None:
-    """Minimal product of machines; None if it gets too large.
+    """The minimal product of machines; None if it gets too large.
 
-    Cached: many traces come in chunks, each of which needs the same product.
+    Cached, because traces come in many chunks that need the same product.
     """
     columns = list(zip(*(letters for _, letters in machines), strict=True))
     distinct = list(dict.fromkeys(columns))

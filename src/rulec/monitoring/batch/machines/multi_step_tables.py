@@ -1,7 +1,7 @@
-"""Run of a machine over many traces, several steps per look-up.
+"""Runs a machine over many traces, several steps per table look-up.
 
-What a trace reads in some steps is one number: the letters are its digits. A table says, for every
-state and every such number, where that leads.
+The letters of several steps are the digits of one number. A table gives, for every state and every
+such number, the state that follows.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ Rows = tuple[tuple[int, ...], ...]
 """A number for each letter, for each state."""
 
 _MOST_ENTRIES = 1 << 16
-"""As many as two bytes can name."""
+"""The most entries of a table: what two bytes can number."""
 
 _LONGEST = 16
-"""Steps in one look-up, if there is but one letter."""
+"""The most steps in one look-up, if there is only one letter."""
 
 _WORTH = 4
-"""So many look-ups pay for one entry of a table."""
+"""How many look-ups make up for computing one entry of a table."""
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """Step of ``n_traces`` traces, ``n_continuing`` of them with a next one."""
+    """A step of ``n_traces`` traces, ``n_continuing`` of which have a next step."""
 
     n_traces: int
     n_continuing: int
@@ -39,7 +39,7 @@ class Step:
 
 
 def steps_of(layout: Layout, first: int, last: int | None) -> list[Step]:
-    """Steps from first to last (inclusive), or to each trace's end."""
+    """The steps from first to last (inclusive), or to each trace's end."""
     starts = layout.starts.tolist()
     steps = range(first, layout.n_steps if last is None else last + 1)
     # No trace goes on after the last of these steps.
@@ -51,7 +51,7 @@ def steps_of(layout: Layout, first: int, last: int | None) -> list[Step]:
 
 
 def is_cheaper(n_states: int, n_letters: int, n_traces: int) -> bool:
-    """Tell whether a look-up of two steps is cheaper than two look-ups."""
+    """Whether one look-up of two steps is cheaper than two look-ups."""
     return n_states * n_letters**2 <= _most_entries(n_traces)
 
 
@@ -94,9 +94,9 @@ def run_multi_step(
 
 @lru_cache(maxsize=64)
 def _next_states(successors: Rows, length: int, begins: int, next_length: int) -> Array:
-    """Table from a start state and ``length`` letters to the next state.
+    """The table from a start state and ``length`` letters to the next state.
 
-    A state is said as the first entry that it has in the next leap's table.
+    A state is given as its first entry in the table of the next leap.
     """
     table = np.array(successors, dtype=np.uint16)
     scale = np.uint16(len(successors[0]) ** next_length)
@@ -110,7 +110,7 @@ def _verdicts(successors: Rows, verdicts: Rows, length: int, begins: int) -> Arr
 
 
 def _after(last: Array, successors: Rows, length: int, begins: int) -> Array:
-    """Entries of ``last`` for all words of ``length`` letters."""
+    """The entries of ``last`` for all words of ``length`` letters."""
     if length == 1:
         return last[:begins].ravel()
     onward = np.array(successors, dtype=np.uint16)
@@ -123,7 +123,7 @@ def _after(last: Array, successors: Rows, length: int, begins: int) -> Array:
 def _step_blocks(
     steps: Sequence[Step], n_states: int, n_letters: int, most: int
 ) -> Iterator[Sequence[Step]]:
-    """Steps that are taken together: where a trace ends, they do."""
+    """Groups of steps that are taken together; a group ends wherever a trace ends."""
     start, begins = 0, 1
     for end, step in enumerate(steps, 1):
         if step.n_continuing < step.n_traces:
@@ -136,7 +136,7 @@ def _step_blocks(
 
 
 def _most(n_entries: int, n_letters: int) -> int:
-    """Largest number of letters with at most ``n_entries`` words."""
+    """The largest number of letters that form at most ``n_entries`` words."""
     length = 1
     while n_letters ** (length + 1) <= n_entries and length < _LONGEST:
         length += 1
@@ -144,9 +144,9 @@ def _most(n_entries: int, n_letters: int) -> int:
 
 
 def _lengths(n_steps: int, first: int, later: int) -> Iterator[int]:
-    """Split steps into the fewest parts, of nearly equal lengths.
+    """Split steps into the fewest parts of nearly equal lengths.
 
-    The first part has no more than ``first`` steps, no other more than ``later``.
+    The first part has at most ``first`` steps, the others at most ``later``.
     """
     n_parts = 1 + -(-max(n_steps - first, 0) // later)
     later = min(later, -(-n_steps // n_parts))

@@ -1,7 +1,7 @@
-"""Run of a machine over many traces, one step at a time, or over a long one in parallel pieces.
+"""Runs a machine over many traces step by step, or over a long trace in parallel pieces.
 
-Where in the machine a piece begins is only known when the piece before it has ended, so each is
-run from every state first; then from the one that it is.
+The state in which a piece begins is known only when the piece before it has ended, so each piece is
+first run from every state, then from the actual one.
 """
 
 from __future__ import annotations
@@ -28,19 +28,19 @@ from rulec.trace.trace_columns import Array, Layout, smallest_unsigned
 _BYTE = 256
 
 _FEW = 16
-"""A step of so few traces side by side takes longer than one step of each."""
+"""With so few traces side by side, a joint step takes longer than one step of each."""
 
 FEWEST_STEPS = 1 << 10
-"""Shorter traces are not long."""
+"""Traces with fewer steps are not treated as long."""
 
 _MOST_RUNS = 1 << 10
-"""More traces, times states of the machine, are better taken side by side."""
+"""With more traces times machine states, running them side by side is faster."""
 
 _MOST_STATES = 32
-"""From more states than these, one step after the other is quicker."""
+"""With more machine states than these, running step by step is faster."""
 
 _STEP_IN_PIECES = 64
-"""How much longer a step of all pieces takes than finding where one of them begins."""
+"""The cost of one step of all pieces, in units of finding the start state of one piece."""
 
 
 def run(
@@ -76,7 +76,7 @@ def _by_cells(joint: JointMachine) -> tuple[Rows, Rows]:
 
 
 def letters_of_cells(cells: Array, letters: Sequence[int]) -> Array:
-    """The letter of every cell, in the narrowest integers."""
+    """The letter of every cell, as the smallest unsigned integers."""
     dtype = smallest_unsigned(max(letters, default=0) + 1)
     if cells.dtype == dtype == np.uint8:
         return np.frombuffer(cells.tobytes().translate(_padded(letters)), np.uint8)
@@ -89,7 +89,7 @@ def _run_bytes(
     column: NDArray[np.uint8],
     steps: Sequence[Step],
 ) -> NDArray[np.uint8]:
-    """Run a small machine by byte translation, in the C library's loop."""
+    """Run a small machine by byte translation, in a loop of the C library."""
     width = len(letters)
     successors = _padded([row[letter] * width for row in joint.successors for letter in letters])
     verdicts = _padded([row[letter] for row in joint.verdicts for letter in letters])
@@ -132,14 +132,14 @@ def _run_long(
 
 
 def run_alone(n_traces: int, n_steps: int, n_states: int) -> bool:
-    """Tell whether it is cheaper to run these traces one by one."""
+    """Whether it is cheaper to run these traces one by one."""
     if n_traces <= _FEW and n_steps >= _FEW:
         return True
     return n_steps >= FEWEST_STEPS and n_traces * min(n_states, _MOST_STATES) <= _MOST_RUNS
 
 
 def visited(successors: Sequence[Sequence[int]], letters: Array) -> NDArray[np.intp]:
-    """State before each letter of a non-empty word; 0 comes first."""
+    """The state before each letter of a non-empty word; 0 comes first."""
     n_states, n_letters = len(successors), len(letters)
     if n_states > _MOST_STATES or n_letters < FEWEST_STEPS:
         return _one_by_one(successors, letters)
@@ -177,7 +177,7 @@ def _one_by_one(successors: Sequence[Sequence[int]], letters: Array) -> NDArray[
 
 
 def first_lost_of_one(machine: MealyMonitor, letters: Array) -> int:
-    """Index of the letter that loses a word; -1 if none does."""
+    """The index of the letter at which a word is lost; -1 if it is not."""
     if machine.rejecting_sink is None:
         return -1
     # A finite word may be accepted if it ends here, though no longer one is: `weak next false`.
@@ -190,10 +190,10 @@ def first_lost_of_one(machine: MealyMonitor, letters: Array) -> int:
 def first_lost(
     machine: MealyMonitor, letters: Sequence[int], by_step: Iterable[Array], lengths: NDArray[Any]
 ) -> NDArray[np.int64]:
-    """Step that loses each trace, from its first here; -1 for none.
+    """The step at which each trace is lost, counted from its first step here; -1 if it is not.
 
     ``letters`` has for each cell the class of its letter, ``by_step`` for each step the cells of
-    the traces that have it, which are the first ones, as ``lengths`` descend.
+    the traces that have it; these come first, since ``lengths`` descend.
     """
     if machine.rejecting_sink is None:
         return np.full(len(lengths), -1, dtype=np.int64)

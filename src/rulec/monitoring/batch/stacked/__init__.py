@@ -1,1 +1,1 @@
-"""Verification of many traces in arrays, whatever their objects: each rule once for all."""
+"""Verification of many traces in arrays, with any objects: each rule once for all of them."""

@@ -1,4 +1,4 @@
-"""Traces in arrays whose states may contradict facts."""
+"""Finds traces in arrays whose states may contradict axioms."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from rulec.vocabulary.partial_values import PartialValue
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LinkedFacts:
-    """Facts that share names.
+    """Axioms that share names.
 
-    Whether no state can contradict them is remembered by the values that ``signals`` have anywhere.
+    Whether some state can contradict them is cached by the values that ``signals`` have anywhere.
     """
 
     facts: tuple[CompiledAxiom, ...]
@@ -33,7 +33,7 @@ class LinkedFacts:
     _kept: dict[tuple[int | None, ...], bool] = field(default_factory=dict, init=False)
 
     def are_kept(self, reader: StackReader) -> bool:
-        """Whether the values that are met anywhere show that no state contradicts them."""
+        """Whether the values that occur anywhere show that no state contradicts the axioms."""
         key = tuple([reader.met_values.with_default(name) for name in self.signals])
         known = self._kept.get(key)
         if known is None:
@@ -43,7 +43,7 @@ class LinkedFacts:
         return known
 
     def _can_all_be(self, reader: StackReader) -> bool:
-        """Whether the facts are about signals of the world alone, whose only values they allow."""
+        """Whether the axioms are only about signals of the world and allow all their values."""
         stack, compared = reader.stack, self.names - set(self.signals)
         if compared or any(fact.variables for fact in self.facts):
             return False
@@ -59,7 +59,7 @@ _OBJECT = "an object"
 
 
 def contradicted(linked_facts: Sequence[LinkedFacts], reader: StackReader) -> set[int]:
-    """All traces in which a state contradicts facts, each ``is_of_one``, and perhaps others.
+    """All traces with a state that contradicts axioms (each ``is_of_one``), and possibly others.
 
     Raises UnencodableError.
     """
@@ -77,7 +77,7 @@ def contradicted(linked_facts: Sequence[LinkedFacts], reader: StackReader) -> se
 
 
 def linked(facts: Sequence[CompiledAxiom]) -> Iterator[LinkedFacts]:
-    """The facts in groups that share no names."""
+    """The axioms in groups that share no names."""
     while facts:
         group = related_facts(names_of(facts[0].formula), facts)
         atoms = [atom for fact in group for atom in atoms_of(fact.formula)]
@@ -91,7 +91,7 @@ _Asked = tuple[Sequence[CompiledAxiom], Spots, Mapping[str, str]]
 
 
 def _facts_at_spots(together: Sequence[CompiledAxiom], stack: Stack) -> Iterator[_Asked]:
-    """Facts that all hold at some spots, and the object that they are about, if any, by type."""
+    """Axioms that are evaluated at the same spots, with the type of their object, if any."""
     if not together[0].variables:
         yield together, Spots(np.arange(stack.n_states), {}, whole=True), {}
         return
@@ -110,7 +110,7 @@ def _facts_at_spots(together: Sequence[CompiledAxiom], stack: Stack) -> Iterator
 def _contradicted_states(
     facts: Sequence[CompiledAxiom], reader: StackReader, spots: Spots, objects: Mapping[str, str]
 ) -> Places:
-    """The states of those spots at which not all of some linked facts can be kept."""
+    """The states of those spots in which some of the linked axioms cannot all hold."""
     holds: Mask = np.True_
     for fact in facts:
         holds = holds & reader.truth(fact.formula, spots, _OBJECT).true
@@ -134,7 +134,7 @@ def _contradicted_states(
 
 
 def _alike(names: Sequence[str], stack: Stack, spots: Spots) -> Places:
-    """The group of each spot, from 0: of spots in one group states have the same values."""
+    """A group number from 0 for each spot; spots of one group have states with the same values."""
     where = spots.cells.get(_OBJECT, spots.states)
     columns = (column for name in names if (column := stack.column(name)) is not None)
     parts = (part for own in columns for part in (own.values, own.upper, own.unknown))

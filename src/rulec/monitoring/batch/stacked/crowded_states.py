@@ -1,7 +1,7 @@
-"""What reads that count everybody may be together, found once for states alike but for names.
+"""The joint values of reads that count all objects, found once for states that are alike.
 
-Of those who count nothing matters but how many there are of whom the same is said, and that only up
-to a count's highest threshold. So dense traffic is in few different states.
+For objects that are only counted, names do not matter, only how many of them have the same values,
+up to the highest threshold of a count. So dense traffic has few different states.
 """
 
 from __future__ import annotations
@@ -27,14 +27,15 @@ from rulec.trace.trace_arrays import Flags
 from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, PartialValue
 
 MOST_KINDS = 1 << 7
-"""Where more different things are said of objects, states are looked at one by one."""
+"""If objects have more different combinations of values, states are evaluated one by one."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _AlikeStates:
-    """The group of each state, and the place of the first state of each.
+    """The group of each state, and the position of the first state of each group.
 
-    ``often`` says how often there is each kind of object in a state, ``examples`` are cells of it.
+    ``often`` is how often each kind of object occurs in a state, ``examples`` are cells of each
+    kind.
     """
 
     firsts: Places
@@ -44,9 +45,9 @@ class _AlikeStates:
 
 
 class CrowdedStates:
-    """The states of a stack for a rule without variables that counts everybody.
+    """The states of a stack, for a rule without variables that counts all objects.
 
-    ``is_known`` is false if it takes a look at each state by itself.
+    ``is_known`` is false if each state has to be evaluated by itself.
     """
 
     def __init__(self, rule: StackedRule, reader: StackReader) -> None:
@@ -67,7 +68,7 @@ class CrowdedStates:
 
     @cached_property
     def are_entangled(self) -> Flags:
-        """The states of the stack in which unknown values may have to do with each other."""
+        """The states of the stack in which unknown values may depend on each other."""
         stack = self._stack
         everybody = {f"{kind} {n}": kind for kind in self._counted for n in range(2)}
         shared = {name for name, _ in self._rule.reads_among(everybody).shared}
@@ -90,7 +91,7 @@ class CrowdedStates:
     ) -> tuple[EntangledReads, list[int]] | None:
         """The rule's entangled reads, and the place of their joint letters in each state.
 
-        States are in ascending order. None if one has to look at each by itself.
+        States are in ascending order. None if each has to be evaluated by itself.
         """
         alike = self._alike(states)
         if alike is None:
@@ -104,7 +105,10 @@ class CrowdedStates:
         return self._numbers[own]
 
     def _alike(self, states: Places) -> _AlikeStates | None:
-        """States in groups that are alike; the same ones are mostly asked about again."""
+        """The states in groups that are alike.
+
+        Cached, since mostly the same states are asked about again.
+        """
         if self._known is None or not np.array_equal(self._known[0], states):
             self._known = states, self._grouped(states)
             self._numbers = {}
@@ -131,7 +135,7 @@ class CrowdedStates:
         return _AlikeStates(firsts, groups, often, examples)
 
     def _cells(self, states: Flags) -> Places:
-        """The cells, in some states, of those who may count."""
+        """The cells, in some states, of the objects that may count."""
         stack = self._stack
         suits = np.zeros(len(stack.types), dtype=bool)
         for kind in self._counted:
@@ -139,7 +143,7 @@ class CrowdedStates:
         return (suits[stack.object_of] & states[stack.state_of]).nonzero()[0]
 
     def _kinds(self, cells: Places) -> Places:
-        """A number for each cell, the same where the same is said of objects of one type."""
+        """A number for each cell, equal for cells with the same values of objects of one type."""
         stack = self._stack
         columns = (codes for name in self._about for codes in _codes(stack.column(name), cells))
         return alike_places((stack.kind_of[stack.object_of[cells]], *columns), len(cells))
@@ -151,9 +155,9 @@ class CrowdedStates:
         examples: Places,
         supposed: Sequence[Value | None],
     ) -> tuple[EntangledReads, list[int]]:
-        """The places of joint letters in states with objects like these examples so often.
+        """The places of the joint letters in states that contain these example objects this often.
 
-        ``supposed`` has what is, of the world's names, or None.
+        ``supposed`` has the supposed values of the world's names, or None.
         """
         stack, reader = self._stack, self._reader
         types = [stack.types[item] for item in stack.object_of[examples].tolist()]
@@ -192,14 +196,14 @@ class CrowdedStates:
 def supposed_instead(
     values: Sequence[PartialValue | None], instead: Value | None
 ) -> Sequence[PartialValue | None]:
-    """The values, with one that is supposed where they are unknown."""
+    """The values, with the supposed value instead of unknown ones."""
     if instead is None:
         return values
     return [instead if type(value) in UNKNOWN_TYPES else value for value in values]
 
 
 def _codes(column: StackColumn | None, where: Places) -> list[Places]:
-    """Numbers of what a column says at some places, the same where it says the same."""
+    """Numbers for the values of a column at some places, equal where the values are equal."""
     if column is None:
         return []
     ends = [column.values] if column.upper is None else [column.values, column.upper]

@@ -1,6 +1,6 @@
-"""The letters of states in which unknown values that a rule reads have to do with each other.
+"""The letters of states in which a rule reads unknown values that depend on each other.
 
-There the numbers of its reads, one by one, do not say which letters are possible.
+In such states the numbers of the single reads do not determine which letters are possible.
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
 class EntangledLetters:
     """The possible ``letters`` at some ``places``, with their ``classes`` as bits.
 
-    ``numbers`` says which of them each place has; ``exact`` whether these are all possible.
+    ``numbers`` gives the place of each one's letters among these; ``exact`` says whether all of
+    them are possible.
     """
 
     places: NDArray[np.intp]
@@ -38,7 +39,7 @@ class EntangledLetters:
     classes: tuple[int, ...]
 
     def at(self, places: NDArray[np.intp]) -> list[int]:
-        """The number of the letters at each of some places, -1 where they are not entangled."""
+        """The number of the letters at each of some places; -1 where they are not entangled."""
         if not len(self.places):
             return [-1] * len(places)
         near = np.minimum(self.places.searchsorted(places), len(self.places) - 1)
@@ -55,10 +56,10 @@ def entangled_letters(
     *,
     crowd: CrowdedStates,
 ) -> EntangledLetters | None:
-    """The letters where some related reads are ``partial``, and what they read is entangled.
+    """The letters where some related reads are ``partial`` and their values are entangled.
 
-    ``about`` are the spots, and where reads are partial. None if these are to be looked at one by
-    one. The ``crowd`` are the states for rules that count everybody.
+    ``about`` are the spots, and where reads are partial. None if these have to be evaluated one by
+    one. The ``crowd`` are the states, for rules that count all objects.
     """
     spots, partial = about
     joint: Sequence[int]
@@ -94,7 +95,10 @@ def entangled_letters(
 def _different(
     digits: Sequence[NDArray[Any]], joint: Sequence[int]
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """The first of the places alike by digits and joint letters, and which each place is like."""
+    """The distinct combinations of digits and joint letters.
+
+    Gives the first place of each, and for each place the number of its combination.
+    """
     _, firsts, which = np.unique(joint, return_index=True, return_inverse=True)
     for own in digits:
         codes = which * (int(own.max(initial=0)) + 1) + own.astype(np.intp)
@@ -106,7 +110,7 @@ def _different(
 
 
 def _are_entangled(reads: EntangledReads, reader: StackReader, spots: Spots) -> Flags:
-    """Where unknown values have to do with each other."""
+    """Where unknown values depend on each other."""
     entangled = np.zeros(len(spots.states), dtype=bool)
     for about in reads.subjects:
         name, variables = about
@@ -127,7 +131,7 @@ def _rows(
     spots: Spots,
     supposed: Mapping[Subject, Value],
 ) -> Iterator[tuple[PartialValue | None, ...]]:
-    """What is said of the reads' subjects at some spots."""
+    """The values of the reads' subjects at some spots."""
     columns = [
         supposed_instead(reader.values_at(*subject, spots), supposed.get(subject))
         for subject in reads.subjects

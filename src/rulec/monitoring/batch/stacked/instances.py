@@ -1,8 +1,8 @@
-"""The choices of objects of all traces for which a rule may be anything but kept.
+"""The choices of objects in all traces for which a rule may be violated or open.
 
-Most choices need no machine: in every state a few reads already show that the letter does nothing
-(it is idle, see ``idle_letters``), whatever the other reads are. So pairs of objects are made only
-where both of them have something to say in one state.
+Most choices need no machine: in every state a few reads already show that the letter has no effect
+(is idle, see ``idle_letters``), whatever the other reads are. So pairs of objects are formed only
+where both have an effect in the same state.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import Numbers
 from rulec.trace.plain_arrays import distinct, ranges
 
 _MOST_TOGETHER = 1 << 20
-"""So many states of pairs are looked at together."""
+"""The most states of pairs that are evaluated at once."""
 
 _NONE = np.empty(0, dtype=np.intp)
 
 
 class NumbersAt(Sequence[Numbers]):
-    """The numbers of a rule's reads at some spots, each read when it is first asked for."""
+    """The numbers of a rule's reads at some spots, each computed on first use."""
 
     def __init__(self, rule: StackedRule, reader: StackReader, spots: Spots) -> None:
         self._rule, self._reader, self._spots = rule, reader, spots
@@ -54,7 +54,7 @@ class NumbersAt(Sequence[Numbers]):
         return self._known[place]
 
     def part(self, spots: Spots, at: Places) -> NumbersAt:
-        """The numbers at some of the spots, whose places ``at`` says."""
+        """The numbers at some of the spots, given by their places ``at``."""
         part = NumbersAt(self._rule, self._reader, spots)
         # What is computed of several values need not be so again
         part._known |= {
@@ -68,9 +68,9 @@ class NumbersAt(Sequence[Numbers]):
 class Instances:
     """Choices of objects for a rule's variables, in the order in which verdicts list them.
 
-    ``traces`` are theirs, ``objects`` has an array for each variable; each is judged from its
-    state in ``firsts`` to that in ``lasts``. Objects and states are numbered as in the stack.
-    ``letters`` are those of all states, where there are no variables.
+    ``traces`` are the traces of the choices, and ``objects`` has an array for each variable; each
+    choice is judged from its state in ``firsts`` to that in ``lasts``. Objects and states are
+    numbered as in the stack. ``letters`` are those of all states, if there are no variables.
     """
 
     traces: Places
@@ -80,7 +80,7 @@ class Instances:
     letters: Numbers | None = None
 
     def part(self, members: Places) -> Instances:
-        """Some of them."""
+        """Some of the choices."""
         return Instances(
             self.traces[members],
             tuple(own[members] for own in self.objects),
@@ -90,9 +90,9 @@ class Instances:
         )
 
     def spots(self, rule: StackedRule, stack: Stack) -> tuple[Places, Spots]:
-        """The states of each, one after the other, with the cells of its objects.
+        """The states of all choices, one choice after the other, with the cells of its objects.
 
-        With where those of each begin, and where all end.
+        The first item has where the states of each choice begin, and where the last ones end.
         """
         lengths = self.lasts - self.firsts + 1
         bounds = np.zeros(len(lengths) + 1, dtype=np.intp)
@@ -113,7 +113,7 @@ def numbers_at(
 ) -> list[Numbers]:
     """The numbers of a rule's reads at some spots, or in all states.
 
-    Reads of others than the ``variables`` may be anything.
+    Reads of variables other than ``variables`` are taken to be anything.
     """
     known = frozenset(variables)
     return [
@@ -125,9 +125,9 @@ def numbers_at(
 
 
 def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
-    """All choices that may not be kept, and perhaps others that are.
+    """All choices for which the rule may not be kept, and possibly others.
 
-    What a rule reads may do something somewhere (see ``SimpleRules``).
+    Some read of the rule has an effect somewhere (see ``SimpleRules``).
     """
     stack = reader.stack
     for kind in rule.types:
@@ -165,7 +165,7 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
 
 
 def _of_objects(objects: tuple[Places, ...], stack: Stack) -> Instances:
-    """The choices of these objects, one for each variable, while all of them are there."""
+    """The choices of these objects, one per variable, while all of them are present."""
     first, *others = objects
     firsts, lasts = stack.firsts[first], stack.lasts[first]
     for own in others:
@@ -175,9 +175,9 @@ def _of_objects(objects: tuple[Places, ...], stack: Stack) -> Instances:
 
 
 def _doubtful_of_few(rule: StackedRule, reader: StackReader) -> Places:
-    """The objects for the only variable whose letters alone do not show that the rule is kept.
+    """The objects for the only variable that letters alone do not show to be kept.
 
-    Letters are found in all cells, of which there are few.
+    Letters are computed in all cells, since there are few.
     """
     stack, (variable,), (kind,) = reader.stack, rule.variables, rule.types
     spots = reader.every_cell_of(variable)
@@ -191,10 +191,10 @@ def _doubtful_of_few(rule: StackedRule, reader: StackReader) -> Places:
 
 
 def _doubtful_objects(rule: StackedRule, reader: StackReader, busy: Mask) -> Places:
-    """The objects for the only variable whose letters alone do not show that the rule is kept.
+    """The objects for the only variable that letters alone do not show to be kept.
 
-    They are there in some ``busy`` state. Letters are found where some read changes: seldom. Reads
-    that take long to find, as they are computed of several values, may be anything.
+    They are present in some ``busy`` state. Letters are computed only where some read changes.
+    Reads that are expensive, being computed from several values, are taken to be anything.
     """
     stack, (variable,), (kind,) = reader.stack, rule.variables, rule.types
     suits = stack.of_type(kind)
@@ -224,7 +224,7 @@ def _doubtful_objects(rule: StackedRule, reader: StackReader, busy: Mask) -> Pla
 
 
 def _are_busy(rule: StackedRule, letters: Numbers) -> Mask:
-    """Where letters might do something, or whether the one of all places might."""
+    """Where letters may have an effect; one flag if all places have the same letter."""
     flags: NDArray[np.bool_] = rule.busy_flags()
     return flags.take(letters) if isinstance(letters, np.ndarray) else flags[letters]
 
@@ -235,7 +235,7 @@ def _busy_cells(
     busy: Mask,
     about: tuple[str, str],
 ) -> Places:
-    """The cells of objects for a variable in which a letter might do something."""
+    """The cells of objects for a variable in which a letter may have an effect."""
     (variable, kind), stack = about, reader.stack
     cells, states = stack.cells_of_type(kind), stack.states_of_type(kind)
     is_every = bool(busy.all())
@@ -252,7 +252,7 @@ def _busy_cells(
 def _pairs(
     rule: StackedRule, reader: StackReader, first: Places, second: Places
 ) -> tuple[Places, Places]:
-    """The pairs of objects that have cells in one state in which a letter might do something."""
+    """The pairs of objects with cells in the same state in which a letter may have an effect."""
     stack = reader.stack
     n_objects = len(stack.types)
     pairs_met = [np.empty(0, dtype=np.intp)]
@@ -269,7 +269,7 @@ def _pairs(
 
 
 def _joined(first: Places, second: Places, stack: Stack) -> Iterator[tuple[Places, Places]]:
-    """The pairs of cells of one state, some at a time."""
+    """The pairs of cells in the same state, some at a time."""
     second = second[stack.state_of[second].argsort(kind="stable")]
     states, theirs = stack.state_of[first], stack.state_of[second]
     begins = theirs.searchsorted(states, side="left")

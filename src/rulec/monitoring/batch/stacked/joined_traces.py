@@ -1,4 +1,4 @@
-"""What traces in arrays say, those together that have their columns in the same arrays."""
+"""The content of traces in arrays; traces whose columns lie in the same arrays are joined."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _columns_of = attrgetter(*_COLUMNS)
 
 @dataclass(frozen=True, slots=True)
 class JoinedTraces:
-    """What one trace says, or several do that have their columns in the same arrays."""
+    """The content of one trace, or of several whose columns lie in the same arrays."""
 
     world: Mapping[str, Array]
     about: Mapping[str, Array]
@@ -31,7 +31,7 @@ class JoinedTraces:
 
     @staticmethod
     def of(traces: Sequence[TraceArrays]) -> JoinedTraces:
-        """What traces say, of which each stands before the next one."""
+        """The content of traces, each of which lies before the next one."""
         first, last = traces[0], traces[-1]
         ends = zip(_COLUMNS, _columns_of(first), _columns_of(last), strict=True)
         columns: dict[str, Any] = {name: _joined(own, end) for name, own, end in ends}
@@ -40,7 +40,7 @@ class JoinedTraces:
 
 
 def side_by_side(traces: Sequence[TraceArrays]) -> list[int]:
-    """The places of traces, those in the same arrays one after the other as they stand there."""
+    """The places of traces, sorted so that those in the same arrays follow each other."""
     known: dict[int, int] = {}
 
     def place(number: int) -> tuple[int, int]:
@@ -53,7 +53,7 @@ def side_by_side(traces: Sequence[TraceArrays]) -> list[int]:
 
 
 def joined_traces(traces: Sequence[TraceArrays]) -> Iterator[JoinedTraces]:
-    """What the traces say, those together that are in the same arrays."""
+    """The content of the traces, joined where they lie in the same arrays."""
     begin = 0
     for place, (trace, other) in enumerate(pairwise(traces), 1):
         if not _stands_before(trace, other):
@@ -63,7 +63,7 @@ def joined_traces(traces: Sequence[TraceArrays]) -> Iterator[JoinedTraces]:
 
 
 def _stands_before(before: TraceArrays, after: TraceArrays) -> bool:
-    """Whether all columns of a trace stand before those of another in their arrays."""
+    """Whether all columns of a trace lie before those of another in the same arrays."""
     if after.texts is not before.texts:
         return False
     for own, theirs in zip(_columns_of(before), _columns_of(after), strict=True):

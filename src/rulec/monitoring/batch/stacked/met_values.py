@@ -1,4 +1,4 @@
-"""The values that names take anywhere in traces in arrays, found for many names together."""
+"""The values that names take anywhere in traces in arrays, found for many names at once."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from rulec.vocabulary.partial_values import UNKNOWN as UNKNOWN_VALUE
 from rulec.vocabulary.partial_values import PartialValue
 
 _BITS = {bits: 1 << np.arange(bits, dtype=f"u{bits // 8}") for bits in (8, 64)}
-"""For each number the bit in its place."""
+"""For each number the bit at its place."""
 
 _TRUE, _FALSE = known(np.True_), known(np.False_)
 
@@ -33,17 +33,17 @@ class MetValues:
         self._stack = stack
 
     def values(self, name: str) -> int:
-        """The values of a signal, as bits; none if some are unknown, or there are too many."""
+        """The values of a signal, as bits; 0 if some are unknown or there are too many."""
         return self.signals.get(name, 0)
 
     def ends(self, name: str) -> tuple[float, float] | None:
-        """The least and the greatest number of a quantity; None if some are unknown."""
+        """The least and greatest number of a quantity; None if some are unknown."""
         return self._stack.ends(name)
 
     def with_default(self, name: str) -> int | None:
-        """The values that a signal has anywhere, as bits, 0 if some are not known.
+        """The values that a signal has anywhere, as bits; 0 if some are not known.
 
-        None for one that no state tells, and that has no default.
+        None for a signal that no state contains and that has no default.
         """
         met = self.signals.get(name)
         if met is not None or name in self._stack.is_about_objects:
@@ -52,9 +52,9 @@ class MetValues:
         return None if default is None or default is UNKNOWN_VALUE else 1 << int(default)
 
     def only_value(self, name: str) -> PartialValue | None:
-        """The value that a signal has everywhere, unknown if no state tells it; None for several.
+        """The value that a signal has everywhere; None if it has several or some are not known.
 
-        None as well if some are not known.
+        It is unknown if no state contains the signal.
         """
         declaration, met = self._stack.vocabulary.declarations[name], self.with_default(name)
         if met is None:
@@ -65,9 +65,9 @@ class MetValues:
         return declaration.values[place] if isinstance(declaration, Enumeration) else bool(place)
 
     def truth_anywhere(self, formula: ltl.Formula) -> Truth:
-        """Whether a formula without operators of time is true, or false, by the values met.
+        """Whether a formula without temporal operators is true, or false, by the values that occur.
 
-        Any variable names the same object.
+        Every variable stands for the same object.
         """
         return fold(formula, self._anywhere)
 
@@ -92,7 +92,7 @@ class MetValues:
 
     @cached_property
     def signals(self) -> dict[str, int]:
-        """The values of each signal, as bits, of which all are known and not too many."""
+        """The values, as bits, of each signal whose values are all known and few enough."""
         bits_of: dict[str, int] = {}
         for names, columns in self._known_signals():
             rows = _laid_out([column.values for column in columns])
@@ -107,7 +107,7 @@ class MetValues:
         return bits_of
 
     def _known_signals(self) -> Iterator[tuple[list[str], list[StackColumn]]]:
-        """The names and columns of signals of which all is known, as many together as may be."""
+        """The names and columns of fully known signals, in groups as large as possible."""
         columns = self._stack.columns
         # Only quantities are numbers that are no whole ones
         kinds = {

@@ -1,4 +1,4 @@
-"""Why verdicts on traces in arrays are open, found when it is asked for."""
+"""Why verdicts on traces in arrays are open, computed on demand."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _Value = TypeVar("_Value")
 
 
 class StackedReasons:
-    """Why verdicts are open; equal words of one rule have equal reasons, but for tolerances."""
+    """Why verdicts are open; equal words of a rule have equal reasons, except for tolerances."""
 
     def __init__(self, reader: StackReader) -> None:
         self._reader = reader
@@ -46,7 +46,7 @@ class StackedReasons:
         return told_within_bounds(reasons, lambda name: self._is_within_bounds(name, stretch))
 
     def beyond(self, words: StackedWords, place: int, names: Set[str]) -> frozenset[str]:
-        """The names but for these on which a verdict depends, found without all reasons."""
+        """The names other than these on which a verdict depends, found without all reasons."""
         if not _are_more_unknown(words, place, names):
             return frozenset()
         possible, constants, _ = self._possible_words(words, place)
@@ -55,7 +55,7 @@ class StackedReasons:
     def _possible_words(
         self, words: StackedWords, place: int
     ) -> tuple[list[PossibleWord], list[Mapping[str, object]], bool]:
-        """One of these words by the values of what does not change, and whether it is exact."""
+        """One of these words for each choice of unknown constants, and whether it is exact."""
         own = slice(int(words.bounds[place]), int(words.bounds[place + 1]))
         rule, is_exact = words.rule, words.is_exact
         possible: list[PossibleWord] = []
@@ -94,7 +94,7 @@ class StackedReasons:
     def _unknown_names(
         self, words: StackedWords, read: int, digits: list[int], own: slice
     ) -> frozenset[str]:
-        """The names of values of which some are unknown."""
+        """The names with some unknown values."""
         stacked = words.rule.reads[read]
         if all(mask & (mask - 1) == 0 for mask in set(digits)):
             return frozenset()
@@ -119,7 +119,7 @@ class StackedReasons:
         return frozenset(unknown)
 
     def _unknown_in_count(self, count: ltl.Count, spots: Spots) -> frozenset[str]:
-        """The names of which something is unknown of, or beside, those who may count."""
+        """The names with unknown values that decide whether objects count."""
         stack, unknown = self._reader.stack, set()
         there = self._are_there(count.type)[spots.states]
         for read in reads_in(count.body):
@@ -142,11 +142,11 @@ class StackedReasons:
         return frozenset(unknown)
 
     def _are_there(self, kind: str) -> Flags:
-        """The states in which somebody of a type is there."""
+        """The states in which some object of a type is present."""
         return self._of_anybody(None, kind, None)
 
     def _of_anybody(self, name: str | None, kind: str, flags: Flags | None) -> Flags:
-        """The states in which the flags of a name are set in a cell of some object of a type."""
+        """The states in which the flag of a name is set for some object of a type."""
         if (name, kind) not in self._of_type:
             stack = self._reader.stack
             cells = stack.cells_of_type(kind)
@@ -156,7 +156,7 @@ class StackedReasons:
         return self._of_type[name, kind]
 
     def _is_within_bounds(self, name: str, states: slice) -> bool:
-        """Whether some number is an interval in these states, and none is unknown altogether."""
+        """Whether some number is an interval in these states, and none is entirely unknown."""
         if name not in self._said:
             self._said[name] = self._flags(name)
         unknown, apart = self._said[name]
@@ -165,9 +165,9 @@ class StackedReasons:
         return unknown is None or not bool(unknown[states].any())
 
     def _flags(self, name: str) -> tuple[Flags | None, Flags | None]:
-        """The states in which a name is unknown of anybody, and those in which it is an interval.
+        """The states in which a name is unknown for some object, and those where it is an interval.
 
-        Of an unknown number there are no bounds.
+        An entirely unknown number has no bounds.
         """
         column = self._reader.stack.column(name)
         if column is None:
@@ -187,7 +187,7 @@ class StackedReasons:
 
 
 def _are_more_unknown(words: StackedWords, place: int, names: Set[str]) -> bool:
-    """Whether something of other names than these is unknown to one of these words, or may be."""
+    """Whether one of these words has, or may have, unknown values of names other than these."""
     if any(name not in names for supposed in words.supposed for name, _ in supposed):
         return True
     own = slice(int(words.bounds[place]), int(words.bounds[place + 1]))
@@ -205,7 +205,7 @@ def _part(column: Numbers, own: slice) -> NDArray[np.intp]:
 
 
 def _runs(columns: Sequence[NDArray[np.intp]], length: int) -> tuple[NDArray[np.intp], list[int]]:
-    """Where states begin in which all columns stay the same, and how many each time."""
+    """The first state of each run in which all columns are constant, and the runs' lengths."""
     changes = np.zeros(length, dtype=bool)
     changes[0] = True
     for column in columns:
@@ -215,7 +215,7 @@ def _runs(columns: Sequence[NDArray[np.intp]], length: int) -> tuple[NDArray[np.
 
 
 def _repeated(values: Sequence[_Value], lengths: Sequence[int]) -> list[_Value]:
-    """Each value as often as it stays."""
+    """Each value repeated as often as its length says."""
     repeated: list[_Value] = []
     for value, length in zip(values, lengths, strict=True):
         repeated += [value] * length

@@ -1,4 +1,4 @@
-"""Which of some rules may do anything at all, by what their reads are anywhere in traces."""
+"""Which rules can have an effect at all, by the values that their reads have anywhere."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from rulec.monitoring.batch.stacked.stack_reader import StackReader
 from rulec.monitoring.batch.stacked.stacked_rule import StackedRead, StackedRule
 
 _MOST_KEPT = 1 << 10
-"""Digits of all reads that are kept before all are forgotten."""
+"""How many combinations of all reads' digits are kept before all are discarded."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SimpleRules:
-    """The ``rules`` that can be judged by arrays, by number, and the linked ``facts`` about them.
+    """The ``rules`` that can be judged on arrays, by number, and the linked ``facts`` about them.
 
-    ``reads`` are those with digits of their own, ``places`` those of each rule's among them. Which
-    rules may do something is remembered by the digits that all reads have anywhere.
+    ``reads`` are the distinct reads, and ``places`` those of each rule's reads among them. The
+    rules that may have an effect are cached by the digits that all reads have anywhere.
     """
 
     rules: Mapping[int, StackedRule]
@@ -29,7 +29,7 @@ class SimpleRules:
 
     @staticmethod
     def of(rules: Mapping[int, StackedRule]) -> SimpleRules:
-        """Some rules with what they read."""
+        """These rules with their reads."""
         facts = dict.fromkeys(fact for rule in rules.values() for fact in rule.facts)
         reads = {read.digits_key: read for rule in rules.values() for read in rule.reads}
         place_of = {key: place for place, key in enumerate(reads)}
@@ -40,7 +40,7 @@ class SimpleRules:
         return SimpleRules(rules, tuple(linked(tuple(facts))), tuple(reads.values()), places)
 
     def busy(self, reader: StackReader) -> frozenset[int]:
-        """The numbers of the rules that may be anything but kept. Raises UnencodableError."""
+        """The numbers of the rules that may be violated or open. Raises UnencodableError."""
         digits = reader.digits_of(self.reads)
         busy = self._busy.get(digits)
         if busy is None:

@@ -1,7 +1,7 @@
-"""Traces in arrays laid end to end, whatever their objects.
+"""Traces in arrays laid end to end, with any objects.
 
-The states of all traces stand one after the other, trace by trace; what is said about objects
-stands in *cells*, one for each state in which an object is there, object by object.
+The states of all traces follow each other, trace by trace; values about objects are in *cells*, one
+for each state in which an object is present, object by object.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from rulec.vocabulary.vocabulary_model import least_value
 Places = NDArray[np.intp]
 
 FEW = 1 << 12
-"""Columns of so many values are laid one upon the other, which takes fewer calls."""
+"""Columns with at most so many values are stacked before reduction, which takes fewer calls."""
 
 _NOWHERE = np.zeros(0, dtype=bool)
 
@@ -39,7 +39,7 @@ _NOWHERE = np.zeros(0, dtype=bool)
 class StackColumn(NamedTuple):
     """The values of a name in all states, or cells, as in ``TraceColumns``.
 
-    None is for nowhere. Where a value is ``missing`` nothing is said, and there is no default.
+    None means nowhere. Where a value is ``missing`` it is not given and there is no default.
     """
 
     values: Array
@@ -49,20 +49,20 @@ class StackColumn(NamedTuple):
 
     @property
     def apart(self) -> Flags | None:
-        """Where a number is known as an interval."""
+        """Where a number is known only as an interval."""
         return None if self.upper is None else self.upper != self.values
 
 
 class Stack:
-    """Traces that say the same names, end to end; ``vocabulary`` has the defaults of the others.
+    """Traces with the same names, end to end; ``vocabulary`` has the defaults of other names.
 
-    ``defaults`` remember these as they stand in columns, for all that are judged by it.
+    ``defaults`` caches these, encoded as in columns, for all traces judged with the vocabulary.
 
     ``begins`` is where the states of each trace begin, ``starts`` where the cells of each object
-    do, both with the end of all as the last. ``is_about_objects`` tells of each name that some
-    state may say whether it is about objects. ``trace_of``, ``firsts`` and ``lasts`` are the trace
-    and the first and last state of each object, among all, ``kind_of`` the number of its type
-    among the ``kinds``.
+    do; both have the total length as last entry. ``is_about_objects`` tells for each name in the
+    traces whether it is about objects. ``trace_of``, ``firsts`` and ``lasts`` are each object's
+    trace and its first and last state among all; ``kind_of`` is the number of its type among the
+    ``kinds``.
     """
 
     def __init__(
@@ -117,14 +117,14 @@ class Stack:
         return are_first
 
     def of_type(self, kind: str) -> Flags:
-        """Which objects are of a type, or of one below it."""
+        """Which objects are of a type or one of its subtypes."""
         if kind not in self._of_type:
             suits = [self.vocabulary.is_subtype(own, kind) for own in self.kinds]
             self._of_type[kind] = np.array(suits, dtype=bool)[self.kind_of]
         return self._of_type[kind]
 
     def has_type(self, kind: str) -> bool:
-        """Whether some object is of a type, or of one below it."""
+        """Whether some object is of a type or one of its subtypes."""
         return any(self.vocabulary.is_subtype(own, kind) for own in self.kinds)
 
     def cells_of_type(self, kind: str) -> Places:
@@ -144,7 +144,10 @@ class Stack:
         return self._states_of_type[kind]
 
     def untold(self, names: Iterable[str]) -> set[str]:
-        """Those of some names whose values cannot be read from arrays. Raises UnencodableError."""
+        """The names among these whose values cannot be read from arrays.
+
+        Raises UnencodableError.
+        """
         declarations, columns = self.vocabulary.declarations, self.columns
         untold = {x for x in names if x not in columns and declarations[x].default is None}
         for name in self.vocabulary.constants:
@@ -154,7 +157,7 @@ class Stack:
         return untold
 
     def odd_traces(self) -> set[int]:
-        """Traces in which something is missing, or a constant changes. Raises UnencodableError."""
+        """Traces with a missing value or a constant that changes. Raises UnencodableError."""
         odd: set[int] = set()
         constants = self.vocabulary.constants
         for name, column in self.columns.items():
@@ -178,16 +181,16 @@ class Stack:
         return traces
 
     def column(self, name: str) -> StackColumn | None:
-        """The column of a name; None if no state says it. Raises UnencodableError."""
+        """The column of a name; None if no state contains it. Raises UnencodableError."""
         return self.columns.get(name)
 
     @cached_property
     def columns(self) -> Mapping[str, StackColumn]:
-        """The columns of all names that are said. Raises UnencodableError."""
+        """The columns of all names in the traces. Raises UnencodableError."""
         return {name: self._column(name) for name in self.is_about_objects}
 
     def ends(self, name: str) -> tuple[float, float] | None:
-        """The least and the greatest number of a quantity; None if some are unknown, or none said.
+        """The least and greatest number of a quantity; None if some are unknown or none is given.
 
         Raises UnencodableError.
         """
@@ -200,18 +203,18 @@ class Stack:
 
     @cached_property
     def _flagged(self) -> tuple[set[str], set[str]]:
-        """The names of which something is unknown, or absent, in the only piece."""
+        """The names with an unknown value, and those with an absent one, in the only piece."""
         (piece,) = self._pieces
         return _names(piece.unknown, np.any), _names(piece.absent, np.any)
 
     @cached_property
     def _partly(self) -> set[str]:
-        """The names that are not said of all objects in the only piece."""
+        """The names that are given for some objects only, in the only piece."""
         (piece,) = self._pieces
         return piece.only.keys() - _names(piece.only, np.all)
 
     def default(self, name: str) -> Any:
-        """What holds where nothing is said, as columns have it; None if there is nothing."""
+        """The default of a name, encoded as in columns; None if it has none."""
         if name not in self._defaults:
             declaration = self.vocabulary.declarations[name]
             default: Any = declaration.default
@@ -273,7 +276,7 @@ class Stack:
         )
 
     def _with_default(self, name: str, column: StackColumn, unsaid: Flags) -> StackColumn:
-        """The column with the default where nothing is said."""
+        """The column with the default where no value is given."""
         default, unknown = self.default(name), column.unknown
         declaration = self.vocabulary.declarations[name]
         if default is None:
@@ -286,7 +289,7 @@ class Stack:
         return StackColumn(values, upper, unknown, None)
 
     def _places(self, name: str, declaration: Enumeration, parts: Sequence[Array]) -> Array:
-        """The places among the declared values; the one after these for any other."""
+        """The places among the declared values; one past the last for any other text."""
         mapped = []
         for piece, part in zip(self._pieces, parts, strict=True):
             texts = piece.texts.get(name)
@@ -300,7 +303,7 @@ class Stack:
         return _end_to_end(mapped)
 
     def _numbers(self, name: str, parts: Sequence[Array]) -> tuple[Array, Array | None]:
-        """The numbers, or the least that they may be, and the greatest, if some are apart."""
+        """The numbers, or their least values, and their greatest values if some are intervals."""
         for piece, part in zip(self._pieces, parts, strict=True):
             if part.dtype.kind not in "fiu" or name in piece.texts:
                 raise UnencodableError
@@ -318,7 +321,7 @@ class Stack:
         return low, high
 
     def _not_about(self, name: str, declaration: Declaration) -> Flags | None:
-        """The cells of the objects that a name is not said of."""
+        """The cells of the objects for which a name is not given."""
         (kind,) = declaration.parameters
         if len(self._pieces) == 1 and name not in self._partly and self._all_are(kind):
             return None
@@ -341,7 +344,7 @@ class Stack:
 def _joined(
     name: str, flags: Sequence[Mapping[str, Flags]], parts: Sequence[Array]
 ) -> Flags | None:
-    """The flags of all pieces, None if there are none."""
+    """The flags of all pieces; None if none is set."""
     if not any(name in own for own in flags):
         return None
     nowhere = [np.zeros(len(part), dtype=bool) for part in parts]
@@ -350,7 +353,7 @@ def _joined(
 
 
 def _names(flags: Mapping[str, Flags], some: Callable[..., Flags]) -> set[str]:
-    """The names of which all or any flags are set."""
+    """The names for which all, or any, flags are set."""
     chosen: set[str] = set()
     lengths = dict(zip(flags, map(len, flags.values()), strict=True))
     for length in set(lengths.values()):
@@ -374,7 +377,7 @@ def _ends(low: Array, high: Array | None) -> tuple[float, float]:
 
 
 def either(first: Flags | None, second: Flags | None) -> Flags | None:
-    """Where at least one of two flags is set; None stands for nowhere."""
+    """Where at least one of two flags is set; None means nowhere."""
     if first is None or second is None:
         return second if first is None else first
     return first | second

@@ -1,4 +1,4 @@
-"""Reader of traces in arrays: the numbers of a rule's reads, in states or for chosen objects."""
+"""Reader of traces in arrays: the numbers of a rule's reads, by state or for chosen objects."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ from rulec.vocabulary.vocabulary_model import values_of
 
 
 class Spots(NamedTuple):
-    """States of the stack, and the cells of the variables' objects in each.
+    """States of the stack, with the cells of the variables' objects in each.
 
-    ``whole`` are all states, or all cells, in their order; of a ``kind`` are the cells of all
-    objects of that type, of any if it is empty.
+    ``whole`` means all states, or all cells, in their order; with a ``kind``, the cells of all
+    objects of that type (of any type if it is empty).
     """
 
     states: Places
@@ -46,13 +46,13 @@ class Spots(NamedTuple):
     kind: str | None = None
 
     def part(self, chosen: Places | slice) -> Spots:
-        """Some of them."""
+        """Some of the spots."""
         cells = {variable: own[chosen] for variable, own in self.cells.items()}
         return Spots(self.states[chosen], cells)
 
 
 class StackReader:
-    """Caching reader of the reads' numbers, for all rules."""
+    """A caching reader of the reads' numbers, shared by all rules."""
 
     def __init__(self, stack: Stack) -> None:
         self.stack = stack
@@ -68,11 +68,11 @@ class StackReader:
         return np.arange(self.stack.starts[-1])
 
     def every_cell_of(self, variable: str) -> Spots:
-        """All cells, for a variable."""
+        """All cells, for one variable."""
         return Spots(self.stack.state_of, {variable: self._every_cell}, whole=True, kind="")
 
     def numbers(self, read: StackedRead, spots: Spots | None) -> Numbers:
-        """The numbers of a read at some spots, or in all states; one if they are all the same.
+        """The numbers of a read at some spots, or in all states; a single number if all are equal.
 
         Raises UnencodableError.
         """
@@ -95,9 +95,9 @@ class StackReader:
         return self._of_kind[key]
 
     def changes(self, read: StackedRead) -> Flags | None:
-        """The cells whose number of a read is not that of the cell before; None if there are none.
+        """The cells where a read's number differs from the cell before; None if there are none.
 
-        The read is of one object at most. Raises UnencodableError.
+        The read is of at most one object. Raises UnencodableError.
         """
         if read.key not in self._changes:
             numbers = self.numbers(read, None)
@@ -111,7 +111,7 @@ class StackReader:
         return self._changes[read.key]
 
     def digits(self, read: StackedRead) -> int:
-        """The digits, as bits, that a read has anywhere, and perhaps others.
+        """The digits, as bits, that a read has anywhere; possibly more.
 
         Raises UnencodableError.
         """
@@ -121,7 +121,7 @@ class StackReader:
         return known
 
     def digits_of(self, reads: Sequence[StackedRead]) -> tuple[int, ...]:
-        """The digits of many reads. Raises UnencodableError."""
+        """The digits of several reads. Raises UnencodableError."""
         known, signals = self._digits, self.met_values.signals
         for read in reads:
             if read.digits_key not in known:
@@ -155,7 +155,7 @@ class StackReader:
         return (1 << high + 1) - (1 << low)
 
     def _digits_counted(self, read: StackedRead, count: ltl.Count) -> int:
-        """The digits of a count: of nobody, or any."""
+        """The digits of a count: that of zero if nobody can count, else all."""
         met = self.met_values
         key = tuple([met.with_default(name) for name in read.names])
         known = read.of_counts.get(key)
@@ -167,7 +167,7 @@ class StackReader:
         return known
 
     def _everywhere(self, read: StackedRead) -> Array | int:
-        """The numbers in all states, or cells."""
+        """The numbers in all states, or in all cells."""
         digits = self.digits(read)
         if digits & (digits - 1) == 0 and read.meanings.count(digits) == 1:
             return read.meanings.index(digits)
@@ -215,7 +215,7 @@ class StackReader:
     def _bounds(
         self, term: ltl.Term, spots: Spots
     ) -> tuple[Array | float, Array | float, Mask | None]:
-        """The least and the most that a term may be, and where it is unknown, None for nowhere."""
+        """The least and greatest value of a term, and where it is unknown (None for nowhere)."""
         assert isinstance(term, ltl.QuantityTerm), "it counts nothing"
         column = self.stack.column(term.name)
         if column is None:
@@ -231,7 +231,7 @@ class StackReader:
         return low, high, self._at(column.unknown, term.arguments, spots)
 
     def _counted(self, read: StackedRead, number: NumberRead, spots: Spots) -> Numbers:
-        """The numbers of a count, everywhere: of who is there, or of whom a variable names."""
+        """The numbers of a count everywhere, over all objects or only those that variables name."""
         count, stack = read.count, self.stack
         assert count is not None
         factor = number.terms[0][0]
@@ -259,9 +259,9 @@ class StackReader:
         return numbers
 
     def truth(self, formula: ltl.Formula, spots: Spots, about: str = "") -> Truth:
-        """Where a formula without operators of time is true, and where it is false.
+        """Where a formula without temporal operators is true, and where it is false.
 
-        Any variable names the same object: the one that is here called ``about``.
+        Every variable stands for the same object, called ``about`` here.
         """
 
         def proposition(part: ltl.Proposition) -> Truth:
@@ -311,7 +311,7 @@ class StackReader:
     def values_at(
         self, name: str, variables: Sequence[str], spots: Spots
     ) -> list[PartialValue | None]:
-        """What states at some spots say of a name."""
+        """The values of a name in the states at some spots."""
         declaration = self.stack.vocabulary.declarations[name]
         column = self.stack.column(name)
         if column is None:
@@ -326,5 +326,5 @@ class StackReader:
 
 
 def is_partial(column: StackColumn) -> Flags | None:
-    """Where no single value is known."""
+    """The mask of cells without a single known value."""
     return either(column.apart, column.unknown)

@@ -1,4 +1,4 @@
-"""What a rule comes to for all choices of objects of all traces."""
+"""The outcomes of a rule for all choices of objects in all traces."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ from rulec.vocabulary.partial_values import UNKNOWN
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StackedWords:
-    """The words of some choices of objects, one for each way to choose what does not change.
+    """The words of some choices of objects: one for each way to choose unknown constants.
 
-    ``numbers`` are those of the reads, ``letters`` those of the sets of letters, both at the
-    ``spots``; the words begin and end at ``bounds``. Where letters are ``entangled``
-    the numbers of reads do not say all, and where they are ``odd`` nothing.
+    ``numbers`` are those of the reads and ``letters`` those of the letter sets, both at the
+    ``spots``; words begin and end at ``bounds``. Where letters are ``entangled``, the numbers of
+    the reads do not determine them; where they are ``odd``, they are invalid.
     """
 
     rule: StackedRule
@@ -53,7 +53,10 @@ class StackedWords:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StackedOutcomes:
-    """What is not kept: the choices' places among the ``words``; no answers where these are odd."""
+    """The choices that are not kept, as places among the ``words``.
+
+    There are no answers where the words are odd.
+    """
 
     words: StackedWords
     places: Sequence[int]
@@ -94,7 +97,7 @@ def outcomes(
 
 
 def _few(words: StackedWords) -> StackedOutcomes:
-    """What is not kept of few words, each looked at by itself."""
+    """The outcomes of a few words, each evaluated by itself."""
     ends = words.bounds.tolist()
     places: list[int] = []
     answers: list[Answer | None] = []
@@ -115,10 +118,10 @@ def _few(words: StackedWords) -> StackedOutcomes:
 def _first_alike(
     alternatives: Sequence[NDArray[np.intp]], bounds: NDArray[np.intp]
 ) -> NDArray[np.intp]:
-    """For each word the place of the first one that is the same.
+    """For each word the position of the first equal word.
 
-    Words of the letters of all alternatives, which begin and end at ``bounds``. They are told apart
-    by sums of letters with weights, and compared then.
+    A word consists of the letters of all alternatives between two ``bounds``. Words are
+    distinguished by weighted sums of their letters, then compared.
     """
     begins, lengths = bounds[:-1], bounds[1:] - bounds[:-1]
     states = np.arange(bounds[-1]) - begins.repeat(lengths)
@@ -137,13 +140,13 @@ def _first_alike(
 
 
 def _weights(count: int) -> NDArray[np.uint64]:
-    """Odd numbers without a pattern, the powers of one."""
+    """Odd pseudo-random weights: the powers of one number."""
     weights: NDArray[np.uint64] = np.cumprod(np.full(count, ODD), dtype=np.uint64)
     return weights
 
 
 def _joined(answers: Sequence[Answer]) -> Answer:
-    """What several words come to together."""
+    """The combined answer of several words."""
     if len(answers) == 1:
         return answers[0]
     steps = [answer.step for answer in answers if answer.step is not None]
@@ -155,7 +158,7 @@ def _joined(answers: Sequence[Answer]) -> Answer:
 
 
 def _alike(flags: NDArray[np.bool_]) -> Iterator[tuple[NDArray[np.intp], list[int]]]:
-    """Columns with the same flags, and the rows of these."""
+    """Groups of columns that have the same flags, each with the rows that are set."""
     if not flags.any():
         yield np.arange(flags.shape[1]), []
         return
@@ -166,9 +169,9 @@ def _alike(flags: NDArray[np.bool_]) -> Iterator[tuple[NDArray[np.intp], list[in
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Chosen:
-    """Choices of objects of which the same constants are unknown, which may be what is supposed.
+    """Choices of objects with the same unknown constants, which may be supposed to have values.
 
-    ``bounds``, ``spots`` and ``numbers`` are as in ``StackedWords``, but for unknown constants.
+    ``bounds``, ``spots`` and ``numbers`` are as in ``StackedWords``, except at unknown constants.
     """
 
     instances: Instances
@@ -181,12 +184,12 @@ class _Chosen:
 
     @staticmethod
     def of(rule: StackedRule, reader: StackReader, instances: Instances) -> _Chosen:
-        """Some choices, with nothing supposed."""
+        """Some choices, with no supposed values."""
         bounds, spots = instances.spots(rule, reader.stack)
         return _Chosen(instances, bounds, spots, NumbersAt(rule, reader, spots))
 
     def part(self, rule: StackedRule, reader: StackReader, members: NDArray[np.intp]) -> _Chosen:
-        """Some of them."""
+        """Some of the choices."""
         if len(members) == len(self.instances.traces):
             return self
         instances = self.instances.part(members)
@@ -199,7 +202,7 @@ class _Chosen:
 def _by_unknown_constants(
     rule: StackedRule, reader: StackReader, instances: Instances, rulebook: CompiledRulebook
 ) -> Iterator[_Chosen]:
-    """The choices, those together of which the same constants are unknown."""
+    """The choices, grouped by which constants are unknown."""
     chosen = _Chosen.of(rule, reader, instances)
     constants = rule.constants
     if not constants:
@@ -217,9 +220,10 @@ def _by_unknown_constants(
 
 
 def _doubtful_words(rule: StackedRule, reader: StackReader, chosen: _Chosen) -> StackedWords | None:
-    """The words of those choices that are not surely kept, taking each read for itself.
+    """The words of the choices that are not surely kept, judging each read separately.
 
-    What reads may be together is less than that, so there is no need to find it for the others.
+    Reads together allow fewer letters than separately, so for the other choices this need not be
+    found out.
     """
     alternatives = _alternatives(rule, reader, chosen)
     doubtful = np.zeros(len(chosen.instances.traces), dtype=bool)
@@ -234,13 +238,13 @@ def _doubtful_words(rule: StackedRule, reader: StackReader, chosen: _Chosen) -> 
 
 
 _Alternative: TypeAlias = tuple[Mapping[Subject, Value], Sequence[Numbers], NDArray[np.intp]]
-"""What is supposed, and the numbers of reads and of letters."""
+"""The supposed values, and the numbers of reads and of letters."""
 
 
 def _alternatives(
     rule: StackedRule, reader: StackReader, chosen: _Chosen
 ) -> Sequence[_Alternative]:
-    """The letters for all that is supposed, taking each read for itself."""
+    """The letters for all supposed values, judging each read separately."""
     alternatives = []
     for values in chosen.supposed:
         instead = {}
@@ -267,7 +271,7 @@ def _alternatives(
 def _are_surely_kept(
     rule: StackedRule, letters: NDArray[np.intp], bounds: NDArray[np.intp]
 ) -> NDArray[np.bool_]:
-    """For each word whether it is kept, whatever its letters are of those that they may be."""
+    """For each word whether it is kept whichever of its possible letters are the actual ones."""
     n_words = len(bounds) - 1
     if n_words < FEW_WORDS:
         words = [rule.answer_to(letters[i:j]) for i, j in pairwise(bounds.tolist())]
@@ -291,7 +295,7 @@ def _entangled_words(
     chosen: _Chosen,
     alternatives: Sequence[_Alternative],
 ) -> StackedWords:
-    """The words of choices, with what their reads may be together."""
+    """The words of choices, with the letters that their reads allow together."""
     spots = chosen.spots
     odd = _hides_constants(rule, reader, spots)
     if len(chosen.unknown) > 1 and not any(chosen.supposed):
@@ -334,7 +338,7 @@ def _entangled_words(
 
 
 def _hides_constants(rule: StackedRule, reader: StackReader, spots: Spots) -> NDArray[np.bool_]:
-    """Where constants are unknown that sums and counts read, and that nothing is supposed of."""
+    """Where constants are unknown that sums and counts read, with no supposed values."""
     stack = reader.stack
     hidden = np.zeros(len(spots.states), dtype=bool)
     for name in rule.hidden:

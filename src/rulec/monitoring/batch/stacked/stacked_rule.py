@@ -1,4 +1,4 @@
-"""A rule made ready for traces in arrays: its reads, letters, and the letters that do nothing."""
+"""A rule prepared for traces in arrays: its reads, its letters, and the letters without effect."""
 
 from __future__ import annotations
 
@@ -37,39 +37,39 @@ from rulec.vocabulary.partial_values import UNKNOWN
 from rulec.vocabulary.vocabulary_model import values_of
 
 NOBODY = NothingKnown({}, Vocabulary("", {}, {}))
-"""Nothing is known of anybody."""
+"""A state in which nothing is known about any object."""
 
 ReadKeys: TypeAlias = dict[object, int]
-"""Numbers of reads, by what makes them alike, for all rules that are judged together."""
+"""Numbers of reads by what makes them equal, shared by all rules that are judged together."""
 
 MOST_SETS = 1 << 14
-"""Sets of letters that are kept before all are forgotten."""
+"""How many letter sets are kept before all are discarded."""
 
 MOST_BYTES = 1 << 22
-"""Words of so many bytes, whose answers are known, are kept before all are forgotten."""
+"""How many bytes of words with known answers are kept before all are discarded."""
 
 FEW_WORDS = 1 << 5
-"""Fewer words are looked at one by one, and those that are the same not looked for."""
+"""Fewer words are evaluated one by one, without searching for equal ones."""
 
 ODD = np.uint64(0x9E3779B97F4A7C15)
-"""Of the golden ratio's digits, a weight without a pattern."""
+"""A weight without a pattern, from the digits of the golden ratio."""
 
 _MOST_BITS = 63
 _NO_CLASS = 1 << _MOST_BITS
-"""Stands among classes, as bits, for letters that cannot be."""
+"""A bit, beside those of the letter classes, for impossible letters."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StackedRead:
-    """A read, and the digits, as bits, that its numbers stand for; ``unknown`` is any digit.
+    """A read, and the digits, as bits, that its numbers stand for; ``unknown`` means any digit.
 
-    ``variables`` are those of the rule that it is asked of, ``names`` what it depends on. ``count``
-    is what is counted, if it is a count: objects that any variable may stand for, or, if it
-    ``counts_itself``, none but the one that the only variable stands for. Reads with the same
-    ``key`` have the same numbers, those with the same ``digits_key`` the same digits, too;
-    ``ready`` are the thresholds of a number. What ``is_composed`` is computed of several values of
-    an object: it is a sum, or counts itself. ``of_counts`` remembers the digits of a count by the
-    values that its ``names`` have anywhere, as bits, ``of_met`` those of a signal by its own.
+    ``variables`` are the rule's variables that it is asked about, ``names`` what it depends on.
+    ``count`` is the counted condition, if it is a count: of objects that any variable may stand for
+    or, if it ``counts_itself``, of only the object that its one variable stands for. Reads with the
+    same ``key`` have the same numbers; those with the same ``digits_key`` also the same digits.
+    ``ready`` are the thresholds of a number. A read that ``is_composed`` depends on several values
+    of an object: it is a sum, or counts itself. ``of_counts`` caches the digits of a count by the
+    values of its ``names`` anywhere, as bits; ``of_met`` those of a signal by its own values.
     """
 
     read: Read | NumberRead
@@ -103,19 +103,19 @@ class StackedRead:
 
     @property
     def counts_itself(self) -> bool:
-        """Whether only the object that it is asked of may count."""
+        """Whether only the object that it is asked about can count."""
         return self.count is not None and bool(self.variables)
 
 
 class StackedRule:
-    """A rule with its machine for words of sets of letters.
+    """A rule with its machine for words of letter sets.
 
-    ``facts`` are those that have to do with what it reads, ``in_facts`` the names of which they
-    speak, ``names`` these and those that it reads.
-    ``entangled`` are its entangled reads, if its own objects alone decide what these may be, and
-    ``related`` the places of all reads that may have to do with each other. ``constants`` are those
-    of reads of what never changes, ``hidden`` the names of such in sums and counts.
-    ``counts_everywhere``: it counts objects in all states, whatever its own are.
+    ``facts`` are the axioms related to what it reads, ``in_facts`` the names in them, and ``names``
+    these plus the names that it reads. ``entangled`` are its entangled reads, if its own objects
+    alone determine what these may be; ``related`` are the places of all reads that may depend on
+    each other. ``constants`` are those of reads of constants, ``hidden`` the names of constants in
+    sums and counts. ``counts_everywhere``: it counts objects in all states, whichever its own
+    objects are.
     """
 
     def __init__(
@@ -175,9 +175,9 @@ class StackedRule:
     def suppositions(
         self, places: tuple[int, ...], rulebook: CompiledRulebook
     ) -> tuple[Sequence[Mapping[Subject, Value]], bool]:
-        """What constants, of which nothing is known, may be together, by the reads of them.
+        """The possible joint values of unknown constants, by the reads of them.
 
-        Second is whether each of these is possible.
+        The second item says whether each of them is possible.
         """
         if not places:
             return ({},), True
@@ -188,9 +188,9 @@ class StackedRule:
         return self._supposed[places]
 
     def reads_among(self, everybody: Mapping[str, str]) -> EntangledReads:
-        """The entangled reads of a rule without variables, where these objects may be there.
+        """The entangled reads of a rule without variables, if these objects may be present.
 
-        Of others it may be asked later on, so they are all those of whom it has been.
+        Later calls may ask about other objects, so the reads cover all objects asked about so far.
         """
         if self._crowd is None or not everybody.keys() <= self._everybody.keys():
             self._everybody |= everybody
@@ -202,14 +202,14 @@ class StackedRule:
         return LetterSets(self.machine.classes.diagram, [read.meanings for read in self.reads])
 
     def forget_many(self) -> None:
-        """Forget the sets that have been met, if they are many; their numbers are no more."""
+        """Discard the known letter sets if there are many; their numbers become invalid."""
         if len(self.letters.sets) > MOST_SETS:
             self.letters, self._answers, self._words = self._no_letters(), {}, {}
             self._busy_flags = np.zeros(0, dtype=bool)
             self._class_bits = np.zeros(0, dtype=np.uint64)
 
     def busy_flags(self) -> NDArray[np.bool_]:
-        """Whether each set of letters that has been met might do something: it is not idle."""
+        """For each known letter set whether it may have an effect, that is, is not idle."""
         sets = self.letters.sets
         if len(self._busy_flags) < len(sets):
             more = [not self.machine.idle.of_classes(x) for x in sets[len(self._busy_flags) :]]
@@ -217,10 +217,10 @@ class StackedRule:
         return self._busy_flags
 
     def are_surely_kept(self, letters: Numbers, begins: NDArray[np.intp]) -> NDArray[np.bool_]:
-        """Whether words are kept by what letters they have alone, and by the last one.
+        """Whether words are kept, judged only by their sets of letters and by their last letter.
 
-        Each begins at one of these places, and none is empty. Letters that facts exclude, and those
-        of machines with very many classes, tell nothing.
+        Each word begins at one of these positions, and none is empty. Letters that axioms exclude,
+        and those of machines with very many classes, decide nothing.
         """
         if not isinstance(letters, np.ndarray):
             classes = self.letters.sets[letters]
@@ -246,13 +246,13 @@ class StackedRule:
         return np.array([self._keep(*key) for key in keys], dtype=bool)[which]
 
     def _keep(self, every: int, last: int) -> bool:
-        """Whether all words of these classes are kept, as bits, that end with one of the last."""
+        """Whether all words of these classes, as bits, that end with one of ``last`` are kept."""
         return every < _NO_CLASS and self.machine.is_surely_kept(every, last)
 
     def answer_to(self, letters: NDArray[np.intp]) -> Answer | None:
-        """What a word comes to, as the number of a letter set for each state.
+        """The answer for a word, given as the number of a letter set for each state.
 
-        None if facts exclude one of them.
+        None if axioms exclude one of them.
         """
         key = letters.tobytes()
         if key in self._words:
@@ -266,7 +266,7 @@ class StackedRule:
         return answer
 
     def answer(self, rows: NDArray[np.intp]) -> Answer:
-        """What a word comes to: rows of the number of a letter set, and for how long it stays."""
+        """The answer for a word, given as rows of a letter set's number and its repetitions."""
         key = rows.tobytes()
         answer = self._answers.get(key)
         if answer is None:
@@ -287,9 +287,10 @@ class StackedRule:
 def different_pairs(
     left: NDArray[np.uint64], right: NDArray[np.uint64]
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """The places of one example of each different pair, and for each pair which example it is.
+    """The position of one example of each distinct pair, and for each pair its example's number.
 
-    Pairs are told apart by a weighted sum; where that is the same of two, each is its own example.
+    Pairs are compared by a weighted sum; where two differ but have the same sum, each is its own
+    example.
     """
     codes = left * ODD + right
     different = distinct(codes)
@@ -306,7 +307,7 @@ def different_pairs(
 def stretches(
     letters: NDArray[np.intp], bounds: NDArray[np.intp]
 ) -> tuple[NDArray[np.intp], list[int]]:
-    """The letters of all words with how often each stays, in rows, and where each word has its own.
+    """The letters of all words as rows of letter and repetitions, and each word's bounds in them.
 
     Words begin and end at ``bounds``.
     """
@@ -352,7 +353,7 @@ def _stacked(read: Read | NumberRead, vocabulary: Vocabulary, keys: ReadKeys) ->
 
 
 def _related(reads: Sequence[StackedRead], in_facts: frozenset[str]) -> tuple[int, ...]:
-    """Reads that count, or share names with others or with facts."""
+    """Reads that are counts, or share names with other reads or with axioms."""
     return tuple(
         n
         for n, read in enumerate(reads)
@@ -363,7 +364,7 @@ def _related(reads: Sequence[StackedRead], in_facts: frozenset[str]) -> tuple[in
 
 
 def _is_simple(rule: StackedRule) -> bool:
-    """Whether the rule's reads are of the kinds that can be read from arrays."""
+    """Whether all of the rule's reads are of kinds that can be read from arrays."""
     return (
         len(rule.variables) <= 2
         and all(map(is_of_one, rule.facts))
@@ -373,7 +374,7 @@ def _is_simple(rule: StackedRule) -> bool:
 
 
 def _is_value(read: StackedRead) -> bool:
-    """Whether a read is a single value, no sum or count."""
+    """Whether a read is a single value, not a sum or a count."""
     return isinstance(read.read, Read) or scale(read.read).quantity is not None
 
 
@@ -390,7 +391,7 @@ def _is_simple_read(read: StackedRead, rule: StackedRule) -> bool:
 
 
 def _counts_no_stranger(count: ltl.Count, variable: str) -> bool:
-    """Whether nobody counts but the object that the variable stands for."""
+    """Whether nothing counts except the object that the variable stands for."""
     # No name of a variable has a blank.
     binding = {variable: variable, count.variable: "a stranger"}
     return holds(count.body, binding, NOBODY) is False

@@ -1,7 +1,7 @@
-"""Verification of traces in arrays, with verdicts equal to ``verify``'s on their states.
+"""Verification of traces in arrays, with the same verdicts as ``verify`` on their states.
 
-Whatever is odd about a trace, or about a rule for some objects, is left to ``verify``, and so are
-the rules that arrays cannot be read for.
+Any irregular trace, or rule for some objects, is left to ``verify``, as are rules that cannot be
+evaluated on arrays.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def verify_arrays(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> 
 
 
 def answer_to(judged: JudgedTrace | Answer, trace: TraceArrays) -> Answer:
-    """The answer to a trace that has been judged."""
+    """The answer for a trace that has been judged."""
     if isinstance(judged, JudgedTrace):
         return judged.findings.verdict(judged.number, trace)
     return judged
@@ -65,7 +65,7 @@ def answer_to(judged: JudgedTrace | Answer, trace: TraceArrays) -> Answer:
 def judge_arrays(
     traces: Sequence[TraceArrays], rulebook: CompiledRulebook
 ) -> list[JudgedTrace | Answer]:
-    """The same, but for verdicts that can be made when somebody asks for them."""
+    """The same as ``verify_arrays``, but verdicts are built on demand by ``answer_to``."""
     answers: list[JudgedTrace | Answer | None] = [None] * len(traces)
     groups: dict[object, list[int]] = {}
     known: dict[int, frozenset[str]] = {}
@@ -87,7 +87,7 @@ def judge_arrays(
 
 
 def _names(columns: Mapping[str, Array], known: dict[int, frozenset[str]]) -> frozenset[str]:
-    """The names of columns, which are ``known`` of those that several traces share."""
+    """The names of columns; ``known`` caches those of columns that several traces share."""
     if not isinstance(columns, SharedColumns):
         return frozenset(columns)
     key = id(columns.columns)
@@ -118,7 +118,7 @@ def _by_its_states(trace: TraceArrays, rulebook: CompiledRulebook) -> Answer:
 
 
 class _StackedRun:
-    """The judgement of traces that say the same names. Raises RulecError, UnencodableError."""
+    """The judgement of traces with the same names. Raises RulecError, UnencodableError."""
 
     def __init__(self, traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> None:
         example = traces[0]
@@ -144,7 +144,7 @@ class _StackedRun:
         self._odd: set[int] = set()
 
     def judged(self) -> list[JudgedTrace | Answer]:
-        """The traces with what has been found, and the answers to odd ones."""
+        """The judged traces with their findings, and the answers for irregular ones."""
         simple = self._ready.simple_rules(frozenset(self._stack.untold(self._ready.names)))
         self._odd |= contradicted(simple.facts, self._reader)
         busy = simple.busy(self._reader)
@@ -189,7 +189,7 @@ class _StackedRun:
             self._add_odd(int(instances.traces[place]), rule, (rule_number, *about))
 
     def _add_odd(self, number: int, rule: CompiledRule, place: Place) -> None:
-        """Add what a choice of objects comes to of which arrays do not tell."""
+        """Add the outcome for a choice of objects that arrays cannot decide."""
         if number in self._odd:
             return
         binding = self._findings.binding(rule, place[1:])
@@ -216,8 +216,8 @@ class _StackedRun:
 class _ReadyRules:
     """What is the same for all traces of one kind.
 
-    ``names`` are those of the ``rules`` that are simple, ``defaults`` what they take where nothing
-    is said, as far as it has been asked for.
+    ``names`` are those of the ``rules`` that are simple, ``defaults`` the default values looked up
+    so far.
     """
 
     judged: JudgedRules
@@ -227,7 +227,7 @@ class _ReadyRules:
     _simple: dict[frozenset[str], SimpleRules] = field(default_factory=dict, init=False)
 
     def simple_rules(self, untold: frozenset[str]) -> SimpleRules:
-        """The rules that arrays can be read for, where some names cannot; mostly the same again."""
+        """The rules that can be evaluated on arrays if some names are missing, usually all."""
         known = self._simple.get(untold)
         if known is None:
             known = self._simple[untold] = SimpleRules.of(

@@ -1,1 +1,1 @@
-"""Verification of many traces of which not all is known."""
+"""Verification of many traces with unknown values."""

@@ -1,4 +1,4 @@
-"""Reader of columns of which some values are not known: what the digits of reads may be."""
+"""Reader of columns with unknown values: the digits that reads may have."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ from rulec.vocabulary.vocabulary_model import values_of
 def meanings_of(read: Read | NumberRead, vocabulary: Vocabulary) -> Sequence[int]:
     """The digits, as bits, that each number of a read stands for.
 
-    A value has the number of its place among those declared, and what is unknown the one after
-    these. A number whose digit is between two has ``lowest * read.size + highest``.
+    A value's number is its place among those declared; the next number stands for unknown. A number
+    whose digit lies between two is encoded as ``lowest * read.size + highest``.
     """
     every = (1 << read.size) - 1
     if isinstance(read, Read):
@@ -42,7 +42,10 @@ def meanings_of(read: Read | NumberRead, vocabulary: Vocabulary) -> Sequence[int
 
 
 def quantity(read: NumberRead) -> Key:
-    """The quantity that a number is, with its variables; no name for a sum or a count."""
+    """The quantity that a number read consists of, with its variables.
+
+    No name for a sum or count.
+    """
     term = scale(read).quantity
     return ("", ()) if term is None else (term.name, term.arguments)
 
@@ -50,7 +53,7 @@ def quantity(read: NumberRead) -> Key:
 def number_of_value(
     read: Read | NumberRead, value: Value, vocabulary: Vocabulary
 ) -> tuple[int, int]:
-    """The number of what is unknown, and that of a value."""
+    """The number that stands for unknown, and that of a value."""
     if isinstance(read, NumberRead):
         digit = read.digit(exact(value))  # type: ignore[arg-type]
         return read.size - 1, digit * (read.size + 1)
@@ -94,9 +97,9 @@ class PartialReader(ColumnReader):
         return numbers if unknown is None else np.where(unknown, n_values, numbers)
 
     def codes(self, key: Key, regions: Mapping[str, NumberRegions]) -> tuple[Numbers, int] | None:
-        """Numbers of what states say of a name, and how many there may be.
+        """Numbers for the values of a name in each state, and how many numbers there may be.
 
-        Of quantities it is the region, or the first and the last; None if one has none.
+        For quantities these are regions, or the first and last region; None if a value has none.
         """
         name, declaration = key[0], self._vocabulary.declarations[key[0]]
         if key not in self.columns.values:
@@ -113,7 +116,7 @@ class PartialReader(ColumnReader):
     def code_of_value(
         self, key: Key, value: Value, regions: Mapping[str, NumberRegions]
     ) -> tuple[int, int]:
-        """The number that ``codes`` has for what is unknown, and that for a value."""
+        """The number that ``codes`` uses for unknown, and that for a value."""
         declaration = self._vocabulary.declarations[key[0]]
         if isinstance(declaration, Quantity):
             own = regions[key[0]]
@@ -129,7 +132,7 @@ class PartialReader(ColumnReader):
         return codes if unknown is None else np.where(unknown, regions.size - 1, codes)
 
     def values_at(self, key: Key, places: NDArray[np.intp]) -> list[PartialValue | None]:
-        """What states at some places say of a name."""
+        """The values of a name in the states at some places."""
         declaration, columns = self._vocabulary.declarations[key[0]], self.columns
         if key not in columns.values:
             return [declaration.default] * len(places)
@@ -142,7 +145,7 @@ class PartialReader(ColumnReader):
         )
 
     def is_dark(self, key: Key) -> bool:
-        """Whether no state says a name, and its default is unknown."""
+        """Whether no state contains a name and its default is unknown."""
         default: object = self._vocabulary.declarations[key[0]].default
         return key not in self.columns.values and default is UNKNOWN
 
@@ -153,7 +156,7 @@ class PartialReader(ColumnReader):
     def _bounds(
         self, term: ltl.Term, bound: ObjectBinding
     ) -> tuple[Array | float, Array | float, Mask | None]:
-        """The least and the most that a term may be, and where it is unknown."""
+        """The least and greatest value of a term, and where it is unknown."""
         if isinstance(term, ltl.Count):
             total, undecided = self.count(term, bound)
             high = total
@@ -169,7 +172,7 @@ class PartialReader(ColumnReader):
         return low, self.columns.upper.get(key, low), self.columns.unknown.get(key)
 
     def _check_given(self, body: ltl.Formula, bound: ObjectBinding) -> None:
-        """Raises NotGivenError if it might be because a value is missing that it is not known."""
+        """Raise NotGivenError if a condition may be unknown because a value is missing."""
         for read in reads_in(body):
             if isinstance(read, ltl.Count):
                 raise NotGivenError("", ())
@@ -178,7 +181,7 @@ class PartialReader(ColumnReader):
                 self.given(*key)
 
     def atom(self, name: str, items: tuple[str, ...], expected: str | None) -> Truth:
-        """Three-valued truth of an atom in each state."""
+        """The three-valued truth of an atom in each state."""
         if self.is_dark((name, items)):
             return UNKNOWN_TRUTH
         truth, unknown = (

@@ -16,13 +16,13 @@ from rulec.monitoring.uncertainty.state_letters.letter_set_arrays import LetterS
 from rulec.monitoring.uncertainty.uncertain_machine import UncertainMachine
 
 MOST_ENTRIES = 1 << 18
-"""Sets of states times sets of letters; a larger machine is not made."""
+"""If there are more sets of states times sets of letters, no machine is built."""
 
 _MOST_KINDS = 1 << 6
-"""Kinds of codes of which letters are kept before all are forgotten."""
+"""How many kinds of codes keep their letters before all are discarded."""
 
 POSSIBLE, CERTAIN = 1, 2
-"""Bits of a verdict: some completion is not violated, every one is kept."""
+"""Bits of a verdict: some completion is not violated; every completion is kept."""
 
 _LOST = -1
 """Stands for all sets of states from which every word is violated."""
@@ -30,9 +30,9 @@ _LOST = -1
 
 @dataclass(frozen=True, slots=True)
 class SetTable:
-    """A machine by numbers of letter sets; ``impossible`` are those that no state can have.
+    """A machine over numbers of letter sets; ``impossible`` are those that no state can have.
 
-    ``joint`` has the verdicts ``POSSIBLE`` and ``CERTAIN``, ``possible`` the first of these alone.
+    ``joint`` has the verdicts ``POSSIBLE`` and ``CERTAIN``, ``possible`` only the first of these.
     """
 
     joint: JointMachine
@@ -41,7 +41,7 @@ class SetTable:
 
 
 class SetTables:
-    """The set machine of a rule for all letter sets that have been met."""
+    """The set machine of a rule for all letter sets met so far."""
 
     def __init__(self, machine: UncertainMachine, meanings: Sequence[Sequence[int]]) -> None:
         self.machine = machine
@@ -58,7 +58,7 @@ class SetTables:
         return [own[number] for number in numbers[places].tolist()]
 
     def by_codes(self, about: object) -> dict[object, int]:
-        """The numbers of letters that have been found by codes, of one kind each."""
+        """The numbers of letter sets found by codes, for one kind of codes."""
         known = self._by_codes.setdefault(about, {})
         if len(self._by_codes) > _MOST_KINDS or len(known) > MOST_ENTRIES:
             self._by_codes.clear()
@@ -70,7 +70,10 @@ class SetTables:
         return len(self._meanings[read])
 
     def now(self) -> SetTable | None:
-        """The machine for all sets met; None if it gets too large, and they are forgotten."""
+        """The machine for all sets met so far.
+
+        None if it gets too large, and then they are discarded.
+        """
         sets = self.letters.sets
         if self._known[0] != len(sets):
             self._known = len(sets), set_table(self.machine.monitor, sets)

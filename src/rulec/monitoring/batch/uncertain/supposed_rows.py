@@ -1,4 +1,4 @@
-"""Rows of traces: those of which constants are unknown once for each choice of their values."""
+"""Rows of traces; a trace with unknown constants has a row for each choice of their values."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ NOT_SUPPOSED = -1
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SupposedValues:
-    """What is supposed of a constant: the place among ``values`` for each row, or less than 0."""
+    """The supposed value of a constant, as a place among ``values`` for each row.
+
+    Negative for none.
+    """
 
     values: Sequence[Value]
     of_rows: Places
@@ -32,11 +35,11 @@ class SupposedValues:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SupposedRows:
-    """Rows in the order of their traces, each of which has one or more.
+    """Rows in the order of their traces; each trace has one or more.
 
     ``begins`` is the first row of each trace, ``traces`` the trace of each row. For each state of
-    rows, in their own ``layout``, ``rows`` has the row, and ``states`` the state of traces. These
-    are None where every trace is a row.
+    the rows, in their own ``layout``, ``rows`` has its row and ``states`` its state among those of
+    the traces. These are None if every trace has exactly one row.
     """
 
     layout: Layout
@@ -47,21 +50,21 @@ class SupposedRows:
     supposed: Mapping[Subject, SupposedValues] = field(default_factory=dict)
 
     def numbers(self, of_traces: Numbers) -> Numbers:
-        """Numbers of the states of traces in the states of rows."""
+        """Numbers of the traces' states, for the states of rows."""
         if self.states is None or not isinstance(of_traces, np.ndarray) or not of_traces.ndim:
             return of_traces
         return of_traces.take(self.states)
 
     def flags(self, of_traces: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Flags of the states of traces in the states of rows."""
+        """Flags of the traces' states, for the states of rows."""
         return of_traces if self.states is None else of_traces.take(self.states)
 
     def places(self, places: Places) -> Places:
-        """The states of traces that stand at these places of rows."""
+        """The states of traces for these places in rows."""
         return places if self.states is None else self.states.take(places)
 
     def in_rows(self, of_traces: NDArray[Any]) -> NDArray[Any]:
-        """What each trace has, for each row."""
+        """A value of each trace, for each row."""
         return of_traces if self.traces is None else of_traces.take(self.traces)
 
     def in_any(self, flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -79,9 +82,9 @@ class SupposedRows:
         return traces
 
     def where_supposed(self, subject: Subject) -> tuple[Sequence[Value], Places] | None:
-        """What is supposed of a constant: values, and for each state the place of its one.
+        """The supposed values of a constant, and for each state the place of its value.
 
-        That is less than 0 where nothing is supposed. None if it is so everywhere.
+        The place is negative where nothing is supposed. None if nothing is supposed anywhere.
         """
         own = self.supposed.get(subject)
         if own is None or self.rows is None:
@@ -108,7 +111,7 @@ def supposed_rows(
     unknown: Mapping[Subject, NDArray[np.bool_]],
     suppose: Callable[[Sequence[Subject]], Sequence[Mapping[Subject, Value]]],
 ) -> SupposedRows:
-    """The rows of traces in which some constants are unknown, of which something is supposed."""
+    """The rows of traces, with a row for each supposed choice of values of unknown constants."""
     patterns = alike_places(unknown.values(), layout.n_traces)
     _, examples = np.unique(patterns, return_index=True)
     subjects = [

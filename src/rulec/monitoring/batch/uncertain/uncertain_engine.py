@@ -1,4 +1,4 @@
-"""Batch engine where not all is known: all rules and bindings on traces of one shape."""
+"""The batch engine for unknown values: all rules and bindings on traces of one shape."""
 
 from __future__ import annotations
 
@@ -55,15 +55,15 @@ _RuleReads: TypeAlias = tuple[RuleLetters, SupposedRows, Sequence[Numbers]]
 """A rule's letters, and the numbers of its reads in the states of rows."""
 
 _MOST_CODES = 1 << 62
-"""Whole numbers of NumPy are large enough for so many combinations."""
+"""The most combinations that NumPy's integers can number."""
 
 
 @dataclass(frozen=True, slots=True)
 class UncertainOutcomes:
-    """What one rule and binding come to: places of traces in the layout's order.
+    """The outcomes of one rule and binding: places of traces in the layout's order.
 
-    ``violated`` are by all completions, with the states after which they are lost, -1 for none;
-    ``open`` are neither violated nor kept, ``unread`` those of which this cannot be told.
+    ``violated`` are violated by all completions, with the states after which they are lost (-1 for
+    none); ``open`` are neither violated nor kept; for ``unread`` this cannot be decided here.
     """
 
     binding: RuleBinding
@@ -78,7 +78,7 @@ def uncertain_outcomes(
 ) -> Iterator[UncertainOutcomes]:
     """Outcomes in the order of rules and objects.
 
-    Raises NotGivenError where a rule needs what is neither given nor has a default.
+    Raises NotGivenError if a rule needs a value that is not given and has no default.
     """
     engine = _Engine(columns, rulebook, judged.vocabulary)
     machines = {rule.name: machine for rule, machine in judged.machines}
@@ -102,7 +102,7 @@ class _Engine:
         self._rows: dict[object, SupposedRows] = {}
 
     def outcomes(self, binding: RuleBinding, machine: UncertainMachine) -> UncertainOutcomes:
-        """What a rule comes to for some objects."""
+        """The outcomes of a rule for some objects."""
         machines = self._set_tables(binding.rule, machine)
         rows, unread = self._rows_of(binding, machine)
         word = self._letters(binding, machines, rows)
@@ -133,7 +133,7 @@ class _Engine:
         return self._machines[rule.name]
 
     def _letters(self, binding: RuleBinding, machines: SetTables, rows: SupposedRows) -> Array:
-        """The number of the set of letters in each state of rows."""
+        """The number of the letter set in each state of rows."""
         n_states = rows.layout.n_states
         numbers = [self._numbers(read, binding, rows) for read in binding.rule.machine.reads]
         letters = np.broadcast_to(np.asarray(machines.letters.numbers(numbers)), (n_states,))
@@ -153,9 +153,9 @@ class _Engine:
     def _joint_letters(
         self, binding: RuleBinding, machines: SetTables, rule_reads: _RuleReads, places: Places
     ) -> list[int]:
-        """The number of the set of letters at each place, where reads have to do with each other.
+        """The number of the letter set at each place, where reads depend on each other.
 
-        It is found once for all that say the same.
+        It is computed once for all places with the same values.
         """
         own, rows, numbers = rule_reads
 
@@ -181,9 +181,11 @@ class _Engine:
     def _codes(
         self, binding: RuleBinding, machines: SetTables, rule_reads: _RuleReads, places: Places
     ) -> tuple[object, Sequence[object]] | None:
-        """A kind of codes, and codes of each place that are equal where states say the same.
+        """A kind of codes, and a code for each place.
 
-        None if that cannot be told by a few numbers.
+        Codes are equal where states have equal values.
+
+        None if a few numbers do not suffice for this.
         """
         own, rows, numbers = rule_reads
         entangled, kinds = own.entangled, []
@@ -209,7 +211,7 @@ class _Engine:
         return tuple(kinds), _joined_codes(columns, places)
 
     def _rule_letters(self, binding: RuleBinding, machine: UncertainMachine) -> RuleLetters:
-        """The letters of a rule that does not read its values apart from each other."""
+        """The letters of a rule, with all its reads taken together."""
         return letters_of_rule(
             *(binding.rule, machine.classes, binding.objects, self._rulebook),
             everybody=self._everybody,
@@ -242,7 +244,7 @@ class _Engine:
     def _are_entangled(
         self, binding: RuleBinding, own: RuleLetters, rows: SupposedRows
     ) -> NDArray[np.bool_]:
-        """The states of rows in which unknown values have to do with each other."""
+        """The states of rows in which unknown values depend on each other."""
         columns = self._columns
         entangled_states = np.zeros(columns.layout.n_states, dtype=bool)
         reads = own.entangled
@@ -280,7 +282,7 @@ class _Engine:
     def _rows_of(
         self, binding: RuleBinding, machine: UncertainMachine
     ) -> tuple[SupposedRows, Places]:
-        """Each trace once for all that its unknown constants may be; which to look at by itself."""
+        """The rows for all choices of unknown constants, and the traces to be judged one by one."""
         layout = self._columns.layout
         unknown, odd = self._unknown_constants(binding)
         if not unknown:
@@ -317,7 +319,7 @@ class _Engine:
     def _unknown_constants(
         self, binding: RuleBinding
     ) -> tuple[Mapping[Subject, NDArray[np.bool_]], NDArray[np.bool_]]:
-        """The traces in which each constant is unknown, and those to look at one by one."""
+        """The traces in which each constant is unknown, and the traces to be judged one by one."""
         columns, layout = self._columns, self._columns.layout
         unknown_in: dict[Subject, NDArray[np.bool_]] = {}
         odd = np.zeros(layout.n_traces, dtype=bool)
@@ -335,7 +337,7 @@ class _Engine:
 
 
 def _joined_codes(columns: Sequence[tuple[Numbers, int]], places: Places) -> Sequence[object]:
-    """One number, or several, for what columns with so many numbers each say at some places."""
+    """One or several numbers for the joint values of columns at some places."""
     words, codes, size = [], np.zeros(len(places), dtype=np.int64), 1
     for column, width in columns:
         if size * width > _MOST_CODES:
@@ -349,7 +351,7 @@ def _joined_codes(columns: Sequence[tuple[Numbers, int]], places: Places) -> Seq
 
 
 def _subject_of(read: Read | NumberRead, binding: RuleBinding) -> Subject:
-    """The value that a read is of a binding's objects; none for a sum or a count."""
+    """The value of a binding's objects that a read consists of; none for a sum or a count."""
     name, variables = (read.name, read.variables) if isinstance(read, Read) else quantity(read)
     return name, tuple([binding.objects[variable] for variable in variables])
 
@@ -362,7 +364,7 @@ def _on_stretch(binding: RuleBinding, layout: Layout, places: Places) -> Places:
 
 
 def _impossible(binding: RuleBinding, tables: SetTable, rows: SupposedRows, word: Array) -> Places:
-    """The traces of which some state can have no letter, whatever is supposed."""
+    """The traces with a state that can have no letter, whatever is supposed."""
     if not tables.impossible:
         return np.empty(0, dtype=np.intp)
     wrong = np.flatnonzero(np.isin(word, list(tables.impossible)))
@@ -375,7 +377,10 @@ def _lost_at(
     read: tuple[SupposedRows, Array],
     accepted: NDArray[np.bool_],
 ) -> NDArray[np.int64]:
-    """The states after which violating traces are lost in all rows; -1 where in one never."""
+    """The states after which violating traces are lost in all rows.
+
+    -1 if in some row they never are.
+    """
     rows, word = read
     if accepted.all():
         return np.empty(0, dtype=np.int64)

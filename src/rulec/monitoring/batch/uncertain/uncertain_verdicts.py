@@ -1,4 +1,4 @@
-"""Verdicts on many traces of one shape of which not all is known."""
+"""Verdicts on many traces of one shape with unknown values."""
 
 from __future__ import annotations
 
@@ -24,9 +24,11 @@ def uncertain_verdicts(
     rulebook: CompiledRulebook,
     judged: JudgedRules,
 ) -> Iterator[Verdict | None]:
-    """A verdict for each trace, in the layout's order; None where one has to look closer.
+    """A verdict for each trace, in the layout's order.
 
-    Raises NotGivenError where a rule needs what is neither given nor has a default.
+    None where the trace must be judged by itself.
+
+    Raises NotGivenError if a rule needs a value that is not given and has no default.
     """
     unread: set[int] = set()
     violations: dict[int, list[Violation]] = {}
@@ -74,7 +76,7 @@ def uncertain_verdicts(
 
 
 def _are_partial(columns: TraceColumns) -> NDArray[np.bool_]:
-    """Whether anything of each trace is not known."""
+    """Whether each trace has an unknown value."""
     layout = columns.layout
     states = np.zeros(layout.n_states, dtype=bool)
     for unknown in columns.unknown.values():
@@ -87,7 +89,7 @@ def _are_partial(columns: TraceColumns) -> NDArray[np.bool_]:
 
 
 class _LaterReasons:
-    """Why verdicts on a trace are open, found for each of them when it is first asked for."""
+    """Why verdicts on a trace are open, computed for each verdict on demand."""
 
     def __init__(self, trace: Trace, rulebook: CompiledRulebook) -> None:
         self._trace = trace
