@@ -1,4 +1,4 @@
-"""Values that a state omits and facts imply."""
+"""Values that a state omits and that axioms imply."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def with_derived_values(
 
 
 def with_implied_values(trace: Trace, vocabulary: Vocabulary) -> Trace:
-    """The trace of valid states that say, too, what follows by ``Vocabulary.implied``."""
+    """The trace of valid states, extended by what follows by ``Vocabulary.implied``."""
     if not vocabulary.implied:
         return trace
     states = tuple([with_implied_signals(state, vocabulary) for state in trace.states])
@@ -31,7 +31,7 @@ def with_implied_values(trace: Trace, vocabulary: Vocabulary) -> Trace:
 
 
 def with_implied_in_graph(graph: TraceGraph, vocabulary: Vocabulary) -> TraceGraph:
-    """The graph of valid states that say, too, what follows by ``Vocabulary.implied``."""
+    """The graph of valid states, extended by what follows by ``Vocabulary.implied``."""
     if not vocabulary.implied:
         return graph
     layers = [[with_implied_signals(state, vocabulary) for state in own] for own in graph.states]
@@ -39,9 +39,9 @@ def with_implied_in_graph(graph: TraceGraph, vocabulary: Vocabulary) -> TraceGra
 
 
 def with_implied_signals(state: State, vocabulary: Vocabulary) -> State:
-    """The state, and each signal that it does not mention and that follows from a true one.
+    """The state, extended by each signal that it omits and that follows from a true one.
 
-    What it says otherwise it goes on saying: such a state contradicts the fact.
+    Values in the state are kept: if one contradicts an axiom, the state still does.
     """
     implied = vocabulary.implied
     if implied.keys().isdisjoint(state):
@@ -62,7 +62,7 @@ def with_implied_signals(state: State, vocabulary: Vocabulary) -> State:
 
 
 def _true_of(given: Any, depth: int) -> list[tuple[str, ...]]:
-    """The objects of which a signal is true."""
+    """The objects for which a signal is true."""
     if depth == 1 and type(given) is dict:
         return [(item,) for item, value in given.items() if value is True]
     return [items for items, value in values_in(given, depth) if value is True]

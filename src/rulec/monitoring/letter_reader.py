@@ -17,16 +17,16 @@ from rulec.monitoring.state_view import StateView
 from rulec.trace import State, Value
 
 Digits = int | list[int]
-"""The digit of one read in the letter of every state; a number if it is one for all."""
+"""The digits of one read in all states; a single number if they are equal."""
 
 
 @dataclass(eq=False)
 class LetterReader:
-    """A reader of states that have passed ``check_state``, column by column.
+    """A reader, column by column, of states that have passed ``check_state``.
 
-    The digits of some objects are looked up once, whatever rules and bindings ask for them.
-    ``where`` names a state in messages, ``place`` is where they were read. ``objects`` and
-    ``present`` are a trace's.
+    The digits for some objects are computed once for all rules and bindings. ``where`` names a
+    state in messages, ``place`` is where the states were read. ``objects`` and ``present`` are
+    those of a trace.
     """
 
     states: Sequence[State]
@@ -56,7 +56,8 @@ class LetterReader:
     ) -> tuple[int, ...]:
         """The letter classes of states ``first`` to ``last`` (inclusive).
 
-        Raises RulecError R0504 if a value without default is missing, R0508 if a state cannot be.
+        Raises RulecError R0504 if a value without default is missing, R0508 if a state is
+        impossible.
         """
         machine = rule.machine
         same, stride = 0, 1
@@ -119,7 +120,7 @@ class LetterReader:
     def _values_of(
         self, name: str, items: tuple[str, ...], first: int, last: int, rule: str
     ) -> list[Value]:
-        """Values of a name by state; a single one if constant."""
+        """The values of a name by state; a single one if it is constant."""
         key = (name, items, first, last)
         if key not in self._values:
             numbers = self._numbers_of((name,), first, last)
@@ -139,7 +140,7 @@ class LetterReader:
         return self._given[name]
 
     def _numbers_of(self, names: Sequence[str], first: int, last: int) -> range:
-        """Indices of the states to read; the first if all are identical."""
+        """The indices of the states to read; only the first if all states are identical."""
         if self.present or not all(self._is_constant(name) for name in names):
             return range(first, last + 1)
         return range(first, last + 1)[:1]
@@ -163,7 +164,7 @@ class LetterReader:
 def missing_value(
     subject: tuple[str, tuple[str, ...]], where: str, rule: str, place: SourceLocation | None
 ) -> RulecError:
-    """The error (R0504) about a state that lacks the value of a name, asked of objects."""
+    """The error (R0504) about a state that lacks the value of a name for some objects."""
     name, items = subject
     of = f" of `{', '.join(map(str, items))}`" if items else ""  # a program may count its objects
     return MISSING_VALUE.error(
@@ -176,7 +177,7 @@ def missing_value(
 def present_in(
     number: int, objects: Mapping[str, str], present: Mapping[str, tuple[int, int]]
 ) -> Mapping[str, str]:
-    """Objects present in a state, with types; ``present`` as in a trace."""
+    """The objects present in a state, with their types; ``present`` is as in a trace."""
     if not present:
         return objects
     return {

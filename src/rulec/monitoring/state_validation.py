@@ -1,7 +1,7 @@
 """Validation of objects and states against a vocabulary.
 
-Without a full answer there is no verdict. ``StateValidator`` first takes a quick look; what does
-not pass it goes to ``check_state``, which knows the rare types and says what is wrong.
+Incomplete or invalid states get no verdict. ``StateValidator`` first does a quick check; states
+that fail it go to ``check_state``, which knows the rare types and reports what is wrong.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval, On
 
 NUMBERS = frozenset({int, float})
 TRUTHS = frozenset({bool})
-"""The plain types of quantities and signals; others, such as a library's, take longer."""
+"""The plain types of signals; checking others, such as a library's types, takes longer."""
 
 _PLAIN = NUMBERS | TRUTHS | {str}
 
@@ -30,7 +30,7 @@ _Look: TypeAlias = Callable[[Any], bool]
 
 
 class StateValidator:
-    """Validator of states with these objects, whose types are known."""
+    """A validator of states with these objects, whose types are known."""
 
     def __init__(self, vocabulary: Vocabulary, objects: Mapping[str, str]) -> None:
         self._vocabulary = vocabulary
@@ -46,7 +46,7 @@ class StateValidator:
     ) -> bool:
         """Check each state as ``check_state`` does; ``where`` names it by its number.
 
-        True if some value is partly known only.
+        Returns whether some value is only partly known.
         """
         looks = self._looks
         for number, state in enumerate(states):
@@ -63,7 +63,7 @@ class StateValidator:
 
 
 class _Looks(dict[str, _Look]):
-    """Quick checks of values by name, compiled on first use; of ``partial`` ones if so."""
+    """Quick checks of values by name, compiled on first use; ``partial`` values may be allowed."""
 
     def __init__(
         self, vocabulary: Vocabulary, objects: Mapping[str, str], *, partial: bool = False
@@ -86,7 +86,7 @@ class _Looks(dict[str, _Look]):
 
 
 def _passes(state: Any, looks: _Looks) -> bool:
-    """Quick check that a state fits; False leaves it open."""
+    """Quick check that a state fits; False means that a full check is needed."""
     try:
         if type(state) is not dict:
             return False
@@ -98,7 +98,7 @@ def _passes(state: Any, looks: _Looks) -> bool:
 def check_objects(
     objects: Mapping[str, str], vocabulary: Vocabulary, place: SourceLocation | None = None
 ) -> None:
-    """Check that the vocabulary knows all objects' types, and that they are not too many.
+    """Check that the vocabulary knows all objects' types, and that there are not too many.
 
     Raises RulecError R0505, R0718.
     """
@@ -116,7 +116,7 @@ def check_objects(
 def check_told(
     told: Iterable[str] | None, vocabulary: Vocabulary, place: SourceLocation | None = None
 ) -> None:
-    """Check that the vocabulary declares all names, values or types told. Raises R0502."""
+    """Check that the vocabulary declares all the names, values or types. Raises R0502."""
     declarations, values = vocabulary.declarations, vocabulary.enumeration_of
     for name in told or ():
         if name not in declarations and name not in values and name not in vocabulary.types:
@@ -128,7 +128,7 @@ def check_told(
 
 
 def has_partial_values(state: Mapping[str, Any]) -> bool:
-    """Tell whether a state has values that are unknown, or intervals."""
+    """Whether a state has values that are unknown, or intervals."""
     for value in state.values():
         kind = type(value)
         if kind in UNKNOWN_TYPES:
@@ -141,7 +141,7 @@ def has_partial_values(state: Mapping[str, Any]) -> bool:
 
 
 def partial_names(states: Iterable[Mapping[str, Any]]) -> set[str]:
-    """The names of which some state has a value that is unknown, or an interval."""
+    """The names with a value, in some state, that is unknown or an interval."""
     names: set[str] = set()
     for state in states:
         for name, value in state.items():
@@ -180,14 +180,17 @@ _TRUTHS_ELSEWHERE: Mapping[str | float, str] = {
     **dict.fromkeys(("True", "TRUE", "true", "T", "yes", 1), "write `true`"),
     **dict.fromkeys(("False", "FALSE", "false", "F", "no", 0), "write `false`"),
 }
-"""How other programs, pandas among them, write what is true or false."""
+"""How other programs, such as pandas, write true and false."""
 
 
 _SIDES = {
     "near_side_of": "write `right_of` where traffic keeps right, and `left_of` where it keeps left",
     "far_side_of": "write `left_of` where traffic keeps right, and `right_of` where it keeps left",
 }
-"""What formulas of a rulebook that says where traffic keeps call the sides, and traces do not."""
+"""Sides in the formulas of a rulebook that declares the side of traffic.
+
+Traces use left and right.
+"""
 
 
 class _About(NamedTuple):
@@ -244,7 +247,7 @@ def _check_value(
 
 
 def _of_python(value: Any) -> str:
-    """What to do with a value that only a program gives, not a file."""
+    """Advice about a value that only a program can give, not a file."""
     if value is None:
         return "what is not known is `rulec.UNKNOWN`; what has its default is left out"
     if type(value).__module__ == "numpy":

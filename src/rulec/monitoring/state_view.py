@@ -1,6 +1,6 @@
-"""Views of single states: valuations, with the objects that are present.
+"""Views of single states: values, with the objects that are present.
 
-A value that a state does not give, and that has no default, is unknown.
+A value that a state does not give and that has no default is unknown.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval, Pa
 
 @dataclass(frozen=True, slots=True)
 class StateView:
-    """State checked by ``check_state``, with the types of its present objects."""
+    """A state checked by ``check_state``, with the types of its present objects."""
 
     state: State
     objects: Mapping[str, str]
     vocabulary: Vocabulary
 
     def value(self, name: str, items: tuple[str, ...]) -> Value | Unknown:
-        """The value that the state gives, or the declared default."""
+        """The value in the state, or the declared default."""
         # As value_in, which is not called because this is asked of every object in every state.
         value: Any = self.state.get(name)
         for item in items:
@@ -41,7 +41,7 @@ class StateView:
         return known
 
     def given(self, name: str, items: tuple[str, ...]) -> PartialValue | None:
-        """The value, be it partial, that the state gives, or the declared default."""
+        """The value in the state, possibly partial, or the declared default."""
         return value_in(self.state, name, items, self.vocabulary.declarations[name])
 
     def number(self, name: str, items: tuple[str, ...]) -> Fraction | Unknown:
@@ -59,7 +59,7 @@ class StateView:
 def with_values(
     state: State, values: Mapping[tuple[str, tuple[str, ...]], PartialValue | None]
 ) -> State:
-    """The state in which these are the values of names, asked of objects."""
+    """The state with these values for names of objects."""
     if not values:
         return state
     changed: dict[str, Any] = dict(state)
@@ -69,7 +69,7 @@ def with_values(
 
 
 def put(given: Any, items: tuple[str, ...], value: object) -> Any:
-    """What a name says, and ``value`` of these objects."""
+    """The values of a name, extended by ``value`` for these objects."""
     if not items:
         return value
     first, *others = items
@@ -80,9 +80,9 @@ def put(given: Any, items: tuple[str, ...], value: object) -> Any:
 def value_in(
     state: State, name: str, objects: Sequence[str], declaration: Declaration
 ) -> PartialValue | None:
-    """Value in a state, or its default; None if there is neither.
+    """The value in a state, or its default; None if there is neither.
 
-    A name that is unknown itself is unknown of all objects.
+    A name that is unknown as a whole is unknown for all objects.
     """
     value: Any = state.get(name)
     for item in objects:

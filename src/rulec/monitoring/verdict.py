@@ -15,8 +15,8 @@ from rulec.value_display import Rows, short_repr
 class Violation:
     """A rule that a trace violates, for one binding of its variables.
 
-    ``step`` is the first state (from 0) after which no continuation can save the rule; None if only
-    the trace's end decides.
+    ``step`` is the first state (from 0) after which no continuation can satisfy the rule; None if
+    only the trace's end decides.
     """
 
     __repr__ = short_repr
@@ -32,15 +32,17 @@ EngineName: TypeAlias = Literal["python", "c"]
 OutcomeName: TypeAlias = Literal["kept", "violated", "open"]
 
 Reason: TypeAlias = Literal["not told", "tolerance", "not over", "began before", "step"]
-"""Why a verdict is open: values are unknown, or they are numbers known within bounds between which
-a limit lies, a duty is pending, the past has not been seen, or a bound that is no multiple of the
-step comes out one way if rounded down and the other if rounded up.
+"""Why a verdict is open.
+
+Values are unknown; or are numbers whose bounds contain a limit; or a duty is pending; or the past
+was not observed; or a bound that is no multiple of the step gives different outcomes when rounded
+down and up.
 """
 
 
 @dataclass(frozen=True, slots=True)
 class ConditionalOutcome:
-    """How an open verdict comes out if some unknown names always have these values."""
+    """The outcome of an open verdict if some unknown names always have these values."""
 
     when: Mapping[str, bool | str]
     outcome: OutcomeName
@@ -57,14 +59,14 @@ class OpenReasons(NamedTuple):
 
 @dataclass(frozen=True)
 class OpenVerdict:
-    """A rule that some completions of a trace keep and others do not, or whose end is not seen.
+    """A rule that some completions of a trace keep and others do not, or whose end is unobserved.
 
-    ``depends_on``: the smallest set of names that the rule reads such that completions that agree
-    on them agree on the outcome; of equally small ones the first in the vocabulary's order. Where
-    the rule asks of several names at once, as a sum does, all of them that are unknown in some
-    state go together, which may be a name more than need be. ``exact`` is false where
-    there was too much to look at: the verdict may then be known after all. To find all this takes
-    longer than the verdict; it is done when it is first asked for.
+    ``depends_on`` is the smallest set of names that the rule reads such that completions that agree
+    on them agree on the outcome; of equally small ones the first in the vocabulary's order. Names
+    that the rule reads jointly, as in a sum, are listed together if they are unknown in some state,
+    which may be more than necessary. ``exact`` is false if there were too many completions: then
+    the verdict may really be known. All this takes longer than the verdict itself, so it is
+    computed on demand.
     """
 
     __repr__ = short_repr
@@ -88,9 +90,9 @@ class OpenVerdict:
         *,
         beyond: Callable[[Set[str]], frozenset[str]] | None = None,
     ) -> OpenVerdict:
-        """An open verdict whose reasons are found when they are asked for.
+        """An open verdict whose reasons are computed on demand.
 
-        ``beyond`` tells on what it depends but for some names, if that takes less time.
+        ``beyond`` gives the names on which it depends other than some, if that is faster.
         """
         result = cls.__new__(cls)
         own = result.__dict__
@@ -99,7 +101,7 @@ class OpenVerdict:
         return result
 
     def depends_beyond(self, names: Set[str]) -> frozenset[str]:
-        """What of ``depends_on`` is not among these, told without finding all reasons."""
+        """The names in ``depends_on`` that are not among these, found without all reasons."""
         beyond: Callable[[Set[str]], frozenset[str]] | None = self.__dict__.get("_beyond")
         return frozenset(self.depends_on) - names if beyond is None else beyond(names)
 
@@ -120,7 +122,7 @@ class OpenVerdict:
 
 @dataclass(frozen=True, slots=True)
 class RuleNotJudged:
-    """A rule that no trace from this source can be known to violate, for want of ``untold``.
+    """A rule that no trace from this source can be known to violate, for lack of ``untold``.
 
     ``why`` is another reason, if there is one.
     """
@@ -133,11 +135,11 @@ class RuleNotJudged:
 
 @dataclass(frozen=True, slots=True)
 class Verdict(Rows):
-    """Verdict of a rulebook: what a trace violates for sure, by rule and objects.
+    """The verdict of a rulebook: what a trace certainly violates, by rule and objects.
 
-    ``open`` is what depends on something unknown, ``not_judged`` what this source cannot tell.
-    ``presumed``: names that hold by presumption, because no source tells them. ``engine`` is what
-    judged: Python, or the monitor in C.
+    ``open`` depends on something unknown, ``not_judged`` lists rules for which this source lacks
+    values. ``presumed`` are names that have their default because no source provides them.
+    ``engine`` is what judged: Python, or the monitor in C.
     """
 
     __repr__ = short_repr
@@ -158,7 +160,7 @@ class Verdict(Rows):
         return None if any(rule.strength == "hard" for rule in doubtful) else True
 
     def rows(self) -> list[dict[str, Any]]:
-        """One row a violation."""
+        """One row per violation."""
         return [
             {
                 "trace": self.trace,
@@ -181,9 +183,9 @@ def rule_for(result: Violation | OpenVerdict) -> RuleFor:
 
 
 def agreed(verdicts: Sequence[Verdict]) -> Verdict:
-    """What verdicts on one trace by rules with differently rounded bounds have in common.
+    """The common part of verdicts on one trace by rules with differently rounded bounds.
 
-    Where they differ the verdict is open, on the step.
+    Where they differ the verdict is open, because of the step.
     """
     first, *others = verdicts
     violations = {rule_for(violation): violation for violation in first.violations}
@@ -215,7 +217,7 @@ def _later(first: int | None, second: int | None) -> int | None:
 
 @dataclass(frozen=True, slots=True)
 class NotJudged:
-    """Trace without a verdict: its id, if known, and the error."""
+    """A trace without a verdict: its id, if known, and the error."""
 
     __repr__ = short_repr
 
@@ -225,11 +227,11 @@ class NotJudged:
 
 @dataclass(frozen=True, slots=True)
 class CarriedState:
-    """Machine states of objects that stay, and the permanent violations.
+    """The machine states of objects that stay, and the permanent violations.
 
-    ``settled`` are rules for objects that stay that are among the ``violations``. Where the past
-    was not all known a machine may be in several ``possible`` states, and ``perhaps_settled`` are
-    rules of which it is not known whether they have been violated.
+    ``settled`` are the rules among the ``violations``, for objects that stay. If the past was
+    partly unknown, a machine may be in several ``possible`` states, and for ``perhaps_settled``
+    rules it is unknown whether they have been violated.
     """
 
     states: Mapping[RuleFor, int] = field(default_factory=dict)
@@ -243,7 +245,7 @@ class CarriedState:
         return self.possible.get(about) or frozenset({self.states.get(about, 0)})
 
     def begun(self, rule: str) -> set[tuple[str, ...]]:
-        """The objects for which a rule's machine may be anywhere but where it starts."""
+        """The objects for which a rule's machine may have left its start state."""
         return {
             about[1]
             for about in (*self.states, *self.possible, *self.perhaps_settled)
@@ -253,7 +255,7 @@ class CarriedState:
 
     @property
     def doubtful_rules(self) -> frozenset[str]:
-        """The rules of which not all is known."""
+        """The rules for which the past is partly unknown."""
         return frozenset(rule for rule, _ in (*self.possible, *self.perhaps_settled))
 
 

@@ -25,8 +25,8 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
     """Verify a trace against every rule, for every binding of its variables.
 
     Raises RulecError R0501 to R0506 if it is no trace or does not fit the rulebook's vocabulary,
-    R0507 if a rule was compiled for traces of another step, R0508 if a state contradicts a fact
-    that a rule depends on, with the trace's own place.
+    R0507 if a rule was compiled for traces with another step, R0508 if a state contradicts an axiom
+    on which a rule depends; errors have the trace's own place.
     """
     check_trace(trace)
     with _errors_at(trace.place):
@@ -60,9 +60,9 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
 
 
 def rulebook_for_checked(trace: Trace, rulebook: CompiledRulebook) -> tuple[CompiledRulebook, bool]:
-    """The rulebook for a trace's step, and whether some of its values are not known.
+    """The rulebook for a trace's step, and whether some of its values are unknown.
 
-    Raises RulecError as ``verify`` does of a trace that does not fit.
+    Raises RulecError as ``verify`` does if the trace does not fit.
     """
     rulebook = rulebook_for_trace(trace, rulebook)
     for rule in rulebook.rules:
@@ -75,7 +75,7 @@ def rulebook_for_checked(trace: Trace, rulebook: CompiledRulebook) -> tuple[Comp
 
 
 def _bindings(rule: CompiledRule, trace: Trace, reader: LetterReader) -> Iterator[Binding]:
-    """A rule's bindings; of many only those that may not be kept."""
+    """A rule's bindings; if there are many, only those that may not be kept."""
     vocabulary = reader.rulebook.vocabulary
     cast = Cast(trace.objects, vocabulary, len(trace.states), trace.present, trace.place)
     if not cast.has_many(types_of(rule)):
@@ -91,7 +91,7 @@ def _bindings(rule: CompiledRule, trace: Trace, reader: LetterReader) -> Iterato
 def letter_reader_of(
     trace: Trace, rulebook: CompiledRulebook, where: Callable[[int], str] = "state {}".format
 ) -> LetterReader:
-    """Letter reader of a checked trace; ``where`` names states in messages.
+    """The letter reader of a checked trace; ``where`` names states in messages.
 
     Raises RulecError R0503 if a constant changes.
     """
@@ -110,7 +110,7 @@ def rulebook_for_trace(trace: Trace, rulebook: CompiledRulebook) -> CompiledRule
 def rulebook_for_step(
     step_s: float, rulebook: CompiledRulebook, place: SourceLocation | None = None
 ) -> CompiledRulebook:
-    """Rulebook compiled for a trace's step (s); errors name its place."""
+    """The rulebook compiled for a trace's step (s); errors name the trace's place."""
     with _errors_at(place):
         return rulebook.fitted_to(step_s)
 
@@ -132,9 +132,9 @@ def _at(place: SourceLocation | None, problem: Diagnostic) -> Diagnostic:
 
 
 def verify_or_reason(item: Trace | RulecError, rulebook: CompiledRulebook) -> Verdict | NotJudged:
-    """Verify one trace of many; an error is an answer too.
+    """Verify one trace of many, and return an error instead of raising it.
 
-    ``item`` may be, in place of a trace, the error that kept it from being read.
+    In place of a trace, ``item`` may be the error that prevented reading one.
     """
     if isinstance(item, RulecError):
         return NotJudged(None, item)
@@ -147,8 +147,9 @@ def verify_or_reason(item: Trace | RulecError, rulebook: CompiledRulebook) -> Ve
 def run(machine: MealyMonitor, word: Sequence[int], start: int = 0) -> tuple[bool, int | None]:
     """Run a machine on a non-empty word of letter classes from ``start``.
 
-    The result is whether it accepts, and the index of the letter with which it was lost, however
-    the word goes on or ends there, if any. One that starts out dead is lost with the first letter.
+    Returns whether it accepts, and the index of the letter at which the word is lost, whether it
+    continues or ends there; None if it is not lost. From a rejecting sink it is lost at the first
+    letter.
     """
     successors, rejecting_sink = machine.successors, machine.rejecting_sink
     state = before = start

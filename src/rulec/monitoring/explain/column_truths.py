@@ -128,7 +128,7 @@ class ColumnTruths:
         return fold(formula, algebra)
 
     def says_all(self, name: str, arguments: Sequence[str]) -> bool:
-        """Whether each state says a name of what variables stand for, be it that it is unknown."""
+        """Whether each state gives a name for what the variables stand for, even as unknown."""
         cells = self._cells(name, arguments)
         if cells is None:
             return False

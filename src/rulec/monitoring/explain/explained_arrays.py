@@ -87,7 +87,7 @@ def _is_plain(formula: ltl.Formula, truths: ColumnTruths) -> bool:
 def _read_by(
     formula: ltl.Formula, truths: ColumnTruths
 ) -> Iterator[tuple[ColumnTruths, str, tuple[str, ...]]]:
-    """The names that a formula reads, of which variables, and of what these stand for."""
+    """The names that a formula reads, with their variables and the truths for their objects."""
     for read in reads_in(formula):
         if isinstance(read, ltl.Count):
             for _, own in truths.of_counted(read):

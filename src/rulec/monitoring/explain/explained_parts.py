@@ -69,7 +69,7 @@ def facts_of(
     deciding: Set[ltl.Formula],
     observed: ObservedStates,
 ) -> Iterator[Observation]:
-    """What is read, from the ``truths`` of propositions by state."""
+    """The observations, from the ``truths`` of propositions by state."""
     readers: dict[ltl.Atom | ltl.Term, list[ltl.Proposition]] = {}
     for proposition in truths:
         if isinstance(proposition, ltl.Comparison):
@@ -125,7 +125,7 @@ def parts_of(
 ) -> Iterator[Part]:
     """A formula and its parts, as written and with bounds in steps, each before its operands.
 
-    ``deciding`` has of those that decide the index of the last state in which they do.
+    For parts that decide, ``deciding`` has the index of the last state in which they do.
     """
     written, stepped = formulas
     margins: tuple[Margin | None, ...] = ()
@@ -161,9 +161,10 @@ def with_margins(
     states: Sequence[int],
     decided_at: Mapping[str, int],
 ) -> Observation:
-    """What is read, with how far the number by which it was decided is from its limit, if any.
+    """The observation, with the margins of the number by which it was decided, if any.
 
-    ``states`` are the numbers of those shown, ``decided_at`` is that in which a name decides last.
+    ``states`` are the numbers of those shown, ``decided_at`` is the one in which a name decides
+    last.
     """
     name, _, rest = fact.text.partition("(")
     if name not in decided_by:

@@ -1,4 +1,4 @@
-"""The states of a trace that an explanation looks at: all, or of a long one a window."""
+"""The states that an explanation evaluates: all, or a window of a long trace."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ def states_to_explain(
     decisive: int,
     word: Callable[[int, int], Sequence[int]],
 ) -> Sequence[int]:
-    """The numbers of states that explain a violation whose decisive state this is, ascending.
+    """The numbers of the states that explain a violation with this decisive state, ascending.
 
-    Of a long ``stretch`` they are those of a window around the decisive state, the first one, and
-    the fewest before the window that bring the machine into the state in which it was there: where
-    it comes into a state again, what was in between makes no difference. So the rule is violated by
-    these states alone, and with the same one. ``word`` has the letter classes from one state to
-    another (inclusive).
+    Of a long ``stretch`` these are a window around the decisive state, the first state, and the
+    fewest states before the window that bring the machine into the same state as the whole stretch:
+    where the machine returns to a state, what lies in between makes no difference. So these states
+    alone violate the rule, with the same decisive state. ``word`` gives the letter classes from one
+    state to another (inclusive).
     """
     window = range(
         max(stretch.start, decisive - LIMITS.states_explained),

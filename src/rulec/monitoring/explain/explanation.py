@@ -46,17 +46,17 @@ from rulec.witnesses.letter_functions import letter_of
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """A violation state by state.
+    """A violation, explained state by state.
 
-    ``states`` are the numbers of the states that are shown, ``decisive`` is the one after which
-    nothing could save the rule any more, or the last one. ``facts`` and ``parts`` have a value for
-    each of ``states``; the first part is the formula itself, each stands before what it is made of.
-    ``lasts`` are the first and the last state of the stretch in which what always, or never, has to
-    be is broken, or in which what never must be takes its course; of other rules the decisive
-    state. ``repair`` is what states would have had to say for the rule to be kept, their places
-    being their numbers in the trace; None if nothing would have helped, or nobody has looked.
-    ``looked_at`` are the first and the last state of the window that was looked at in a trace that
-    is too long, else None.
+    ``states`` are the numbers of the states shown. ``decisive`` is the state after which the rule
+    could no longer be kept, or the last state. ``facts`` and ``parts`` have a value for each of
+    ``states``; the first part is the whole formula, and each part comes before its operands.
+    ``lasts`` are the first and last state of the stretch in which a condition that must hold
+    always, or never, is broken, or in which a forbidden sequence takes place; for other rules both
+    are the decisive state. ``repair`` has the values that would have kept the rule, by the numbers
+    of their states in the trace; it is None if nothing would have helped, or if no repair was
+    searched for. ``looked_at`` are the first and last state of the window that was evaluated in a
+    very long trace, else None.
     """
 
     __repr__ = short_repr
@@ -73,10 +73,11 @@ class Explanation:
     looked_at: tuple[int, int] | None = None
 
     def margins(self) -> list[Margin]:
-        """By how much: the comparisons of quantities that decide, where they do so last.
+        """The comparisons of quantities that decide, each where it decides last.
 
-        What only says when the rule asks for anything, such as that ego drives at all, is none, nor
-        what chooses what it asks for, such as that a sign tells a limit, where others are left.
+        A comparison is left out if it only says when the rule applies, such as that ego drives at
+        all. One that only selects what the rule requires, such as whether a sign gives a limit, is
+        left out if others remain.
         """
         when = set() if self.rule.trigger is None else set(ltl.atoms_of(self.rule.trigger))
         decisive = [part for part in self.parts if part.decides and part.formula not in when]
@@ -124,11 +125,11 @@ def explain(
 ) -> Explanation:
     """Explain a violation that ``verify`` reported for this trace and rulebook.
 
-    What is unknown is shown as such; as every completion violates the rule, one stands for all:
-    that by which the rule is most likely kept, so that known values are seen to decide.
-    ``decided_by``: signal -> the numbers behind it, for those
-    that were decided by any. A repair is looked for only if it is to be ``repaired``, and
-    never in a trace of which a window is looked at.
+    Unknown values are shown as unknown. As every completion violates the rule, one is evaluated for
+    all of them: the one that makes the rule most likely to be kept, so that the known values are
+    seen to decide. ``decided_by`` maps a signal to the numbers by which it was decided, if any. A
+    repair is searched for only if ``repaired``, and never if only a window of the trace is
+    evaluated.
     """
     declared = rulebook.vocabulary
     given = trace = with_derived_values(trace, declared)
@@ -172,7 +173,7 @@ def explain(
 
 @dataclass(frozen=True, slots=True)
 class Explained:
-    """What is explained: a violation of a rule, in a trace of such steps (s)."""
+    """What is explained: a violation of a rule, in a trace with this step (s)."""
 
     violation: Violation
     rule: CompiledRule
@@ -187,7 +188,7 @@ def explanation_of(
     numbers: Sequence[int],
     decided_by: Mapping[str, Deciding],
 ) -> Explanation:
-    """The explanation by observed states with these ``numbers``, without a repair."""
+    """The explanation from observed states with these ``numbers``, without a repair."""
     rule, semantics = subject.rule, subject.semantics
     place, n_states = observed.decisive, len(numbers)
     truths = {atom: observed.truths(atom) for atom in dict.fromkeys(ltl.atoms_of(rule.formula))}
@@ -219,10 +220,11 @@ def explanation_of(
 
 
 def _is_violated_before(machine: MealyMonitor, observed: ObservedStates) -> bool:
-    """Whether a machine takes the states to be violated, or impossible, before the decisive one.
+    """Whether a machine takes the rule to be violated, or a state to be impossible, too early.
 
-    Surely they are not, but what stands for what is unknown, or was before the first state, may say
-    so. That is not what the verdict rests on.
+    That is, before the decisive state. It is not really so, but the values that replace unknown
+    ones, or stand for the time before the first state, may say so. The verdict does not rest on
+    that.
     """
     state = 0
     for digits in observed.word(machine, observed.decisive):
@@ -236,14 +238,14 @@ def _is_violated_before(machine: MealyMonitor, observed: ObservedStates) -> bool
 
 
 def _last_until(place: int, instants: Sequence[bool]) -> int:
-    """The last of the instants that is not beyond a place; if all of them are, that place."""
+    """The last of the instants up to a place; the place itself if all are beyond it."""
     return next((instant for instant in range(place, -1, -1) if instants[instant]), place)
 
 
 def _looked_at(
     reader: LetterReader, rule: CompiledRule, binding: Binding, decisive: int
 ) -> Sequence[int]:
-    """The numbers of the states that are looked at."""
+    """The numbers of the states that are evaluated."""
 
     def word(first: int, last: int) -> tuple[int, ...]:
         try:
@@ -257,7 +259,7 @@ def _looked_at(
 
 
 def _window(numbers: Sequence[int], place: int) -> tuple[int, int]:
-    """The first and the last of the numbers around a place that follow one upon the other."""
+    """The first and last of the consecutive numbers around a place."""
     first = place
     while first and numbers[first - 1] == numbers[first] - 1:
         first -= 1

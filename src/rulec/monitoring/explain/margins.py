@@ -28,10 +28,10 @@ _OTHERWISE: Mapping[ltl.Relation, ltl.Relation] = {
 
 @dataclass(frozen=True, slots=True)
 class Margin:
-    """What stands on the left, its value, the relation that holds, and the other value.
+    """The left side of a comparison, its value, the relation that holds, and the other value.
 
-    ``against`` is what stands on the right, if that is a quantity and nothing else. Both values may
-    be wrong by their errors, their difference by ``error``.
+    ``against`` is the right side, if it is a single quantity. Each value may be wrong by its error,
+    their difference by ``error``.
     """
 
     text: str
@@ -46,19 +46,19 @@ class Margin:
 
     @property
     def by(self) -> float:
-        """By how much, as measured; for sure, where one of the numbers has no more than bounds."""
+        """The measured difference; the certain one if a number is known only by bounds."""
         if self.value_bounds or self.limit_bounds:
             return self.at_least
         return _without_noise(abs(self.value - self.limit))
 
     @property
     def share(self) -> float:
-        """``by`` as a share of the greater of the two sides, 0 to 2, whatever their unit."""
+        """``by`` as a share of the larger of the two sides (0 to 2), independent of the unit."""
         return self.by / (max(abs(self.value), abs(self.limit)) or 1.0)
 
     @property
     def at_least(self) -> float:
-        """By how much for sure."""
+        """The certain part of the difference."""
         return _without_noise(max(abs(self.value - self.limit) - self.error, 0.0))
 
     @property
@@ -68,18 +68,18 @@ class Margin:
 
     @property
     def value_bounds(self) -> tuple[float, float] | None:
-        """What the value lies between, if that is all that is known of it, such as 3.9 to 1000."""
+        """The bounds of the value if nothing more is known, such as 3.9 to 1000; else None."""
         return _bounds(self.value, self.value_error)
 
     @property
     def limit_bounds(self) -> tuple[float, float] | None:
-        """The same of the limit."""
+        """The same for the limit."""
         return _bounds(self.limit, self.limit_error)
 
     def rounded(self) -> Margin:
-        """To the digits that its errors leave: two of each error, which is rounded up.
+        """The margin rounded to the digits that its errors justify: two of each error, rounded up.
 
-        Bounds, which are a hundredth's to begin with, stay as they are.
+        Bounds, which are rounded to a hundredth already, are kept.
         """
         if self.value_bounds or self.limit_bounds:
             return self
@@ -129,14 +129,14 @@ class Margin:
 
 
 def _bounds(number: float, error: float) -> tuple[float, float] | None:
-    """The bounds of a number that is known no better than to half of it."""
+    """The bounds of a number whose error exceeds half of it; else None."""
     if error <= abs(number) / 2:
         return None
     return _without_noise(number - error), _without_noise(number + error)
 
 
 def _without_noise(number: float) -> float:
-    """A difference of numbers without what the last bits of both leave behind."""
+    """A difference without floating-point noise."""
     return round(number, 9)
 
 
@@ -147,9 +147,9 @@ def _in_nine(number: float) -> float:
 def margin_in(
     comparison: ltl.Comparison, bound: Mapping[str, str], view: StateView
 ) -> Margin | Unknown:
-    """The margin of a comparison: what has a positive coefficient stands on the left.
+    """The margin of a comparison, with the terms with positive coefficients on the left.
 
-    Of two quantities the one that is written there, as in ``speed <= limit``.
+    If two quantities are compared, the left one is the one written there, as in ``speed <= limit``.
     """
     left = tuple(term for term in comparison.terms if term[0] > 0)
     right = tuple((-coefficient, term) for coefficient, term in comparison.terms if coefficient < 0)
@@ -189,7 +189,7 @@ def margin_in(
 
 
 def choosing_comparisons(formula: ltl.Formula) -> Set[ltl.Formula]:
-    """The comparisons that a formula has both as they are and negated: `a if c else b`."""
+    """The comparisons that occur in a formula both plain and negated, as in `a if c else b`."""
     plain: set[ltl.Formula] = set()
     negated: set[ltl.Formula] = set()
 
@@ -210,7 +210,7 @@ def choosing_comparisons(formula: ltl.Formula) -> Set[ltl.Formula]:
 
 
 def _turned(margin: Margin) -> Margin:
-    """A margin of two quantities with the other one on the left."""
+    """A margin between two quantities, with the other one on the left."""
     return replace(
         margin,
         text=margin.against,
@@ -231,7 +231,7 @@ def _middle(number: Fraction | Between) -> tuple[Fraction, Fraction]:
 
 
 def _rounded_down(number: float) -> str:
-    """A positive number with two digits that count, empty for none."""
+    """A positive number with two significant digits; empty for none."""
     for places in range(1, _MOST_PLACES):
         rounded = floor(number * 10**places + _HAIR)
         if rounded >= 10:
@@ -240,9 +240,9 @@ def _rounded_down(number: float) -> str:
 
 
 def number_with_error(value: float, error: float, places: int = 0) -> str:
-    """A number with how far it may be wrong, rounded up by a half at most: ``12.3±0.4``.
+    """A number with its error, which is rounded up by at most a half: ``12.3±0.4``.
 
-    If that is more than half of the number, both bounds instead: ``3.9 to 1000``.
+    If the error exceeds half of the number, both bounds are given instead: ``3.9 to 1000``.
     """
     if error > abs(value) / 2:
         low, high = floor((value - error) * 100 + _HAIR), ceil((value + error) * 100 - _HAIR)
@@ -262,7 +262,7 @@ def _named(term: ltl.Term, bound: Mapping[str, str]) -> str:
 
 
 def _apart(value: float, limit: float) -> tuple[str, str]:
-    """Two numbers with as few decimals as tell them apart."""
+    """Two numbers with as few decimals as distinguish them."""
     if value == int(value) and limit == int(limit):
         return f"{value:.0f}", f"{limit:.0f}"
     pairs = [(f"{value:.{places}f}", f"{limit:.{places}f}") for places in range(1, 7)]

@@ -1,7 +1,7 @@
 """Repairs: the nearest trace that satisfies a rule, found by dynamic programming.
 
-Of two traces the nearer one differs in fewer things that the rule reads, each of them counted once
-in every state; of equally near ones that one is nearer which is like the given one for longer.
+The distance of two traces is the number of reads, counted in every state, in which they differ; of
+equally near traces the one that agrees with the given trace for longer is preferred.
 """
 
 from __future__ import annotations
@@ -19,25 +19,26 @@ from rulec.monitoring.verify import run
 from rulec.witnesses.state_synthesis import are_consistent
 
 Letter = tuple[int, ...]
-"""The digit of each thing that a machine reads of a state, in its order."""
+"""The digit of each of a machine's reads in a state, in their order."""
 
 
 class _Near(NamedTuple):
-    """For each class of letters how far it is from a letter, and the number of its nearest one."""
+    """For each letter class its distance from a letter, and the number of its nearest letter."""
 
     distances: Sequence[int]
     nearest: Sequence[int]
 
 
 _FAR = 1 << 40
-"""Further than any trace."""
+"""Farther than any trace."""
 
 
 @dataclass(frozen=True, slots=True)
 class Repair:
     """Values that repair a state: the letters of any of the ``cubes``.
 
-    ``place`` is the state's in the word. Of what need not be otherwise a cube has all digits.
+    ``place`` is the position of the state in the word. A cube has all digits of a read that need
+    not change.
     """
 
     place: int
@@ -47,8 +48,8 @@ class Repair:
 def nearest_satisfying(machine: MealyMonitor, word: Sequence[Letter]) -> tuple[Repair, ...] | None:
     """The fewest changes after which a non-empty word is accepted.
 
-    None if no word of this length is. Letters that cannot be, by the facts of the vocabulary or by
-    what their numbers say of each other, are not used.
+    None if no word of this length is accepted. Letters that are impossible, by the axioms of the
+    vocabulary or because their numbers contradict each other, are not used.
     """
     alphabet = _LetterDistances(machine)
     given = [alphabet.number(letter) for letter in word]
@@ -91,9 +92,9 @@ def _nearest(machine: MealyMonitor, near: Sequence[_Near]) -> list[int] | None:
 def _totals(
     machine: MealyMonitor, state: int, distances: Sequence[int], beyond: Sequence[int]
 ) -> list[int]:
-    """How far a word from a state on is from being accepted, by the class that it begins with.
+    """For each class of the first letter, the distance of a word from being accepted.
 
-    ``beyond`` has it by state behind that letter; it is empty where the word ends.
+    ``beyond`` is that distance by state after that letter; it is empty where the word ends.
     """
     if beyond:
         targets = machine.successors[state]
@@ -109,7 +110,8 @@ def _totals(
 def _costs(machine: MealyMonitor, near: Sequence[_Near]) -> list[Sequence[int]]:
     """The fewest changes after which the rest of the word is accepted, by its place and the state.
 
-    A state's classes mostly lead to few others, of which the nearest class counts.
+    The classes of a state mostly lead to few other states; for each of these the nearest class
+    counts.
     """
     states = range(len(machine.successors))
     last = [min(_totals(machine, state, near[-1].distances, ())) for state in states]
@@ -133,7 +135,7 @@ def _costs(machine: MealyMonitor, near: Sequence[_Near]) -> list[Sequence[int]]:
 
 
 def _ways(targets: Sequence[int], distances: Sequence[int]) -> list[tuple[int, int]]:
-    """The states that a state leads to, and how far the nearest class is that does."""
+    """The successors of a state, with the distance of the nearest class that leads to each."""
     least: dict[int, int] = {}
     for target, distance in zip(targets, distances, strict=True):
         if distance < least.get(target, _FAR + 1):
@@ -144,10 +146,10 @@ def _ways(targets: Sequence[int], distances: Sequence[int]) -> list[tuple[int, i
 def _as_good(
     machine: MealyMonitor, state: int, symbol: int, rest: Sequence[int] | None
 ) -> tuple[bool, ...]:
-    """The classes that do as well as one, read in a state.
+    """Which classes are as good as a given one, read in a state.
 
-    Those that lead to the same state; where nothing else is changed in the ``rest`` of the word,
-    those after which it is accepted.
+    These are the classes that lead to the same state or, if nothing else is changed in the ``rest``
+    of the word, those after which it is accepted.
     """
     row = machine.successors[state]
     if rest is None:
@@ -159,7 +161,7 @@ def _as_good(
 
 
 class _LetterDistances:
-    """Letters of a machine by their numbers, and their distances."""
+    """The letters of a machine by number, and the distances between them."""
 
     def __init__(self, machine: MealyMonitor) -> None:
         self._reads = machine.reads
@@ -174,11 +176,11 @@ class _LetterDistances:
         self._ways: dict[tuple[Letter, int, tuple[bool, ...]], tuple[Cube, ...]] = {}
 
     def number(self, letter: Letter) -> int:
-        """The place of a letter among all."""
+        """The number of a letter among all."""
         return sum([stride * digit for stride, digit in zip(self._strides, letter, strict=True)])
 
     def _digits(self, number: int, reads: Sequence[int]) -> tuple[int, ...]:
-        """What a letter says of some reads."""
+        """The digits of some reads in a letter."""
         return tuple([number // self._strides[n] % self._sizes[n] for n in reads])
 
     def near(self, letter: Letter) -> _Near:
@@ -193,7 +195,7 @@ class _LetterDistances:
         return self._near[letter]
 
     def _differs(self, letter: Letter) -> Sequence[int]:
-        """In how many reads each letter differs from one."""
+        """In how many reads each letter differs from a given one."""
         if letter not in self._differ:
             counts = b"\0"
             for size, given in zip(self._sizes, letter, strict=True):
@@ -203,7 +205,7 @@ class _LetterDistances:
         return self._differ[letter]
 
     def exclude(self, letters: Sequence[int]) -> None:
-        """Exclude these letters, and all with the same digits of numbers."""
+        """Exclude these letters, and all letters with the same digits of numbers."""
         wrong = {self._digits(letter, self._numbers) for letter in letters}
         for number in range(len(self._classes)):
             if self._digits(number, self._numbers) in wrong:
@@ -211,7 +213,7 @@ class _LetterDistances:
         self._near.clear()
 
     def can_be(self, number: int) -> bool:
-        """Tell whether some numbers have the digits of this letter."""
+        """Whether some numbers have the digits of this letter."""
         digits = self._digits(number, self._numbers)
         if digits not in self._can_be:
             reads = [read for read in self._reads if isinstance(read, NumberRead)]
@@ -242,7 +244,7 @@ class _LetterDistances:
             yield from self._cubes(reads, letters)
 
     def _cubes(self, changed: tuple[int, ...], letters: Sequence[int]) -> Iterator[Cube]:
-        """Cubes of letters with common changes, one cube if that is exact."""
+        """Cubes of letters with common changes; a single cube if that is exact."""
         rows = {self._digits(letter, changed) for letter in letters if self.can_be(letter)}
         columns = [frozenset(digits) for digits in zip(*rows, strict=True)]
         if rows and prod(map(len, columns)) == len(rows):

@@ -1,4 +1,4 @@
-"""States that an explanation covers, with the values that a rule reads."""
+"""The states that an explanation covers, with the values that a rule reads."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _Known = TypeVar("_Known")
 
 
 def known_value(value: _Known | Unknown) -> _Known:
-    """A value that is known."""
+    """The value, which must be known."""
     assert not isinstance(value, Unknown), "verify has read it"
     return value
 
@@ -31,8 +31,8 @@ def known_value(value: _Known | Unknown) -> _Known:
 class ObservedStates:
     """States of a binding, all of whose values are known.
 
-    ``shown`` are the indices of the states to show, ``decisive`` is one of them. ``given`` has
-    for an index the state of which it is a completion.
+    ``shown`` are the indices of the states to show, among them ``decisive``. ``given`` has for an
+    index the state of which it is a completion.
     """
 
     views: Sequence[StateView]
@@ -52,7 +52,7 @@ class ObservedStates:
         return value
 
     def truths(self, proposition: ltl.Proposition) -> list[bool]:
-        """Truth of a proposition in each state."""
+        """The truth of a proposition in each state."""
         if isinstance(proposition, ltl.Atom):
             name, items = proposition.name, self.items(proposition.arguments)
             wanted = proposition.value or True
@@ -70,7 +70,7 @@ class ObservedStates:
         return truths
 
     def word(self, machine: MealyMonitor, n_states: int | None = None) -> list[Letter]:
-        """The letters that a machine reads in the first states, or in all, digit by digit."""
+        """The letters, digit by digit, that a machine reads in all states or in the first ones."""
         return [
             tuple(
                 [
@@ -85,11 +85,11 @@ class ObservedStates:
 
     @property
     def looked_up(self) -> Sequence[int]:
-        """The indices of the states to show, and of those that are compared."""
+        """The indices of the states to show, and of those compared with them."""
         return sorted({*self.shown, self.decisive, max(self.decisive - 1, 0)})
 
     def margins(self, comparison: ltl.Comparison) -> tuple[Margin | None, ...]:
-        """The margins of a comparison in the states that are shown; none of one of counts."""
+        """The margins of a comparison in the states shown; None for comparisons of counts."""
         if any(isinstance(term, ltl.Count) for _, term in comparison.terms):
             return ()
         return tuple([self.margin(comparison, number) for number in self.shown])
@@ -100,5 +100,5 @@ class ObservedStates:
         return None if isinstance(margin, Unknown) else margin
 
     def changes(self, values: Sequence[object] | Mapping[int, object]) -> bool:
-        """Tell whether the decisive state's value differs from the one before."""
+        """Whether the decisive state's value differs from the one before."""
         return self.decisive > 0 and values[self.decisive] != values[self.decisive - 1]

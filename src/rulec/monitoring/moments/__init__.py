@@ -1,1 +1,1 @@
-"""Truth of a formula at every state for every choice of objects."""
+"""The truth of a formula in every state, for every choice of objects."""

@@ -1,4 +1,4 @@
-"""Name tables of traces in arrays, a row for each object."""
+"""Name tables of traces in arrays, with a row for each object."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Flags = NDArray[np.bool_]
 
 
 class ArrayTables(NameTables):
-    """Tables of a trace that is given as arrays; nothing there is about several objects."""
+    """Tables of a trace that is given as arrays, which have no names about several objects."""
 
     def __init__(self, arrays: TraceArrays, vocabulary: Vocabulary) -> None:
         last = np.array([arrays.n_states - 1], dtype=np.intp)
@@ -26,7 +26,7 @@ class ArrayTables(NameTables):
 
     @property
     def spans(self) -> NDArray[np.intp]:
-        """The first and the last state of each object."""
+        """The first and last state of each object."""
         return self._arrays.spans
 
     def about_several(self, name: str, rows: NDArray[np.intp]) -> ValueRows:
@@ -51,7 +51,10 @@ class ArrayTables(NameTables):
         )
 
     def _rows(self, name: str, column: Array | None, there: Flags) -> ValueRows:
-        """Rows of values in the states that are ``there``; what is said nowhere has its default."""
+        """Rows of values in the states that are ``there``.
+
+        Names that are never given have their default.
+        """
         declaration = self.vocabulary.declarations[name]
         default, is_known = default_of(declaration)
         values: Array = np.full(there.shape, default, dtype=type(default))
@@ -76,7 +79,7 @@ class ArrayTables(NameTables):
 
 
 def _constant(rows: ValueRows, there: Flags) -> ValueRows:
-    """Rows in which what some state says holds in all."""
+    """Rows of a constant, whose value in some state holds in all."""
     is_stated = there & ~rows.unknown
     any_stated = is_stated.any(axis=1, keepdims=True)
     first = is_stated.argmax(axis=1)[:, None]

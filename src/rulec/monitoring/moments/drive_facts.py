@@ -20,7 +20,7 @@ from rulec.trace.trace_arrays import TraceArrays
 
 @dataclass(frozen=True, slots=True)
 class DriveFacts:
-    """Of a trace its states, ``step_s`` seconds apart, its class of road, and its exposure."""
+    """The states of a trace, ``step_s`` seconds apart, its road class, and its exposure."""
 
     n_states: int
     step_s: float
@@ -43,7 +43,10 @@ def facts_of_many(
     verdicts: Sequence[Verdict | None],
     rulebook: CompiledRulebook,
 ) -> list[DriveFacts]:
-    """The facts of the traces that have a verdict, in order; alike traces are evaluated at once."""
+    """The facts of the traces that have a verdict, in order.
+
+    Similar traces are evaluated together.
+    """
     judged = {place: verdict for place, verdict in enumerate(verdicts) if verdict is not None}
     facts_at: dict[int, DriveFacts] = {}
     for alike in alike_traces(items, [*judged], rulebook.vocabulary):

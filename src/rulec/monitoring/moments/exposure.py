@@ -1,8 +1,8 @@
-"""Exposure: how often, and how long, a trace gives an opportunity to violate a rule.
+"""Exposure: how often, and for how long, a trace gives an opportunity to violate a rule.
 
-An opportunity is one stretch of states in which a rule's trigger holds for one choice of objects;
-of a rule whose form names no trigger it is the whole stretch in which the objects are there. It is
-violated if the rule is breached in one of its states. See docs/rates.md.
+An opportunity is a stretch of states in which a rule's trigger holds for one choice of objects; for
+a rule whose form has no trigger it is the whole stretch in which the objects are present. It counts
+as violated if the rule is breached in one of its states. See docs/rates.md.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ Counts = NDArray[np.intp]
 
 @dataclass(frozen=True, slots=True)
 class Exposure:
-    """The opportunities that a trace gives to violate a rule, and those that were taken.
+    """The opportunities that a trace gives to violate a rule, and how many were violated.
 
-    ``opportunities`` are those for sure, ``perhaps_opportunities`` those at most;
-    ``opportunities_s`` and ``perhaps_opportunities_s`` (s) are the states in which there is one for
-    some choice of objects, each for one step. ``violated`` and ``perhaps_violated`` are the
-    opportunities in which the rule is breached, for sure and at most.
+    ``opportunities`` are certain ones, ``perhaps_opportunities`` the most that there may be;
+    ``opportunities_s`` and ``perhaps_opportunities_s`` (s) are the durations of the states with an
+    opportunity for some choice of objects. ``violated`` and ``perhaps_violated`` are the
+    opportunities in which the rule is breached, for certain and at most.
     """
 
     __repr__ = short_repr
@@ -58,7 +58,7 @@ class Exposure:
 
 @dataclass(frozen=True, slots=True)
 class _Watched:
-    """A rule with its trigger and its breach, bounds in steps."""
+    """A rule with its trigger and its breach, with bounds in steps."""
 
     rule: CompiledRule
     trigger: ReadyFormula | None
@@ -68,7 +68,7 @@ class _Watched:
 Outcome = Literal["violated", "open"]
 
 Chosen = tuple[int, tuple[int, ...]]
-"""A trace, and objects of it, as tables count them."""
+"""A trace, and objects of it, numbered as in tables."""
 
 
 def alike_exposures(
@@ -78,7 +78,7 @@ def alike_exposures(
     verdicts: Sequence[Verdict],
     names: Sequence[Names],
 ) -> list[dict[str, Exposure]]:
-    """The exposures of traces that are alike; ``names`` are what each one's objects are called."""
+    """The exposures of traces of one shape; ``names`` are the object names of each."""
     outcomes: dict[str, dict[Chosen, Outcome]] = {}
     for number, (verdict, own) in enumerate(zip(verdicts, names, strict=True)):
         decided: list[OpenVerdict | Violation] = [*verdict.open, *verdict.violations]
@@ -150,7 +150,7 @@ def _tally(truth: TraceTruth, watched: _Watched, outcomes: Mapping[Chosen, Outco
 
 
 def _decided(choices: ChosenObjects, left: dict[Chosen, Outcome]) -> tuple[Counts, list[Outcome]]:
-    """The rows that are violated or open and their outcomes, which are removed from ``left``."""
+    """The rows that are violated or open, with their outcomes, which are removed from ``left``."""
     if not left:
         return np.zeros(0, dtype=np.intp), []
     near = np.flatnonzero(np.isin(choices.trace, [trace for trace, _ in left]))
@@ -167,7 +167,7 @@ def _decided(choices: ChosenObjects, left: dict[Chosen, Outcome]) -> tuple[Count
 
 
 def _breached(breach: FormulaTruth, opportunities: Sequence[Stretches]) -> Counts:
-    """For each row the opportunities in which a rule is breached for sure, and at most."""
+    """For each row the opportunities in which a rule is breached, for certain and at most."""
     flags = breach.sure, breach.possible
     counts = []
     for stretches, own in zip(opportunities, flags, strict=True):
@@ -187,7 +187,7 @@ class _Tally:
         self._violated = np.zeros((2, n_traces), dtype=np.intp)
 
     def add_whole(self, trace: Counts, first: Counts, last: Counts) -> None:
-        """Count an opportunity for each choice of objects, as long as they are there."""
+        """Count one opportunity for each choice of objects, for as long as they are present."""
         n_traces, n_states = self._there.shape
         edges = np.zeros((n_traces, n_states + 1), dtype=np.intp)
         np.add.at(edges, (trace, first), 1)
@@ -213,7 +213,7 @@ class _Tally:
         breached: Counts,
         is_open: NDArray[np.bool_],
     ) -> None:
-        """Count the opportunities of rows that were taken; the verdict says whether one was."""
+        """Count the violated opportunities of rows; the verdict says whether there is one."""
         surely = np.where(is_open, 0, np.maximum(breached[0], 1))
         perhaps = np.maximum(np.maximum(breached[1], surely), 1)
         for level, taken in enumerate((surely, perhaps)):
@@ -223,7 +223,7 @@ class _Tally:
             np.add.at(self._opportunities[level], trace, lacks)
 
     def violated_at_all(self, trace: int, outcome: Outcome, *, is_counted: bool) -> None:
-        """Count one opportunity that was taken."""
+        """Count one violated opportunity."""
         taken = np.array([outcome == "violated", True], dtype=np.intp)
         self._violated[:, trace] += taken
         if not is_counted:

@@ -28,7 +28,8 @@ from rulec.value_display import short_repr
 class Moment:
     """States ``first`` to ``last`` (both included) in which a formula holds for some objects.
 
-    It does ``surely``, or ``perhaps``: as far as is known. ``objects`` are by the variables' order.
+    It holds ``surely``, or ``perhaps`` if that is unknown. ``objects`` are in the order of
+    variables.
     """
 
     __repr__ = short_repr
@@ -42,8 +43,9 @@ class Moment:
 def moments(trace: Trace | TraceArrays, query: FormulaQuery) -> list[Moment]:
     """The moments at which a formula holds in a checked trace, by objects and time.
 
-    A moment is as long as it can be. Of a trace that is cut bounds that are no multiple of its step
-    are rounded down and up: what both say is sure. Raises NotAMultipleError for such bounds else.
+    Moments are maximal. In a cut trace, bounds that are no multiple of its step are rounded down
+    and up, and what holds under both is certain; for other traces such bounds raise
+    NotAMultipleError.
     """
     roundings = _in_steps(trace, query)
     tables = tables_of(trace, query.vocabulary)

@@ -30,10 +30,10 @@ Flags = NDArray[np.bool_]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ValueRows:
-    """Values of a name (rows x states): Booleans, numbers, or places among those declared.
+    """The values of a name (rows x states): Booleans, numbers, or places among those declared.
 
-    A number lies between ``values`` and ``upper``; where a value is ``unknown`` its entry means
-    nothing.
+    A number lies between ``values`` and ``upper``; where a value is ``unknown`` its entry is
+    meaningless.
     """
 
     values: Array
@@ -43,7 +43,7 @@ class ValueRows:
     def at(
         self, *, rows: NDArray[np.intp] | None = None, states: NDArray[np.intp] | None = None
     ) -> ValueRows:
-        """Some of the rows, and some of the columns; these may be others in each row."""
+        """Some of the rows and some of the columns; the columns may differ by row."""
         chosen: Any = slice(None) if rows is None else rows
         if states is not None:
             numbers = np.arange(len(self.values)) if rows is None else rows
@@ -54,13 +54,13 @@ class ValueRows:
 
 
 class NameTables(ABC):
-    """Tables of checked traces that are alike, each made when it is first asked for.
+    """Tables of checked traces of one shape, each built on demand.
 
-    ``objects`` are those of the first trace, in its order, with their types; all traces have as
-    many, of the same types. Rows are those of the first trace's objects, then those of the second
-    one's, and so on; a trace that is shorter than ``n_states`` goes on with whatever. ``last`` is
-    the last state of each trace, ``spans`` (objects x 2) the first and the last state in which each
-    object is there. ``vocabulary`` has unknown defaults for what the source cannot tell.
+    ``objects`` are those of the first trace with their types, in its order; all traces have equally
+    many, of the same types. The rows are the objects of the first trace, then those of the second,
+    and so on; the columns of a trace shorter than ``n_states`` end in arbitrary values. ``last`` is
+    the last state of each trace, ``spans`` (objects x 2) the first and last state in which each
+    object is present. ``vocabulary`` has unknown defaults for names that the source cannot provide.
     """
 
     def __init__(
@@ -86,7 +86,7 @@ class NameTables(ABC):
     @property
     @abstractmethod
     def spans(self) -> NDArray[np.intp]:
-        """The first and the last state of each object."""
+        """The first and last state of each object."""
 
     def world(self, name: str) -> ValueRows:
         """The rows of a name that is about no object, one for each trace."""
@@ -95,7 +95,7 @@ class NameTables(ABC):
         return self._known[name]
 
     def about(self, name: str) -> ValueRows:
-        """The rows of a name that is about one object, one for each of the traces'."""
+        """The rows of a name that is about one object, one for each object of the traces."""
         if name not in self._known:
             self._known[name] = self._about(name)
         return self._known[name]
@@ -106,15 +106,15 @@ class NameTables(ABC):
 
     @abstractmethod
     def _world(self, name: str) -> ValueRows:
-        """The rows of a name."""
+        """The rows of a name about no object."""
 
     @abstractmethod
     def _about(self, name: str) -> ValueRows:
-        """The rows of a name."""
+        """The rows of a name about one object."""
 
 
 class ColumnTables(NameTables):
-    """Tables of traces that are given as columns, which say all that follows from facts."""
+    """Tables of traces that are given as columns, which contain everything that axioms imply."""
 
     def __init__(
         self, columns: TraceColumns, vocabulary: Vocabulary, told: frozenset[str] | None = None
@@ -128,7 +128,7 @@ class ColumnTables(NameTables):
 
     @property
     def spans(self) -> NDArray[np.intp]:
-        """The first and the last state of each object."""
+        """The first and last state of each object."""
         spans = np.zeros((self.n_traces, len(self.objects), 2), dtype=np.intp)
         spans[:, :, 1] = self.last[:, None]
         for place, item in enumerate(self.objects):
@@ -153,7 +153,7 @@ class ColumnTables(NameTables):
         return self._stacked(name, [(item,) for item in self.objects])
 
     def _stacked(self, name: str, about: Sequence[tuple[str, ...]]) -> ValueRows:
-        """The rows of a name for these objects of the first trace, then of the second one ..."""
+        """The rows of a name for these objects of the first trace, then of the second, etc."""
         columns, cells = self._columns, self._cells
         default, is_known = default_of(self.vocabulary.declarations[name])
         shape = (self.n_traces, len(about), self.n_states)
@@ -191,7 +191,10 @@ def tables_of_trace(trace: Trace, vocabulary: Vocabulary) -> NameTables:
 
 
 def default_of(declaration: Declaration | None) -> tuple[bool | float | int, bool]:
-    """A name's default as a column has it, and whether there is one; any value if not."""
+    """A name's default, encoded as in columns, and whether it has one.
+
+    If not, an arbitrary value.
+    """
     if declaration is None:
         return False, False
     default: Any = declaration.default
@@ -213,7 +216,7 @@ def _columns_of(trace: Trace, vocabulary: Vocabulary) -> TraceColumns:
 
 
 def _between_floats(value: Any) -> PartialValue:
-    """A number that no float stands for, as what lies between two of them."""
+    """A number that no float represents exactly, as the interval between two floats."""
     if type(value) is int and abs(value) > EXACT_IN_FLOATS:
         value = WrittenNumber(Fraction(value))
     plain: PartialValue = value
@@ -221,7 +224,7 @@ def _between_floats(value: Any) -> PartialValue:
 
 
 def _spelled(state: Mapping[str, Any], trace: Trace, vocabulary: Vocabulary) -> dict[str, Any]:
-    """A state that says something of all that some state speaks of, if only that it is unknown."""
+    """A state that mentions everything that some state mentions, if only as unknown."""
     values: dict[tuple[str, tuple[str, ...]], Any] = {}
     names = set().union(*trace.states) & vocabulary.declarations.keys()
     for name in names:

@@ -1,4 +1,4 @@
-"""The class of road of drives: what they are on most of the time, as far as that is told."""
+"""The road class of drives: that of most of their states, as far as it is known."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from rulec.monitoring.moments.name_tables import Flags, NameTables
 from rulec.vocabulary import Signal
 
 MOTORWAY, BUILT_UP, OUTSIDE = "motorway", "built-up", "outside"
-"""Classes of road: a motorway, any other one within built-up areas, and outside of them."""
+"""Road classes: motorways, other roads within built-up areas, and other roads outside of them."""
 
 
 def road_classes(tables: NameTables) -> list[str]:
-    """For each trace the class of most states.
+    """For each trace the road class of most of its states.
 
-    It is empty if most do not tell, or the vocabulary has no words for it, which are ``motorway``
-    and ``built_up`` of the vocabulary ``road``.
+    It is empty if most states do not tell, or if the vocabulary lacks the signals, which are
+    ``motorway`` and ``built_up`` of the vocabulary ``road``.
     """
     declared = [tables.vocabulary.declarations.get(name) for name in ("motorway", "built_up")]
     if not all(isinstance(signal, Signal) and not signal.parameters for signal in declared):
@@ -34,7 +34,7 @@ def road_classes(tables: NameTables) -> list[str]:
 
 
 def _known(tables: NameTables, name: str, there: Flags) -> tuple[Flags, Flags]:
-    """The states in which a signal is known to be true, and those in which it is not."""
+    """The states in which a signal is known to be true, and known to be false."""
     rows = tables.world(name)
     known = there & ~rows.unknown
     return rows.values & known, ~rows.values & known

@@ -24,17 +24,17 @@ from rulec.trace.trace_columns import Array
 from rulec.vocabulary import Enumeration
 
 Places = NDArray[np.intp]
-"""Numbers of objects in the tables' order, one a row, or one for all rows."""
+"""Object numbers in the tables' order, one per row, or one for all rows."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RowEvaluation:
     """The evaluation of formulas on some rows.
 
-    ``spans`` (objects x 2) are the first and the last state in which each object is there,
-    ``states`` the states of the traces that the columns show, in each row or in all alike.
-    ``comparisons`` are those of the formula that have been met, by identity: to hash one takes
-    longer than to evaluate it. ``trace`` is which trace each row is of, None if there is one.
+    ``spans`` (objects x 2) are the first and last state in which each object is present; ``states``
+    are the traces' states in the columns, by row or the same for all rows. ``comparisons`` caches
+    the evaluated ones by identity, since hashing one takes longer than evaluating it. ``trace`` is
+    the trace of each row, None if there is only one.
     """
 
     tables: NameTables
@@ -51,14 +51,17 @@ class RowEvaluation:
 
     @property
     def _shows_all(self) -> bool:
-        """Whether the columns are the states of the traces."""
+        """Whether the columns are exactly the states of the traces."""
         n_states = self.tables.n_states
         if self.states.ndim > 1 or self.n_states != n_states:
             return False
         return int(self.states[-1]) == n_states - 1
 
     def of(self, formula: ltl.Formula, bound: Mapping[str, Places]) -> TruthRows:
-        """The truth of a formula; ``bound`` has the objects' places, one a row or one for all."""
+        """The truth of a formula.
+
+        ``bound`` has the objects of its variables, per row or for all rows.
+        """
         match formula:
             case ltl.Atom():
                 return self._atom(formula, bound)
@@ -105,7 +108,7 @@ class RowEvaluation:
                 )
 
     def _spread(self, truth: TruthRows) -> TruthRows:
-        """Truth with a column for each state."""
+        """The truth with a column for each state."""
         if truth.sure.shape[1] == self.n_states:
             return truth
         shape = len(truth.sure), self.n_states
@@ -123,7 +126,7 @@ class RowEvaluation:
     def _rows(
         self, name: str, arguments: tuple[str, ...], bound: Mapping[str, Places]
     ) -> ValueRows:
-        """What is said of a name, asked of variables."""
+        """The values of a name for the objects of variables."""
         tables = self.tables
         states = None if self._shows_all else self.states
         if not arguments:
@@ -171,7 +174,7 @@ class RowEvaluation:
 def _digits(
     ready: ThresholdScale, summands: list[tuple[Fraction, Array]], ignored: NDArray[np.bool_]
 ) -> Array:
-    """For each row and state the side of the limit that a sum is on; any if it is ignored."""
+    """For each row and state the side of the limit that a sum is on; arbitrary if it is ignored."""
     if ready.quantity is not None:
         return digits_of(ready, summands, 0)
     spread = np.broadcast_arrays(ignored, *[numbers for _, numbers in summands])

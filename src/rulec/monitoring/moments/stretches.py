@@ -1,4 +1,4 @@
-"""Stretches of states in which something holds, for sure or perhaps."""
+"""Stretches of states in which something holds, certainly or possibly."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ Places = NDArray[np.intp]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stretches:
-    """Maximal stretches of states, ``first`` to ``last`` (both included), of ``rows``.
+    """Maximal stretches of states, ``first`` to ``last`` (both included), in ``rows``.
 
-    They come row by row, each row from its beginning.
+    They are sorted by row, and within a row by time.
     """
 
     rows: Places
@@ -26,13 +26,13 @@ class Stretches:
         return len(self.rows)
 
     def of_rows(self, rows: Places) -> Stretches:
-        """The stretches of some rows, ascending, as those of rows of which there are no others."""
+        """The stretches of some rows (ascending), with these rows renumbered from 0."""
         place = np.minimum(np.searchsorted(rows, self.rows), len(rows) - 1)
         own = rows[place] == self.rows
         return Stretches(place[own], self.first[own], self.last[own])
 
     def per_row(self, n_rows: int, which: Flags | None = None) -> Places:
-        """How many stretches each row has, of all or of those with a flag."""
+        """How many stretches each row has: of all, or of those with a flag."""
         result: Places = np.bincount(
             self.rows if which is None else self.rows[which], minlength=n_rows
         )
@@ -60,10 +60,11 @@ def stretches_of(flags: Flags) -> Stretches:
 
 
 def opportunity_stretches(sure: Flags, possible: Flags) -> tuple[Stretches, Stretches]:
-    """The opportunities that there are for sure, and those that there may be at most.
+    """The certain opportunities, and the most that there may be.
 
-    A stretch in which something possibly holds is one for sure if it holds for sure somewhere in
-    it. There may be as many as it has stretches in which it holds for sure, and one if it has none.
+    A stretch in which something possibly holds is one certain opportunity if it certainly holds
+    somewhere in it. At most there are as many opportunities in it as stretches in which it
+    certainly holds, and one if there is none.
     """
     joined = stretches_of(possible)
     for_sure = joined.with_some(sure)

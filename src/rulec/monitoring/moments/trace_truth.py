@@ -1,4 +1,4 @@
-"""The truth of formulas at every state of traces, for all choices of objects together."""
+"""The truth of formulas in every state of traces, for all choices of objects together."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.vocabulary_model import choices
 
 MOST_ENTRIES = 1 << 22
-"""Rows times states that are evaluated together; more take more memory."""
+"""The most rows times states that are evaluated together, to limit memory."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ChosenObjects:
-    """Choices of objects for variables of these names, one a row, those of a ``trace`` together.
+    """Choices of objects for variables with these names, one per row, sorted by ``trace``.
 
-    ``items`` (rows x variables) are numbers of objects, as tables count them.
+    ``items`` (rows x variables) are object numbers, as in tables.
     """
 
     variables: tuple[str, ...]
@@ -51,11 +51,11 @@ class ChosenObjects:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FormulaTruth:
-    """The truth of a formula at every state, a row for each choice of objects.
+    """The truth of a formula in every state, with a row for each choice of objects.
 
-    ``rows`` are which of the choices that were asked about. ``sure`` and ``possible`` (rows x
-    states) are False where not all their objects are there. Behind the ``last`` state of a row that
-    goes on for ever are those until nothing changes any more.
+    ``rows`` are their places among the choices asked about. ``sure`` and ``possible`` (rows x
+    states) are False where some of their objects are absent. For a row that continues for ever, the
+    states up to the point after which nothing changes follow its ``last`` state.
     """
 
     choices: ChosenObjects
@@ -65,13 +65,13 @@ class FormulaTruth:
     possible: NDArray[np.bool_]
 
     def in_trace(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-        """``sure`` and ``possible`` in states of the trace alone."""
+        """``sure`` and ``possible``, only in states of the trace."""
         there = np.arange(self.sure.shape[1]) <= self.last[:, None]
         return self.sure & there, self.possible & there
 
 
 def tables_of(trace: Trace | TraceArrays, vocabulary: Vocabulary) -> NameTables:
-    """What a checked trace says of names."""
+    """The name tables of a checked trace."""
     if isinstance(trace, Trace):
         return tables_of_trace(trace, vocabulary)
     return ArrayTables(trace, vocabulary)
@@ -80,7 +80,7 @@ def tables_of(trace: Trace | TraceArrays, vocabulary: Vocabulary) -> NameTables:
 class ReadyFormula:
     """A formula with what is known of it without a trace; bounds of operators are in steps.
 
-    Rows that go on for ever do so for at least as many states as it ``settles`` in.
+    Rows that continue for ever are extended by at least as many states as it ``settles`` in.
     """
 
     def __init__(
@@ -98,7 +98,7 @@ class ReadyFormula:
 
 
 class TraceTruth:
-    """What formulas come to on checked traces that are alike, which end as ``ends`` says."""
+    """The truth of formulas on checked traces of one shape, which end as ``ends`` says."""
 
     def __init__(self, tables: NameTables, semantics: Semantics, ends: Ending) -> None:
         self.tables = tables
@@ -108,10 +108,10 @@ class TraceTruth:
             self._ends = "cut"
 
     def of(self, ready: ReadyFormula, wanted: ChosenObjects) -> Iterator[FormulaTruth]:
-        """The truth of a formula for choices of objects that are there together.
+        """The truth of a formula for choices of objects that are present together.
 
-        There are several parts where there is much of it, and none of traces in which it is seen to
-        hold nowhere.
+        A large result is yielded in several parts; traces in which the formula evidently holds
+        nowhere are left out.
         """
         rows = np.flatnonzero(self._may_hold(ready)[wanted.trace])
         most = max(1, MOST_ENTRIES // (self.tables.n_states + ready.settles + 1))
@@ -119,7 +119,7 @@ class TraceTruth:
             yield self._part(ready, wanted, rows[begin : begin + most])
 
     def choices_of(self, variables: Sequence[Variable]) -> ChosenObjects:
-        """All choices of distinct objects of these types that are there together."""
+        """All choices of distinct objects of these types that are present together."""
         tables = self.tables
         wanted = [variable.type for variable in variables]
         numbers = {str(number): kind for number, kind in enumerate(tables.types)}
@@ -132,7 +132,7 @@ class TraceTruth:
         return every.at(np.flatnonzero(first <= last))
 
     def stretch_of(self, chosen: ChosenObjects) -> tuple[Places, Places]:
-        """The first and the last state in which each choice of objects is there."""
+        """The first and last state in which the objects of each choice are present."""
         if not chosen.variables:
             return np.zeros(len(chosen), dtype=np.intp), self.tables.last[chosen.trace]
         spans = self._spans[chosen.items]
@@ -160,7 +160,10 @@ class TraceTruth:
         )
 
     def _may_hold(self, ready: ReadyFormula) -> NDArray[np.bool_]:
-        """Flags of traces of which no part about one state and no object says: it holds nowhere."""
+        """The traces in which the formula may hold.
+
+        Judged by its parts that are about one state and no object.
+        """
         tables = self.tables
         states, last = np.arange(tables.n_states), tables.last[:, None]
         stretches = RowStretches(np.zeros_like(last), last, self._ends)

@@ -1,6 +1,6 @@
-"""Three-valued truth of formulas at every state, a row for each choice of objects.
+"""Three-valued truth of formulas in every state, with a row for each choice of objects.
 
-Operators are Kleene's, and those of time are what ``logic.semantics`` says on the stretch of a row.
+The operators are Kleene's; the temporal ones follow ``logic.semantics`` on the stretch of a row.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from rulec.logic.bounds import PAST, Range, range_of
 Flags = NDArray[np.bool_]
 
 RowEnding = Literal["over", "goes on", "cut"]
-"""What is behind a row's last state: nothing, that state for ever, or what nobody has seen.
+"""What follows a row's last state: nothing, the same state for ever, or unobserved states.
 
-Where a row is cut, nobody has seen what was before its first state either.
+In a cut row the states before the first one are unobserved, too.
 """
 
 
@@ -27,7 +27,7 @@ Where a row is cut, nobody has seen what was before its first state either.
 class TruthRows:
     """Where something is ``sure`` and where it is ``possible`` (rows x states, or one row for all).
 
-    What is sure is possible.
+    What is sure is also possible.
     """
 
     sure: Flags
@@ -49,17 +49,17 @@ def known(values: Flags) -> TruthRows:
 
 
 def negation(operand: TruthRows) -> TruthRows:
-    """What is sure of a negation is what is not possible of its operand."""
+    """A negation is certain where its operand is not possible."""
     return TruthRows(~operand.possible, ~operand.sure)
 
 
 def conjunction(left: TruthRows, right: TruthRows) -> TruthRows:
-    """Both."""
+    """The conjunction."""
     return TruthRows(left.sure & right.sure, left.possible & right.possible)
 
 
 def disjunction(left: TruthRows, right: TruthRows) -> TruthRows:
-    """One of them, or both."""
+    """The disjunction."""
     return TruthRows(left.sure | right.sure, left.possible | right.possible)
 
 
@@ -75,7 +75,7 @@ _TRUE = known(np.ones((1, 1), dtype=bool))
 def temporal_unary(
     formula: ltl.Unary, operand: TruthRows, stretches: RowStretches, n_states: int
 ) -> TruthRows:
-    """An operator of time on one formula; its bound is in steps."""
+    """A temporal operator on one formula; its bound is in steps."""
     always = known(np.broadcast_to(_TRUE.sure, (1, n_states)))
     join = _since if formula.operator in PAST else _until
     span = range_of(formula)
@@ -96,7 +96,7 @@ def temporal_unary(
 def temporal_binary(
     formula: ltl.Binary, left: TruthRows, right: TruthRows, stretches: RowStretches
 ) -> TruthRows:
-    """An operator of time between two formulas; its bound is in steps."""
+    """A temporal operator between two formulas; its bound is in steps."""
     span = range_of(formula)
     match formula.operator:
         case ltl.BinaryOperator.UNTIL | ltl.BinaryOperator.THEN:
@@ -114,7 +114,7 @@ def temporal_binary(
 def _weak_until(
     left: TruthRows, right: TruthRows, span: Range, stretches: RowStretches
 ) -> TruthRows:
-    """Until, or ``left`` from here to the range's end."""
+    """Until, or ``left`` up to the end of the range."""
     always = known(np.broadcast_to(_TRUE.sure, (1, left.sure.shape[-1])))
     breaks = _until(always, negation(left), Range(0, span.high), stretches)
     return disjunction(_until(left, right, span, stretches), negation(breaks))
@@ -126,7 +126,7 @@ def _since(left: TruthRows, right: TruthRows, span: Range, stretches: RowStretch
 
 
 def _until(left: TruthRows, right: TruthRows, span: Range, stretches: RowStretches) -> TruthRows:
-    """Until is since, read from the end."""
+    """Until, computed as since on reversed states."""
     behind = left.sure.shape[-1] - 1 - stretches.last
     back = _looked_back(_turned(left), _turned(right), span, behind, stretches.ends)
     return _turned(back)
@@ -143,7 +143,7 @@ def _looked_back(
     first: NDArray[np.intp],
     beyond: RowEnding,
 ) -> TruthRows:
-    """Since, with what is ``beyond`` a row's ``first`` state."""
+    """Since, with the given truth ``beyond`` a row's ``first`` state."""
     sure, _ = _since_known(left.sure, right.sure, span, first, goes_on=beyond == "goes on")
     possible, unbroken = _since_known(
         left.possible, right.possible, span, first, goes_on=beyond == "goes on"
@@ -158,7 +158,7 @@ def _looked_back(
 def _since_known(
     left: Flags, right: Flags, span: Range, first: NDArray[np.intp], *, goes_on: bool
 ) -> tuple[Flags, Flags]:
-    """Since of what is known, and where ``left`` holds in all states back to the first one."""
+    """Since for known operands, and where ``left`` holds in all states back to the first one."""
     n_states = right.shape[-1]
     state = np.arange(n_states)
     there = state >= first

@@ -1,1 +1,1 @@
-"""Runtime monitoring: Mealy monitors that take one state after the other."""
+"""Runtime monitoring: Mealy monitors that process one state at a time."""

@@ -1,7 +1,7 @@
 """Rules bound to the objects that are present.
 
-Rules that have very many choices of these are bound to those alone for which something has
-happened (see ``waking``): for all others each is where it starts.
+Rules with very many choices of objects are bound only to those for which something has happened
+(see ``waking``): for all other choices each rule is still in its start state.
 """
 
 from __future__ import annotations
@@ -40,13 +40,13 @@ Awake: TypeAlias = Mapping[tuple[str, ...], Collection[Items]]
 NONE_AWAKE: Awake = {}
 
 Letters: TypeAlias = list[int]
-"""For each binding of each group, one after the other, the letter that it reads."""
+"""The letter read by each binding of each group, one after the other."""
 
 MOST_STATES = 1 << 12
-"""Partly known states whose letters are kept before all are forgotten."""
+"""How many partly known states keep their letters before all are discarded."""
 
 MOST_SHAPES = 64
-"""Shapes of states that are kept before all are forgotten."""
+"""How many shapes of states are kept before all are discarded."""
 
 KnownState: TypeAlias = tuple[StateShape, tuple[Encoded, ...]]
 """The shape of a state, and the state encoded."""
@@ -54,10 +54,11 @@ KnownState: TypeAlias = tuple[StateShape, tuple[Encoded, ...]]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BoundRule:
-    """Rule with every binding of its variables to present objects.
+    """A rule with every binding of its variables to present objects.
 
-    ``bindings`` are those objects, in the order of the variables. They have the ``places`` among
-    all bindings of all groups; there the rule is the one with this ``number`` in its ``group``.
+    ``bindings`` are these objects, in the order of the variables. ``places`` are their positions
+    among all bindings of all groups; there the rule is the one with this ``number`` in its
+    ``group``.
     """
 
     prepared: PreparedRule
@@ -74,7 +75,7 @@ class BoundRule:
 class BoundRules:
     """Rules bound to the present objects, whose types the vocabulary knows.
 
-    Those of ``lazy`` groups are bound to the choices of objects that are ``awake``, by types.
+    Rules in ``lazy`` groups are bound to the choices of objects that are ``awake``, by types.
     """
 
     def __init__(
@@ -121,9 +122,9 @@ class BoundRules:
         return all(self._awake[types].issuperset(own) for types, own in waking.items())
 
     def waking(self, state: State, number: int, place: SourceLocation | None) -> Awake:
-        """The choices of objects of lazy groups to whose rules a state may do something.
+        """The choices of objects in lazy groups for whose rules a state may have an effect.
 
-        Raises RulecError as ``read`` does, R0718 if they are too many.
+        Raises RulecError as ``read`` does, and R0718 if there are too many.
         """
         # numpy, a tenth of a second, is loaded only where there are many choices.
         from rulec.monitoring.uncertainty.lazy_bindings import doubtful_bindings, known_bits
@@ -149,7 +150,7 @@ class BoundRules:
     def read(
         self, state: State, number: int, place: SourceLocation | None
     ) -> tuple[Letters, KnownState | None]:
-        """Letters of a state, and its encoding if it has one.
+        """The letters of a state, and its encoding if it has one.
 
         Raises RulecError R0502 to R0505 or R0508, naming the state by its ``number``.
         """
@@ -181,7 +182,10 @@ class BoundRules:
         return letters, known
 
     def _reader_of(self, names: tuple[str, ...]) -> GroupLetters | None:
-        """New reader of states with these names; None for the careful way."""
+        """A new reader of states with these names.
+
+        None if they must be read like ``verify`` does.
+        """
         if len(self._readers) >= MOST_SHAPES:
             self._readers.clear()
         self._readers[names] = None
@@ -204,7 +208,7 @@ class BoundRules:
         return PartialStateReader(state, self._rulebook, self.objects, where, self._letters)
 
     def inexact(self, letters: Letters) -> frozenset[str]:
-        """Rules of which more is taken to be possible than is, in a state with these letters."""
+        """Rules whose possible letters are overestimated in a state with these letters."""
         inexact: frozenset[str] = frozenset()
         begin = 0
         for group, bindings in self._bindings:
@@ -223,8 +227,8 @@ class BoundRules:
     ) -> tuple[Letters, bool]:
         """Letters read like ``verify`` does, with all cases and errors.
 
-        Also whether some value is partly known, or the past is not. Of a state that could be
-        encoded only those rules are read so that need it.
+        Also returns whether some value is partly known or the past is unknown. If the state could
+        be encoded, only the rules that need it are read.
         """
         name, rulebook = f"state {number}", self._rulebook
         check_state(state, self.objects, rulebook.vocabulary, name, place)
@@ -256,7 +260,7 @@ class BoundRules:
         state: State,
         where: tuple[int, SourceLocation | None],
     ) -> Letters:
-        """The letters, read from the whole state where they have holes.
+        """The letters, with missing ones read from the whole state.
 
         Raises RulecError as ``read`` does.
         """
@@ -287,7 +291,7 @@ class BoundRules:
         return letters
 
     def _known_letters(self, state: State, known: KnownState | None) -> Sequence[int | RulesRead]:
-        """What can be read of a state that is perhaps encoded, without a closer look."""
+        """The letters that can be read from an encoded state without closer inspection."""
         reader = None if known is None else self._readers[tuple(state)]
         if known is not None and reader is not None:
             return reader.known_letters(state, known[1])

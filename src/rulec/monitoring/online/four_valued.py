@@ -15,14 +15,13 @@ from rulec.automata.mealy_monitor import MealyMonitor
 FourValued: TypeAlias = Literal["satisfied", "violated", "holds so far", "pending"]
 """RV-LTL's true, false, presumably true and presumably false.
 
-``satisfied`` and ``violated`` are final, however the trace goes on, and if it ends here. Of the
-other two the end decides: if it came now, what ``holds so far`` would be kept, and what is
-``pending`` violated.
+``satisfied`` and ``violated`` are final, however the trace continues, also if it ends now. Of the
+other two, ``holds so far`` would be kept if the trace ended now, and ``pending`` violated.
 """
 
 
 class VerdictRange(NamedTuple):
-    """The best and the worst of a verdict where not all is known; they differ."""
+    """The best and worst verdict that is possible with unknown values; they differ."""
 
     best: FourValued
     worst: FourValued
@@ -32,22 +31,22 @@ class VerdictRange(NamedTuple):
 
 
 RunningVerdict: TypeAlias = "FourValued | VerdictRange"
-"""A verdict that is known, or within which it lies."""
+"""A known verdict, or a range that contains it."""
 
 LetterClass: TypeAlias = int
-"""A class of letters; beyond a rule's classes a set of them, of which a state has one.
+"""A class of letters; numbers beyond a rule's classes stand for a set of classes.
 
-``UncertainSteps`` numbers the sets. Numbers are no concern of the garbage collector, sets are.
+``UncertainSteps`` numbers the sets: the garbage collector tracks sets, but not numbers.
 """
 
 
 def best_of(verdict: RunningVerdict) -> FourValued:
-    """The verdict at best."""
+    """The best possible verdict."""
     return verdict.best if isinstance(verdict, VerdictRange) else verdict
 
 
 def worst_of(verdict: RunningVerdict) -> FourValued:
-    """The verdict at worst."""
+    """The worst possible verdict."""
     return verdict.worst if isinstance(verdict, VerdictRange) else verdict
 
 
@@ -58,10 +57,10 @@ def within(best: FourValued, worst: FourValued) -> RunningVerdict:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MonitorEdge:
-    """Edge of a monitor: the state reached, and the four-valued verdict.
+    """An edge of a monitor: the state reached, and the four-valued verdict.
 
-    ``successors`` has an edge for each letter class that may come next. Edges of one monitor that
-    are alike are identical.
+    ``successors`` has an edge for each letter class that may come next. Equal edges of one monitor
+    are identical objects.
     """
 
     successors: list[MonitorEdge]
@@ -72,7 +71,10 @@ class MonitorEdge:
 def linked_edges(
     machine: MealyMonitor,
 ) -> tuple[MonitorEdge, dict[tuple[int, FourValued], MonitorEdge]]:
-    """Where a monitor is before its first letter, and its edges by state reached and verdict."""
+    """The start of a monitor, before its first letter, and its edges.
+
+    The edges are given by the state reached and the verdict.
+    """
     verdicts = [
         [four_valued(machine, *ends) for ends in zip(targets, row, strict=True)]
         for targets, row in zip(machine.successors, machine.outputs, strict=True)
@@ -85,7 +87,7 @@ def linked_edges(
 def edges_between(
     successors: Sequence[Sequence[int]], verdicts: Sequence[Sequence[FourValued]]
 ) -> tuple[list[list[MonitorEdge]], dict[tuple[int, FourValued], MonitorEdge]]:
-    """The edges that leave each state, and all by state reached and verdict."""
+    """The edges that leave each state, and all edges by state reached and verdict."""
     rows: list[list[MonitorEdge]] = [[] for _ in successors]
     edges: dict[tuple[int, FourValued], MonitorEdge] = {}
     for row, targets, said in zip(rows, successors, verdicts, strict=True):
@@ -97,7 +99,7 @@ def edges_between(
 
 
 def four_valued(machine: MealyMonitor, state: int, accepted: bool) -> FourValued:
-    """Four-valued verdict (RV-LTL) on a word that leads to a state."""
+    """The four-valued verdict (RV-LTL) on a word that leads to a state."""
     # A finite word may be accepted if it ends here, though no longer one is: `weak next false`.
     if accepted:
         return "satisfied" if state == machine.accepting_sink else "holds so far"
@@ -105,9 +107,9 @@ def four_valued(machine: MealyMonitor, state: int, accepted: bool) -> FourValued
 
 
 def conjunction(verdicts: Iterable[RunningVerdict]) -> RunningVerdict:
-    """The verdict on several rules together; nothing at all is satisfied.
+    """The verdict on several rules together; without rules it is satisfied.
 
-    Each may come out anywhere in its range, whatever the others do.
+    Each verdict may turn out anywhere in its range, independently of the others.
     """
     distinct = set(verdicts)
     if _FOUR.issuperset(distinct):
@@ -125,7 +127,7 @@ _FOUR = frozenset(WORST_FIRST)
 
 
 def without_sink(machine: MealyMonitor, states: frozenset[int]) -> frozenset[int]:
-    """The states without the one of words that were lost, if no kept word leads there."""
+    """The states without the rejecting sink, if no kept word leads there."""
     sink = machine.rejecting_sink
     rows = zip(machine.successors, machine.outputs, strict=True)
     if any(kept and target == sink for row in rows for target, kept in zip(*row, strict=True)):

@@ -1,4 +1,4 @@
-"""Letters of rule groups for states of one shape, by binding.
+"""The letters of rule groups for states of one shape, by binding.
 
 The letters for one state of the world, and for some values, are computed once and kept.
 """
@@ -23,19 +23,19 @@ from rulec.vocabulary import Enumeration
 from rulec.vocabulary.partial_values import UNKNOWN
 
 MOST = 1 << 12
-"""States of the world, and letters of each group in them, kept before all are forgotten."""
+"""How many states of the world, and letters of each group, are kept before all are discarded."""
 
 _ReadColumn: TypeAlias = Callable[[State, Sequence[Encoded]], Sequence[Any]]
-"""From a state and its parts the encoded values of an input, for each of several bindings."""
+"""Maps a state and its parts to the encoded values of an input, for each of several bindings."""
 
 _ReadKeys: TypeAlias = Callable[[State, Sequence[Encoded]], Iterable[Any]]
-"""From a state and its parts for each of several bindings by what its letter is known."""
+"""Maps a state and its parts to the key of the letter, for each of several bindings."""
 
 
 class GroupLetters:
-    """Reader of the letters of groups with bindings, for one shape.
+    """A reader of the letters of groups with bindings, for one shape.
 
-    Raises LookupError or TypeError if such states need a closer look.
+    Raises LookupError or TypeError if such states need closer inspection.
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class GroupLetters:
     def letters(self, state: State, parts: tuple[Encoded, ...]) -> list[int]:
         """The letter of each binding of each group, one after the other.
 
-        Raises a LookupError or a TypeError if the state needs a closer look.
+        Raises LookupError or TypeError if the state needs closer inspection.
         """
         for part, places, values in self._unread:
             if not values.issuperset(parts[part][places]):
@@ -70,7 +70,7 @@ class GroupLetters:
         return letters
 
     def known_letters(self, state: State, parts: tuple[Encoded, ...]) -> Sequence[int | RulesRead]:
-        """The letter of each binding, or what those rules read that need no closer look."""
+        """The letter of each binding, or its reads for the rules without closer inspection."""
         letters: list[int | RulesRead] = []
         for number in range(len(self._readers)):
             letters += self._known_of_group(number, state, parts)
@@ -96,9 +96,9 @@ class GroupLetters:
 
 
 class _LetterTable(dict[Any, int]):
-    """Letters of a group by the encoded values of its own inputs.
+    """The letters of a group by the encoded values of its own inputs.
 
-    The encoded value of a single input stands for itself, those of several are a tuple.
+    The key is the encoded value of a single input, or a tuple for several.
     """
 
     __slots__ = ("_breakpoints", "_group", "_others", "_own")
@@ -123,7 +123,7 @@ class _LetterTable(dict[Any, int]):
         return letter
 
     def as_far_as_known(self, key: Any) -> int | RulesRead:
-        """The letter, or if that takes a closer look what those rules read that do not need it."""
+        """The letter or, if that needs closer inspection, the reads of the rules that do not."""
         try:
             return self[key]
         except (LookupError, TypeError):
@@ -141,9 +141,9 @@ class _LetterTable(dict[Any, int]):
 
 
 class _GroupReader:
-    """Reader of a group's letters for ``n_bindings``; ``read`` are the values it looks at.
+    """A reader of a group's letters for ``n_bindings``; ``read`` are the values that it uses.
 
-    ``keys`` are those of the letters that are kept, and raise as ``letters``.
+    ``keys`` are those of the letters that are kept; it raises like ``letters``.
     """
 
     def __init__(self, group: RuleGroup, bindings: Sequence[Items], shape: StateShape) -> None:
@@ -190,7 +190,7 @@ class _GroupReader:
         return _LetterTable(self._group, self._own, others, self._breakpoints)
 
     def nothing_read(self) -> RulesRead:
-        """What is read of a binding that takes a closer look for each rule."""
+        """The reads of a binding for which every rule needs closer inspection."""
         return [None] * len(self._group.rules)
 
     def _read_keys(self, whole: Sequence[int | None]) -> _ReadKeys:

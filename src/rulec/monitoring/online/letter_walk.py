@@ -1,7 +1,7 @@
-"""Letters of which some reads are not known, by walks through a rule's letter diagram.
+"""Letters with unknown reads, found by walks through a rule's letter diagram.
 
-A node is a set of the diagram's nodes: all that the digits so far may lead to. Nodes and the ways
-between them are made as they are met, so that a letter that is new costs a look-up for each read.
+A node is a set of the diagram's nodes: all that the digits so far may lead to. Nodes and edges are
+built on demand, so that a new letter costs one look-up per read.
 """
 
 from __future__ import annotations
@@ -19,22 +19,22 @@ if TYPE_CHECKING:
     from rulec.monitoring.uncertainty.state_letters.read_digits import Cube
 
 MOST_NODES = 1 << 14
-"""Nodes of a rule that are kept before all are forgotten."""
+"""How many nodes of a rule are kept before all are discarded."""
 
 
 _NOTHING: tuple[int, Sequence[Cube]] = -1, ()
 
 
 class WholeStateError(LookupError):
-    """More than a rule's own objects decides which letters it may read."""
+    """The letters that a rule may read depend on more than its own objects."""
 
 
 class WalkedRead(NamedTuple):
     """A read with a digit of its own: its ``place`` among the rule's reads.
 
-    ``masks`` are the possible digits, as bits, of a digit or a value that is partly known.
-    ``decided_alone``: nothing but it decides which of them it has. ``is_constant``: it has the same
-    one in each state.
+    ``masks`` are the possible digits, as bits, of a digit or a partly known value.
+    ``decided_alone``: nothing else influences which of them it has. ``is_constant``: it is the same
+    in every state.
     """
 
     place: int
@@ -44,7 +44,10 @@ class WalkedRead(NamedTuple):
 
 
 class _Node(dict[Any, "_Node"]):
-    """What some digits may lead to; behind the last one the classes, and if no more than that."""
+    """The nodes that digits may lead to.
+
+    After the last digit the classes, and whether they are exact.
+    """
 
     __slots__ = ("answer", "begin", "is_exact", "level", "sets", "walk")
 
@@ -71,9 +74,9 @@ class _Node(dict[Any, "_Node"]):
 class LetterWalk:
     """The walks through one rule's diagram.
 
-    ``reads`` have digits of their own; the ``others`` have for each of the cubes that a walk begins
-    with, which ``cubes_at`` has by number, the digits, as bits, that stand there. ``class_of`` is
-    the class, or several, that bits stand for.
+    ``reads`` have digits of their own; the ``others`` have their digits, as bits, in each of the
+    cubes with which a walk begins, and ``cubes_at`` has these by number. ``class_of`` is the class,
+    or set of classes, that bits stand for.
     """
 
     def __init__(
@@ -99,11 +102,11 @@ class LetterWalk:
     def classes(
         self, digits: Sequence[Any], begin: int = 0, *, is_exact: bool = True
     ) -> tuple[LetterClass, bool]:
-        """The classes of the letters with these digits, and whether no more are said than are.
+        """The classes of the letters with these digits, and whether this is exact.
 
         ``digits`` are in the order of the reads; ``begin`` is the number of the cubes of the
-        others. Raises LookupError if a digit is wrong, if facts exclude all these letters, as
-        WholeStateError if more than the rule's own objects decides.
+        others. Raises LookupError if a digit is invalid or if axioms exclude all these letters, and
+        WholeStateError if they depend on more than the rule's own objects.
         """
         node = self._starts.get(2 * begin + is_exact)
         if node is None:
@@ -121,7 +124,7 @@ class LetterWalk:
         return node.answer
 
     def step(self, node: _Node, digit: Any) -> _Node:
-        """The node behind a digit of the next read that has its own. Raises as ``classes``."""
+        """The node after a digit of the next read that has its own. Raises like ``classes``."""
         place = self._order[node.level]
         read = self._reads[place]
         mask = read.masks[digit]
@@ -144,7 +147,7 @@ class LetterWalk:
         sets: tuple[int, ...],
         is_exact: bool,
     ) -> _Node:
-        """The node behind all reads without digits of their own that come next."""
+        """The node after the next reads without digits of their own."""
         number, cubes = begin
         while level < len(self._order) and (place := self._order[level]) in self._others:
             own = self._others[place]

@@ -1,4 +1,4 @@
-"""Sources of a monitor: recorded traces, saved monitors, streams."""
+"""The sources of a monitor: recorded traces, saved monitors, streams."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from rulec.trace.trace_model import check_trace
 
 
 def replay_trace(trace: Trace, rulebook: CompiledRulebook) -> Monitor:
-    """A monitor behind the last state of a trace.
+    """A monitor after the last state of a trace.
 
     Raises RulecError R0501 to R0508 if the trace does not fit the rulebook, as in ``verify``.
     """
@@ -52,9 +52,9 @@ def _restricted_to(objects: Container[str], value: Any) -> Any:
 
 
 def answer(monitor: Monitor, item: LiveState | RulecError) -> SoFar | RulecError:
-    """Take a step; an error is an answer too.
+    """Take a step and return the verdict, or the error that prevented it.
 
-    ``item`` may be, in place of a state, the error that kept it from being read.
+    In place of a state, ``item`` may be the error that prevented reading one.
     """
     if isinstance(item, RulecError):
         return item
@@ -71,7 +71,7 @@ def read_saved(path: Path) -> Any:
 
 
 def saved_from(data: bytes, name: str) -> Any:
-    """What such a file of this name holds. Raises RulecError R0510."""
+    """The content of a saved monitor's file with this name. Raises RulecError R0510."""
     try:
         # Unlike `json` it takes neither NaN nor half a character.
         return msgspec.json.decode(data)
@@ -83,7 +83,7 @@ def saved_from(data: bytes, name: str) -> Any:
 
 
 def step_of(saved: Any) -> Fraction | None:
-    """Step (s) of a saved monitor; None if missing or invalid."""
+    """The step (s) of a saved monitor; None if it is missing or invalid."""
     try:
         step_s = number_from_data(saved["step_s"])
     except (TypeError, LookupError, ValueError):
@@ -93,7 +93,7 @@ def step_of(saved: Any) -> Fraction | None:
 
 @contextmanager
 def saved_at_the_end(monitor: Monitor, path: Path | None) -> Iterator[None]:
-    """Save a monitor at the block's beginning and end, even on errors.
+    """Save a monitor at the block's beginning and end, also if it raises an error.
 
     Without a path this does nothing. Raises RulecError R0702.
     """

@@ -1,4 +1,4 @@
-"""Immutable states of a running monitor; a refused state changes nothing."""
+"""Immutable states of a running monitor, so that a refused state changes nothing."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ if TYPE_CHECKING:
 
 
 class VerdictChange(NamedTuple):
-    """Change of a rule's verdict for some objects by a state.
+    """The change of a rule's verdict for some objects in a state.
 
-    Objects that have just come count as having held so far. ``ended`` says that their time together
-    ended with the state before: one of them is no longer there.
+    Objects that have just appeared count as having held so far. ``ended`` means that with the state
+    before, their time together ended because one of them is no longer present.
     """
 
     rule: str
@@ -53,11 +53,11 @@ class VerdictChange(NamedTuple):
 class SoFar(msgspec.Struct, frozen=True, gc=False):
     """The verdicts as of a state.
 
-    ``state`` is its number, from 0. ``verdict`` is that of all hard rules together, ``rules`` has
-    that of each judged one, soft ones included, ``changes`` what is new, in the order of rules and
-    objects. Where not all is known a verdict may be a ``VerdictRange``; where a hard rule is not
-    judged ``verdict`` is violated at worst. ``exact`` is false if of a rule with such a verdict
-    more was taken to be possible than is, so that it may be narrower after all.
+    ``state`` is its number, from 0. ``verdict`` is that of all hard rules together; ``rules`` has
+    that of each judged rule, including soft ones; ``changes`` are the new ones, in the order of
+    rules and objects. With unknown values, a verdict may be a ``VerdictRange``; if some hard rule
+    is not judged, the worst ``verdict`` is violated. ``exact`` is false if for some such rule the
+    possible letters were overestimated, so that its range may really be narrower.
     """
 
     __repr__ = short_repr
@@ -71,12 +71,12 @@ class SoFar(msgspec.Struct, frozen=True, gc=False):
 
     @property
     def best(self) -> FourValued:
-        """The verdict on all hard rules together, at best."""
+        """The best possible verdict on all hard rules together."""
         return best_of(self.verdict)
 
     @property
     def worst(self) -> FourValued:
-        """The verdict on all hard rules together, at worst."""
+        """The worst possible verdict on all hard rules together."""
         return worst_of(self.verdict)
 
     def __reduce__(self) -> tuple[type[SoFar], tuple[Any, ...]]:
@@ -84,13 +84,13 @@ class SoFar(msgspec.Struct, frozen=True, gc=False):
 
 
 class MonitorState(msgspec.Struct, frozen=True, eq=False):
-    """State of a monitor for fixed objects, without the state's number.
+    """The state of a monitor for fixed objects, without the number of the state.
 
     ``nodes`` are the states of each group's machines for each binding, in the order of the groups.
-    ``n_violations`` is how many bindings have violated their rule for good; rules that are
-    ``doubted`` may have been violated by objects that have left, and of those that are ``inexact``
-    more was taken to be possible than is. ``exact`` is as in ``SoFar``. ``after`` is a cache of the
-    steps that follow, by the keys of states.
+    ``n_violations`` is how many bindings have violated their rule for good. Rules that are
+    ``doubted`` may have been violated by objects that have left; for rules that are ``inexact`` the
+    possible letters were overestimated. ``exact`` is as in ``SoFar``. ``after`` caches the steps
+    that follow, by the keys of states.
     """
 
     bound_rules: BoundRules
@@ -109,7 +109,7 @@ _NONE: frozenset[str] = frozenset()
 _OPEN_AT_END = frozenset({"satisfied", "holds so far"})
 
 StepResult: TypeAlias = tuple[MonitorState, tuple[VerdictChange, ...]]
-"""The next state of a monitor, and what changes by the step."""
+"""The next state of a monitor, and the changes in this step."""
 
 
 def initial_state(bound_rules: BoundRules) -> MonitorState:
@@ -133,7 +133,7 @@ def nodes_at(bound_rules: BoundRules, edges: Mapping[str, Sequence[Edge]]) -> tu
 def take_step(current: MonitorState, bound_rules: BoundRules, letters: Letters) -> StepResult:
     """Take one step with these letters, for the rules as bound now.
 
-    Takes no longer for a long past than for a short one.
+    The cost does not depend on the length of the past.
     """
     changes: list[VerdictChange] = []
     if bound_rules is current.bound_rules:
@@ -176,7 +176,7 @@ def take_step(current: MonitorState, bound_rules: BoundRules, letters: Letters) 
 
 
 def with_inexact(state: MonitorState, rules: frozenset[str]) -> MonitorState:
-    """The state in which of these rules more was taken to be possible than is."""
+    """The state, with these rules marked as inexact."""
     if not rules:
         return state
     exact = not any(isinstance(state.rules[rule], VerdictRange) for rule in rules)
@@ -186,10 +186,10 @@ def with_inexact(state: MonitorState, rules: frozenset[str]) -> MonitorState:
 def carry_over(
     bound_rules: BoundRules, nodes: Sequence[GroupNode], into: BoundRules
 ) -> tuple[dict[str, list[Edge]], list[VerdictChange]]:
-    """First edges of bindings, by rule, after the objects have changed.
+    """The first edges of bindings, by rule, after the objects have changed.
 
-    A binding goes on if its objects have stayed, that is, are there under the same names and of the
-    same types; others start. There are also the changes by bindings that end.
+    A binding continues if its objects have stayed, that is, are present under the same names and
+    with the same types; other bindings start. Also returns the changes for bindings that end.
     """
     stayed = {name for name, kind in bound_rules.objects.items() if into.objects.get(name) == kind}
     entered: dict[str, list[Edge]] = {}
@@ -211,7 +211,7 @@ def carry_over(
 
 
 def awake(current: MonitorState, objects: Mapping[str, str]) -> Awake:
-    """The choices of objects, if all are still there, for which a rule is not where it starts."""
+    """The choices of objects, all still present, for which a rule has left its start state."""
     bound_rules = current.bound_rules
     stayed = {name for name, kind in bound_rules.objects.items() if objects.get(name) == kind}
     choices: dict[tuple[str, ...], set[Items]] = {}
@@ -226,7 +226,7 @@ def awake(current: MonitorState, objects: Mapping[str, str]) -> Awake:
 
 
 def _at_the_end(verdict: RunningVerdict) -> RunningVerdict:
-    """What a verdict comes to when its objects part."""
+    """The final verdict when the objects are no longer present together."""
     best: FourValued = "satisfied" if best_of(verdict) in _OPEN_AT_END else "violated"
     worst: FourValued = "satisfied" if worst_of(verdict) in _OPEN_AT_END else "violated"
     return within(best, worst)
@@ -256,7 +256,7 @@ def state_at(
     n_violations: int,
     known: Mapping[str, RunningVerdict] = _NONE_KNOWN,
 ) -> MonitorState:
-    """The monitor's state with these nodes, where some rules' verdicts are ``known``.
+    """The monitor's state with these nodes; some rules' verdicts may be ``known`` already.
 
     ``lost`` are rules violated for good, by objects now present or not, and rules that are doubted.
     """

@@ -1,4 +1,4 @@
-"""Letters that partly known states may have, read by the rules one by one."""
+"""The letters that partly known states may have, read rule by rule."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ from rulec.trace import State, Trace
 from rulec.vocabulary.partial_values import PartialValue
 
 MOST_KNOWN = 1 << 12
-"""Values of which it is kept what a rule reads before all are forgotten."""
+"""How many values keep what a rule reads before all are discarded."""
 
 
 class RulesOfAll:
-    """Rules whose letters more than their own objects decides, for the objects that are there.
+    """Rules whose letters depend on more than their own objects, for the objects present.
 
-    What they read is known by what a state says of all that decides it.
+    Their letters are cached by all values in a state that determine them.
     """
 
     def __init__(self, rulebook: CompiledRulebook, objects: Mapping[str, str]) -> None:
@@ -49,7 +49,7 @@ class RulesOfAll:
     def letter_class(
         self, prepared: PreparedRule, items: Items, state: State
     ) -> tuple[LetterClass, bool] | None:
-        """As of a ``PartialStateReader``; None where that is to say what is wrong."""
+        """As in ``PartialStateReader``; None if that one has to report what is wrong."""
         key = prepared, items
         rule = self._rules.get(key)
         if rule is None:
@@ -60,7 +60,7 @@ class RulesOfAll:
 
 
 def rules_of_all(rulebook: CompiledRulebook, objects: Mapping[str, str]) -> RulesOfAll:
-    """Those rules for these objects, kept from one monitor to another if they are few."""
+    """These rules for the given objects, shared by monitors if they are few."""
     if len(objects) > MOST_COUNTED:
         return RulesOfAll(rulebook, objects)
     known: dict[object, RulesOfAll] = rulebook.prepared.setdefault(RulesOfAll, {})
@@ -102,7 +102,7 @@ class _RuleOfAll:
         self._known: dict[tuple[PartialValue | None, ...], tuple[LetterClass, bool]] = {}
 
     def letter_class(self, state: State) -> tuple[LetterClass, bool] | None:
-        """The classes that the rule may read, and whether no more are said than are."""
+        """The classes that the rule may read, and whether this is exact."""
         values = tuple([value_in(state, *asked) for asked in self._asked])
         known = self._known.get(values)
         if known is None:
@@ -160,10 +160,10 @@ class _RuleOfAll:
 
 
 class PartialStateReader:
-    """A checked state, read as ``verify`` does.
+    """A checked state, read like ``verify`` does.
 
-    ``where`` are what messages call the state, and where it was read. ``bound`` is kept from
-    one state to the next while the same objects are there.
+    ``where`` is what messages call the state, and where it was read. ``bound`` is kept from one
+    state to the next while the same objects are present.
     """
 
     def __init__(
@@ -181,13 +181,14 @@ class PartialStateReader:
         )
 
     def bits_of(self, prepared: PreparedRule) -> ReadBits:
-        """A reader of the digits, as bits, of a rule's reads one by one."""
+        """A reader of the digits, as bits, of a rule's single reads."""
         return self._reader.bits_of(prepared.rule)
 
     def letter_class(self, prepared: PreparedRule, items: Items) -> tuple[LetterClass, bool]:
-        """The classes that a rule may read of objects, and whether no more are said than are.
+        """The classes that a rule may read for some objects, and whether this is exact.
 
-        Raises RulecError R0504 if a value without default is missing, R0508 if the state cannot be.
+        Raises RulecError R0504 if a value without default is missing, R0508 if the state is
+        impossible.
         """
         bound = prepared.bound(items)
         classes = prepared.uncertain.classes

@@ -1,4 +1,4 @@
-"""Rules prepared for any objects: what they read of a state, and the classes of what they read."""
+"""Rules prepared for any objects: their reads of a state, and the classes of their letters."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ from rulec.monitoring.uncertainty.state_letters.read_digits import (
 from rulec.vocabulary import Enumeration, Vocabulary
 
 MOST_CLASSES = 1 << 12
-"""Classes of a rule's letters that are kept before all are forgotten."""
+"""How many classes of a rule's letters are kept before all are discarded."""
 
 BY_STATE = IMPOSSIBLE - 1
-"""In place of the class of a rule's letter that takes a look at the whole state."""
+"""Replaces the class of a rule's letter that depends on the whole state."""
 
 if TYPE_CHECKING:
     from rulec.automata.outcome_machine import OutcomeMachine
@@ -49,10 +49,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class PreparedRule:
-    """A rule prepared for any objects: its monitor's ``start`` and ``edges``, and what it reads.
+    """A rule prepared for any objects: its monitor's ``start`` and ``edges``, and its reads.
 
-    ``letters`` has the class of each letter. ``entangled`` are those reads, None if more than the
-    rule's own objects decides what they may be; their inputs are the ``values`` on which they
+    ``letters`` has the class of each letter. ``entangled`` are its entangled reads, None if they
+    depend on more than the rule's own objects; their inputs are the ``values`` on which they
     depend. ``alone`` are the places of the other reads, with an input for each.
     """
 
@@ -69,7 +69,7 @@ class PreparedRule:
 
     @cached_property
     def uncertain(self) -> UncertainSteps:
-        """The steps where not all is known."""
+        """The steps with unknown values."""
         # numpy, a tenth of a second, is loaded only where something is unknown.
         from rulec.automata.outcome_machine import of_running_words
         from rulec.monitoring.online.uncertain_steps import UncertainSteps
@@ -78,7 +78,7 @@ class PreparedRule:
 
     @cached_property
     def idle(self) -> IdleLetters:
-        """The letters that leave the monitor where it starts, and its verdict as it was."""
+        """The letters that leave the monitor in its start state and its verdict unchanged."""
         # numpy, as above
         from rulec.monitoring.uncertainty.idle_letters import IdleLetters
 
@@ -91,12 +91,12 @@ class PreparedRule:
         return IdleLetters(steps.classes.diagram, are_idle)
 
     def is_at_start(self, edge: Edge) -> bool:
-        """Whether whatever comes behind an edge is as if it were the first."""
+        """Whether after an edge everything is as at the start."""
         return _ends(edge) == _ends(self.start)
 
     @cached_property
     def _strides(self) -> tuple[int, ...]:
-        """By how much a digit of each read counts in the number of a letter."""
+        """The factor of each read's digit in the number of a letter."""
         strides = [1]
         for read in self.rule.machine.reads:
             strides.append(strides[-1] * read.size)
@@ -104,7 +104,7 @@ class PreparedRule:
 
     @cached_property
     def n_classes(self) -> int:
-        """How many classes its letters have; beyond are sets of them."""
+        """How many letter classes it has; larger numbers stand for sets of them."""
         return max(map(len, [edge.successors for edge in self.edges.values()]), default=0)
 
     @property
@@ -114,17 +114,17 @@ class PreparedRule:
 
     @cached_property
     def all_inputs(self) -> tuple[MonitorInput, ...]:
-        """The inputs, and then the values."""
+        """The inputs, followed by the values."""
         return (*[read for read, _ in self.inputs], *self.values)
 
     @cached_property
     def classes(self) -> ClassTable:
-        """The classes that the rule reads, by what is encoded of ``all_inputs``."""
+        """The classes that the rule reads, by the encoding of ``all_inputs``."""
         return ClassTable(self)
 
     @cached_property
     def constants(self) -> frozenset[str]:
-        """Names that the rule reads and that never change."""
+        """The constants that the rule reads."""
         read = (name for own in self.rule.machine.reads for name in names_of_read(own))
         return frozenset(read).intersection(self.vocabulary.constants)
 
@@ -133,10 +133,10 @@ class PreparedRule:
         return dict(zip([variable.name for variable in self.rule.variables], items, strict=True))
 
     def letter_class(self, digits: tuple[Any, ...]) -> tuple[LetterClass, bool]:
-        """The classes that the rule reads, and whether no more are said than are.
+        """The classes that the rule reads, and whether this is exact.
 
-        ``digits`` are those of the ``inputs`` and then the ``values``, as encoded. Raises
-        LookupError if one is missing or wrong, or if it takes a look at the whole state.
+        ``digits`` are those of the ``inputs``, then the ``values``, as encoded. Raises LookupError
+        if one is missing or invalid, or if the classes depend on the whole state.
         """
         if self._is_simple and not PARTIAL_DIGITS.isdisjoint(map(type, digits)):
             # The usual case where something is not known
@@ -162,7 +162,7 @@ class PreparedRule:
         return {}
 
     def _decided_by(self, values: tuple[Any, ...]) -> _Decided:
-        """What these values decide, which are often the same while others change."""
+        """The consequence of these values, which often stay the same while others change."""
         decided: _Decided = 0, True, 0
         if self.entangled is not None and self.entangled.numbers:
             for at, allowed in self._elsewhere:
@@ -200,14 +200,14 @@ class PreparedRule:
 
     @cached_property
     def _constant_places(self) -> tuple[int, ...]:
-        """The places of the values that never change."""
+        """The places of constants among the values."""
         return tuple(
             [n for n, read in enumerate(self.values) if not self.constants.isdisjoint(read.names)]
         )
 
     @cached_property
     def _is_simple(self) -> bool:
-        """True if each read has a digit of its own."""
+        """Whether each read has a digit of its own."""
         return self.entangled is None or not self.entangled.numbers
 
     @cached_property
@@ -229,7 +229,7 @@ class PreparedRule:
 
     @cached_property
     def _perhaps_entangled(self) -> frozenset[int]:
-        """The places of reads that count, and of those that share a name with others or facts."""
+        """The places of reads that are counts, or share a name with other reads or axioms."""
         names = [set(names_of_read(read)) for read in self.rule.machine.reads]
         facts = [frozenset(names_in(axiom.formula)) for axiom in self.axioms]
         return frozenset(
@@ -251,7 +251,7 @@ class PreparedRule:
 
     @cached_property
     def _elsewhere(self) -> Sequence[tuple[int, frozenset[object]]]:
-        """The places of enumerations that no part looks at, with what these may be, encoded."""
+        """The places of enumerations that belong to no part, with their possible encoded values."""
         places = range(len(self.values))
         seen = {place for pick, _ in self._parts for place in pick(places)}
         return [
@@ -262,7 +262,7 @@ class PreparedRule:
 
     @cached_property
     def _allowed(self) -> Sequence[frozenset[object] | None]:
-        """Of each value that is an enumeration's what it may be, encoded."""
+        """For each value that is an enumeration the possible encoded values."""
         declared = [self.vocabulary.declarations[read.names[0]] for read in self.values]
         return [
             frozenset([*own.values, MISSING, UNKNOWN_DIGIT])
@@ -278,10 +278,10 @@ def _ends(edge: Edge) -> tuple[object, RunningVerdict]:
 
 
 class ClassTable(dict[tuple[Any, ...], "LetterClass"]):
-    """The classes that a rule reads, by its inputs' digits, or values that are partly known.
+    """The classes that a rule reads, by its inputs' digits or partly known values.
 
-    ``inexact`` are those of which more classes are said to be possible than are: a constant that is
-    not known may be another one in each state. Where the whole state decides it is ``BY_STATE``.
+    ``inexact`` are those for which the classes are overestimated, because an unknown constant is
+    taken to vary from state to state. A class that depends on the whole state is ``BY_STATE``.
     """
 
     def __init__(self, prepared: PreparedRule) -> None:
@@ -303,9 +303,10 @@ class ClassTable(dict[tuple[Any, ...], "LetterClass"]):
 
 
 _Decided: TypeAlias = tuple[int, bool, int | None]
-"""The place of what entangled reads may be together, and whether no more is said than is.
+"""The place of the joint letters of entangled reads, whether they are exact, and their weight.
 
-If they can be but one thing its weight. A plain tuple of numbers no garbage collector looks at.
+The weight is None if there are several. A plain tuple of numbers is not tracked by the garbage
+collector.
 """
 
 _NO_CUBES: Letters = ((),)
@@ -314,9 +315,9 @@ _NO_CUBES: Letters = ((),)
 def prepared_rule(
     rule: CompiledRule, rulebook: CompiledRulebook, cut: OutcomeMachine | None = None
 ) -> PreparedRule:
-    """Prepare a rule; ``cut`` is its machine if the past is not known.
+    """Prepare a rule; ``cut`` is its machine if the past is unknown.
 
-    What has been prepared is remembered, with all that monitors have found out by it.
+    The result is cached with everything that monitors compute in it.
     """
     known: dict[object, PreparedRule] = rulebook.prepared.setdefault(PreparedRule, {})
     key = rule.name, cut

@@ -1,8 +1,7 @@
-"""Groups of rules about common types of objects, stepped as products.
+"""Groups of rules with the same types of variables, stepped as products.
 
-For objects that such rules are bound to, the states of all their machines are one node, and what
-all of them read in a state is one letter. The product is built lazily: nodes and letters are made
-when they are first met.
+For the objects bound to such rules, the states of all their machines form one node, and their reads
+in a state form one letter. The product is built lazily: nodes and letters are created on first use.
 """
 
 from __future__ import annotations
@@ -30,26 +29,26 @@ if TYPE_CHECKING:
     from rulec.monitoring.online.uncertain_steps import Edge
 
 MOST_CACHED = 1 << 18
-"""Nodes, letters and transitions that are kept before all are forgotten."""
+"""How many nodes, letters and transitions are kept before all are discarded."""
 
 RulesRead: TypeAlias = "list[tuple[LetterClass, bool] | None]"
-"""For each rule of a group the class that it reads, and whether no more is said than is.
+"""For each rule of a group the class that it reads, and whether this is exact.
 
-None where that takes a closer look at a state.
+None where this needs closer inspection of a state.
 """
 
 _SetsOfClasses: TypeAlias = tuple[tuple[LetterClass, ...], tuple[int, ...]]
-"""For each rule its class, and the numbers of the rules that read sets of them."""
+"""For each rule its class, and the numbers of the rules that read sets of classes."""
 
 
 class OtherVerdictError(Exception):
-    """Behind this letter a rule's verdict is another one."""
+    """After this letter the verdict of some rule changes."""
 
 
 class GroupNode(dict[int, "GroupNode"]):
-    """States of a group's machines, and behind each letter their next ones.
+    """The states of a group's machines, with the next node for each letter.
 
-    Of letters that change a verdict an OtherVerdictError is raised; ``successor`` takes any.
+    Letters that change a verdict raise OtherVerdictError; ``successor`` takes any letter.
     """
 
     __slots__ = ("edges", "group", "verdicts")
@@ -70,7 +69,7 @@ class GroupNode(dict[int, "GroupNode"]):
         return node
 
     def successor(self, letter: int) -> GroupNode:
-        """The node behind a letter."""
+        """The node after a letter."""
         classes = self.group.classes[letter]
         try:
             edges: list[Edge] = [
@@ -91,7 +90,7 @@ class GroupNode(dict[int, "GroupNode"]):
 
 
 class CacheSize:
-    """Number of cached nodes, letters and transitions, and what letters there are."""
+    """How many nodes, letters and transitions are cached, and the known letters."""
 
     n = 0
     is_inexact = False
@@ -106,12 +105,12 @@ class Holes(NamedTuple):
 
 
 class RuleGroup:
-    """Rules whose variables are of the same types, in the same order.
+    """Rules whose variables have the same types, in the same order.
 
     ``own`` are their inputs about variables, ``world`` those about none. ``classes`` are the letter
-    classes of each letter, one for each rule; ``cache_size`` counts for all groups together.
-    Letters that are ``inexact`` have names of rules of which more is taken to be possible than is;
-    with ``holes`` they are to be ``filled`` before they are read.
+    classes of each letter, one per rule; ``cache_size`` counts for all groups together. For
+    ``inexact`` letters the names of rules are kept whose classes are overestimated; letters with
+    ``holes`` must be ``filled`` before they are read.
     """
 
     def __init__(
@@ -131,14 +130,14 @@ class RuleGroup:
         self._all_inexact = [table.inexact for table, _ in self._tables]
 
     def node(self, edges: tuple[Edge, ...]) -> GroupNode:
-        """The node with these edges, one for each rule."""
+        """The node with these edges, one per rule."""
         if edges not in self._nodes:
             self._nodes[edges] = GroupNode(self, edges)
             self.cache_size.n += 1
         return self._nodes[edges]
 
     def sets_in(self, letter: int) -> _SetsOfClasses:
-        """A letter's single classes, any in place of sets of them, and where these are."""
+        """A letter's single classes, with placeholders for sets of classes, and their places."""
         known = self._sets.get(letter)
         if known is None:
             classes, rules = self.classes[letter], self.rules
@@ -150,9 +149,9 @@ class RuleGroup:
         return known
 
     def letter(self, classes: tuple[LetterClass, ...], inexact: Set[int] = frozenset()) -> int:
-        """The letter that has these classes, one for each rule.
+        """The letter with these classes, one per rule.
 
-        Of the rules with ``inexact`` numbers more is taken to be possible than is.
+        For the rules with ``inexact`` numbers the classes are overestimated.
         """
         # What is exact has but numbers in its key, for the garbage collector's sake.
         key = (classes, frozenset(inexact)) if inexact else classes
@@ -176,7 +175,7 @@ class RuleGroup:
         items: Items,
         read: Callable[[PreparedRule, Items], tuple[LetterClass, bool]],
     ) -> int:
-        """A letter in whose ``holes`` is what those rules read of objects."""
+        """The letter whose ``holes`` are filled with what those rules read of the objects."""
         holes = self.holes[letter]
         classes, inexact = list(self.classes[letter]), set(holes.inexact)
         for number in holes.rules:
@@ -186,10 +185,10 @@ class RuleGroup:
         return self.letter(tuple(classes), inexact)
 
     def letter_of(self, digits: Mapping[MonitorInput, Any]) -> int:
-        """The letter where inputs have these digits, or values that are partly known.
+        """The letter for inputs with these digits or partly known values.
 
-        It may have holes. Raises LookupError or TypeError if one is missing or wrong, or if no
-        state is such.
+        It may have holes. Raises LookupError or TypeError if a digit is missing or invalid, or if
+        no such state is possible.
         """
         read = [pick(digits) for _, pick in self._tables]
         classes = tuple([table[own] for (table, _), own in zip(self._tables, read, strict=True)])
@@ -203,7 +202,7 @@ class RuleGroup:
         return self.letter(classes, inexact)
 
     def read_by_rules(self, digits: Mapping[MonitorInput, Any]) -> RulesRead:
-        """What each rule reads where inputs have these digits, or values that are partly known."""
+        """The classes that each rule reads for inputs with these digits or partly known values."""
         return [_read_by_rule(table, pick, digits) for table, pick in self._tables]
 
 
@@ -221,11 +220,11 @@ def _read_by_rule(
 
 
 class RuleGroups:
-    """Rules of a rulebook, singly and grouped by their variables' types.
+    """The rules of a rulebook, singly and grouped by their variables' types.
 
-    The groups cache their nodes, letters and transitions. With ``is_partial`` names that no state
-    says may be unknown, or the past is. With ``lacks_hard`` there are hard rules of which nothing
-    can be said.
+    The groups cache their nodes, letters and transitions. ``is_partial``: names that no state
+    contains may be unknown, or the past is unknown. ``lacks_hard``: some hard rules cannot be
+    judged.
     """
 
     def __init__(
@@ -248,7 +247,7 @@ class RuleGroups:
         )
 
     def without_cache(self) -> RuleGroups:
-        """These groups as they were at first."""
+        """These groups with empty caches."""
         return RuleGroups(
             self.rules, self.breakpoints, is_partial=self.is_partial, lacks_hard=self.lacks_hard
         )
@@ -260,7 +259,7 @@ def rule_groups(
     *,
     lacks_hard: bool = False,
 ) -> RuleGroups:
-    """Prepare the rules of a rulebook; ``cut`` are their machines if the past is not known."""
+    """Prepare the rules of a rulebook; ``cut`` are their machines if the past is unknown."""
     rules = [
         prepared_rule(rule, rulebook, None if cut is None else cut[rule.name])
         for rule in rulebook.rules

@@ -1,4 +1,4 @@
-"""A runtime monitor: a trace verified state by state while it runs."""
+"""A runtime monitor: verifies a trace state by state while it runs."""
 
 from __future__ import annotations
 
@@ -39,25 +39,25 @@ if TYPE_CHECKING:
 NO_OBJECTS: Mapping[str, str] = MappingProxyType({})
 
 _Now: TypeAlias = tuple[MonitorState, int, tuple[VerdictChange, ...], TransitionCache]
-"""The monitor's state, the number of the trace's last state, its changes, and a cache of steps.
+"""The monitor's state, the number of the last state, its changes, and a cache of steps.
 
-They are one value, so that an interrupted step leaves none of them behind.
+They form one value, so that an interrupted step cannot leave them inconsistent.
 """
 
 
 class Monitor:
-    """A monitor of a trace whose states come one after the other.
+    """A monitor of a trace whose states arrive one after the other.
 
-    A step takes as long after a million states as after one: the past is known by the states
+    A step takes as long after a million states as after one: the past is represented by the states
     of the rules' machines, one for each binding of a rule to objects that are present.
 
     Args:
         rulebook: the rules; they are not compiled here.
         step_s: seconds from one state to the next; needed only by rules with bounds in seconds. If
-            left out, the step that they were compiled for.
-        told: the names that the source can tell; others are unknown where no state says them, bar
-            those with ``presumed`` defaults. If left out, all have their defaults.
-        cut: what was before the first state, and before an object was there, is unknown.
+            omitted, the step that they were compiled for.
+        told: the names that the source can provide; other names are unknown in states that do not
+            contain them, except those with ``presumed`` defaults. If omitted, all have defaults.
+        cut: the time before the first state, and before an object appeared, is unknown.
 
     Raises RulecError R0507 if a rule was compiled for another step and cannot be compiled again,
     R0403 if it is cut and Spot is not installed, TypeError for rules that are not compiled.
@@ -111,36 +111,36 @@ class Monitor:
 
     @property
     def rulebook(self) -> CompiledRulebook:
-        """The rules that judge."""
+        """The rules by which the trace is judged."""
         return self._rulebook
 
     @property
     def not_judged(self) -> tuple[str, ...]:
-        """The rules that nothing can be said of, for want of what the source cannot tell."""
+        """The rules that cannot be judged because the source lacks values that they need."""
         judged = {rule.name for rule in self._judged.rules}
         return tuple(rule.name for rule in self._rulebook.rules if rule.name not in judged)
 
     @property
     def step_s(self) -> Fraction | None:
-        """Seconds from state to state; None if no rule depends on it."""
+        """The time step (s); None if no rule depends on it."""
         return self._step_s
 
     @property
     def so_far(self) -> SoFar:
-        """Verdicts as of the last state; number -1 before the first one."""
+        """The verdicts as of the last state; its number is -1 before the first one."""
         current, number, changes, _ = self._now
         return SoFar(number, current.verdict, current.rules, changes, current.exact)
 
     @property
     def objects(self) -> Mapping[str, str]:
-        """The objects that were there in the last state, with their types."""
+        """The objects present in the last state, with their types."""
         return dict(self._now[0].bound_rules.objects)
 
     @property
     def violations(self) -> tuple[Violation, ...]:
-        """All violations for good, in the order in which they came about.
+        """All violations for good, in the order in which they occurred.
 
-        The ``step`` is that of ``verify``: None if the end of a stretch has decided.
+        The ``step`` is that of ``verify``: None if the end of a stretch decided.
         """
         return tuple(self._violations[: self._now[0].n_violations])
 
@@ -154,13 +154,13 @@ class Monitor:
 
         Args:
             state: as in a trace.
-            objects: those that are present in it, and their types. An object that is no longer
-                among them has left; if it comes back later it begins anew.
+            objects: those that are present in it, with their types. An object that is missing has
+                left; if it returns later it counts as a new object.
             place: where the state was read, for messages.
 
-        The result are the verdicts as of this state, and what has changed. Raises RulecError R0501
-        to R0505 or R0508 if the state does not fit the rulebook, as in ``verify``; then the monitor
-        is as if there had been no such state.
+        Returns the verdicts as of this state, and what has changed. Raises RulecError R0501 to
+        R0505 or R0508 if the state does not fit the rulebook, as in ``verify``; the monitor then
+        ignores the state.
         """
         current, number, _, cache = self._now
         same_objects = objects == current.bound_rules.objects
@@ -232,9 +232,9 @@ class Monitor:
         return SoFar(number, after.verdict, after.rules, changes, after.exact)
 
     def past(self, objects: Mapping[str, str]) -> CarriedState:
-        """Past that affects verdicts on future states with these objects.
+        """The past, as far as it affects verdicts on future states with these objects.
 
-        Raises ValueError if it is unknown what was before the first state.
+        Raises ValueError if the time before the first state is unknown.
         """
         expected("objects", "Mapping[str, str]", objects)
         current = self._now[0]
@@ -272,7 +272,7 @@ class Monitor:
         return CarriedState(states, frozenset(settled), violations, possible, frozenset(doubtful))
 
     def snapshot(self) -> dict[str, Any]:
-        """The monitor's state, for ``restore``: data that JSON can take."""
+        """The monitor's state, for ``restore``, as data that can be written as JSON."""
         current, number, *_ = self._now
         data = to_data(current, number, self._rulebook, self._step_s, self.violations)
         return with_source(data, self._told, cut=self._cut)
@@ -281,14 +281,14 @@ class Monitor:
     def restore(
         cls, rulebook: CompiledRulebook, snapshot: Any, place: SourceLocation | None = None
     ) -> Monitor:
-        """A monitor that goes on where another one stopped.
+        """A monitor that continues where another one stopped.
 
         Args:
-            rulebook: the rules of that monitor, or others whose machines are the same.
-            snapshot: what its ``snapshot`` has returned, or JSON has made of that.
+            rulebook: the rules of that monitor, or others with the same machines.
+            snapshot: the result of its ``snapshot``, possibly written to JSON and read again.
             place: where it was read, for messages.
 
-        Raises RulecError R0510 if this is no snapshot, one of other rules, or damaged.
+        Raises RulecError R0510 if this is no snapshot, or one of other rules, or damaged.
         """
         expected("rulebook", "CompiledRulebook", rulebook)
         saved, step_s = from_data(snapshot, rulebook, place)
@@ -318,7 +318,7 @@ def _unpickled(
     changes: tuple[VerdictChange, ...],
     violations: list[Violation],
 ) -> Monitor:
-    """A monitor in another one's state; its caches are empty."""
+    """A monitor in the state of another one; its caches are empty."""
     monitor = Monitor.restore(rulebook, snapshot)
     monitor._step_s = step_s
     current, number, _, cache = monitor._now

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 FORMAT = "rulec monitor"
 VERSION, PARTIAL_VERSION = 1, 2
-"""Versions of files; the second is of monitors of which not all is known."""
+"""Versions of the files; the second is for monitors with unknown values."""
 
 
 class _Header(msgspec.Struct):
@@ -63,11 +63,11 @@ class _Violation(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class SavedMonitor(msgspec.Struct, forbid_unknown_fields=True):
-    """Saved monitor: its number of ``states``, and states by rule and binding.
+    """A saved monitor: its number of ``states``, and machine states by rule and binding.
 
-    Where not all is known there are several states, and the best and the worst verdict; ``doubted``
-    are rules that objects that have left may have violated, ``inexact`` those of which more was
-    taken to be possible than is, ``told`` and ``cut`` as of a trace.
+    With unknown values there are several machine states, and the best and worst verdict;
+    ``doubted`` are rules that may have been violated by objects that have left, ``inexact`` those
+    with overestimated letters; ``told`` and ``cut`` are as in a trace.
     """
 
     format: str
@@ -134,7 +134,7 @@ def _saved(edge: Edge) -> dict[str, Any]:
 
 
 def with_source(data: dict[str, Any], told: Set[str] | None, *, cut: bool) -> dict[str, Any]:
-    """A snapshot with what its source can tell."""
+    """The snapshot, extended by which names its source can provide."""
     if told is None and not cut:
         return data
     names = None if told is None else sorted(told)
@@ -206,7 +206,7 @@ def restored(
     groups: RuleGroups,
     place: SourceLocation | None,
 ) -> tuple[int, MonitorState, list[Violation]]:
-    """Last state's number, monitor state and violations of a saved monitor.
+    """The last state's number, monitor state and violations of a saved monitor.
 
     Raises RulecError R0510 if it is damaged.
     """
@@ -234,7 +234,7 @@ def restored(
 def _saved_choices(
     saved: SavedMonitor, rulebook: CompiledRulebook
 ) -> dict[tuple[str, ...], set[Items]]:
-    """The choices of objects that a saved monitor tells of. Raises ValueError for what is none."""
+    """The choices of objects in a saved monitor. Raises ValueError for invalid ones."""
     types = {rule.name: types_of(rule) for rule in rulebook.rules}
     choices: dict[tuple[str, ...], set[Items]] = {}
     for rule in saved.rules:
@@ -249,7 +249,7 @@ def _saved_choices(
 
 
 def _edges(saved: SavedMonitor, bound_rules: BoundRules) -> dict[str, list[Edge]]:
-    """Edges of exactly these bindings. Raises LookupError or ValueError otherwise."""
+    """The edges of exactly these bindings. Raises LookupError or ValueError otherwise."""
     edges: dict[str, list[Edge]] = {}
     for bound_rule, rule in zip(bound_rules.rules, saved.rules, strict=True):
         prepared = bound_rule.prepared

@@ -1,4 +1,4 @@
-"""Cache of a monitor's steps by the states of earlier traces."""
+"""A cache of a monitor's steps, filled by the states of earlier traces."""
 
 from __future__ import annotations
 
@@ -11,22 +11,23 @@ from rulec.monitoring.online.monitor_state import MonitorState, StepResult
 from rulec.monitoring.online.rule_group import GroupNode
 
 MOST = 1 << 12
-"""Steps that are kept before all are forgotten."""
+"""How many steps are kept before all are discarded."""
 
 TRIAL = 1 << 9
-"""After so many it is asked whether they were of any help; another shape counts as a sixteenth.
+"""After so many look-ups the cache's usefulness is checked; another shape counts a sixteenth.
 
-They are if of four states one is known, since to look one up takes a third of a step."""
+It is useful if one state in four is found, since a look-up costs a third of a step.
+"""
 
 REST = 16
-"""If they were of little help, nothing is kept for so many times as many states."""
+"""If the cache was of little use, nothing is kept for this many times as many states."""
 
 
 class TransitionCache:
     """The steps taken while the same objects are present.
 
-    At any time there is one shape whose states are looked up; ``key`` is theirs. States of other
-    shapes may come between them.
+    At any time there is one shape whose states are looked up; ``key`` gives their keys. States of
+    other shapes may occur in between.
     """
 
     def __init__(self) -> None:
@@ -42,9 +43,10 @@ class TransitionCache:
     def remember(
         self, known: KnownState, number: int, current: MonitorState, step: StepResult
     ) -> MonitorState:
-        """Keep the step from ``current`` by the state with this number.
+        """Keep the step from ``current`` for the state with this number.
 
-        To profit from what is kept behind it, go on from the state returned, which has equal nodes.
+        To profit from the steps cached after it, continue from the returned state, which has equal
+        nodes.
         """
         after, changes = step
         if number < self._rests_until:

@@ -1,6 +1,6 @@
-"""Steps of one rule's monitor where states, letters or the past are not all known.
+"""Steps of one rule's monitor when states, letters or the past are not all known.
 
-A set of edges stands for all that completions of what has been seen may have come to.
+A set of edges stands for everything that completions of the past may have led to.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from rulec.monitoring.online.four_valued import (
 from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClasses
 
 MOST_STEPS = 1 << 16
-"""Steps that are kept before all are forgotten."""
+"""How many steps are kept before all are discarded."""
 
 
 class _Row(dict[LetterClass, "Edge"]):
@@ -40,11 +40,11 @@ class _Row(dict[LetterClass, "Edge"]):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class UncertainEdge:
-    """Several edges of a monitor: the states that may be reached, and the verdicts.
+    """Several edges of a monitor: the states that may have been reached, and the verdicts.
 
-    Of the states those are left out that lie between two others in what they can still come to,
-    of those from which nothing is kept all but one.
-    ``successors`` has the edge or the edges behind each class, or set of classes, as they are met.
+    States are left out if their possible future outcomes lie between those of two others; of the
+    states from which nothing is kept, one is left. ``successors`` has the edge or edges for each
+    class, or set of classes, and is filled on demand.
     """
 
     states: tuple[int, ...]
@@ -56,10 +56,10 @@ Edge: TypeAlias = MonitorEdge | UncertainEdge
 
 
 class UncertainSteps:
-    """Steps of a rule's machine from and to sets of edges, made as they are met.
+    """The steps of a rule's machine from and to sets of edges, built on demand.
 
-    ``edges`` are the single edges of ``machine``, by state reached and verdict. ``rows`` have by
-    edge the edge or the edges behind each class, or set of classes, met so far.
+    ``edges`` are the single edges of ``machine``, by state reached and verdict. ``rows`` have for
+    each edge the edge or edges for each class, or set of classes, met so far.
     """
 
     def __init__(
@@ -75,7 +75,7 @@ class UncertainSteps:
         self._n_steps = 0
 
     def step(self, edge: Edge, letters: LetterClass) -> Edge:
-        """The edge or the edges behind some letters, found anew; ``rows`` keep it."""
+        """The edge or edges after some letters, newly computed and kept in ``rows``."""
         self._n_steps += 1
         if self._n_steps > MOST_STEPS:
             self._n_steps = 0
@@ -110,7 +110,7 @@ class UncertainSteps:
         return self._edges[key]
 
     def letter_class(self, mask: int) -> LetterClass | None:
-        """The classes given as bits; None if facts exclude them all."""
+        """The class, or set of classes, given as bits; None if axioms exclude them all."""
         if mask & (mask - 1) == 0:
             return mask.bit_length() - 1 if mask else None
         number = self._numbers.get(mask)
@@ -142,7 +142,7 @@ class _Rows(dict["Edge", "_Row"]):
 def cut_edges(
     machine: OutcomeMachine,
 ) -> tuple[Edge, dict[tuple[int, FourValued], MonitorEdge], UncertainSteps]:
-    """Where a machine for cut words begins, its edges, and the steps with sets of them."""
+    """The start of a machine for cut words, its edges, and the steps with sets of them."""
     classes = range(machine.n_classes)
     verdicts = [
         [_four_valued(machine, state, symbol) for symbol in classes]

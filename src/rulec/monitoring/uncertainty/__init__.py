@@ -1,1 +1,1 @@
-"""Verdicts where values are unknown, or what is before or after has not been seen."""
+"""Verdicts with unknown values, or with an unobserved past or future."""

@@ -1,9 +1,9 @@
-"""On which words an open verdict depends, and how it comes out by their values.
+"""The words on which an open verdict depends, and its outcome by their values.
 
-Two completions that agree on some names and disagree on the outcome are two runs of a rule's
-machine, side by side on the same letters but for what is not fixed. So it is enough to follow pairs
-of states, of which there are few: not all sets of them. Of pairs only those count that are the
-furthest apart, by what can still come of their states.
+Two completions that agree on some names and differ in the outcome are two runs of a rule's machine,
+side by side, on letters that agree where these names are read. So it suffices to follow pairs of
+states, of which there are few, instead of all sets of states. Only the pairs that are farthest
+apart, by their states' possible outcomes, are followed.
 """
 
 from __future__ import annotations
@@ -17,21 +17,21 @@ from rulec.monitoring.uncertainty.run_pairs import Pairs, RunPairs, Word
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
 
 MOST_TRIED = 2
-"""Pairs that are followed first: that some run comes to less than another is mostly told by few."""
+"""How many pairs are followed first: few usually show that some run has a lesser outcome."""
 
 BEFORE = ""
-"""Stands among names for what was before the first state."""
+"""Stands among names for the time before the first state."""
 
 _Stretch: TypeAlias = tuple[tuple[int, int], int]
-"""The letters of two words, and for how long they stay."""
+"""The letters of two words, and how often they are repeated."""
 
 
 @dataclass(frozen=True, slots=True)
 class PossibleAlternative:
-    """The possible letters of a word, for some values of what does not change.
+    """The possible letters of a word, for some values of the constants.
 
-    ``stretches`` are the letters in their order, and in how many states on end they are possible.
-    ``constants`` are the values by name, as text to compare them by.
+    ``stretches`` are the letters in their order, each with the number of successive states in which
+    they are possible. ``constants`` are the values by name, as text for comparison.
     """
 
     stretches: tuple[tuple[Letters, int], ...]
@@ -39,9 +39,9 @@ class PossibleAlternative:
 
 
 class Dependence:
-    """What decides the outcome of one rule and binding.
+    """What determines the outcome of one rule and binding.
 
-    ``unknown`` has for each read the names of unknown values that it depends on.
+    ``unknown`` has for each read the names of the unknown values on which it depends.
     """
 
     def __init__(
@@ -59,8 +59,8 @@ class Dependence:
     def smallest(self, names: Sequence[str]) -> tuple[str, ...] | None:
         """The smallest set of names that decides; of equally small ones the first in order.
 
-        ``names`` are in the order that ties are broken by; ``BEFORE`` may be among them. None if
-        all of them together do not decide, or there is too much to look at.
+        ``names`` are in the order in which ties are broken; ``BEFORE`` may be among them. None if
+        all of them together do not decide, or if the search is too large.
         """
         every = frozenset(names)
         if not self.decides(every):
@@ -86,10 +86,11 @@ class Dependence:
         return None
 
     def is_idle(self, name: str) -> bool:
-        """Whether a name is in no smallest set that decides, as single letters tell.
+        """Whether a name is in no smallest deciding set, as far as single letters show.
 
-        So it is if no value of it ever makes a difference to the rule's machine, whatever all else
-        is: completions that agree on other names come out as ones do that agree on it, too.
+        This holds if no value of it ever makes a difference to the rule's machine, whatever the
+        other values are: completions that agree on the other names have the same outcome as if they
+        agreed on it, too.
         """
         if name == BEFORE or any(name in constants for _, constants in self._alternatives):
             return False
@@ -98,7 +99,7 @@ class Dependence:
         return all(self._runs.are_indifferent(words, read) for read in about)
 
     def needs(self, name: str, every: frozenset[str]) -> bool:
-        """Whether all others of these names do not decide, as few pairs tell."""
+        """Whether all other names together do not decide, as far as few pairs show."""
         return self._decides(every - {name}, thoroughly=False) is False
 
     def decides(self, names: frozenset[str]) -> bool:
@@ -106,7 +107,7 @@ class Dependence:
         return self._decides(names, thoroughly=True) is True
 
     def _decides(self, names: frozenset[str], *, thoroughly: bool) -> bool | None:
-        """As ``decides``; None if few pairs do not tell and others are only for ``thoroughly``."""
+        """As ``decides``; None if few pairs do not show it, unless ``thoroughly``."""
         fixed = tuple([n for n, about in enumerate(self._unknown) if about and about <= names])
         is_same = BEFORE in names
         is_one = is_same or self._runs.n_starts == 1
@@ -126,7 +127,7 @@ class Dependence:
         return decides
 
     def _groups(self, names: frozenset[str]) -> Iterator[list[Word]]:
-        """Alternatives that have the same values of these constants."""
+        """The alternatives, grouped by equal values of these constants."""
         groups: dict[tuple[object, ...], list[Word]] = {}
         for word, constants in self._alternatives:
             key = tuple([value for name, value in constants.items() if name in names])
@@ -134,9 +135,9 @@ class Dependence:
         yield from groups.values()
 
     def _agree(self, first: Word, second: Word, fixed: tuple[int, ...], pairs: Pairs) -> bool:
-        """Whether runs on two words, from pairs of states, cannot come to less and to more.
+        """Whether runs on two words, from pairs of states, cannot have different outcomes.
 
-        That they can is often told by few pairs.
+        If they can, few pairs often suffice to show it.
         """
         agree = self._agree_by_few(first, second, fixed, pairs)
         if agree is None:
@@ -147,13 +148,13 @@ class Dependence:
     def _agree_by_few(
         self, first: Word, second: Word, fixed: tuple[int, ...], pairs: Pairs
     ) -> bool | None:
-        """The same by some pairs of each state; None if these do not tell."""
+        """The same, by some pairs of each state; None if these do not show it."""
         return self._agree_by(MOST_TRIED, first, second, fixed=fixed, pairs=pairs)
 
     def _agree_by(
         self, most: int | None, first: Word, second: Word, *, fixed: tuple[int, ...], pairs: Pairs
     ) -> bool | None:
-        """The same by so many pairs after each letter; None if these do not tell."""
+        """The same, by this many pairs after each letter; None if these do not show it."""
         runs, stretches = self._runs, self._alike(first, second)
         first_prospects, second_prospects = runs.prospects(first), runs.prospects(second)
         begin, all_followed = 0, True
@@ -181,7 +182,7 @@ class Dependence:
         return agree if all_followed or not agree else None
 
     def _alike(self, first: Word, second: Word) -> list[_Stretch]:
-        """The pairs of letters of two words but the last, each with how often it is repeated."""
+        """The pairs of letters of two words, except the last, each with its repetitions."""
         stretches = self._stretches.get((first, second))
         if stretches is None:
             together = groupby(zip(first[:-1], second[:-1], strict=True))

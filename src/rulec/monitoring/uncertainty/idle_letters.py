@@ -1,4 +1,4 @@
-"""Letters that do nothing to a machine, known before all of what they consist of is read."""
+"""Letters without effect on a machine, recognised before all their reads are known."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiag
 class IdleLetters:
     """The letters of a machine that are idle, given as the classes, as bits, that they may have.
 
-    What cannot be, because facts exclude it, is never idle, lest nobody notice it.
+    Impossible letters, excluded by axioms, are never idle, so that they get noticed.
     """
 
     def __init__(self, diagram: LetterDiagram, are_idle: Callable[[int], bool]) -> None:
@@ -19,7 +19,7 @@ class IdleLetters:
         self._known: dict[int, bool] = {}
 
     def of_classes(self, classes: int) -> bool:
-        """Whether letters of any of these classes, of one at least, are idle."""
+        """Whether letters of any of these classes, at least one, are idle."""
         known = self._known.get(classes)
         if known is None:
             known = self._known[classes] = bool(classes) and self._are_idle(classes)
@@ -32,9 +32,9 @@ class IdleLetters:
 
 
 def idle_letters(monitor: SetMonitor, diagram: LetterDiagram) -> IdleLetters:
-    """The letters that lead a machine to where they keep it, with every word of them kept.
+    """The letters that keep a machine in a set of states in which every word of them is kept.
 
-    So what a word of nothing else comes to needs no run, nor does any part of it.
+    So a word of such letters needs no run, nor does any part of it.
     """
     machine = monitor.machine
 

@@ -1,4 +1,4 @@
-"""Rules that can be judged from a source that cannot tell all, or has seen only a part."""
+"""The rules that can be judged from a source that lacks names or shows only a part of a drive."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from rulec.vocabulary import Vocabulary
 class JudgedRules:
     """The rules that can be judged, with their machines, and those that cannot.
 
-    ``vocabulary`` has unknown defaults for what the source cannot tell; ``presumed`` are the names
-    that rules read and that have their defaults where no source tells them.
+    ``vocabulary`` has unknown defaults for names that the source cannot provide; ``presumed`` are
+    the names that rules read and that keep their defaults where no source provides them.
     """
 
     machines: tuple[tuple[CompiledRule, UncertainMachine], ...]
@@ -31,11 +31,11 @@ class JudgedRules:
 def judged_rules(
     rulebook: CompiledRulebook, told: frozenset[str] | None, *, cut: bool
 ) -> JudgedRules:
-    """The rules for a source that tells these names, all if None.
+    """The rules for a source that provides these names, or all names if None.
 
     Left out are rules that no trace can be known to violate, and those whose machine would be too
-    large, for the step or of traces that are ``cut``. Raises RulecError R0403 if Spot is not
-    installed, which makes the machines for these. The answer is remembered: it is asked for every
+    large for the step or for traces that are ``cut``. Raises RulecError R0403 if Spot, which builds
+    the machines for these, is not installed. The result is cached, since it is needed for every
     trace.
     """
     known: dict[object, JudgedRules] = rulebook.prepared.setdefault(JudgedRules, {})
@@ -51,7 +51,7 @@ _TOO_LARGE_IF_CUT = (
     "smaller for larger time steps"
 )
 _MOST_KNOWN = 1 << 6
-"""Kinds of sources whose rules are kept before all are forgotten."""
+"""For how many kinds of sources the rules are kept before all are discarded."""
 
 
 def _judged_rules(

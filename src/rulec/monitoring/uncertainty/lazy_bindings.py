@@ -1,8 +1,8 @@
-"""Bindings of rules with many variables, made only where the rule may be anything but kept.
+"""Bindings of rules with many variables, built only where the rule may not be kept.
 
-Thirty objects can be chosen for six variables in 427 million ways, of which hardly one matters:
-where what is known of some of the objects already shows that no state does anything to the rule's
-machine, whoever the others are, no other is looked for. So a rule is bound variable by variable.
+Thirty objects can be chosen for six variables in 427 million ways, of which hardly any matters:
+once the values of some objects show that no state affects the rule's machine, whatever the other
+objects are, no further object is tried. So a rule is bound variable by variable.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from rulec.resource_limits import CHOICES
 from rulec.vocabulary.vocabulary_model import choices, fitting_objects
 
 ReadBits: TypeAlias = Callable[[Read | NumberRead, Mapping[str, str], tuple[int, int]], Digits]
-"""The digits, as bits, that a read may have of chosen objects in the states of a stretch.
+"""The digits, as bits, that a read may have for chosen objects in the states of a stretch.
 
 Raises RulecError R0504.
 """
@@ -44,12 +44,12 @@ def doubtful_bindings(
     idle: IdleLetters,
     begun: Collection[tuple[str, ...]] = (),
 ) -> Iterator[Binding]:
-    """The bindings of a rule that may not be kept, and perhaps others, in the usual order.
+    """The bindings of a rule that may not be kept, and possibly others, in the usual order.
 
-    Those that have ``begun`` before the first state are among them. Where something cannot be read
-    it is for whoever reads all of them to say so: then all are made.
+    They include those that have ``begun`` before the first state. If a value cannot be read, all
+    bindings are built, so that reading them reports the error.
 
-    Raises RulecError R0718 if even of these more than the limit `choices` have to be looked at.
+    Raises RulecError R0718 if even so more choices than the limit `choices` have to be tried.
     """
     search = _Search(rule, cast, read, idle)
     try:
@@ -67,7 +67,7 @@ def doubtful_bindings(
 
 
 def known_bits(reader: LetterReader, rule: CompiledRule) -> ReadBits:
-    """The digits, as bits, of states in which all is known."""
+    """The digits, as bits, in states in which everything is known."""
 
     def read_bits(
         read: Read | NumberRead, chosen: Mapping[str, str], stretch: tuple[int, int]
@@ -90,8 +90,8 @@ def _in_order(
 class _Search:
     """A search through the choices of objects, one variable after the other.
 
-    Of every object and of all chosen ones together only those states are looked at in which what is
-    known of fewer of them has not shown that nothing is done.
+    Of each object, and of the chosen objects together, only those states are evaluated in which
+    fewer objects have not already shown that there is no effect.
     """
 
     def __init__(self, rule: CompiledRule, cast: Cast, read: ReadBits, idle: IdleLetters) -> None:
@@ -105,7 +105,7 @@ class _Search:
             [number for number, own in enumerate(self._about) if max(own, default=-1) == place]
             for place in range(-1, len(places))
         ]
-        """The reads that choosing nobody makes known, then those that each variable does."""
+        """The reads that are known without any object, then those that each variable adds."""
         self._so_far = [tuple(chain(*self._known[: end + 1])) for end in range(len(self._known))]
         self._columns: dict[tuple[int, tuple[str, ...]], tuple[Digits, int]] = {}
         self._busy: dict[tuple[tuple[int, ...], tuple[int, ...]], bool] = {}
@@ -113,7 +113,7 @@ class _Search:
         self._tried = 0
 
     def read_all(self) -> None:
-        """Read whatever any choice reads and a state may lack. Raises RulecError."""
+        """Read every value that some choice reads and a state may lack. Raises RulecError."""
         type_of = {variable.name: variable.type for variable in self._rule.variables}
         declarations, objects = self._cast.vocabulary.declarations, self._cast.objects
         for number, (read, variables) in enumerate(self._reads):
@@ -124,7 +124,7 @@ class _Search:
                 self._column(number, chosen)
 
     def choices(self) -> Iterator[tuple[str, ...]]:
-        """The choices of objects for which some state does something to the rule's machine."""
+        """The choices of objects for which some state affects the rule's machine."""
         cast = self._cast
         nobody = self._longer(dict.fromkeys(range(cast.n_states), ()), (), range(cast.n_states))
         fitting = []
@@ -146,7 +146,7 @@ class _Search:
     ) -> None:
         """Raise RulecError R0718 if more choices than the limit would be tried from here on.
 
-        Most are of the last variable, and those are counted without a look at any.
+        Most are for the last variable, and those are counted without being tried.
         """
         own = fitting[len(chosen)]
         self._tried += len(own) - sum(item in own for item in chosen)
@@ -162,7 +162,7 @@ class _Search:
         cubes: Mapping[int, tuple[int, ...]],
         fitting: Sequence[Mapping[str, frozenset[int]]],
     ) -> Iterator[tuple[str, ...]]:
-        """Choices that begin with the chosen; ``cubes`` are what is read of these, by state."""
+        """Choices that begin with ``chosen``; ``cubes`` are its reads, by state."""
         if len(chosen) == len(fitting):
             yield chosen
             return
@@ -175,7 +175,7 @@ class _Search:
         cubes: Mapping[int, tuple[int, ...]],
         fitting: Mapping[str, frozenset[int]],
     ) -> Iterator[tuple[tuple[str, ...], Mapping[int, tuple[int, ...]]]]:
-        """The chosen and one object more, with what is read of them where they may not be kept."""
+        """The chosen objects and one more, with their reads in states that may not be kept."""
         for item, own in fitting.items():
             if item not in chosen:
                 longer = *chosen, item
@@ -186,7 +186,7 @@ class _Search:
     def _longer(
         self, cubes: Mapping[int, tuple[int, ...]], chosen: tuple[str, ...], own: Container[int]
     ) -> Mapping[int, tuple[int, ...]]:
-        """Cubes with what the last of the chosen makes known, where it may not be kept."""
+        """The cubes with the reads of the last chosen object, where the rule may not be kept."""
         columns = [
             self._column(number, tuple([chosen[place] for place in self._about[number]]))
             for number in self._known[len(chosen)]
@@ -201,7 +201,7 @@ class _Search:
         return result
 
     def _busy_alone(self, place: int, item: str) -> frozenset[int]:
-        """The states in which somebody is and the rule may not be kept, whoever the others are."""
+        """The states with an object in which the rule may not be kept, whatever the others are."""
         own = binding_of({self._variables[place]: item}, self._cast.present, self._cast.n_states)
         known = tuple([n for n, about in enumerate(self._about) if set(about) <= {place}])
         columns = [self._column(n, (item,) * len(self._about[n])) for n in known]
@@ -214,7 +214,7 @@ class _Search:
         )
 
     def _column(self, number: int, items: tuple[str, ...]) -> tuple[Digits, int]:
-        """What a read may be wherever its own objects are, and the first state of these."""
+        """The digits of a read wherever its objects are present, and the first such state."""
         key = number, items
         if key not in self._columns:
             read, variables = self._reads[number]

@@ -15,16 +15,16 @@ from rulec.logic import formula as ltl
 
 @dataclass(frozen=True)
 class NumberRegions:
-    """The regions of numbers that comparisons with these ``limits``, ascending, tell apart.
+    """The regions of numbers that comparisons with these ascending ``limits`` distinguish.
 
-    Below the first limit is region 0, the limit itself is 1, and so on.
+    Region 0 is below the first limit, region 1 is the limit itself, and so on.
     """
 
     limits: tuple[Fraction, ...]
 
     @cached_property
     def floors(self) -> tuple[float, ...]:
-        """The smallest float in each region but the first, floats standing for their decimals."""
+        """The smallest float in each region except the first; floats stand for their decimals."""
         thresholds = [Threshold(x, inclusive) for x in self.limits for inclusive in (True, False)]
         return tuple(map(floor_of, thresholds))
 
@@ -43,7 +43,7 @@ class NumberRegions:
 def number_regions(
     reads: Sequence[Read | NumberRead], facts: Sequence[ltl.Formula]
 ) -> Mapping[str, NumberRegions]:
-    """The regions of each quantity that reads and facts compare by itself alone, in no sum."""
+    """The regions of each quantity that is compared alone, not in a sum, by reads and axioms."""
     limits: dict[str, set[Fraction]] = {}
     added: set[str] = set()
     for terms, limit in _comparisons(reads, facts):
@@ -63,7 +63,7 @@ _Comparison = tuple[Sequence[tuple[Fraction, ltl.Term]], Fraction]
 def _comparisons(
     reads: Iterable[Read | NumberRead], facts: Iterable[ltl.Formula]
 ) -> Iterator[_Comparison]:
-    """Sums with what they are compared with, those within counts, too."""
+    """Sums with what they are compared with, including those within counts."""
     formulas = list(facts)
     for read in reads:
         if isinstance(read, NumberRead):
@@ -74,7 +74,7 @@ def _comparisons(
 
 
 def comparisons_in(formula: ltl.Formula) -> Iterator[ltl.Comparison]:
-    """The comparisons of a formula, those within counts, too."""
+    """The comparisons of a formula, including those within counts."""
     for atom in ltl.atoms_of(formula):
         if isinstance(atom, ltl.Comparison):
             yield atom

@@ -1,4 +1,4 @@
-"""One completion of a trace, for showing what any of them would show."""
+"""One completion of a trace, to show what every completion would show."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from rulec.vocabulary.vocabulary_model import default_value, values_of
 End: TypeAlias = Literal["low", "high"]
 
 _PLAIN = frozenset((bool, float, int, str))
-"""Types of most values that are known."""
+"""The types of most known values."""
 
 
 @dataclass(frozen=True, slots=True)
 class Supposed:
-    """What stands for the unknown: values by name, and of names with bounds the end that does.
+    """Replacements for unknown values: values by name and, for bounded numbers, which end to take.
 
-    Of other names the default does, or the least value, and the middle of bounds.
+    Other names take their default or least value, and the middle of their bounds.
     """
 
     values: Mapping[str, Value] = field(default_factory=dict)
@@ -35,7 +35,7 @@ NOTHING_SUPPOSED = Supposed()
 
 
 def completed(trace: Trace, vocabulary: Vocabulary, supposed: Supposed) -> Trace:
-    """The trace with what is supposed in place of what is unknown."""
+    """The trace with unknown values replaced by the supposed ones."""
     declarations = vocabulary.declarations
     states = tuple(
         {
@@ -52,18 +52,18 @@ def completed(trace: Trace, vocabulary: Vocabulary, supposed: Supposed) -> Trace
 
 
 def _of_all(objects: Collection[str], depth: int, value: Value) -> Any:
-    """A value of the world, or the same of all objects, or of all pairs of them."""
+    """A value of the world, or the same value for all objects, or for all pairs of them."""
     return value if not depth else dict.fromkeys(objects, _of_all(objects, depth - 1, value))
 
 
 def favourable(
     formula: ltl.Formula, vocabulary: Vocabulary, facts: Collection[ltl.Formula]
 ) -> Supposed:
-    """By name, that by which a formula is most likely to hold, where it is the same for all atoms.
+    """For each name the value by which a formula most likely holds, if all atoms agree on one.
 
-    Where the formula is violated nevertheless that rests on what is known. Nothing is supposed of
-    words in facts, which might be contradicted, nor of those that a count reads, whose objects are
-    many.
+    If the formula is violated nevertheless, that rests on known values. Nothing is supposed for
+    names in axioms, which might be contradicted, nor for those that a count reads, which has many
+    objects.
     """
     signs: dict[str, dict[str | None, set[bool]]] = {}
     ends: dict[str, set[End | None]] = {}
@@ -97,7 +97,7 @@ def favourable(
 
 
 def _signed(formula: ltl.Formula) -> Iterator[tuple[ltl.Proposition, bool]]:
-    """The propositions, each with whether the formula rather holds if it is true."""
+    """The propositions, each with whether the formula tends to hold if it is true."""
     waiting = [(formula, True)]
     while waiting:
         part, sign = waiting.pop()
@@ -116,14 +116,14 @@ def _signed(formula: ltl.Formula) -> Iterator[tuple[ltl.Proposition, bool]]:
 
 
 def _is_favourable(value: str | bool, signs: Mapping[str | None, set[bool]]) -> bool:
-    """Whether each atom is true, or false, as it should be if a name has this value."""
+    """Whether each atom has its favourable truth value if a name has this value."""
     return all(own == {value == (wanted or True)} for wanted, own in signs.items())
 
 
 def with_all_defaults(
     vocabulary: Vocabulary, supposed: Supposed, untold: Collection[str]
 ) -> Vocabulary:
-    """The vocabulary in which each name has a default: of ``untold`` ones what is supposed."""
+    """The vocabulary in which each name has a default: the supposed value for ``untold`` ones."""
     values = {name: supposed.values[name] for name in supposed.values.keys() & untold}
     declarations = {
         name: replace(item, default=values.get(name, default_value(item)))  # type: ignore[arg-type]

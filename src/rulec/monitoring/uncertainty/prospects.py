@@ -1,4 +1,4 @@
-"""Reachable outcomes of a machine's states before a word of letter sets."""
+"""The reachable outcomes of a machine's states before a word of letter sets."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from operator import or_
 from rulec.automata.outcome_machine import OutcomeMachine
 
 MOST_TABLES = 1 << 12
-"""Tables of outcomes that are kept before all are forgotten."""
+"""How many tables of outcomes are kept before all are discarded."""
 
 BYTES = 1 << 8
-"""The different bytes that there are."""
+"""The number of different bytes."""
 
 
 class Prospects:
     """The outcomes, as bits, that words from each state may have, in numbered tables.
 
-    They are worked out from a word's end on, and remembered: ends of words are often alike.
+    They are computed backwards from a word's end and cached, since words often end alike.
     """
 
     def __init__(self, machine: OutcomeMachine) -> None:
@@ -40,7 +40,7 @@ class Prospects:
         self._before: dict[tuple[int, int], int] = {}
 
     def along(self, word: Sequence[int]) -> list[bytes]:
-        """For each letter of a word the outcomes of what begins with it, by state.
+        """For each letter of a word, the outcomes by state of the rest of the word from there on.
 
         Letters are sets of classes, as bits.
         """

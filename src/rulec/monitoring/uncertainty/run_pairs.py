@@ -13,27 +13,27 @@ from rulec.monitoring.uncertainty.state_letters.letter_classes import LetterClas
 from rulec.monitoring.uncertainty.state_letters.read_digits import Letters
 
 MOST_REMEMBERED = 1 << 14
-"""Steps that are kept before all are forgotten."""
+"""How many steps are kept before all are discarded."""
 
 MOST_WORDS = 1 << 9
-"""Words whose prospects are kept before all is forgotten."""
+"""For how many words the prospects are kept before all are discarded."""
 
 Word: TypeAlias = tuple[int, ...]
 """Letters by their numbers."""
 
 Pairs: TypeAlias = frozenset[tuple[int, int]]
-"""States of a first run, each with the states, as bits, that a second run may be in.
+"""States of a first run, each with the states, as bits, in which a second run may be.
 
-They are of words on which the fixed reads have the same digits. It is asked whether the first run
-may come to less than the second one.
+The runs read words on which the fixed reads have the same digits. The question is whether the first
+run may have a lesser outcome than the second.
 """
 
 
 class RunPairs:
-    """Pairs of runs of one machine, step by step, remembered from word to word.
+    """Pairs of runs of one machine, step by step, cached from word to word.
 
-    Letters have numbers: states are many, their letters few. So have the choices that two letters
-    leave, side by side, once the digits of some reads are fixed; fewer still.
+    Letters are numbered, since they recur in many states. So are the choices that two letters
+    leave, side by side, once the digits of some reads are fixed, of which there are even fewer.
     """
 
     def __init__(self, machine: OutcomeMachine, classes: LetterClasses) -> None:
@@ -61,7 +61,7 @@ class RunPairs:
         self._undecided: dict[tuple[Pairs, bytes, bytes], Pairs | None] = {}
 
     def starts(self, *, same: bool) -> Pairs:
-        """The pairs of states that runs begin in, optionally only in the same."""
+        """The pairs of start states, optionally only pairs of equal states."""
         if same not in self._starts:
             states = self._machine.starts
             every = sum(1 << state for state in states)
@@ -70,13 +70,13 @@ class RunPairs:
         return self._starts[same]
 
     def forget_many(self) -> None:
-        """Forget what has been met, if it is much; numbers mean nothing any more."""
+        """Discard what has been cached, if it is much; the numbers then become invalid."""
         most = max(len(self._after), len(self._onward), len(self._choices), len(self._undecided))
         if most > MOST_REMEMBERED or len(self._along) > MOST_WORDS:
             self._forget()
 
     def word(self, stretches: Sequence[tuple[Letters, int]]) -> Word:
-        """A word in numbers."""
+        """A word, with its letters as numbers."""
         word: list[int] = []
         for letters, length in stretches:
             number = self._numbers.setdefault(letters, len(self._letters))
@@ -89,22 +89,22 @@ class RunPairs:
 
     @property
     def n_starts(self) -> int:
-        """In how many states runs may begin."""
+        """The number of start states."""
         return len(self._machine.starts)
 
     def are_settled(self, word: Word, fixed: Set[int]) -> bool:
-        """Whether each letter of a word is one, once the digits of some reads are fixed."""
+        """Whether each letter of a word is determined once the digits of some reads are fixed."""
         return all(self._open[number] <= fixed for number in set(word))
 
     def are_indifferent(self, words: Sequence[Word], read: int) -> bool:
-        """Whether a read may have the same digits in all words, and none of them ever matters."""
+        """Whether a read may have the same digits in all words and never matters in them."""
         return all(
             self._classes.are_indifferent([self._letters[number] for number in side_by_side], read)
             for side_by_side in set(zip(*words, strict=True))
         )
 
     def prospects(self, word: Word) -> list[bytes]:
-        """For each letter of a word what may come of each state: see ``Prospects``."""
+        """For each letter of a word the possible outcomes from each state: see ``Prospects``."""
         prospects = self._along.get(word)
         if prospects is None:
             classes = {number: self._classes.of(self._letters[number]) for number in set(word)}
@@ -113,10 +113,10 @@ class RunPairs:
         return prospects
 
     def undecided(self, pairs: Pairs, first: bytes, second: bytes) -> Pairs | None:
-        """The pairs of which it is open whether the first run comes to less than the second one.
+        """The pairs for which it is open which run has the lesser outcome.
 
-        None if it surely does for some. ``first`` and ``second`` are the outcomes, as bits, that
-        the rest of each run's word may have, by state.
+        None if for some pair the first run surely has. ``first`` and ``second`` are the outcomes,
+        as bits, that the rest of each run's word may have, by state.
         """
         key = pairs, first, second
         if key not in self._undecided:
@@ -124,7 +124,7 @@ class RunPairs:
         return self._undecided[key]
 
     def choices(self, first: int, second: int, fixed: tuple[int, ...]) -> int:
-        """The number of what two letters may be, with the same digits of fixed reads."""
+        """The number of the possible pairs of two letters with equal digits of fixed reads."""
         if first == second:
             # Reads with one digit divide nothing.
             fixed = tuple([n for n in fixed if n in self._open[first]])
@@ -182,8 +182,8 @@ class RunPairs:
     def _furthest(self, rows: Mapping[int, int]) -> Pairs:
         """The pairs of states that no other pair dominates.
 
-        One does if its first state is no worse and its second one no better: whatever can come of
-        the dominated pair comes of it, too.
+        A pair is dominated by one whose first state is no worse and whose second is no better:
+        everything that can follow from the dominated pair can follow from the other, too.
         """
         if all(others == 1 << state for state, others in rows.items()):
             return frozenset(rows.items())
@@ -219,9 +219,9 @@ class RunPairs:
 
     @cached_property
     def _ranks(self) -> list[int]:
-        """For each state its place among all, behind those that come to no more.
+        """For each state its rank, after all states with lesser outcomes.
 
-        Of states that are alike the first one comes first, and counts.
+        Of equivalent states the first one represents all.
         """
         below = self._machine.below
         order = sorted(range(len(below)), key=lambda state: (below[state].bit_count(), state))
@@ -231,7 +231,7 @@ class RunPairs:
         return ranks
 
     def _ranks_below(self, state: int) -> int:
-        """The ranks, as bits, of the states that come to no more than one, and its own."""
+        """The ranks, as bits, of a state and of the states whose outcomes are no greater."""
         ranks_below = self._below.get(state)
         if ranks_below is None:
             ranks = self._ranks
@@ -240,7 +240,7 @@ class RunPairs:
         return ranks_below
 
     def agree(self, pairs: Pairs, choices: int) -> bool:
-        """Whether no first run of pairs comes to less than the second one with a last letter."""
+        """Whether, on a last letter, no first run has a lesser outcome than the second."""
         key = pairs, choices
         agree = self._ends.get(key)
         if agree is None:
@@ -271,7 +271,7 @@ def _undecided(pairs: Pairs, first: bytes, second: bytes) -> Pairs | None:
 
 
 def _behind(machine: OutcomeMachine, state: int, classes: int) -> int:
-    """The states, as bits, that some classes lead to."""
+    """The states, as bits, reached by some classes."""
     row = machine.successors[state]
     return _united([1 << row[symbol] for symbol in bits_of(classes)])
 
@@ -284,5 +284,5 @@ def _united(masks: Iterable[int]) -> int:
 
 
 def _reach(states: int, below: Sequence[int]) -> int:
-    """The states, as bits, that come to no more than one of some."""
+    """The states, as bits, whose outcomes are no greater than those of some given state."""
     return _united([below[state] for state in bits_of(states)])

@@ -1,4 +1,4 @@
-"""The values that unknown constants may have: each holds for a whole trace."""
+"""The values that unknown constants may have; each holds for a whole trace."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval, PartialValu
 from rulec.vocabulary.vocabulary_model import choices, values_of
 
 MOST_ALTERNATIVES = 1 << 6
-"""Values of what does not change are gone through as long as there are no more combinations."""
+"""The most joint values of constants that are tried one after the other."""
 
 
 class ConstantsReader:
-    """The constants that the rules of a rulebook read, of a trace's objects.
+    """The constants that the rules of a rulebook read, for a trace's objects.
 
-    ``of_facts`` are those of which facts speak.
+    ``of_facts`` are those in axioms.
     """
 
     def __init__(
@@ -46,10 +46,10 @@ class ConstantsReader:
             for items in choices(vocabulary.declarations[name].parameters, objects, vocabulary)
         )
         self._reads: dict[str, tuple[Read | NumberRead, ...]] = {}
-        """Those of constants, by the name of the rule."""
+        """The reads of constants, by the name of the rule."""
 
     def read_by(self, rule: CompiledRule, objects: Mapping[str, str]) -> frozenset[Subject]:
-        """The constants that a rule reads of its objects, and the facts of anybody."""
+        """The constants that a rule reads of its objects, and those in axioms about any objects."""
         if rule.name not in self._reads:
             reads = rule.machine.reads
             self._reads[rule.name] = tuple(
@@ -65,9 +65,9 @@ class ConstantsReader:
     def suppositions(
         self, rule: CompiledRule, given: Mapping[Subject, PartialValue | None]
     ) -> tuple[list[dict[Subject, Value]], bool]:
-        """The values that constants of which all is ``given`` that is known may have, together.
+        """The joint values of the constants, given what is known of them.
 
-        Second is whether each of these is possible.
+        The second item says whether each of these is possible.
         """
         formulas = [rule.formula, *self._facts]
         options: dict[Subject, Sequence[Value]] = {}
@@ -89,7 +89,7 @@ class ConstantsReader:
 
 
 def by_name(supposed: Mapping[Subject, Value]) -> dict[str, object]:
-    """What is supposed of constants, by their names, to be compared."""
+    """Supposed values of constants by name, for comparison."""
     named: dict[str, object] = {}
     for (name, items), value in supposed.items():
         named[name] = (named.get(name), items, value) if items else value
@@ -99,7 +99,7 @@ def by_name(supposed: Mapping[Subject, Value]) -> dict[str, object]:
 def _values_of(
     declaration: Declaration, bounds: object, formulas: Sequence[ltl.Formula]
 ) -> Sequence[Any]:
-    """Values that stand for all that formulas can tell apart; none if the name is in sums."""
+    """Values that represent all that formulas distinguish; none if the name is in sums."""
     name = declaration.name
     if not isinstance(declaration, Quantity):
         return values_of(declaration)

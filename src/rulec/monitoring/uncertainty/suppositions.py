@@ -1,4 +1,4 @@
-"""Values that stand for all that unknown constants may have."""
+"""Values that represent everything that unknown constants may be."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from rulec.vocabulary.partial_values import UNKNOWN, PartialValue, UnknownValue
 
 
 class Suppositions:
-    """What may be supposed of the constants of a trace.
+    """The values that may be supposed for the constants of a trace.
 
-    ``vocabulary`` has the defaults of what its states do not say.
+    ``vocabulary`` has the defaults of values missing in its states.
     """
 
     def __init__(self, trace: Trace, rulebook: CompiledRulebook, vocabulary: Vocabulary) -> None:
@@ -28,20 +28,20 @@ class Suppositions:
         self._letters = PossibleLetters(trace, rulebook, vocabulary)
 
     def of(self, rule: CompiledRule, binding: Binding) -> tuple[list[dict[Subject, Value]], bool]:
-        """The values that unknown constants which a rule or a fact reads may have, together."""
+        """The joint values that unknown constants read by a rule or an axiom may have."""
         subjects = self._reader.read_by(rule, binding.objects)
         if not subjects:
             return [{}], True
         return self._reader.suppositions(rule, {x: self._constant(x) for x in subjects})
 
     def _constant(self, subject: Subject) -> PartialValue | None:
-        """What the states in which its objects are there, all alike, say of a constant."""
+        """The value of a constant, which is the same in all states with its objects."""
         first = max((self._trace.present.get(x, (0, 0))[0] for x in subject[1]), default=0)
         return self._letters.values(*subject)[first]
 
 
 def spelled_out(trace: Trace, vocabulary: Vocabulary) -> Trace:
-    """The trace in which a name that is unknown itself is unknown of each object."""
+    """The trace in which a name that is unknown as a whole is unknown for each object."""
     wanted = {
         name: item.parameters for name, item in vocabulary.declarations.items() if item.parameters
     }

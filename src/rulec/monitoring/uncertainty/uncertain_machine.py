@@ -31,10 +31,10 @@ from rulec.monitoring.uncertainty.untold_names import RequiredNames
 from rulec.monitoring.verdict import ConditionalOutcome, OpenReasons, OutcomeName, Reason
 
 MOST_OUTCOMES = 1 << 4
-"""For so many combinations of values it is said how an open verdict comes out."""
+"""For so many combinations of values the outcome of an open verdict is listed."""
 
 MOST_STRETCHES = 1 << 10
-"""Reasons of a rule are remembered of words of so many stretches together: long ones differ."""
+"""For how many stretches of words the reasons of a rule are cached; long words differ anyway."""
 
 _MOST_REMEMBERED = 1 << 14
 
@@ -49,7 +49,7 @@ _Stretches: TypeAlias = tuple[tuple[Letters, int], ...]
 class Answer(NamedTuple):
     """The best and the worst outcome of all completions.
 
-    ``step`` is the first letter after which all are lost.
+    ``step`` is the first letter after which all completions are lost.
     """
 
     best: int
@@ -58,7 +58,7 @@ class Answer(NamedTuple):
 
 
 class UncertainMachine:
-    """Answers of one rule's machine, remembered.
+    """The answers of one rule's machine, cached.
 
     ``monitor`` runs it on the ``classes`` of possible letters.
     """
@@ -79,20 +79,20 @@ class UncertainMachine:
 
     @cached_property
     def idle(self) -> IdleLetters:
-        """The letters that do nothing to it, found when they are first asked for."""
+        """The letters without effect on it, computed on demand."""
         return idle_letters(self.monitor, self.classes.diagram)
 
     def answer(self, words: Sequence[PossibleWord]) -> Answer:
-        """What the completions come to; ``words`` are by the values of what does not change."""
+        """The outcome of the completions; there is a word for each choice of unknown constants."""
         runs = [self.monitor.run(word.classes) for word in words]
         best, worst = min(run[0] for run in runs), max(run[1] for run in runs)
         steps = [step for *_, step in runs if step is not None]
         return Answer(best, worst, max(steps) if len(steps) == len(runs) else None)
 
     def is_surely_kept(self, letters: int, last: int) -> bool:
-        """Whether words of these classes of letters, as bits, are kept in whatever order.
+        """Whether all words of these classes of letters, as bits, are kept, in whatever order.
 
-        They end with one of the ``last`` classes. If there are none, it is not told.
+        They end with one of the ``last`` classes. False if there are none.
         """
         key = letters, last
         known = self._surely_kept.get(key)
@@ -147,10 +147,10 @@ class UncertainMachine:
         order: Sequence[str],
         names: Set[str],
     ) -> frozenset[str]:
-        """The names but for these on which it depends which of two outcomes words have.
+        """The names other than these on which it depends which of two outcomes words have.
 
-        They are those of ``reasons``, found sooner: a name without which all others do not decide
-        is in every set that decides.
+        They are those of ``reasons``, but found faster: a name without which all others do not
+        decide is in every deciding set.
         """
         alternatives, unknown = _possible_alternatives(words, constants)
         doubtful = _doubtful(alternatives, unknown)
@@ -166,7 +166,7 @@ class UncertainMachine:
         return others if smallest is None else others.intersection(smallest)
 
     def _in_order(self, doubtful: Set[str], order: Sequence[str]) -> list[str]:
-        """Names in their order, and what was before last, if that may matter."""
+        """Names in their order, followed by the past if that may matter."""
         names = [name for name in order if name in doubtful]
         return [*names, BEFORE] if len(self.machine.starts) > 1 else names
 
@@ -205,7 +205,7 @@ class UncertainMachine:
         alternatives: Sequence[PossibleAlternative],
         unknown: Sequence[frozenset[str]],
     ) -> Iterator[ConditionalOutcome]:
-        """Outcomes for values that the names have whenever they are unknown."""
+        """The outcomes if the names have certain values wherever they are unknown."""
         if any(name in own.constants for own in alternatives for name in names):
             yield from self._outcomes_of_constants(names, alternatives)
             return
@@ -228,7 +228,7 @@ class UncertainMachine:
         names: Sequence[str],
         alternatives: Sequence[PossibleAlternative],
     ) -> Iterator[ConditionalOutcome]:
-        """Outcomes where the only name that decides is a value of the world that never changes."""
+        """The outcomes if the only deciding name is a constant of the world."""
         if len(names) > 1 or len(alternatives) > MOST_OUTCOMES:
             return
         for alternative in alternatives:
@@ -241,7 +241,7 @@ class UncertainMachine:
     def _options(
         self, name: str, unknown: Sequence[frozenset[str]]
     ) -> list[tuple[bool | str, dict[int, int]]]:
-        """Values of a name, each with the digits that it allows; none if there are too many."""
+        """The values of a name, each with the digits that it allows; none if there are too many."""
         about = [n for n, names in enumerate(unknown) if name in names]
         reads = [self._reads[n] for n in about]
         if all(isinstance(read, Read) for read in reads):
@@ -269,7 +269,7 @@ class UncertainMachine:
         return []
 
     def _narrowed(self, word: _Stretches, allowed: Mapping[int, int]) -> _Stretches | None:
-        """The word with no other digits than these of some reads, where they are not known."""
+        """The word restricted to these digits of some reads, where they are unknown."""
         narrowed: list[tuple[Letters, int]] = []
         for letters, length in word:
             cubes = []
@@ -286,7 +286,7 @@ class UncertainMachine:
         return tuple(narrowed)
 
     def untold(self, untold: frozenset[str]) -> tuple[str, ...]:
-        """Names of these for want of which no word can be known to violate the rule."""
+        """Names among these that are missing for some word to be known to violate the rule."""
         return self._required.missing_of(untold)
 
 
@@ -307,7 +307,7 @@ def _possible_alternatives(
 def _doubtful(
     alternatives: Sequence[PossibleAlternative], unknown: Sequence[frozenset[str]]
 ) -> frozenset[str]:
-    """The names on which it may depend."""
+    """The names on which the outcome may depend."""
     doubtful = frozenset[str]().union(*unknown)
     if alternatives[1:]:
         doubtful = doubtful.union(*[own.constants for own in alternatives])
@@ -346,7 +346,7 @@ def uncertain_machine(
 ) -> UncertainMachine:
     """The rule's machine for uncertain words; ``outcomes`` is that for prefixes, if any.
 
-    Without one a run begins in any of the ``starts``.
+    Without it a run begins in any of the ``starts``.
     """
     source: object = rule.machine if outcomes is None else outcomes
     key = id(source), frozenset(starts)

@@ -1,9 +1,9 @@
-"""Verdicts on traces in which values are unknown, or that are cut out of something longer.
+"""Verdicts on traces with unknown values, or cut out of a longer drive.
 
-Per rule and binding: violated if every completion violates the rule, kept if every one keeps it,
-else open (cf. Leucker et al., "Runtime verification for timed event streams with partial
-information", 2019). A completion is a choice of values for all that is unknown that keeps the
-facts. Of a cut trace see ``rulec.automata.prefix_machines``.
+Per rule and binding: violated if every completion violates the rule, kept if every one satisfies
+it, else open (cf. Leucker et al., "Runtime verification for timed event streams with partial
+information", 2019). A completion is a choice of all unknown values that satisfies the axioms. For
+cut traces see ``rulec.automata.prefix_machines``.
 """
 
 from __future__ import annotations
@@ -46,9 +46,9 @@ def uncertain_verdict(
 ) -> Verdict:
     """The verdict on a checked trace that is ``spelled_out``, by a rulebook for its step.
 
-    A complete trace may go on where a ``past`` has ended; what was settled there is not judged.
-    Raises RulecError R0504 if a value without default is missing, R0508 if a state contradicts a
-    fact, R0403 if the trace is cut and Spot, which its machines take, is not installed.
+    A complete trace may continue a ``past``; what was settled there is not judged again. Raises
+    RulecError R0504 if a value without default is missing, R0508 if a state contradicts an axiom,
+    R0403 if the trace is cut and Spot, which builds its machines, is not installed.
     """
     return UncertainRun(trace, rulebook, past).verdict()
 
@@ -89,13 +89,13 @@ class UncertainRun:
     def outcomes(
         self, rule: CompiledRule, binding: Binding, starts: Iterable[int]
     ) -> tuple[int, int]:
-        """The best and the worst outcome of a complete trace, from states of the machine on."""
+        """The best and the worst outcome of a complete trace, from some machine states on."""
         machine = uncertain_machine(rule, None, starts)
         best, worst, _ = machine.answer(self._words(rule, machine, binding)[0])
         return best, worst
 
     def bits_of(self, rule: CompiledRule) -> ReadBits:
-        """Reader of the digits, as bits, that reads of the rule may have."""
+        """A reader of the digits, as bits, that reads of the rule may have."""
         return self._letters.bits_of(rule)
 
     def _answers(
@@ -112,11 +112,11 @@ class UncertainRun:
                 yield answer
 
     def answers(self, rule_name: str) -> Iterator[Violation | OpenVerdict]:
-        """What is not kept of a rule."""
+        """The bindings of a rule that are violated or open."""
         return self._answers(*self._machine(rule_name))
 
     def answer(self, rule_name: str, objects: Mapping[str, str]) -> Violation | OpenVerdict | None:
-        """What is not kept of a rule for these objects, None if all is."""
+        """The violation or open verdict of a rule for these objects; None if it is kept."""
         own = binding_of(objects, self.trace.present, len(self.trace.states))
         return self._answer(*self._machine(rule_name), own)
 
@@ -132,7 +132,7 @@ class UncertainRun:
     def _answer(
         self, rule: CompiledRule, machine: UncertainMachine, binding: Binding
     ) -> Violation | OpenVerdict | None:
-        """What is not kept of a binding, None if all is."""
+        """The violation or open verdict of a binding; None if it is kept."""
         objects, own = binding.objects, machine
         perhaps_settled = False
         if binding.first == 0 and self.past != NO_PAST:
@@ -160,7 +160,7 @@ class UncertainRun:
     def _words(
         self, rule: CompiledRule, machine: UncertainMachine, binding: Binding
     ) -> tuple[list[PossibleWord], list[Mapping[str, object]], bool]:
-        """The possible words, one for each way to choose what does not change."""
+        """The possible words, one for each choice of unknown constants."""
         supposed, is_exact = self._suppositions.of(rule, binding)
         words, constants = [], []
         for values in supposed:
@@ -177,7 +177,7 @@ class UncertainRun:
 
 
 def presumed_in(trace: Trace, names: Sequence[str]) -> tuple[str, ...]:
-    """Those of these names that no state says."""
+    """The names among these that no state contains."""
     return tuple(name for name in names if not any(name in state for state in trace.states))
 
 

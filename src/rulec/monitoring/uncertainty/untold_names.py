@@ -1,7 +1,8 @@
-"""Names that a source of traces does not tell, and rules that cannot be judged for want of them.
+"""Names that a source of traces does not provide, and rules that cannot be judged without them.
 
-Values are names, too: of an enumeration some of whose values are told by name a source never says
-the others. No rule is kept because of a value that nobody could have told. So are types of objects.
+Values count as names, too: if a source provides some values of an enumeration by name, it never
+provides the others. A rule is never kept merely because of a value that the source cannot provide.
+The same holds for types of objects.
 """
 
 from __future__ import annotations
@@ -19,16 +20,19 @@ from rulec.vocabulary import Enumeration, Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN
 
 MOST_LOOKED_AT = 1 << 21
-"""After so many states with a letter a rule is taken to be one that some word can violate."""
+"""After so many states with a letter the search ends.
+
+Some word is then assumed to violate the rule.
+"""
 
 MOST_REPETITIONS = 1 << 12
-"""A letter is repeated no more often than this."""
+"""A letter is repeated at most so often."""
 
 _MOST_REMEMBERED = 1 << 14
 
 
 def untold_names(vocabulary: Vocabulary, told: frozenset[str] | None) -> frozenset[str]:
-    """The names that a source which tells these cannot tell, and that are not presumed."""
+    """The names that a source which provides ``told`` lacks, and that are not presumed."""
     if told is None:
         return frozenset()
     untold = []
@@ -41,13 +45,13 @@ def untold_names(vocabulary: Vocabulary, told: frozenset[str] | None) -> frozens
 
 
 def untold_types(vocabulary: Vocabulary, told: frozenset[str] | None) -> frozenset[str]:
-    """The types of objects that a source which tells some others by name never tells."""
+    """The types of objects that a source which provides others by name never provides."""
     types = vocabulary.types.keys()
     return frozenset() if told is None or types.isdisjoint(told) else frozenset(types - {*told})
 
 
 def with_untold(vocabulary: Vocabulary, untold: frozenset[str]) -> Vocabulary:
-    """The vocabulary in which untold names are unknown where no state says them."""
+    """The vocabulary in which untold names are unknown where no state contains them."""
     if not untold:
         return vocabulary
     unknown: Any = UNKNOWN
@@ -59,7 +63,7 @@ def with_untold(vocabulary: Vocabulary, untold: frozenset[str]) -> Vocabulary:
 
 
 class RequiredNames:
-    """The names that have to be told for a rule's machine to be judged, remembered.
+    """The names that a source must provide for a rule's machine to be judged, cached.
 
     ``classes`` are those of its possible letters.
     """
@@ -75,9 +79,9 @@ class RequiredNames:
         self._steps: dict[tuple[int, int], int | None] = {}
 
     def missing_of(self, untold: frozenset[str]) -> tuple[str, ...]:
-        """Names of these for want of which no word can be known to violate the rule.
+        """Names among these whose absence means that no word can be known to violate the rule.
 
-        Empty if some word can, whatever the untold names may be.
+        Empty if some word can, whatever values the untold names have.
         """
         names = untold.intersection(chain.from_iterable(self._names))
         if not names:
@@ -88,7 +92,7 @@ class RequiredNames:
         return self._untold[names]
 
     def _smallest_lack(self, names: frozenset[str]) -> tuple[str, ...]:
-        """Untold names that would all have to be told, in the order in which they are read."""
+        """A minimal set of untold names that would have to be provided, in the order of reads."""
         order = dict.fromkeys(name for own in self._names for name in own if name in names)
         lacking = list(order)
         for name in order:
@@ -100,7 +104,8 @@ class RequiredNames:
     def _can_fire(self, untold: frozenset[str]) -> bool:
         """Whether all completions of some word violate the rule.
 
-        Beyond ``MOST_LOOKED_AT`` it is taken to be so: then the rule is judged, and open at worst.
+        Beyond ``MOST_LOOKED_AT`` this is assumed: then the rule is judged, and at worst always
+        open.
         """
         machine = self._machine
         letters = self._classes_in_the_dark(untold)
@@ -124,9 +129,9 @@ class RequiredNames:
         return False
 
     def _is_lost_by_runs(self, start: int, letters: Set[int]) -> bool:
-        """Whether one letter for long, or after it another one for long, violates the rule.
+        """Whether long runs of one or two letters violate the rule.
 
-        Most duties come to that, and with a short step no search would get so far.
+        This suffices for most duties; with a short step no search would reach that far.
         """
         tried: set[int] = set()
         for first in letters:
@@ -141,7 +146,7 @@ class RequiredNames:
         return False
 
     def _at_last(self, here: int, classes: int) -> int | None:
-        """The least states in which a letter leaves for good; None if it violates the rule."""
+        """The least states in which a repeated letter ends up; None if it violates the rule."""
         met: set[int] = set()
         while here not in met and len(met) < MOST_REPETITIONS:
             met.add(here)
@@ -154,7 +159,7 @@ class RequiredNames:
     def _after(self, here: int, classes: int) -> int | None:
         """The least states after a letter of any of these classes; None if all of it violates.
 
-        Remembered, since runs of letters, the search, and fewer untold names meet the same steps.
+        Cached, since runs of letters, the search, and fewer untold names need the same steps.
         """
         key = here, classes
         if key not in self._steps:
@@ -173,9 +178,9 @@ class RequiredNames:
         return machine.least(sum([1 << target for target in targets]))
 
     def _classes_in_the_dark(self, untold: frozenset[str]) -> frozenset[int]:
-        """The least sets of classes, as bits, that letters may have, by the reads that are told.
+        """The minimal sets of classes, as bits, that letters may have, by the reads that are told.
 
-        What all words of larger ones come to, all words of a smaller one do, too.
+        An outcome of all words of a larger set is also the outcome of all words of a smaller one.
         """
         diagram = self._classes.diagram
         reached = frozenset({diagram.start})
@@ -191,5 +196,5 @@ class RequiredNames:
 
 
 def _values_of(read: Read | NumberRead) -> dict[str, int]:
-    """The digits of an enumeration's values that a read tells apart."""
+    """The digits of an enumeration's values that a read distinguishes."""
     return {value: read.digit(value) for value in read.values} if isinstance(read, Read) else {}

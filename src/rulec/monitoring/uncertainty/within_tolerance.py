@@ -1,4 +1,4 @@
-"""Names whose numbers are known, but only within bounds between which a limit lies."""
+"""Names whose numbers are known only within bounds that contain a limit."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
 
 def told_within_bounds(reasons: OpenReasons, is_within: Callable[[str], bool]) -> OpenReasons:
-    """The reasons, apart for names that are not told, and for those told within bounds."""
+    """The reasons, separated into names that are not told and names told within bounds."""
     if "not told" not in reasons.because:
         return reasons
     within = [name for name in reasons.depends_on if is_within(name)]
@@ -26,7 +26,7 @@ def told_within_bounds(reasons: OpenReasons, is_within: Callable[[str], bool]) -
 
 
 def is_within_bounds(name: str, states: Sequence[State], vocabulary: Vocabulary) -> bool:
-    """Whether some number is an interval, and none is unknown altogether."""
+    """Whether some number is an interval, and none is entirely unknown."""
     default = vocabulary.declarations[name].default
     values = [value for state in states for value in _leaves(state.get(name, default))]
     return UNKNOWN not in values and any(isinstance(value, Interval) for value in values)

@@ -1,4 +1,4 @@
-"""A rule's machine on sets of letters, as tables: the subset construction of what has been met."""
+"""A rule's machine on sets of letters, as tables: the subset construction on demand."""
 
 from __future__ import annotations
 

@@ -94,7 +94,7 @@ class SupposedRows:
     def with_supposed(
         self, subject: Subject, values: Sequence[PartialValue | None], places: Places
     ) -> Sequence[PartialValue | None]:
-        """The values of a subject at places of rows, with what is supposed where it is unknown."""
+        """A subject's values at places of rows, with supposed values instead of unknown ones."""
         where = self.where_supposed(subject)
         if where is None:
             return values

@@ -298,7 +298,7 @@ class _Engine:
     def _suppositions(
         self, binding: RuleBinding, machine: UncertainMachine, subjects: Sequence[Subject]
     ) -> Sequence[Mapping[Subject, Value]]:
-        """What unknown constants may be together, as far as the rule tells it apart."""
+        """The joint values of unknown constants, as far as the rule distinguishes them."""
         every, _ = self._constants.suppositions(binding.rule, dict.fromkeys(subjects, UNKNOWN))
         joint = set(self._rule_letters(binding, machine).entangled.subjects_of(binding.objects))
         reads: dict[Subject, list[Read | NumberRead]] = {subject: [] for subject in subjects}

@@ -1,4 +1,4 @@
-"""Possible digits of reads, by encoded values that may be unknown."""
+"""The possible digits of reads, by encoded values that may be unknown."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import MissingV
 from rulec.vocabulary.partial_values import UNKNOWN, Interval
 
 MOST_KNOWN = 1 << 12
-"""Values of a part that are kept before all are forgotten."""
+"""How many values of a part are kept before all are discarded."""
 
 _VALUES: Mapping[object, Any] = {MISSING: None, UNKNOWN_DIGIT: UNKNOWN}
-"""What stands for values that are not given, or not known."""
+"""The values that stand for missing and unknown ones."""
 
 
 class PartNumbers(dict[tuple[Any, ...], int]):
-    """The numbers of a part of entangled reads, by its values as encoded.
+    """The numbers of a part of entangled reads, by its encoded values.
 
-    Raises LookupError if one is missing, or is none of those that are ``allowed``.
+    Raises LookupError if a value is missing or not ``allowed``.
     """
 
     def __init__(
@@ -46,9 +46,9 @@ class PartNumbers(dict[tuple[Any, ...], int]):
 
 
 class DigitMasks(dict[Any, int]):
-    """The possible digits, as bits, of a read whose digit, or value if partly known, is given.
+    """The possible digits, as bits, of a read, by its digit or its partly known value.
 
-    Raises LookupError if that is wrong.
+    Raises LookupError if that is invalid.
     """
 
     def __init__(self, read: Read | NumberRead, weight_of: DigitWeight) -> None:

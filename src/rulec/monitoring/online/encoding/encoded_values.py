@@ -21,30 +21,30 @@ from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, Interval
 from rulec.vocabulary.vocabulary_model import values_of
 
 Breakpoints: TypeAlias = Mapping[str, tuple[float, ...] | None]
-"""By quantity the ``floor_of`` each threshold of any rule, ascending; None if all values matter.
+"""For each quantity the ``floor_of`` every rule's thresholds, ascending; None if all values matter.
 
-The first is the least number that may be told apart by them, the last the first one beyond.
+The first is the least number that they distinguish, the last is the first one beyond.
 """
 
 Encoded: TypeAlias = tuple[Any, ...]
-"""Values of an enumeration or a signal as they are, and of a quantity their digits.
+"""Values of an enumeration or a signal as they are, and the digits of a quantity.
 
 The digit of a number is how many of the ``Breakpoints`` it reaches; where every value matters, it
-is the number itself. An interval stands for itself, as does what is unknown of an enumeration;
-else that is ``UNKNOWN_DIGIT``.
+is the number itself. An interval, and partial knowledge of an enumeration, stand for themselves;
+what is entirely unknown is ``UNKNOWN_DIGIT``.
 """
 
 PARTIAL_NUMBERS = NUMBERS | UNKNOWN_TYPES
-"""The types of numbers, and of what stands for one that is not known."""
+"""The types of numbers, and of placeholders for unknown ones."""
 
 MISSING: Final = object()
-"""In place of an encoded value that is not given and has no default."""
+"""Replaces an encoded value that is not given and has no default."""
 
 UNKNOWN_DIGIT: Final = object()
-"""In place of the digit of what is unknown.
+"""Replaces the digit of an unknown value.
 
-Digits are kept as keys, of which the garbage collector would look at those again and again that
-have ``UNKNOWN``, a member of an enumeration, in them. A plain object is no concern of its.
+Digits are kept as dictionary keys. The garbage collector would track keys that contain ``UNKNOWN``,
+a member of an enumeration; it does not track a plain object.
 """
 
 PARTIAL_DIGITS = frozenset({object, Interval})
@@ -53,8 +53,8 @@ PARTIAL_DIGITS = frozenset({object, Interval})
 Encoder: TypeAlias = Callable[[tuple[Any, ...]], Encoded]
 """Encodes values.
 
-Raises a LookupError or a TypeError if one does not fit the declaration or needs a closer look;
-values of an enumeration may be wrong.
+Raises LookupError or TypeError if a value does not fit the declaration or needs closer inspection;
+values of an enumeration are not checked.
 """
 
 
@@ -97,7 +97,7 @@ def encoder_of(declaration: Declaration, breakpoints: Breakpoints) -> Encoder:
 
 
 def encoded_default(declaration: Declaration, breakpoints: Breakpoints) -> Any:
-    """Encoding of a value not given. Raises like an ``Encoder``."""
+    """The encoding of a value that is not given. Raises like an ``Encoder``."""
     if declaration.default is None:
         return MISSING
     return encoder_of(declaration, breakpoints)((declaration.default,))[0]
@@ -151,16 +151,18 @@ def _encode_digits(floors: Sequence[float], values: tuple[Any, ...]) -> Encoded:
 
 
 DigitWeight: TypeAlias = Callable[[Any], int]
-"""From an input's digit its weight in the number of a letter; LookupError if there is none."""
+"""Maps an input's digit to its weight in the number of a letter; LookupError if it has none."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MonitorInput:
-    """Read of a rule, with variables given by their places; equal ones are identical.
+    """A read of a rule, with its variables given by their places.
 
-    ``name`` is the declaration; None if ``number`` is a count or a sum, whose ``variables`` these
-    are. A number's digit is how many thresholds it passes; that of anything else is its value.
-    What is unknown is ``UNKNOWN_DIGIT``, and what is partly known stands for itself.
+    Equal reads are identical objects.
+
+    ``name`` is the declaration; it is None if ``number`` is a count or a sum, whose ``variables``
+    these are. A number's digit is how many thresholds it passes; the digit of anything else is its
+    value. Unknown values are ``UNKNOWN_DIGIT``; partly known ones stand for themselves.
     """
 
     name: str | None
@@ -170,9 +172,9 @@ class MonitorInput:
     _floors: tuple[float, ...] = ()
 
     def digit(self, encoded: Any, breakpoints: Breakpoints) -> Any:
-        """Digit of an encoded value; counts and sums are their own.
+        """The digit of an encoded value; counts and sums are their own digits.
 
-        Raises a TypeError where a number is missing.
+        Raises TypeError where a number is missing.
         """
         if encoded is UNKNOWN or encoded is UNKNOWN_DIGIT:
             return UNKNOWN_DIGIT
@@ -233,6 +235,6 @@ def monitor_inputs(
 def value_inputs(
     rule: CompiledRule, subjects: Sequence[tuple[str, tuple[str, ...]]]
 ) -> tuple[MonitorInput, ...]:
-    """Inputs that are values themselves, of names asked of a rule's variables."""
+    """Inputs that are values themselves: of names, for a rule's variables."""
     places = {variable.name: place for place, variable in enumerate(rule.variables)}
     return tuple([_input(name, tuple([places[x] for x in items])) for name, items in subjects])

@@ -1,7 +1,7 @@
-"""Shapes of states: names with values, and places of these values.
+"""Shapes of states: the names with values, and the places of these values.
 
-Nearly all states of a drive have the same shape. What is to be looked at, and where it lies, is
-worked out once, so that a state is encoded far more quickly than any state could be.
+Nearly all states of a drive have the same shape. What to look at, and where it lies, is determined
+once per shape, so that encoding a state is fast.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ _EncodePart: TypeAlias = Callable[[Any], Encoded]
 
 
 class StateShape:
-    """Shape of states with values for one set of names and objects.
+    """The shape of states with values for one set of names and objects.
 
-    ``places`` has by name and objects the part of an encoded state in which a value stands, and
+    ``places`` has, by name and objects, the part of an encoded state that contains the value, and
     its place there; ``sizes`` are the parts' sizes. The first ``n_world`` parts are about the
-    world, each other one about one of the ``names``. ``key`` is a state's key, ``key_of`` the same
-    from the state encoded. Raises LookupError if such states need a closer look, as if there is no
-    declaration of a name.
+    world, each other part about one of the ``names``. ``key`` gives a state's key, ``key_of`` the
+    same from the encoded state. Raises LookupError if such states need closer inspection, for
+    instance if a name is not declared.
     """
 
     def __init__(
@@ -88,9 +88,9 @@ class StateShape:
         self._parts.append(part)
 
     def encode(self, state: Any) -> tuple[Encoded, ...]:
-        """Encode a state in parts; equal parts are alike for every rule.
+        """Encode a state in parts; equal parts are equivalent for every rule.
 
-        Raises LookupError or TypeError if the state has another shape, or needs a closer look.
+        Raises LookupError or TypeError if the state has another shape or needs closer inspection.
         """
         if type(state) is not dict or len(state) != self._n_names:
             raise LookupError
@@ -107,7 +107,7 @@ def _key_of_one_part(part: _EncodePart, n_names: int) -> StateKey:
 
 
 def _key_of_one_relation(name: str, items: Items) -> StateKey:
-    """Of a single object the key is its value."""
+    """The key of a name about a single object: its value."""
     n_items = len(items)
     (item, *others) = items
 
@@ -163,7 +163,7 @@ def _of_objects(
     breakpoints: Breakpoints,
     before: Items = (),
 ) -> _EncodePart:
-    """Encoder of a name's values for all choices of distinct objects."""
+    """The encoder of a name's values for all choices of distinct objects."""
     items = tuple([item for item in fitting[0] if item not in before])
     if len(fitting) > 1:
         return _of_more_objects(

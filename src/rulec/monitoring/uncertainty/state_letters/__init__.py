@@ -1,1 +1,1 @@
-"""The letters that a state may have of which not all is known."""
+"""The letters that a partly known state may have."""

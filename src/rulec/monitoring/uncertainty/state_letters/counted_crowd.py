@@ -1,8 +1,8 @@
-"""Objects in counts: of many alike in a state, a few suffice.
+"""Objects in counts: of many equal objects in a state, a few suffice.
 
-What reads come to does not depend on names, and beyond its highest threshold no count has another
-digit. So states of dense traffic are looked at once for all that differ only in who is where. And
-where what concerns one decides alone whether that one counts, each is looked at apart.
+Reads do not depend on names, and beyond its highest threshold a count's digit no longer changes. So
+states of dense traffic that differ only in which object is where are evaluated once. If values of
+an object alone decide whether it counts, each object is evaluated separately.
 """
 
 from __future__ import annotations
@@ -43,16 +43,16 @@ from rulec.vocabulary.partial_values import UNKNOWN, OneOf, PartialValue
 from rulec.vocabulary.vocabulary_model import values_of
 
 MOST_SUPPOSED = 1 << 8
-"""Ways of the world that are supposed one after the other."""
+"""How many joint values of the world are supposed one after the other."""
 
 
 @dataclass(frozen=True, slots=True)
 class Crowd:
-    """Everybody but the objects that reads are asked of.
+    """All objects except those for which reads are evaluated.
 
-    ``own`` has for each of them the places of what is said of it among the values of all subjects,
-    ``others`` are the places of what is said of none of them. Of objects of one type, of which the
-    same is said, ``enough`` count as any larger number does.
+    ``own`` has for each of them the places of its values among those of all subjects; ``others``
+    are the places of values about none of them. Of objects of one type with the same values,
+    ``enough`` count like any larger number.
     """
 
     enough: int
@@ -62,7 +62,7 @@ class Crowd:
     def few(
         self, values: Sequence[PartialValue | None], there: Mapping[str, str]
     ) -> tuple[tuple[object, ...], dict[str, str]]:
-        """What a state says but for names, and enough of those that are ``there``, with types."""
+        """The values of a state without names, and enough of its objects, with their types."""
         kept: dict[str, str] = {}
         alike: Counter[tuple[object, ...]] = Counter()
         named = []
@@ -86,7 +86,7 @@ def crowd_of(
     bound: frozenset[str],
     everybody: Mapping[str, str],
 ) -> Crowd | None:
-    """The crowd of reads of ``bound`` objects and of others; None if it matters who is who.
+    """The crowd of reads about ``bound`` objects and others; None if identities matter.
 
     ``subjects`` are what the reads depend on.
     """
@@ -111,9 +111,9 @@ def crowd_of(
 
 
 def enough_alike(reads: Sequence[Read | NumberRead]) -> int | None:
-    """How many objects that are alike count for these reads as any larger number does.
+    """How many equal objects count for these reads like any larger number.
 
-    None if that is not known: if something is added to a count, or counts are counted.
+    None if that is unknown: if something is added to a count, or counts are counted.
     """
     enough = 1
     for read in reads:
@@ -130,18 +130,18 @@ def enough_alike(reads: Sequence[Read | NumberRead]) -> int | None:
 
 
 def count_in(read: Read | NumberRead) -> ltl.Count | None:
-    """The count that a read depends on, if it is none of single values."""
+    """The count that a read depends on, unless it is about single values."""
     terms = read.terms if isinstance(read, NumberRead) else ()
     return next((term for _, term in terms if isinstance(term, ltl.Count)), None)
 
 
 class CountsApart:
-    """Reads that count, where each object and the world alone decide whether that object counts.
+    """Counts in which each object's values and the world's alone decide whether it counts.
 
-    They depend on these ``subjects`` and are asked of the objects of a ``binding``, where
-    ``everybody`` is there. Values of the world are supposed, one choice after the other; ``known``
-    has the answers for objects that are alike. Raises LookupError if more is read than words, and
-    how many of these objects something is true of.
+    They depend on these ``subjects`` and are evaluated for the objects of a ``binding``, with
+    ``everybody`` present. Values of the world are supposed, one choice after the other; ``known``
+    caches the results for equal objects. Raises LookupError if more is read than truth values and
+    words, and how many of these objects satisfy a condition.
     """
 
     def __init__(
@@ -179,7 +179,7 @@ class CountsApart:
         self._letters: dict[tuple[frozenset[Digits], ...], frozenset[Digits]] = {}
 
     def letters(self, values: Sequence[PartialValue | None]) -> Letters:
-        """What the reads may be together. Raises LookupError as ``ReadWays.digits_of``."""
+        """The possible joint digits of the reads. Raises LookupError as ``ReadWays.digits_of``."""
         joint: set[Digits] = set()
         supposed = list(values)
         possible = [
@@ -202,7 +202,7 @@ class CountsApart:
         return tuple([tuple([1 << digit for digit in digits]) for digits in sorted(joint)])
 
     def _joint(self, key: tuple[frozenset[Digits], ...]) -> frozenset[Digits]:
-        """The digits of all reads, by what the parts may come to."""
+        """The joint digits of all reads, from the possible results of the parts."""
         known = self._letters.get(key)
         if known is None:
             sums = {(0,) * len(self._reads)}
@@ -234,7 +234,7 @@ class CountsApart:
         facts: Sequence[FactInstance],
         places: Sequence[int],
     ) -> _CountedPart:
-        """A part, whose objects are numbered so that who is alike is looked at once."""
+        """A part, with its objects numbered so that equal objects are evaluated once."""
         items = [item for _, items in subjects for item in items]
         items += [*self._binding.values(), *[piece.item for piece in pieces if piece.item]]
         names = {item: str(n) for n, item in enumerate(dict.fromkeys(items))}
@@ -267,7 +267,7 @@ class CountsApart:
 
 
 class _Piece(NamedTuple):
-    """What a read is ``about``, or, if it counts, what decides whether an ``item`` counts."""
+    """What a read is ``about`` or, for a count, what decides whether an ``item`` counts."""
 
     read: int
     item: str | None
@@ -275,7 +275,7 @@ class _Piece(NamedTuple):
 
 
 class _CountedPart(NamedTuple):
-    """Pieces of ``reads`` that have to do with each other, by the values of their subjects."""
+    """Pieces of ``reads`` that depend on each other, by the values of their subjects."""
 
     reads: tuple[int, ...]
     values: Callable[[Any], tuple[Any, ...]]
@@ -284,7 +284,7 @@ class _CountedPart(NamedTuple):
     is_of_world: bool
 
     def digits_of(self, values: Sequence[PartialValue | None], strict: bool) -> frozenset[Digits]:
-        """What the pieces may be together. Raises LookupError as ``ReadWays.digits_of``."""
+        """The possible joint digits of the pieces. Raises LookupError as ``ReadWays.digits_of``."""
         strict = strict and self.is_of_world
         own = (*self.values(values), strict)
         known = self.known.get(own)
@@ -317,7 +317,7 @@ def _added(before: Digits, reads: Sequence[int], digits: Digits) -> Digits:
 
 
 def _may_be(value: PartialValue | None, values: Sequence[Value]) -> Sequence[PartialValue | None]:
-    """The values that a word or a truth may have, of which ``value`` is known."""
+    """The values that a word or truth value may have, given what is known of ``value``."""
     if value is UNKNOWN:
         return values
     return tuple(value.values) if isinstance(value, OneOf) else (value,)

@@ -1,8 +1,8 @@
-"""Reads of a rule that may have to do with each other, by what is known of their values.
+"""A rule's reads that may depend on each other, by what is known of their values.
 
-Most rules count at most what is true of the objects that they are bound to, as `some other: car
-(other = x and parked(other))` does. What such reads may be together is looked up by what a state
-says, whatever the objects are called; else by what it says of everybody.
+Most rules count at most what is true of the objects that they are bound to, as in `some other: car
+(other = x and parked(other))`. The joint digits of such reads are looked up by the state's values,
+whatever the objects are called; for other rules by the values of all objects.
 """
 
 from __future__ import annotations
@@ -51,42 +51,41 @@ from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import PartialValue
 
 MOST_KNOWN = 1 << 14
-"""Values whose letters are kept before all are forgotten."""
+"""How many values keep their letters before all are discarded."""
 
 MOST_COUNTED = 16
-"""Among more objects it is not looked at each by itself who counts."""
+"""With more objects it is not determined for each one whether it counts."""
 
 
 @dataclass(frozen=True, slots=True)
 class NothingKnown:
-    """A state of which nothing is known but which objects are there."""
+    """A state of which only the objects present are known."""
 
     objects: Mapping[str, str]
     vocabulary: Vocabulary
 
     def value(self, name: str, items: tuple[str, ...]) -> bool | float | str | Unknown:
-        """Not known."""
+        """Unknown."""
         return Unknown(name, items)
 
     def number(self, name: str, items: tuple[str, ...]) -> Fraction | Unknown:
-        """Not known."""
+        """Unknown."""
         return Unknown(name, items)
 
     def given(self, name: str, items: tuple[str, ...]) -> None:
-        """Not known."""
+        """Unknown."""
 
 
 class EntangledReads:
-    """Reads of a rule that count, or that share values or facts.
+    """Reads of a rule that are counts, or that share values or axioms.
 
-    They are asked of a binding's objects among ``everybody`` who may be there.
-    ``numbers`` are their places among the rule's reads, ``subjects`` what they depend on. If they
-    are local, on the rule's own objects alone, these are asked of variables, which have a
-    ``binding`` to themselves. Where none of those that are ``shared`` is unknown, nor another one
-    an interval, each read may have any of its digits whatever the others have. Of a number that is
-    only compared by itself no more matters than in which of its ``regions`` it is.
-    ``joint_letters`` has what the reads may be together, as cubes of their digits, and whether
-    each of them is possible.
+    They are evaluated for a binding's objects, with ``everybody`` possibly present. ``numbers`` are
+    their places among the rule's reads, ``subjects`` what they depend on. Local reads depend only
+    on the rule's own objects; their subjects are variables, with a ``binding`` of each to itself.
+    If none of the ``shared`` subjects is unknown, and no other one an interval, each read may have
+    any of its digits independently of the others. For a number that is only compared by itself only
+    its region among ``regions`` matters. ``joint_letters`` has the possible joint digits as cubes,
+    and whether each of them is possible.
     """
 
     def __init__(
@@ -148,7 +147,7 @@ class EntangledReads:
         self._places: dict[tuple[int, ...], int] = {}
 
     def subjects_of(self, objects: Mapping[str, str]) -> list[Subject]:
-        """The subjects, asked of a binding's objects."""
+        """The subjects for a binding's objects."""
         if not self.is_local:
             return list(self.subjects)
         return [(name, tuple([objects[item] for item in items])) for name, items in self.subjects]
@@ -156,9 +155,9 @@ class EntangledReads:
     def number(
         self, values: tuple[PartialValue | None, ...], there: Mapping[str, str] | None = None
     ) -> int:
-        """The place among ``joint_letters`` of those for these values of the subjects.
+        """The place in ``joint_letters`` for these values of the subjects.
 
-        Unless the reads are local it matters who is ``there``. Raises MissingValueError.
+        Unless the reads are local it matters which objects are ``there``. Raises MissingValueError.
         """
         key: tuple[object, ...] = values
         if there is not None:
@@ -179,11 +178,11 @@ class EntangledReads:
 
     @property
     def parts(self) -> Sequence[PartNumber]:
-        """Of local reads for each part a getter of its values among all, and their number."""
+        """For each part of local reads a getter of its values among all, and their number."""
         return () if self._apart is None else self._apart.numbers
 
     def place_of_parts(self, key: tuple[int, ...]) -> int:
-        """The place among ``joint_letters`` of those for these numbers of the ``parts``."""
+        """The place in ``joint_letters`` for these numbers of the ``parts``."""
         place = self._places.get(key)
         if place is None:
             assert self._apart is not None
@@ -220,7 +219,7 @@ def _subjects_of(axioms: Sequence[CompiledAxiom], everybody: NothingKnown) -> It
 
 
 def local_reads(rule: CompiledRule, rulebook: CompiledRulebook) -> EntangledReads | None:
-    """The entangled reads of a rule, if its own objects alone decide what they may be."""
+    """The entangled reads of a rule, if they depend only on its own objects."""
     known: dict[str, EntangledReads | None] = rulebook.prepared.setdefault(EntangledReads, {})
     if rule.name not in known:
         parts = known_parts(rulebook)
@@ -229,7 +228,7 @@ def local_reads(rule: CompiledRule, rulebook: CompiledRulebook) -> EntangledRead
 
 
 def known_parts(rulebook: CompiledRulebook) -> KnownParts:
-    """What is known of parts of a rulebook's rules."""
+    """The cached parts of a rulebook's rules."""
     parts: KnownParts = rulebook.prepared.setdefault(KnownParts, KnownParts())
     return parts
 
@@ -259,7 +258,7 @@ def names_read_by(rule: CompiledRule) -> frozenset[str]:
 
 
 def _is_coarse(read: Read | NumberRead) -> bool:
-    """Whether not all digits between the least and the greatest may be those of a count."""
+    """Whether a count may skip digits between its least and its greatest possible one."""
     count = count_in(read)
     if count is None or not isinstance(read, NumberRead):
         return False
@@ -270,7 +269,7 @@ def _is_coarse(read: Read | NumberRead) -> bool:
 def _deciding_subjects(
     read: Read | NumberRead, binding: Mapping[str, str], everybody: NothingKnown
 ) -> Iterator[Subject]:
-    """What decides a read, with repetitions; of a count what decides whether objects count."""
+    """What a read depends on, with repetitions; for a count, what decides whether objects count."""
     count = count_in(read)
     if count is None:
         yield from subjects_of_read(read, binding, everybody)
@@ -285,7 +284,7 @@ def _deciding_subjects(
 
 
 def _is_local(read: Read | NumberRead, rule: CompiledRule, vocabulary: Vocabulary) -> bool:
-    """Whether a read depends on nobody but the objects that the rule is bound to."""
+    """Whether a read depends only on the objects that the rule is bound to."""
     count = count_in(read)
     if count is None:
         return True

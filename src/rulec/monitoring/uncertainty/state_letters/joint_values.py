@@ -1,8 +1,8 @@
-"""Joint values of words and truths, as bits of their combinations.
+"""Joint values of words and truth values, as bits of their combinations.
 
-Each way to give the subjects values has a bit, as in a truth table: what is said of a subject, what
-a fact allows and where a read has a digit are sets of bits. So what a partly known state allows is
-found by a few conjunctions, even where it has not been seen before.
+Each way to give the subjects values has a bit, as in a truth table: the value of a subject, the
+ways that an axiom allows, and the ways in which a read has a digit are sets of bits. So a few
+conjunctions show what a partly known state allows, even if it was never met before.
 """
 
 from __future__ import annotations
@@ -37,20 +37,20 @@ from rulec.vocabulary.partial_values import UNKNOWN, UNKNOWN_TYPES, OneOf, Parti
 from rulec.vocabulary.vocabulary_model import values_of
 
 MOST_KNOWN = 1 << 14
-"""Values of which it is kept what they come to before all are forgotten."""
+"""How many values keep their results before all are discarded."""
 
 MOST_WAYS = 1 << 15
-"""Ways to give subjects values of which a set of bits is made: of 4 kB."""
+"""The most ways to give subjects values that fit into one set of bits (of 4 kB)."""
 
 Bits: TypeAlias = int
 """A set of ways to give all subjects values."""
 
 Alike: TypeAlias = tuple[tuple[Value, ...], ...]
-"""The values of a word or a truth, in groups of those that are not told apart."""
+"""The values of a word or truth value, in groups that are not distinguished."""
 
 
 class FactInstance(NamedTuple):
-    """A fact of the objects of an ``environment``, and what it is ``about``."""
+    """An axiom for the objects of an ``environment``, and what it is ``about``."""
 
     formula: ltl.Formula
     environment: Mapping[str, str]
@@ -58,10 +58,11 @@ class FactInstance(NamedTuple):
 
 
 class JointValues:
-    """All ways to give ``subjects`` values, and which of them ``facts`` about them allow.
+    """All ways to give ``subjects`` values, and which of them the ``facts`` about them allow.
 
-    Values that are ``alike`` are one, by name; of other names no two are. Raises LookupError if
-    there are too many ways, if some subject is a number, or if a fact is about more than these.
+    Values in one group of ``alike`` are treated as one; names without groups have none. Raises
+    LookupError if there are too many ways, if some subject is a number, or if an axiom is about
+    more subjects than these.
     """
 
     def __init__(
@@ -86,7 +87,7 @@ class JointValues:
             raise LookupError
         self._all = (1 << n_ways) - 1
         self._ways: dict[Subject, dict[Value, Bits]] = {}
-        """By each subject the ways that have a value, which stands for those like it."""
+        """For each subject the ways that have a value, which represents its group."""
         self._of_places: list[dict[Any, Bits]] = []
         stride = 1
         for subject, groups in zip(subjects, values, strict=True):
@@ -108,10 +109,10 @@ class JointValues:
             self._allowed &= kept
 
     def ways(self, values: Sequence[PartialValue | None], *, strict: bool = False) -> Bits:
-        """The ways that facts allow and that have these values of the subjects.
+        """The ways that the axioms allow and that have these values of the subjects.
 
-        Facts about what is known are taken to be kept, unless it is ``strict``. Raises LookupError
-        if a value is missing.
+        Axioms about known values are assumed to hold, unless ``strict``. Raises LookupError if a
+        value is missing.
         """
         ways = self._all
         for own, value in zip(self._of_places, values, strict=True):
@@ -130,9 +131,9 @@ class JointValues:
         return ways
 
     def digits(self, read: ReadDigits, binding: Mapping[str, str]) -> Sequence[tuple[int, Bits]]:
-        """Each digit of a read that is asked of a binding's objects, and the ways that have it.
+        """Each digit of a read for a binding's objects, and the ways that have it.
 
-        Raises LookupError if more than the subjects decides.
+        Raises LookupError if it depends on more than the subjects.
         """
 
         def digit(view: StateView) -> int:
@@ -160,7 +161,7 @@ class JointValues:
     def _by(
         self, about: Iterable[Subject], evaluate: Callable[[StateView], Any]
     ) -> Iterable[tuple[Any, Bits]]:
-        """What ``evaluate`` says for each choice of values of subjects, and its ways."""
+        """The results of ``evaluate`` for each choice of the subjects' values, with its ways."""
         own = [subject for subject in dict.fromkeys(about) if subject in self._ways]
         for chosen in product(*[self._ways[subject].items() for subject in own]):
             ways = self._all
@@ -182,9 +183,9 @@ class ReadWays(NamedTuple):
     def digits_of(
         self, values: Sequence[PartialValue | None], *, strict: bool = False
     ) -> frozenset[Digits]:
-        """The digits that the reads may have together for these values of the subjects.
+        """The possible joint digits of the reads for these values of the subjects.
 
-        Raises LookupError if a value is missing, or none are possible; ``strict`` as above.
+        Raises LookupError if a value is missing or no digits are possible; ``strict`` as above.
         """
         ways = self.values.ways(values, strict=strict)
         if not ways:
@@ -203,12 +204,15 @@ class ReadWays(NamedTuple):
 def read_ways(
     reads: Iterable[ReadDigits], binding: Mapping[str, str], values: JointValues
 ) -> ReadWays:
-    """Reads of a binding's objects made ready. Raises LookupError if more than values decides."""
+    """The reads for a binding's objects.
+
+    Raises LookupError if they depend on more than the values.
+    """
     return ReadWays(values, tuple([values.digits(read, binding) for read in reads]))
 
 
 def instances_of(axiom: CompiledAxiom, everybody: PartialView) -> Iterator[FactInstance]:
-    """A fact about each choice of its objects."""
+    """An instance of an axiom for each choice of its objects."""
     for environment in bound_to(axiom.variables, everybody.objects, everybody.vocabulary):
         about = frozenset(subjects_in(axiom.formula, environment, everybody))
         yield FactInstance(axiom.formula, environment, about)
@@ -220,7 +224,7 @@ def alike_values(
     facts: Sequence[ltl.Formula],
     vocabulary: Vocabulary,
 ) -> dict[str, Alike]:
-    """The values of words in groups that neither reads nor facts tell apart."""
+    """The values of words, in groups that neither reads nor axioms distinguish."""
     bodies = [
         term.body
         for read in reads
@@ -243,7 +247,7 @@ def alike_values(
 
 
 def _atoms_in(formula: ltl.Formula) -> Iterator[ltl.Atom]:
-    """The atoms of a formula, those of what is counted in it, too."""
+    """The atoms of a formula, including those within counts."""
     for read in reads_in(formula):
         if isinstance(read, ltl.Atom):
             yield read
@@ -252,7 +256,7 @@ def _atoms_in(formula: ltl.Formula) -> Iterator[ltl.Atom]:
 
 
 def joined_sets(sets: Sequence[frozenset[Subject]]) -> list[frozenset[Subject]]:
-    """The unions of those that have members in common."""
+    """The unions of sets that have members in common."""
     unions: list[frozenset[Subject]] = []
     for own in sets:
         if own:
@@ -263,9 +267,9 @@ def joined_sets(sets: Sequence[frozenset[Subject]]) -> list[frozenset[Subject]]:
 
 
 def values_at(keys: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:
-    """Getter of the values at these keys or places; LookupError if one is missing.
+    """A getter of the values at these keys or places; LookupError if one is missing.
 
-    Unlike ``itemgetter`` it always gives a tuple.
+    Unlike ``itemgetter`` it always returns a tuple.
     """
     if len(keys) > 1:
         return itemgetter(*keys)

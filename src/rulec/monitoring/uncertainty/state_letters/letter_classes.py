@@ -1,4 +1,4 @@
-"""The classes of letters that a state may have, by what is known of each read."""
+"""The classes of letters that a state may have, from what is known of each read."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rulec.monitoring.uncertainty.state_letters.letter_diagram import LetterDiag
 from rulec.monitoring.uncertainty.state_letters.read_digits import Cube, Letters, read_digits
 
 MOST_KEPT = 1 << 16
-"""Letters whose classes are kept before all are forgotten."""
+"""How many letters keep their classes before all are discarded."""
 
 _Key = TypeVar("_Key")
 _Value = TypeVar("_Value")
@@ -32,11 +32,11 @@ class LetterClasses:
 
     @cached_property
     def diagram(self) -> LetterDiagram:
-        """The machine's letters, made when they are first asked for: not all rules are judged."""
+        """The machine's letters, built on first use, since not all rules are judged."""
         return LetterDiagram(self._machine)
 
     def of(self, letters: Letters) -> int:
-        """The classes of letters; 0 if facts exclude them all."""
+        """The classes of letters; 0 if axioms exclude them all."""
         known = self._known.get(letters)
         if known is None:
             known = 0
@@ -46,7 +46,7 @@ class LetterClasses:
         return known
 
     def of_rule(self, rule: CompiledRule, reads: EntangledReads) -> RuleLetters:
-        """The letters of a rule that has this machine, and of which these reads are entangled."""
+        """The letters of a rule that has this machine, with these entangled reads."""
         known = self._rules.get(rule.name)
         if known is None or known.entangled is not reads:
             known = self._rules[rule.name] = RuleLetters(self, rule, reads)
@@ -55,7 +55,7 @@ class LetterClasses:
     def side_by_side(
         self, left: Letters, right: Letters, fixed: tuple[int, ...]
     ) -> frozenset[tuple[int, int]]:
-        """The classes of two letters for each choice of digits of ``fixed`` reads in both."""
+        """The classes of two letters for each choice of digits of the ``fixed`` reads in both."""
         if len(left) == len(right) == 1:
             both = self.diagram.nodes_side_by_side(left[0], right[0], frozenset(fixed))
             return frozenset([(x >> 1, y >> 1) for x, y in both if x > 1 and y > 1])
@@ -63,9 +63,9 @@ class LetterClasses:
         return frozenset([(first[part], second[part]) for part in first.keys() & second])
 
     def are_indifferent(self, letters: Sequence[Letters], read: int) -> bool:
-        """Whether all these letters leave a read the same digits, which never tell classes apart.
+        """Whether all these letters leave a read the same digits, which never matter for classes.
 
-        Whatever the digits of all other reads are, that is.
+        This is independent of the digits of all other reads.
         """
         cubes = {cube for own in letters for cube in own}
         if len({cube[read] for cube in cubes}) > 1:
@@ -73,7 +73,7 @@ class LetterClasses:
         return all(self.diagram.is_indifferent(cube, read) for cube in cubes)
 
     def groups(self, letters: Letters, fixed: tuple[int, ...]) -> Mapping[Cube, int]:
-        """The classes of letters by the digits, as bits, of ``fixed`` reads."""
+        """The classes of letters by the digits, as bits, of the ``fixed`` reads."""
         key = letters, fixed
         if key not in self._groups:
             groups: dict[Cube, int] = {}
@@ -89,11 +89,11 @@ class LetterClasses:
 
 @dataclass
 class PossibleWord:
-    """The letters that a rule may read of its objects, state by state.
+    """The letters that a rule may read for its objects, state by state.
 
-    ``classes`` are their classes, as bits. ``exact`` is false if there are letters that are not
-    possible, because there was too much to look at. What else there is to say is found when it is
-    asked for.
+    ``classes`` are their classes, as bits. ``exact`` is false if some of the letters may be
+    impossible, because there were too many completions. The other properties are computed on
+    demand.
     """
 
     classes: tuple[int, ...]
@@ -108,15 +108,15 @@ class PossibleWord:
 
     @cached_property
     def unknown(self) -> tuple[frozenset[str], ...]:
-        """For each read the names of values of which some are unknown."""
+        """For each read the names with unknown values."""
         return self.find_unknown()
 
 
 class RuleLetters:
-    """The letters that a rule may read of its objects, by keys.
+    """The letters that a rule may read for its objects, by keys.
 
-    A key has the digits, as bits, of each read that is independent of the others, and last, if
-    there are others, the place of what these may be among what is found of ``entangled`` ones.
+    A key has the digits, as bits, of each independent read and, if there are ``entangled`` ones,
+    the place of their joint letters as last item.
     """
 
     def __init__(
@@ -132,7 +132,7 @@ class RuleLetters:
         self._known: dict[tuple[int, ...], int] = {}
 
     def classes(self, keys: Sequence[tuple[int, ...]]) -> list[int]:
-        """The classes, as bits, of letters; 0 where facts exclude them all."""
+        """The classes, as bits, of letters; 0 where axioms exclude them all."""
         known = self._known
         try:
             return [known[key] for key in keys]

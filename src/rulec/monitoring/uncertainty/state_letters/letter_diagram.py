@@ -1,9 +1,9 @@
-"""Letters of a rule as a decision diagram, by which those not known are classed.
+"""A rule's letters as a decision diagram, which finds the classes of partly known letters.
 
-A level for each read, whose digits choose among the nodes of the next one; equal parts are one node
-(R. E. Bryant, "Graph-based algorithms for Boolean function manipulation", 1986). A read that is not
-known has several digits and leads to a set of nodes. Sets, and steps between them, are made as they
-are met.
+It has a level for each read, whose digits choose among the nodes of the next level; equal parts
+share a node (R. E. Bryant, "Graph-based algorithms for Boolean function manipulation", 1986). An
+unknown read has several digits and leads to a set of nodes. Sets, and steps between them, are built
+on demand.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from math import prod
 from rulec.automata.outcome_machine import OutcomeMachine, bits_of
 
 MOST_STEPS = 1 << 18
-"""Steps of one letter that are kept before all are forgotten."""
+"""How many steps of one letter are kept before all are discarded."""
 
 
 _BLOCK = 1 << 5
-"""Parts of so many letters, or a few more, are told apart as a whole."""
+"""Parts of up to about so many letters are compared as a whole."""
 
 
 class LetterDiagram:
-    """A machine's letter classes by its reads' digits, the last read being the first level."""
+    """A machine's letter classes by its reads' digits; the last read is the first level."""
 
     def __init__(self, machine: OutcomeMachine) -> None:
         self._n_reads = len(machine.reads)
@@ -57,7 +57,7 @@ class LetterDiagram:
         return self.nodes(cube) >> 1
 
     def nodes(self, cube: Sequence[int]) -> int:
-        """The same classes, one place higher: the first bit stands for what facts exclude."""
+        """The same classes, shifted by one; the first bit stands for excluded letters."""
         here = self.start
         for read in range(self._n_reads - 1, -1, -1):
             here = self.step(read, here, cube[read])
@@ -66,7 +66,7 @@ class LetterDiagram:
     def nodes_side_by_side(
         self, first: Sequence[int], second: Sequence[int], fixed: Set[int]
     ) -> set[tuple[int, int]]:
-        """The ``nodes`` of two cubes for each choice of digits of ``fixed`` reads in both."""
+        """The ``nodes`` of two cubes for each choice of digits of the ``fixed`` reads in both."""
         step = self.step
         reached = {(self.start, self.start)}
         for read in range(self._n_reads - 1, -1, -1):
@@ -94,9 +94,9 @@ class LetterDiagram:
         return {node - 1: n_own for node, n_own in here.items()}
 
     def is_indifferent(self, cube: Sequence[int], read: int) -> bool:
-        """Whether the letters of a cube are of the same class whichever of its digits a read has.
+        """Whether a read's digit makes no difference to the class of any letter of a cube.
 
-        So they are if what follows on one of the read's digits follows on all of them.
+        This holds if the successors for one of the read's digits are also those for all of them.
         """
         here = self.start
         for level in range(self._n_reads - 1, read, -1):
@@ -115,7 +115,7 @@ class LetterDiagram:
         return all(left == second for left, second in pairs)
 
     def step(self, read: int, here: int, digits: int) -> int:
-        """The nodes behind some nodes and some digits of a read, all as bits."""
+        """The nodes after some nodes and some digits of a read, all as bits."""
         key = read, here, digits
         known = self._steps.get(key)
         if known is None:
@@ -131,12 +131,12 @@ class LetterDiagram:
 
 
 def _distinct_rows(numbers: Sequence[int], width: int) -> tuple[list[tuple[int, ...]], list[int]]:
-    """The rows of so many numbers that there are, and the place of each among them."""
+    """The distinct rows of this width, and the place of each row among them."""
     return _distinct(zip(*[iter(numbers)] * width, strict=True))
 
 
 def _distinct(rows: Iterable[tuple[int, ...]]) -> tuple[list[tuple[int, ...]], list[int]]:
-    """The different rows, and the place of each row among them."""
+    """The distinct rows, and the place of each row among them."""
     # A row that is not there yet gets the next number; without a line of Python for each.
     places: defaultdict[tuple[int, ...], int] = defaultdict(count().__next__)
     place_of_row = list(map(places.__getitem__, rows))

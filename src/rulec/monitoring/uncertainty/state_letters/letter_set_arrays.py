@@ -15,25 +15,25 @@ from rulec.trace.plain_arrays import distinct
 Numbers = NDArray[np.intp] | int
 
 MOST_CODES = 1 << 16
-"""Reads whose numbers have no more combinations are looked up together."""
+"""Reads whose numbers have at most so many combinations are looked up together."""
 
 _FEW_CODES = 1 << 15
-"""More combinations are too many for fewer letters."""
+"""With fewer letters than combinations, only so many combinations are looked up together."""
 
 _MOST_KEPT = 1 << 18
-"""So many combinations are kept before all are forgotten."""
+"""How many combinations are kept before all are discarded."""
 
 _UNMET = -1
 
 _FEW_UNMET = 1 << 4
-"""So many letters that have not been met are looked up together."""
+"""Up to so many new letters are computed together."""
 
 
 class LetterSets:
     """The sets of classes of many letters at once, by numbers for what reads may be.
 
     ``meanings`` has for each read the digits, as bits, that its numbers stand for. ``sets`` are the
-    sets of classes, as bits, that have been met: a letter's number is a place among them.
+    sets of classes, as bits, met so far; a letter's number is a place among them.
     """
 
     def __init__(self, diagram: LetterDiagram, meanings: Sequence[Sequence[int]]) -> None:
@@ -52,7 +52,7 @@ class LetterSets:
 
     @property
     def sets(self) -> list[int]:
-        """Sets of classes, as bits, by number."""
+        """The sets of classes, as bits, by number."""
         own, places = self._sets, self._places[0]
         if len(own) < len(places):
             own += [nodes >> 1 for nodes in islice(places, len(own), None)]
@@ -60,7 +60,7 @@ class LetterSets:
 
     @property
     def numbers_of_none(self) -> list[int]:
-        """The numbers of the set without classes, of letters that cannot be."""
+        """The numbers of the empty set of classes, which impossible letters have."""
         places = self._places[0]
         return [places[nodes] for nodes in (0, 1) if nodes in places]
 
@@ -79,7 +79,10 @@ class LetterSets:
         return partial
 
     def numbers(self, columns: Sequence[Numbers]) -> Numbers:
-        """The number of each letter, for columns of the reads' numbers, or one for all."""
+        """The number of each letter, for columns of the reads' numbers.
+
+        One for all if they are equal.
+        """
         numbers = list(columns)
         given: list[Any] = list(numbers)
         varying: list[tuple[int, NDArray[np.intp]]] = []
@@ -128,7 +131,7 @@ class LetterSets:
         return found
 
     def _of_code(self, code: Numbers, key: Sequence[int | None]) -> Numbers:
-        """The number of each letter of which the reads have these numbers, some by a code."""
+        """The number of each letter whose reads have these numbers, some given by a code."""
         columns: list[Numbers] = []
         for read in range(len(key) - 1, -1, -1):
             own = key[read]

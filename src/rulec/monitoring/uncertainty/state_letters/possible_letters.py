@@ -1,4 +1,4 @@
-"""The letters that a rule's machine may read in each state, where values are not all known."""
+"""The letters that a rule's machine may read in each state, when values are unknown."""
 
 from __future__ import annotations
 
@@ -40,20 +40,20 @@ from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN, PartialValue
 
 NOTHING: Mapping[Subject, Value] = {}
-"""Nothing is supposed."""
+"""No supposed values."""
 
 
 BoundLetters: TypeAlias = dict[tuple[object, ...], RuleLetters]
-"""Letters of rules, by these and their objects."""
+"""The letters of rules, by the rule and its objects."""
 
 MOST_SCENES = 1 << 4
-"""So many scenes, of few objects, have their letters kept before all are forgotten."""
+"""For how many sets of objects letters are kept before all are discarded."""
 
 
 def bound_letters(
     rulebook: CompiledRulebook, objects: Mapping[str, str], vocabulary: Vocabulary
 ) -> BoundLetters:
-    """Letters of a rulebook's rules about these objects, kept from one trace to another."""
+    """The letters of a rulebook's rules about these objects, shared by several traces."""
     if len(objects) > MOST_COUNTED:
         return {}
     scenes: dict[object, tuple[Vocabulary, BoundLetters]]
@@ -91,7 +91,7 @@ def letters_of_rule(
 
 @dataclass(frozen=True, slots=True)
 class _About:
-    """A rule's objects and their states, and the values that are supposed of constants."""
+    """A rule's objects and their states, and the supposed values of constants."""
 
     rule: CompiledRule
     binding: Binding
@@ -106,8 +106,8 @@ class _About:
 class PossibleLetters:
     """A reader of the possible letters of a checked trace.
 
-    ``vocabulary`` has the defaults of what its states do not say. ``bound`` is kept from one trace
-    to another one of the same objects.
+    ``vocabulary`` has the defaults of values missing in its states. ``bound`` is shared by traces
+    with the same objects.
     """
 
     def __init__(
@@ -131,7 +131,7 @@ class PossibleLetters:
         self._bound = bound
 
     def view(self, number: int, supposed: Mapping[Subject, Value] = NOTHING) -> StateView:
-        """A state with the objects that are present, in which some values are supposed."""
+        """A state with the objects that are present, and with supposed values."""
         key = number, *supposed.items()
         if key not in self._views:
             trace = self._trace
@@ -170,7 +170,10 @@ class PossibleLetters:
     def bits_of(
         self, rule: CompiledRule
     ) -> Callable[[Read | NumberRead, Mapping[str, str], tuple[int, int]], list[int]]:
-        """A reader of the digits, as bits, of a rule's reads one by one: read, objects, stretch."""
+        """A reader of the digits, as bits, of a rule's single reads.
+
+        It takes the read, the objects and the stretch of states.
+        """
 
         def read_bits(
             read: Read | NumberRead, chosen: Mapping[str, str], stretch: tuple[int, int]
@@ -189,7 +192,7 @@ class PossibleLetters:
         )
 
     def impossible(self, rule: CompiledRule, objects: Mapping[str, str], number: int) -> RulecError:
-        """The error (R0508) about a state that contradicts a fact."""
+        """The error (R0508) about a state that contradicts an axiom."""
         types = {objects[variable.name]: variable.type for variable in rule.variables}
         place = StatePlace(number, self._where(number), self._trace.place)
         return impossible_state(rule, types, self._rulebook.axioms, self.view(number), place)
@@ -197,7 +200,7 @@ class PossibleLetters:
     def values(
         self, name: str, items: tuple[str, ...], supposed: Mapping[Subject, Value] = NOTHING
     ) -> list[PartialValue | None]:
-        """What every state says of a name, None where nothing, defaults included."""
+        """The value of a name in every state, defaults included; None if it is missing."""
         if (name, items) in supposed:
             return [supposed[name, items]] * len(self._trace.states)
         if (name, items) not in self._given:
@@ -229,7 +232,7 @@ class PossibleLetters:
         return digits
 
     def _digits_of_sums(self, read: ReadDigits, about: _About) -> list[int]:
-        """The digits of a sum in each state: exact numbers only where floats are near a limit."""
+        """The digits of a sum in each state; exact numbers are used only near a limit."""
         numbers, objects = self._numbers(about), about.binding.objects
         columns = [
             self.values(name, tuple([objects[x] for x in variables]), about.supposed)[about.stretch]
@@ -249,7 +252,7 @@ class PossibleLetters:
             raise self._missing(error.subject, number, about.rule) from None
 
     def _entangled_numbers(self, reads: EntangledReads, about: _About) -> list[int]:
-        """The places of what entangled reads may be in each state."""
+        """The places of the joint letters of entangled reads in each state."""
         objects = about.binding.objects
         columns = [
             self.values(*subject, about.supposed)[about.stretch]

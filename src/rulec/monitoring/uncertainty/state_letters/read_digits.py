@@ -1,4 +1,4 @@
-"""The digits that reads may have, by what is known of the values on which they depend."""
+"""The digits that reads may have, from what is known of the values on which they depend."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from rulec.monitoring.uncertainty.state_letters.unknown_subjects import (
 from rulec.vocabulary.partial_values import UNKNOWN, Interval, OneOf, PartialValue
 
 Cube: TypeAlias = tuple[int, ...]
-"""For each read the bit set of its digits, each of which goes with each of the others'."""
+"""For each read the bit set of its digits; all combinations of these are possible."""
 
 Letters: TypeAlias = tuple[Cube, ...]
 """The letters that a state may have: those of all the cubes."""
@@ -37,14 +37,14 @@ Letters: TypeAlias = tuple[Cube, ...]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Count:
-    """A count made ready; where it holds, its variable is the same object as ``alias``, if any."""
+    """A prepared count; where it holds, its variable is the same object as ``alias``, if given."""
 
     count: ltl.Count
     alias: str | None
     evaluate: Evaluator
 
     def range(self, binding: Mapping[str, str], view: PartialView) -> tuple[Fraction, Fraction]:
-        """How many objects count for sure, and how many may. Raises MissingValueError."""
+        """How many objects surely count, and how many may. Raises MissingValueError."""
         low = unknown = 0
         present, kind, alias = view.objects, self.count.type, self.alias
         inner = dict(binding)
@@ -62,18 +62,18 @@ class _Count:
 
 
 _ERROR = 1e-12
-"""Sums of floats are wrong by less than this part of what is added, and of the limits."""
+"""The relative error of sums of floats is less than this, also relative to the limits."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Sum:
-    """A sum of quantities, none of which is a count, in floats."""
+    """A sum of quantities without counts, in floats."""
 
     factors: tuple[float, ...]
     limits: tuple[float, ...]
 
     def digits(self, values: Sequence[PartialValue | None]) -> int | None:
-        """The digits, as bits, of a sum of values; None if it is too near a limit to tell."""
+        """The digits, as bits, of a sum of values; None if it is too close to a limit to decide."""
         low = high = size = 0.0
         for factor, value in zip(self.factors, values, strict=True):
             if isinstance(value, Interval):
@@ -97,10 +97,11 @@ class _Sum:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ReadDigits:
-    """A read made ready for many values; digits are bits.
+    """A read prepared for many values; digits are bits.
 
     Reads of one ``kind`` have the same digits for the same objects of their ``variables``.
-    ``names`` are those that it depends on, ``subject`` the single value that it is, if it is one.
+    ``names`` are those that it depends on; ``subject`` is the value that it consists of, if it is a
+    single one.
     """
 
     read: Read | NumberRead
@@ -115,18 +116,18 @@ class ReadDigits:
 
     @property
     def summands(self) -> tuple[Subject, ...]:
-        """What is added, of variables, if the read is a sum of single values."""
+        """The summands, about variables, if the read is a sum of single values."""
         if self._sum is None or not isinstance(self.read, NumberRead):
             return ()
         terms = [term for _, term in self.read.terms if isinstance(term, ltl.QuantityTerm)]
         return tuple([(term.name, term.arguments) for term in terms])
 
     def of_sum(self, values: Sequence[PartialValue | None]) -> int | None:
-        """The digits of a sum of ``summands``; None where that takes exact numbers."""
+        """The digits of a sum of ``summands``; None if exact numbers are needed."""
         return None if self._sum is None else self._sum.digits(values)
 
     def of_values(self, values: Sequence[PartialValue | None]) -> list[int]:
-        """The digits for each value of the ``subject``; none for what is missing."""
+        """The digits for each value of the ``subject``; none for missing values."""
         if isinstance(self.read, NumberRead):
             return [self._of_number(value, self.read) for value in values]
         known = self._known
@@ -165,7 +166,7 @@ class ReadDigits:
 
 @lru_cache(maxsize=1 << 12)
 def read_digits(read: Read | NumberRead) -> ReadDigits:
-    """A read made ready."""
+    """The prepared read."""
     if isinstance(read, Read):
         own = read.name, read.variables
         return ReadDigits(read, (read.name, read.values), (read.name,), read.variables, subject=own)
@@ -193,7 +194,7 @@ def read_digits(read: Read | NumberRead) -> ReadDigits:
 
 
 def possible_digits(read: Read | NumberRead, value: PartialValue | Fraction | None) -> int:
-    """The digits, as bits, that a read may have of a value; none of one that is missing."""
+    """The digits, as bits, that a read may have for a value; none for a missing value."""
     if value is None:
         return 0
     if value is UNKNOWN:
@@ -213,7 +214,7 @@ def possible_digits(read: Read | NumberRead, value: PartialValue | Fraction | No
 
 
 def _digits_of_sum(read: NumberRead, binding: Mapping[str, str], view: PartialView) -> int:
-    """The digits of a sum; all of them if it has a count that is unknown."""
+    """The digits of a sum; all of them if it contains an unknown count."""
     total = weighted_sum(read.terms, binding, view)
     if not isinstance(total, Unknown):
         return 1 << read.digit(total)

@@ -1,8 +1,8 @@
-"""Entangled reads in parts that have nothing to do with each other.
+"""Entangled reads, divided into independent parts.
 
-Two reads are in one part if they depend on one value, or if facts lead from one's values to the
-other's. So what is said of a part's own subjects decides what its reads may be, and there are far
-fewer ways to say that than for all subjects together.
+Two reads are in the same part if they depend on a common value, or if axioms link the values of one
+to those of the other. So a part's reads are determined by the values of its own subjects, which
+have far fewer combinations than those of all subjects together.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from rulec.vocabulary.partial_values import UNKNOWN_TYPES, Interval, PartialValu
 class _PossibleDigits(NamedTuple):
     """The joint digits of a part's reads; ``exact`` if each of them is possible.
 
-    ``known`` are their digits if each has but one by itself.
+    ``known`` are their digits, if each read by itself has only one.
     """
 
     known: Digits | None
@@ -54,20 +54,20 @@ class _PossibleDigits(NamedTuple):
 
 
 class _Steps(NamedTuple):
-    """Where reads change along a number, and the possible digits by where its interval ends."""
+    """Where reads change along a number, and the possible digits by where an interval ends."""
 
     points: Sequence[Fraction]
     possible: dict[tuple[int, int], _PossibleDigits]
 
     def place(self, number: float) -> int:
-        """Where a number lies: odd at a point, even between two of them."""
+        """The position of a number: odd at a point, even between two points."""
         value = exact(number)
         place = bisect_left(self.points, value)
         return 2 * place + (place < len(self.points) and self.points[place] == value)
 
 
 class _PartTable:
-    """What some reads may be by the values of their ``subjects``, in numbered answers."""
+    """The possible digits of some reads by the values of their ``subjects``, numbered."""
 
     def __init__(
         self,
@@ -102,7 +102,7 @@ class _PartTable:
         return known
 
     def _once_per_steps(self, values: tuple[PartialValue | None, ...]) -> _PossibleDigits:
-        """The possible digits: of intervals with the same steps of reads in them the same ones."""
+        """The possible digits, computed once for intervals with the same changes of reads."""
         intervals = [place for place, value in enumerate(values) if isinstance(value, Interval)]
         if len(intervals) != 1 or self._axioms:
             return self._possible(values)
@@ -123,7 +123,7 @@ class _PartTable:
         return steps.possible[ends]
 
     def _steps_along(self, place: int, others: Sequence[PartialValue | None]) -> _Steps | None:
-        """Where reads change along one subject's number, the others' being known; None if not."""
+        """Where reads change along one subject's number, if all others are known; else None."""
         if None in others or not UNKNOWN_TYPES.isdisjoint(map(type, others)):
             return None
         along = self._subjects[place]
@@ -152,7 +152,7 @@ class _PartTable:
 
     @cached_property
     def _read_ways(self) -> ReadWays | None:
-        """The reads by all that their subjects may be together, if these are few words."""
+        """The reads by the joint values of their subjects, if these are few words."""
         vocabulary = self._vocabulary
         alike = alike_values(
             dict.fromkeys(name for name, _ in self._subjects),
@@ -190,7 +190,7 @@ class _PartTable:
         return _PossibleDigits(known, possible.digits, possible.exact)
 
     def _are_known(self, values: Sequence[PartialValue | None]) -> bool:
-        """Whether each read has but one digit by itself, whatever facts say."""
+        """Whether each read by itself has only one digit, regardless of axioms."""
         unknown = [
             read
             for read, places in zip(self._ready, self._places, strict=True)
@@ -216,7 +216,7 @@ class _PartTable:
 
 
 class _Part(NamedTuple):
-    """Places of some reads among all, a getter of their subjects' values, and their table."""
+    """The places of some reads among all, a getter of their subjects' values, and their table."""
 
     reads: tuple[int, ...]
     values: Callable[[Any], tuple[Any, ...]]
@@ -224,16 +224,16 @@ class _Part(NamedTuple):
 
 
 PartNumber: TypeAlias = "tuple[Callable[[Any], tuple[Any, ...]], Callable[[tuple[Any, ...]], int]]"
-"""A getter of a part's values among all, and what gives these their number.
+"""A getter of a part's values among all, and a function that gives their number.
 
 Raises MissingValueError.
 """
 
 
 class KnownParts:
-    """What is known of parts of all rules, by what they are.
+    """Cached results for parts of all rules.
 
-    ``tables`` are those of parts of reads, ``together`` has what subjects may be together.
+    ``tables`` are those of parts of reads, ``together`` the joint values of subjects.
     """
 
     def __init__(self) -> None:
@@ -242,11 +242,11 @@ class KnownParts:
 
 
 class ReadsApart:
-    """Reads of one rule that depend on these ``subjects``, in parts.
+    """The reads of one rule that depend on these ``subjects``, in parts.
 
-    They are asked of the objects of a ``binding``, where only ``everybody`` may be there. Rules
-    that have a part in common share what is ``known`` of it. ``numbers`` are for each part a getter
-    of its subjects' values, and what gives these their number in a ``key``.
+    They are evaluated for the objects of a ``binding``, with ``everybody`` possibly present. Rules
+    with a common part share its ``known`` results. ``numbers`` has for each part a getter of its
+    subjects' values, and a function that gives their number in a ``key``.
     """
 
     def __init__(
@@ -268,7 +268,7 @@ class ReadsApart:
     def key(self, values: Sequence[PartialValue | None]) -> tuple[int, ...]:
         """The key of the letters for these values of the subjects.
 
-        Raises MissingValueError, not always about the value that is missing first.
+        Raises MissingValueError, not necessarily about the first missing value.
         """
         return tuple([number(pick(values)) for pick, number in self.numbers])
 

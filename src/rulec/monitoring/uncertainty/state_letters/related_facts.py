@@ -1,4 +1,4 @@
-"""Facts that have to do with what a rule reads, and how far they reach beyond its own objects."""
+"""The axioms related to what a rule reads, and whether they reach beyond its own objects."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rulec.vocabulary import Vocabulary
 def related_facts(
     names: Iterable[str], axioms: Sequence[CompiledAxiom]
 ) -> tuple[CompiledAxiom, ...]:
-    """The facts that speak of some of these names, or of what such facts speak of."""
+    """The axioms about some of these names, or about names in such axioms, and so on."""
     about = set(names)
     related: set[int] = set()
     waiting = [(number, names_of(axiom.formula)) for number, axiom in enumerate(axioms)]
@@ -31,9 +31,9 @@ def related_facts(
 
 @lru_cache(maxsize=1 << 10)  # asked of each fact by each rule
 def keeps_to_its_objects(fact: CompiledAxiom) -> bool:
-    """Whether each value of which a fact speaks is one of all of its objects together.
+    """Whether each value in an axiom is about all of its objects together.
 
-    What such facts say of some objects then has nothing to do with any others.
+    What such an axiom says of some objects then is independent of any others.
     """
     own = {variable.name for variable in fact.variables}
     return not counts(fact.formula) and all(
@@ -42,14 +42,14 @@ def keeps_to_its_objects(fact: CompiledAxiom) -> bool:
 
 
 def is_of_one(fact: CompiledAxiom) -> bool:
-    """Whether a fact is about the world alone, or about one object alone."""
+    """Whether an axiom is about the world alone, or about one object alone."""
     return len(fact.variables) < 2 and keeps_to_its_objects(fact)
 
 
 def fits_or_not(fact: CompiledAxiom, variables: Sequence[Variable], vocabulary: Vocabulary) -> bool:
-    """Whether the types of a rule's variables alone tell which of its objects a fact is about.
+    """Whether the types of a rule's variables alone decide which objects an axiom is about.
 
-    It is about a bus or not, whatever a rule knows as a car may turn out to be.
+    They do not if the axiom is about buses, say, and the rule about vehicles, which may be buses.
     """
     return all(
         vocabulary.is_subtype(own.type, wanted.type)

@@ -1,4 +1,4 @@
-"""Subjects of reads and formulas, and those unknown in a state."""
+"""The subjects of reads and formulas, and which of them are unknown in a state."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.partial_values import UNKNOWN_TYPES, PartialValue
 
 Subject: TypeAlias = tuple[str, tuple[str, ...]]
-"""A declaration's name and the objects that it is asked of."""
+"""The name of a declaration, with the objects that it is about."""
 
 
 class MissingValueError(Exception):
@@ -28,10 +28,10 @@ class MissingValueError(Exception):
 
 
 class PartialView(PartialState, Protocol):
-    """A state, as a ``StateView``, of which some values may be partial."""
+    """A state, like a ``StateView``, with possibly partial values."""
 
     def given(self, name: str, items: tuple[str, ...]) -> PartialValue | None:
-        """The value, be it partial, that the state gives, or the declared default."""
+        """The value in the state, possibly partial, or the declared default."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,7 @@ class CompletedView:
 
     @property
     def objects(self) -> Mapping[str, str]:
-        """The objects that are there, with their types."""
+        """The objects present, with their types."""
         return self.view.objects
 
     @property
@@ -88,7 +88,7 @@ def subjects_of_read(
 def unknown_subjects(
     part: ltl.Formula | ltl.Term, environment: Mapping[str, str], view: PartialView
 ) -> frozenset[Subject]:
-    """The unknown subjects of which a formula or a term speaks."""
+    """The unknown subjects in a formula or a term."""
     return frozenset(x for x in subjects_in(part, environment, view) if is_unknown(x, view))
 
 
@@ -100,7 +100,7 @@ def is_unknown(subject: Subject, view: PartialView) -> bool:
 def subjects_in(
     part: ltl.Formula | ltl.Term, environment: Mapping[str, str], view: PartialView
 ) -> Iterator[Subject]:
-    """What a formula or a term speaks of, for these objects and those that may count."""
+    """The subjects in a formula or a term, for these objects and those that may count."""
     match part:
         case ltl.Atom(name, arguments) | ltl.QuantityTerm(name, arguments):
             yield name, tuple([environment[variable] for variable in arguments])

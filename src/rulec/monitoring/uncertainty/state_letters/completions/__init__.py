@@ -1,1 +1,1 @@
-"""What unknown values may be together."""
+"""The joint values that unknown values may have."""

@@ -1,4 +1,4 @@
-"""A search through what unknown values may be together, as far as it decides something."""
+"""A search through the joint completions of unknown values, as far as they matter."""
 
 from __future__ import annotations
 
@@ -20,9 +20,10 @@ from rulec.trace import Value
 
 @dataclass(slots=True)
 class Link:
-    """Something that speaks of unknown subjects: a read, a counted object, or an axiom.
+    """Something that depends on unknown subjects: a read, a counted object, or an axiom.
 
-    ``read`` is the number of the read, None for an axiom. ``counted`` is the object that may count.
+    ``read`` is the number of the read, None for an axiom. ``counted``: it says whether an object
+    counts.
     """
 
     subjects: frozenset[Subject]
@@ -34,16 +35,16 @@ class Link:
 
 @dataclass(frozen=True, slots=True)
 class Possible:
-    """Digits of single reads, and how many more objects count for reads that count."""
+    """Digits of single reads, and how many more objects count for reads that are counts."""
 
     digits: tuple[tuple[int, int], ...]
     more: tuple[tuple[int, int], ...]
 
 
 class CompletionSearch:
-    """A search through the completions of a cluster, of which only what decides is supposed.
+    """A search through a cluster's completions that supposes only values that matter.
 
-    ``values`` are those of what is no number, by subject; ``points`` values of all numbers.
+    ``values`` are those of non-numeric subjects; ``points`` are values of all numbers.
     """
 
     def __init__(
@@ -63,7 +64,7 @@ class CompletionSearch:
         self._possible: set[Possible] = set()
 
     def possible(self) -> set[Possible]:
-        """What the completions come to. Raises MissingValueError."""
+        """The results of the completions. Raises MissingValueError."""
         self._go_on(0, {}, {}, {})
         return self._possible
 
@@ -74,7 +75,7 @@ class CompletionSearch:
         digits: Mapping[int, int],
         more: Mapping[int, int],
     ) -> None:
-        """Look at the links from a number on, where so much is supposed and the others came to."""
+        """Evaluate the links from a number on, given the supposed values and earlier results."""
         digits, more = dict(digits), dict(more)
         view = CompletedView(self._view, supposed)
         for link, evaluate in self._links[number:]:
@@ -102,7 +103,7 @@ class CompletionSearch:
     def _deciding(
         self, truth: Unknown, link: Link, supposed: Mapping[Subject, Value | Fraction]
     ) -> Subject | None:
-        """The subject on which a truth depends; None of an axiom that lacks a value."""
+        """The subject on which a truth value depends; None for an axiom that lacks a value."""
         subject = truth.name, truth.objects
         if subject in link.subjects and subject not in supposed:
             return subject
@@ -126,7 +127,7 @@ class CompletionSearch:
 def digit_of(
     read: Read | NumberRead, binding: Mapping[str, str], view: PartialView | CompletedView
 ) -> int:
-    """The digit of a read of which nothing is unknown any more. Raises MissingValueError."""
+    """The digit of a read without unknown values. Raises MissingValueError."""
     if isinstance(read, Read):
         value = view.value(read.name, tuple([binding[variable] for variable in read.variables]))
         assert not isinstance(value, Unknown), "it has been supposed, or is known"

@@ -1,7 +1,7 @@
-"""The joint digits of a rule's reads in a state of which not all values are known.
+"""The joint digits of a rule's reads in a state with unknown values.
 
-Unknown values that have nothing to do with each other are looked at apart: two have if one read,
-one counted object or one axiom speaks of both.
+Unknown values that are independent are handled separately: two are dependent if one read, one
+counted object or one axiom refers to both.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ MOST_COMPLETIONS = 1 << 12
 
 @dataclass(frozen=True, slots=True)
 class PossibleDigits:
-    """What the reads' digits may be together; ``exact`` unless there was too much to look at."""
+    """The possible joint digits of the reads; ``exact`` unless there were too many completions."""
 
     digits: frozenset[Digits]
     exact: bool = True
@@ -74,7 +74,7 @@ def joint_digits(
     view: PartialView,
     axioms: Sequence[CompiledAxiom],
 ) -> PossibleDigits:
-    """The joint digits of ``reads``, asked of the objects of a binding.
+    """The joint digits of ``reads`` for the objects of a binding.
 
     There are none if the state contradicts an axiom. Raises MissingValueError.
     """
@@ -106,7 +106,7 @@ def joint_digits(
 
 
 def can_be(view: PartialView, axioms: Sequence[CompiledAxiom]) -> bool:
-    """Whether some completion of a state keeps all axioms; False, too, if they are very many."""
+    """Whether some completion of a state satisfies all axioms; False also if there are too many."""
     clusters = _joined_links(_links_of_axioms(axioms, view))
     return all(_completed(cluster, (), view) for cluster in clusters)
 
@@ -117,7 +117,7 @@ def _links_of_reads(
     view: PartialView,
     counted: dict[int, int],
 ) -> Iterator[Link]:
-    """Links of reads with unknown subjects; ``counted`` gets what counts for sure."""
+    """Links of reads with unknown subjects; ``counted`` receives the numbers that surely count."""
     for number, read in enumerate(reads):
         match read:
             case NumberRead(terms=((_, ltl.Count() as count),)):
@@ -137,7 +137,7 @@ def _links_of_reads(
 
 
 def _is_sure(read: Read | NumberRead, binding: Mapping[str, str], view: PartialView) -> bool:
-    """Whether all numbers that a sum may be have one digit."""
+    """Whether all possible values of a sum have the same digit."""
     total = weighted_sum(read.terms, binding, view) if isinstance(read, NumberRead) else None
     if not (isinstance(total, Between) and isinstance(read, NumberRead)):
         return False
@@ -147,7 +147,7 @@ def _is_sure(read: Read | NumberRead, binding: Mapping[str, str], view: PartialV
 def _clusters(
     links: Sequence[Link], axioms: Sequence[CompiledAxiom], view: PartialView
 ) -> Iterator[_Cluster]:
-    """The links in groups that share no subjects, with the axioms that bind these."""
+    """The links in groups that share no subjects, with the axioms about these."""
     clusters = _joined_links([*links, *_links_of_axioms(axioms, view)])
     # Axioms about what no read depends on decide nothing.
     return (cluster for cluster in clusters if any(x.read is not None for x in cluster.links))
@@ -177,7 +177,7 @@ def _links_of_axioms(axioms: Sequence[CompiledAxiom], view: PartialView) -> Iter
 def _completed(
     cluster: _Cluster, reads: Sequence[Read | NumberRead], view: PartialView
 ) -> set[Possible] | None:
-    """What a cluster's completions come to; None if there are too many."""
+    """The results of a cluster's completions; None if there are too many."""
     values: dict[Subject, Sequence[Value]] = {}
     bounds: dict[ltl.Term, tuple[Fraction, Fraction] | None] = {}
     for subject in sorted(cluster.subjects):
@@ -225,7 +225,7 @@ def _joined(first: Possible, second: Possible) -> Possible:
 
 
 def _independent(cluster: _Cluster, reads: Sequence[Read | NumberRead]) -> set[Possible]:
-    """More than a cluster can come to: all of its links by themselves, and no axioms."""
+    """A superset of a cluster's results: all its links independently, without axioms."""
     combinations = {Possible((), ())}
     for link in cluster.links:
         if link.read is None:

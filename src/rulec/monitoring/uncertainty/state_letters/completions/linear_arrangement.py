@@ -1,8 +1,8 @@
-"""Points that stand for all numbers, as far as linear comparisons can tell them apart.
+"""Sample points that represent all numbers, as far as linear comparisons distinguish them.
 
-Comparisons of sums with limits cut the space of a few unknown numbers into cells (an arrangement of
-hyperplanes). One point of each is found exactly: of two numbers by cutting a rectangle, of more by
-Fourier-Motzkin elimination.
+Comparisons of sums with limits divide the space of a few unknown numbers into cells (an arrangement
+of hyperplanes). One point of each cell is computed exactly: for two numbers by cutting a rectangle,
+for more by Fourier-Motzkin elimination.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from rulec.monitoring.uncertainty.state_letters.completions.planar_cells import 
 from rulec.witnesses.fourier_motzkin import LinearBound, TooManyBoundsError, solve
 
 MOST_POINTS = 1 << 12
-"""Of more cells no points are given."""
+"""If there are more cells, no points are computed."""
 
 MOST_BOUNDS = 1 << 15
-"""So many inequalities are made by elimination in all for the cells of three or more numbers."""
+"""The most inequalities that elimination may create for the cells of three or more numbers."""
 
 Point = dict[Term, Fraction]
 _Interval = tuple[Fraction, Fraction]
 
 
 class LinearPlane(NamedTuple):
-    """Where ``sum of coefficient * number`` is ``limit``."""
+    """The points where ``sum of coefficient * number`` equals ``limit``."""
 
     coefficients: Mapping[Term, Fraction]
     limit: Fraction
@@ -41,10 +41,11 @@ class LinearPlane(NamedTuple):
 def sample_points(
     bounds: Mapping[Term, tuple[Fraction, Fraction] | None], planes: Sequence[LinearPlane]
 ) -> list[Point] | None:
-    """A point in every cell of an arrangement, its planes being cells of their own.
+    """A point in every cell of an arrangement; the planes themselves are cells, too.
 
-    ``bounds`` has every number, with the closed interval in which it lies, or None for any. None
-    for more than ``MOST_POINTS`` cells, or if finding them takes more than ``MOST_BOUNDS``.
+    ``bounds`` has for every number the closed interval in which it lies, or None for any number.
+    None if there are more than ``MOST_POINTS`` cells, or if finding them takes more than
+    ``MOST_BOUNDS``.
     """
     if len(bounds) == 1:
         ((number, interval),) = bounds.items()
@@ -88,10 +89,10 @@ def _by_shared_numbers(
     shared: Mapping[Term, _Interval | None],
     planes: Sequence[LinearPlane],
 ) -> list[Point] | None:
-    """Points where some numbers are in one plane alone.
+    """Sample points if some numbers occur in one plane only.
 
-    Once the ``shared`` ones are chosen each plane's own numbers put it on either side by
-    themselves, as far as their sum goes; where that changes is a plane of the shared ones.
+    Once the ``shared`` numbers are chosen, each plane's own numbers alone decide on which side it
+    is, within the range of their sum; the limits of that range are planes of the shared numbers.
     """
     own = [_OwnNumbers.of(plane, bounds, shared) for plane in planes]
     among = [plane for one in own for plane in one.turns()]
@@ -116,9 +117,9 @@ def _by_shared_numbers(
 
 
 class _OwnNumbers(NamedTuple):
-    """A plane, of which some numbers are its own: ``least`` and ``most`` are where their sum is so.
+    """A plane with numbers of its own: ``least`` and ``most`` are where their sum is extreme.
 
-    Where it goes on for ever there is no ``most``, and ``least`` has all but one number.
+    If the sum is unbounded there is no ``most``, and ``least`` has all numbers but one.
     """
 
     shared: LinearPlane
@@ -133,7 +134,7 @@ class _OwnNumbers(NamedTuple):
         bounds: Mapping[Term, _Interval | None],
         shared: Mapping[Term, _Interval | None],
     ) -> _OwnNumbers:
-        """Of a plane, by which numbers are in others, too."""
+        """Split a plane into numbers that other planes share and its own."""
         apart: tuple[Point, Point] = {}, {}
         for number, factor in plane.coefficients.items():
             if factor:
@@ -148,14 +149,14 @@ class _OwnNumbers(NamedTuple):
         return cls(*parts, rest, None)
 
     def turns(self) -> Iterator[LinearPlane]:
-        """Where the shared numbers leave no more room on one side."""
+        """The planes of shared numbers beyond which one side is empty."""
         coefficients, limit = self.shared
         if coefficients and self.most is not None:
             ends = {_sum(self.own, end) for end in (self.least, self.most)}
             yield from (LinearPlane(coefficients, limit - end) for end in sorted(ends))
 
     def sides(self, point: Point) -> list[tuple[int, Point]]:
-        """Numbers with which it is on each side that it may be on, and which side that is."""
+        """For each side that the plane may be on: the side, and own numbers that put it there."""
         left = self.shared.limit - _sum(self.shared, point)
         if self.most is None:
             for number, chosen in self.least.items():
@@ -175,7 +176,7 @@ def _any_of(interval: _Interval | None) -> Fraction:
 
 
 def _between(least: Point, most: Point, way: Fraction, whole: Fraction) -> Point:
-    """A part of the way from one point to another."""
+    """A point on the way from one point to another."""
     share = way / whole if whole else Fraction(0)
     return {number: low + share * (most[number] - low) for number, low in least.items()}
 
@@ -206,7 +207,7 @@ def _in_a_plane(
 
 
 def _cuts(plane: LinearPlane, bounds: Mapping[Term, _Interval | None]) -> bool:
-    """True unless the sum is on one side of the limit everywhere within the bounds."""
+    """Whether the sum reaches the limit somewhere within the bounds."""
     intervals = [bounds.get(number) for number, factor in plane.coefficients.items() if factor]
     boxed = {number: interval for number, interval in bounds.items() if interval is not None}
     if None in intervals:
@@ -216,7 +217,7 @@ def _cuts(plane: LinearPlane, bounds: Mapping[Term, _Interval | None]) -> bool:
 
 
 def _corners(plane: LinearPlane, box: Mapping[Term, _Interval]) -> tuple[Point, Point]:
-    """Where in a box the sum is least, and where greatest."""
+    """The corners of a box where the sum is least and greatest."""
     falls = {number: plane.coefficients.get(number, 0) < 0 for number in box}
     least = {number: interval[falls[number]] for number, interval in box.items()}
     return least, {number: interval[not falls[number]] for number, interval in box.items()}
@@ -228,7 +229,7 @@ def _sum(plane: LinearPlane, point: Point) -> Fraction:
 
 
 def _beside(planes: Sequence[LinearPlane], box: Mapping[Term, _Interval]) -> Iterator[Point]:
-    """Points of a box on both sides of its only plane and on it, or any if there is none."""
+    """Points of a box on both sides of its only plane and on it; any point if there is no plane."""
     if not planes:
         yield {number: low for number, (low, _) in box.items()}
         return
@@ -243,7 +244,7 @@ def _beside(planes: Sequence[LinearPlane], box: Mapping[Term, _Interval]) -> Ite
 
 
 def _on_a_line(limits: Set[Fraction], interval: tuple[Fraction, Fraction] | None) -> list[Fraction]:
-    """The limits that the interval holds, and a number on each side of them in it."""
+    """The limits within the interval, and a number of it on each side of them."""
     if interval is None:
         known = [*limits, *([] if limits else [Fraction(0)])]
         interval = min(known) - 1, max(known) + 1

@@ -1,7 +1,7 @@
-"""Points in all cells into which lines cut a rectangle, exactly.
+"""A point in each of the cells into which lines divide a rectangle, computed exactly.
 
-The rectangle's faces (its inside, its edges without their ends, its corners) are cut by one line
-after the other, each into what is below the line, on it, and above it.
+The rectangle's faces (its interior, its edges without their ends, its corners) are cut by one line
+after the other, each into the parts below the line, on it, and above it.
 """
 
 from __future__ import annotations
@@ -15,27 +15,30 @@ from typing import NamedTuple, TypeAlias
 Corner: TypeAlias = tuple[Fraction, Fraction]
 Range: TypeAlias = tuple[Fraction, Fraction]
 _Face: TypeAlias = tuple[Corner, ...]
-"""A convex face by its corners in order around it, which are none of it unless it is one."""
+"""A convex face, given by its corners in order.
+
+They do not belong to it, except to a single point.
+"""
 
 
 class PlanarLine(NamedTuple):
-    """Where ``x * point[0] + y * point[1]`` is ``limit``."""
+    """The points where ``x * point[0] + y * point[1]`` equals ``limit``."""
 
     x: Fraction
     y: Fraction
     limit: Fraction
 
     def beyond(self, point: Corner) -> Fraction:
-        """How far the sum is above the limit."""
+        """By how much the sum exceeds the limit."""
         return self.x * point[0] + self.y * point[1] - self.limit
 
 
 def points_of_cells(
     ranges: tuple[Range | None, Range | None], lines: Sequence[PlanarLine], most: int
 ) -> list[Corner] | None:
-    """A point in every cell of a closed rectangle, what is on a line being cells of their own.
+    """A point in every cell of a closed rectangle; parts on a line are cells, too.
 
-    A range that is None has no ends. None if there are more cells than ``most``.
+    A range that is None is unbounded. None if there are more cells than ``most``.
     """
     faces: list[tuple[tuple[int, ...], _Face]]
     faces = [((), face) for face in _faces(*_closed(ranges, lines))]
@@ -69,7 +72,7 @@ def _faces_of_range(ends: Range) -> list[tuple[Fraction, ...]]:
 
 
 def _parts(face: _Face, beyond: Callable[[Corner], Fraction]) -> list[tuple[int, _Face]]:
-    """What of a face is below a line (-1), on it (0) and above it (1)."""
+    """The parts of a face below a line (-1), on it (0) and above it (1)."""
     heights = [beyond(corner) for corner in face]
     is_below, is_above = min(heights) < 0, max(heights) > 0
     if not (is_below and is_above):
@@ -97,10 +100,10 @@ def _parts(face: _Face, beyond: Callable[[Corner], Fraction]) -> list[tuple[int,
 def _closed(
     ranges: tuple[Range | None, Range | None], lines: Sequence[PlanarLine]
 ) -> tuple[Range, Range]:
-    """The ranges, those without ends so wide that they meet every cell.
+    """The ranges; unbounded ones are made wide enough to meet every cell.
 
-    Each cell has a point where two lines (or edges) cross, or, if all are parallel, a line beside
-    it; so it is enough that such points lie inside.
+    Each cell has a point where two lines (or edges) cross or, if all are parallel, has a line
+    beside it; so it suffices that such points lie inside.
     """
     across, up = ranges
     if across is not None and up is not None:
@@ -124,7 +127,7 @@ def _nearest_to_origin(line: PlanarLine) -> Corner:
 
 
 def _crossing(first: PlanarLine, second: PlanarLine) -> Corner | None:
-    """Where two lines cross (Cramer's rule); None where they are parallel."""
+    """The point where two lines cross (Cramer's rule); None if they are parallel."""
     area = first.x * second.y - second.x * first.y
     if not area:
         return None
