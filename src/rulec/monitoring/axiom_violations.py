@@ -64,7 +64,7 @@ def impossible_state(
     about_letters = [axiom for axiom in axioms if not counts(axiom.formula)]
     truths = {instance: instance.truth(view) for instance in _instances(about_letters, types, view)}
     broken = [instance for instance, truth in truths.items() if truth is False][:1]
-    # Each may hold by itself: what is unknown cannot be so that all of them do.
+    # Each axiom may hold by itself, but no completion satisfies all of them.
     broken = broken or [instance for instance, truth in truths.items() if truth is not True]
     return _error(broken, view, place, f"rule `{rule.name}` depends on it")
 
@@ -114,7 +114,7 @@ def _error(
         if axiom_place.excerpt:
             labels.append(Label(axiom_place, "what holds in every state"))
         else:
-            # A compiled rulebook has no text to show.
+            # A compiled rulebook has no source text to show.
             notes.append(f"the fact is in {axiom_place.file}, line {axiom_place.line}")
     diagnostic = VIOLATED_AXIOM.at(
         state.place,

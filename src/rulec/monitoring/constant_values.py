@@ -31,7 +31,7 @@ def with_constants(
     states = trace.states
     for name in vocabulary.constants:
         first = states[0].get(name)
-        # Mostly every state says the same, or says nothing.
+        # Usually all states agree, or have no value.
         if any(state.get(name) != first for state in states):
             depth = len(vocabulary.declarations[name].parameters)
             values = _stated_values(name, depth, states, where, trace.place)

@@ -94,7 +94,7 @@ class LetterReader:
         Raises RulecError R0504 if a value without default is missing.
         """
         first, last = stretch
-        # Rules tell different values apart, so a column is known by the whole read, bar variables.
+        # Rules distinguish different values, so the key is the whole read without variables.
         about = read if isinstance(read, Read) else scale(read)
         items = tuple([objects[variable] for variable in about.variables])
         kind = (about.name, about.values) if isinstance(about, Read) else about

@@ -52,7 +52,7 @@ class StateValidator:
         for number, state in enumerate(states):
             if _passes(state, looks):
                 continue
-            # Where something is not known it mostly is not elsewhere either.
+            # If something is unknown in one state, it usually is in the others, too.
             if looks is self._looks and _passes(state, self._partial_looks):
                 looks = self._partial_looks
                 continue
@@ -133,7 +133,7 @@ def has_partial_values(state: Mapping[str, Any]) -> bool:
         kind = type(value)
         if kind in UNKNOWN_TYPES:
             return True
-        # To ask whether something else than a dictionary is a mapping takes long.
+        # Checking whether an object other than a dict is a mapping is slow.
         is_mapping = kind is dict or (kind not in _PLAIN and isinstance(value, Mapping))
         if is_mapping and has_partial_values(value):
             return True
@@ -227,7 +227,7 @@ def _check_value(
         return
     if value is UNKNOWN:
         return  # of all objects
-    # Asking for a mapping takes far longer than asking for a dictionary.
+    # Checking for a mapping is far slower than checking for a dict.
     if type(value) is not dict and not isinstance(value, Mapping):
         message = f"{where} gives `{name}` one value; it is about each `{parameters[0]}`"
         way_out = f'write {{"{name}": {{"OBJECT": VALUE}}}}'

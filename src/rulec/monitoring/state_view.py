@@ -27,7 +27,7 @@ class StateView:
 
     def value(self, name: str, items: tuple[str, ...]) -> Value | Unknown:
         """The value in the state, or the declared default."""
-        # As value_in, which is not called because this is asked of every object in every state.
+        # Same as value_in, inlined because this runs for every object in every state.
         value: Any = self.state.get(name)
         for item in items:
             if value is None or value is UNKNOWN:

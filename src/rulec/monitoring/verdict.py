@@ -75,7 +75,7 @@ class OpenVerdict:
     strength: Strength
     binding: Mapping[str, str]
     because: tuple[Reason, ...]
-    # Made by factories, so that the class itself has no such attributes.
+    # Created by factories, so that the class itself has no such attributes.
     depends_on: tuple[str, ...] = field(default_factory=tuple)
     outcomes: tuple[ConditionalOutcome, ...] = field(default_factory=tuple)
     exact: bool = field(default_factory=lambda: True)
@@ -106,7 +106,7 @@ class OpenVerdict:
         return frozenset(self.depends_on) - names if beyond is None else beyond(names)
 
     def __getattr__(self, name: str) -> Any:
-        # Called only for what is not there.
+        # Called only for missing attributes.
         reasons = self.__dict__.get("_reasons")
         if reasons is None or name not in OpenReasons._fields:
             raise AttributeError(name)

@@ -35,11 +35,11 @@ def verify(trace: Trace, rulebook: CompiledRulebook) -> Verdict:
         return agreed([verify(trace, rounded) for rounded in roundings])
     rulebook, is_partial = rulebook_for_checked(trace, rulebook)
     if is_partial or trace.ends == "cut" or trace.told is not None:
-        # With NumPy, a tenth of a second: only where not all is known.
+        # Loads NumPy, 100 ms: only if values are unknown.
         from rulec.monitoring.uncertainty.suppositions import spelled_out
         from rulec.monitoring.uncertainty.uncertain_verdict import uncertain_verdict
 
-        # What is unknown of everybody is so of each one of whom nothing is said elsewhere.
+        # A name that is unknown for all objects is unknown for each object without a value.
         trace = with_derived_values(spelled_out(trace, rulebook.vocabulary), rulebook.vocabulary)
         return uncertain_verdict(trace, rulebook)
     reader = letter_reader_of(trace, rulebook)
@@ -80,7 +80,7 @@ def _bindings(rule: CompiledRule, trace: Trace, reader: LetterReader) -> Iterato
     cast = Cast(trace.objects, vocabulary, len(trace.states), trace.present, trace.place)
     if not cast.has_many(types_of(rule)):
         return cast.bindings(rule)
-    # numpy, a tenth of a second: only where there are many.
+    # Loads NumPy, 100 ms: only if there are many bindings.
     from rulec.monitoring.uncertainty.lazy_bindings import doubtful_bindings, known_bits
     from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
 
@@ -120,7 +120,7 @@ def _errors_at(place: SourceLocation | None) -> Iterator[None]:
     try:
         yield
     except RulecError as error:
-        # It is this trace that the rulebook cannot judge; where the rule is written is beside it.
+        # The error is about this trace, so the place of the rule is only a note.
         raise RulecError([_at(place, diagnostic) for diagnostic in error.diagnostics]) from None
 
 
@@ -155,7 +155,7 @@ def run(machine: MealyMonitor, word: Sequence[int], start: int = 0) -> tuple[boo
     state = before = start
     for index, symbol in enumerate(word):
         before, state = state, successors[state][symbol]
-        # A finite word may be accepted if it ends here, though no longer one is: `weak next false`.
+        # A word that ends here may be accepted although no longer word is: `weak next false`.
         if state == rejecting_sink and not machine.outputs[before][symbol]:
             return False, index
     return machine.outputs[before][word[-1]], None

@@ -222,7 +222,7 @@ def _is_partial(state: object) -> bool:
 def _with_derived_values(trace: Trace, vocabulary: Vocabulary) -> Trace:
     about = [x for x in vocabulary.constants if vocabulary.declarations[x].parameters]
     if any(state.get(name) is UNKNOWN for name in about for state in trace.states):
-        # As above, for partial states alone.
+        # As above, only for partial states.
         from rulec.monitoring.uncertainty.suppositions import spelled_out
 
         trace = spelled_out(trace, vocabulary)
@@ -309,7 +309,7 @@ def _with_others(
 def _verify_lines(block: LineBlock, rulebook: CompiledRulebook) -> Sequence[Answer]:
     answers: list[Answer | None] = [None] * len(block)
     for lines in block.alike:
-        # What is odd about it is said of each line by itself.
+        # Irregularities are reported line by line.
         with suppress(UnencodableError, NotGivenError, RulecError):
             example = lines.headings[0]
             rules = rules_for(Trace("", example.step_s, example.objects, ()), rulebook)

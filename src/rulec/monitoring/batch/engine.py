@@ -51,7 +51,7 @@ def rule_bindings(
     present = traces.present
     cast = Cast(traces.objects, rulebook.vocabulary, traces.layout.n_steps, present)
     return [
-        # All traces have the steps that ``present`` speaks of.
+        # All traces have the steps in ``present``.
         RuleBinding(
             rule,
             binding.objects,
@@ -78,7 +78,7 @@ def _letters_by_cell(
 
     Where an object of the binding is absent, its machine does not run, so any letter will do.
     """
-    # States in which the same objects are there are read together.
+    # States with the same objects are read together.
     scenes: dict[tuple[tuple[str, str], ...], list[int]] = {}
     for cell, present in enumerate(traces.there or [traces.objects] * len(traces.states)):
         scenes.setdefault(tuple(present.items()), []).append(cell)

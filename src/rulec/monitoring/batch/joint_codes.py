@@ -68,7 +68,7 @@ def joint_cells_of(
     for binding in bindings:
         key = (frozenset(binding.objects.values()), *binding.stretch)
         together.setdefault(key, []).append(binding)
-    # Rules have many bindings: a machine's letters become an array once.
+    # Rules have many bindings, so a machine's letters are converted to an array once.
     machines = {binding.rule.name: binding.rule.machine for binding in bindings}
     classes = {name: np.array(machine.letters) for name, machine in machines.items()}
     meanings = {name: _meanings(machine, vocabulary) for name, machine in machines.items()}
@@ -162,7 +162,7 @@ def _joint_cells(layout: Layout, read_bindings: Sequence[_ReadBinding]) -> Joint
 
 
 def _class_cells(layout: Layout, read_binding: _ReadBinding) -> JointCells:
-    # One more than the class, so that what is impossible is a cell, too.
+    # One more than the class, so that impossible letters have a cell, too.
     n_cells = len(read_binding.binding.rule.machine.successors[0]) + 1
     columns = {key: np.asarray(digit.values) for key, digit in _columns([read_binding]).items()}
     cells = read_binding.classes_at(columns, layout.n_states) - IMPOSSIBLE

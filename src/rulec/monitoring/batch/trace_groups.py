@@ -69,7 +69,7 @@ def group_traces(traces: Sequence[Trace]) -> TraceGroup:
         places, numbers = _distinct(ids)
     else:
         places, numbers = _distinct(list(zip(ids, now, owners, strict=True)))
-    # From one trace after the other to one step after the other.
+    # Reorder from trace by trace to step by step.
     before = np.cumsum(layout.lengths) - layout.lengths
     trace = np.repeat(np.arange(layout.n_traces), layout.lengths)
     step = np.arange(layout.n_states) - before[trace]

@@ -84,7 +84,7 @@ class VerdictColumns:
             words = (self._cells[layout.places(trace, first, last)] for trace in chosen.tolist())
             lost = np.array([first_lost_of_one(machine, letters.take(word)) for word in words])
         else:
-            # The ends descend: those above a step come first.
+            # The ends are in descending order: those after a step come first.
             by_step = (
                 self._cells[layout.starts[step] + chosen[: np.searchsorted(-ends, -step)]]
                 for step in range(first, int(ends[0]) if len(ends) else first)

@@ -28,7 +28,7 @@ def broken_stretch(
     for part, wanted in _bodies(formula):
         if not wanted and _has_phases(part):
             until: _Truths = {atom: column[: decisive + 1] for atom, column in truths.items()}
-            # The last phase may be no more than that it goes on
+            # The last phase may only require that something continues
             beyond: _Truths = {atom: [*column, False] for atom, column in until.items()}
             for n_states, word in enumerate((until, beyond), decisive + 1):
                 done = extended_by_columns(part, word, n_states, "finite")[part]

@@ -80,7 +80,7 @@ def facts_of(
             readers.setdefault(atom, []).append(proposition)
     views, vocabulary = observed.views, observed.views[0].vocabulary
     for read, propositions in readers.items():
-        # A number always changes a little; what counts is whether it passes a limit.
+        # Numbers always change a little; what matters is whether they pass a limit.
         passes = isinstance(read, ltl.Atom) or any(
             observed.changes(truths[proposition]) for proposition in propositions
         )

@@ -251,7 +251,7 @@ def _looked_at(
         try:
             return reader.word(rule, binding.objects, first, last)
         except RulecError:
-            # One completion of what is unknown may contradict facts.
+            # A completion of the unknown values may contradict axioms.
             return (0,)
 
     stretch = range(binding.first, binding.last + 1)

@@ -82,7 +82,7 @@ def _nearest(machine: MealyMonitor, near: Sequence[_Near]) -> list[int] | None:
         row = _totals(machine, state, distances, beyond[place + 1])
         least = min(row)
         best = [symbol for symbol, total in enumerate(row) if total == least]
-        # Like the given word for as long as possible.
+        # Equal to the given word for as long as possible.
         symbol = min(best, key=distances.__getitem__)
         letters.append(nearest[symbol])
         state = machine.successors[state][symbol]

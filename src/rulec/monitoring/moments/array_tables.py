@@ -86,7 +86,7 @@ def _constant(rows: ValueRows, there: Flags) -> ValueRows:
     values = np.where(any_stated, np.take_along_axis(rows.values, first, 1), rows.values)
     if rows.upper is rows.values:
         return ValueRows(values, values, rows.unknown & ~any_stated)
-    # Of several intervals what all of them have in common.
+    # The intersection of several intervals.
     low = np.where(is_stated, rows.values, -np.inf).max(axis=1, keepdims=True)
     high = np.where(is_stated, rows.upper, np.inf).min(axis=1, keepdims=True)
     low, high = np.broadcast_arrays(low, values)[0], np.broadcast_arrays(high, values)[0]

@@ -118,7 +118,7 @@ def _watched_rule(rule: CompiledRule, step_s: Fraction, place: SourceLocation | 
     if rule.trigger is None:
         return _Watched(rule, None, ReadyFormula(breach, place=place))
     trigger = in_steps(rule.trigger, step_s, math.floor)
-    # Both have the same columns where the last state goes on for ever.
+    # Both have the same columns if the last state is repeated for ever.
     settles = max(steps_to_settle(breach), steps_to_settle(trigger))
     return _Watched(
         rule, ReadyFormula(trigger, settles, place), ReadyFormula(breach, settles, place)
@@ -218,7 +218,7 @@ class _Tally:
         perhaps = np.maximum(np.maximum(breached[1], surely), 1)
         for level, taken in enumerate((surely, perhaps)):
             np.add.at(self._violated[level], trace, taken)
-            # What is violated was an opportunity, however little is known of its trigger.
+            # A violation implies an opportunity, however little is known of the trigger.
             lacks = np.maximum(taken - opportunities[level].per_row(len(trace)), 0)
             np.add.at(self._opportunities[level], trace, lacks)
 
@@ -233,7 +233,7 @@ class _Tally:
         """The sums of each trace."""
         least, most = self._opportunities
         states = (self._exposed & self._there).sum(axis=2)
-        # A stretch counts as one for sure only if it does at most.
+        # A certain opportunity must also be among the possible ones.
         counts = np.stack([least, np.maximum(least, most), *states, *self._violated], axis=1)
         for fewest, highest, sure, perhaps, *violated in counts.tolist():
             seconds = round(sure * step_s, 9), round(perhaps * step_s, 9)

@@ -210,7 +210,7 @@ def _columns_of(trace: Trace, vocabulary: Vocabulary) -> TraceColumns:
     try:
         return columnize(cells, vocabulary)
     except UnencodableError:
-        # Something is said of some states only: of others it is unknown. Or numbers are no floats.
+        # Some states lack a value, which is unknown there, or numbers are no floats.
         plain = replace(trace, states=tuple([_spelled(s, trace, vocabulary) for s in trace.states]))
         return columnize(group_traces([plain]).cells, vocabulary)
 

@@ -143,7 +143,7 @@ class TraceTruth:
         first, last = self.stretch_of(own)
         states, end = np.arange(self.tables.n_states), last
         if self._ends == "goes on":
-            # The last state is repeated until nothing changes any more.
+            # The last state is repeated until nothing changes.
             states, end = np.arange(len(states) + ready.settles), last + ready.settles
             states = np.minimum(states, last[:1] if (last == last[0]).all() else last[:, None])
         bound = dict(zip(own.variables, own.items.T, strict=True))

@@ -173,7 +173,7 @@ def _since_known(
     if span.high is not None:
         result &= latest >= state - span.high
     if goes_on and span.low and (span.high is None or span.low <= span.high):
-        # Beyond the first state all are like it.
+        # States before the first one count as equal to it.
         like_first = (right & (state == first)).any(axis=1, keepdims=True)
         result = result | (like_first & unbroken & (state - span.low < first))
     return result, unbroken

@@ -126,7 +126,7 @@ class BoundRules:
 
         Raises RulecError as ``read`` does, and R0718 if there are too many.
         """
-        # numpy, a tenth of a second, is loaded only where there are many choices.
+        # Loads NumPy, 100 ms: only if there are many choices.
         from rulec.monitoring.uncertainty.lazy_bindings import doubtful_bindings, known_bits
 
         name, rulebook = f"state {number}", self._rulebook
@@ -198,7 +198,7 @@ class BoundRules:
     def _partial_state(
         self, state: State, where: tuple[str, SourceLocation | None]
     ) -> PartialStateReader:
-        # numpy, a tenth of a second, is loaded only where something is unknown.
+        # Loads NumPy, 100 ms: only if something is unknown.
         from rulec.monitoring.online.partial_states import PartialStateReader
         from rulec.monitoring.uncertainty.state_letters.possible_letters import bound_letters
 
@@ -272,7 +272,7 @@ class BoundRules:
         if not has_holes:
             return letters
         if self._of_all is None:
-            # numpy, as above
+            # Loads NumPy, as above
             from rulec.monitoring.online.partial_states import rules_of_all
 
             self._of_all = rules_of_all(self._rulebook, self.objects)

@@ -100,7 +100,7 @@ def edges_between(
 
 def four_valued(machine: MealyMonitor, state: int, accepted: bool) -> FourValued:
     """The four-valued verdict (RV-LTL) on a word that leads to a state."""
-    # A finite word may be accepted if it ends here, though no longer one is: `weak next false`.
+    # A word that ends here may be accepted although no longer word is: `weak next false`.
     if accepted:
         return "satisfied" if state == machine.accepting_sink else "holds so far"
     return "violated" if state == machine.rejecting_sink else "pending"

@@ -44,7 +44,7 @@ class GroupLetters:
         self.shape = shape
         self._readers = [_GroupReader(group, bindings, shape) for group, bindings in groups]
         read = set[tuple[str, Items]]().union(*[reader.read for reader in self._readers])
-        # Whatever is read is looked at when a letter is made of it for the first time.
+        # Values are checked when they first become part of a letter.
         self._unread = list[tuple[int, slice, frozenset[object]]]()
         for (name, items), (part, place) in shape.places.items():
             declaration = shape.vocabulary.declarations[name]
@@ -155,7 +155,7 @@ class _GroupReader:
         self._world: list[tuple[MonitorInput, int, int]] = []
         self._own: list[MonitorInput] = []
         self._columns: list[_ReadColumn] = []
-        # The parts that are columns as they are; None for columns made of a state first.
+        # The parts that are used as columns directly; None for columns built from a state.
         whole: list[int | None] = []
         for read in (*group.world, *group.own):
             about = [tuple([binding[place] for place in read.places]) for binding in bindings]

@@ -93,7 +93,7 @@ class LetterWalk:
         self._class_of = class_of
         # The last read is the diagram's first level.
         self._order = range(len(reads) + len(others) - 1, -1, -1)
-        # Behind this level no cube has a digit.
+        # After this level no cube has a digit.
         self._n_begun = len(self._order) - min(others, default=len(self._order))
         self._cubes_at = cubes_at
         self._nodes: dict[Hashable, _Node] = {}
@@ -115,7 +115,7 @@ class LetterWalk:
             for digit in reversed(digits):
                 node = node[digit]
         except WholeStateError:
-            # No other digit is wrong.
+            # Any other digit is valid.
             for place, digit in zip(sorted(self._reads), digits, strict=True):
                 self._reads[place].masks[digit]
             raise
@@ -159,7 +159,7 @@ class LetterWalk:
             )
             level += 1
         if level >= self._n_begun:
-            # The digits that are still to come are the same behind all cubes.
+            # The remaining digits are the same for all cubes.
             whole = 0
             for here in sets:
                 whole |= here

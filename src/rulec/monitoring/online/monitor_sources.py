@@ -73,7 +73,7 @@ def read_saved(path: Path) -> Any:
 def saved_from(data: bytes, name: str) -> Any:
     """The content of a saved monitor's file with this name. Raises RulecError R0510."""
     try:
-        # Unlike `json` it takes neither NaN nor half a character.
+        # Unlike `json` it accepts neither NaN nor half a surrogate pair.
         return msgspec.json.decode(data)
     except (ValueError, RecursionError):
         why = "it has been cut short" if is_beginning(data) else "it is not JSON"

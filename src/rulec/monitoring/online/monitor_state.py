@@ -62,7 +62,7 @@ class SoFar(msgspec.Struct, frozen=True, gc=False):
 
     __repr__ = short_repr
 
-    # A struct is made several times as quickly as a dataclass or a named tuple.
+    # Creating a struct is several times as fast as creating a dataclass or named tuple.
     state: int
     verdict: RunningVerdict
     rules: Mapping[str, RunningVerdict]
@@ -168,7 +168,7 @@ def take_step(current: MonitorState, bound_rules: BoundRules, letters: Letters) 
     doubted = current.doubted.union(
         [change.rule for change in changes if change.ended and change.verdict != "violated"]
     )
-    # A rule's verdict changes only if it does so for an object that stays, comes or leaves.
+    # A rule's verdict changes only if it changes for an object that stays, appears or leaves.
     unchanged = current.rules.keys() - {change.rule for change in changes}
     known = {rule: current.rules[rule] for rule in unchanged}
     lost = violated_rules, doubted
@@ -279,7 +279,7 @@ def _verdict_on(
     if prepared.name in violated:
         return "violated"
     verdict = conjunction({edge.verdict for edge in edges})
-    # What all that are present have satisfied for good another may still come and violate.
+    # Objects that appear later may still violate what all present ones have satisfied for good.
     if prepared.rule.variables and prepared.start.verdict != "satisfied":
         if verdict == "satisfied":
             verdict = "holds so far"

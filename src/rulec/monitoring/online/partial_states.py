@@ -95,7 +95,7 @@ class _RuleOfAll:
         self._entangled = entangled.subjects_of(objects) if entangled.numbers else []
         read = [x for own in self._alone for x in subjects_of_read(own.read, objects, everybody)]
         self._subjects: list[Subject] = list(dict.fromkeys([*self._entangled, *read]))
-        # Of most reads no more is looked at than one value.
+        # Most reads depend on a single value.
         self._places = [self._place_of(read) for read in self._alone]
         declarations = everybody.vocabulary.declarations
         self._asked = [(name, items, declarations[name]) for name, items in self._subjects]

@@ -70,7 +70,7 @@ class PreparedRule:
     @cached_property
     def uncertain(self) -> UncertainSteps:
         """The steps with unknown values."""
-        # numpy, a tenth of a second, is loaded only where something is unknown.
+        # Loads NumPy, 100 ms: only if something is unknown.
         from rulec.automata.outcome_machine import of_running_words
         from rulec.monitoring.online.uncertain_steps import UncertainSteps
 
@@ -79,7 +79,7 @@ class PreparedRule:
     @cached_property
     def idle(self) -> IdleLetters:
         """The letters that leave the monitor in its start state and its verdict unchanged."""
-        # numpy, as above
+        # Loads NumPy, as above
         from rulec.monitoring.uncertainty.idle_letters import IdleLetters
 
         steps = self.uncertain
@@ -139,7 +139,7 @@ class PreparedRule:
         if one is missing or invalid, or if the classes depend on the whole state.
         """
         if self._is_simple and not PARTIAL_DIGITS.isdisjoint(map(type, digits)):
-            # The usual case where something is not known
+            # The usual case with unknown values
             return self._walk.classes(digits)
         n_alone = len(self._weights)
         own, values = digits[:n_alone], digits[n_alone:]

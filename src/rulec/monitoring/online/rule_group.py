@@ -77,7 +77,7 @@ class GroupNode(dict[int, "GroupNode"]):
                 for edge, letter_class in zip(self.edges, classes, strict=True)
             ]
         except IndexError:
-            # Sets of classes are beyond all classes.
+            # Numbers beyond all classes stand for sets of classes.
             single, sets = self.group.sets_in(letter)
             edges = [
                 edge.successors[letter_class]
@@ -153,7 +153,7 @@ class RuleGroup:
 
         For the rules with ``inexact`` numbers the classes are overestimated.
         """
-        # What is exact has but numbers in its key, for the garbage collector's sake.
+        # Exact letters have only numbers in their keys, which the garbage collector need not track.
         key = (classes, frozenset(inexact)) if inexact else classes
         letter = self._letters.get(key)
         if letter is None:

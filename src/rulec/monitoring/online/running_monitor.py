@@ -94,7 +94,7 @@ class Monitor:
         self._cut = cut
         machines: Mapping[str, OutcomeMachine] | None = None
         if self._told is not None or cut:
-            # numpy, a tenth of a second, is loaded only where something is unknown.
+            # Loads NumPy, 100 ms: only if something is unknown.
             from rulec.monitoring.uncertainty.judged_rules import judged_rules
 
             judged = judged_rules(rulebook, self._told, cut=cut)
@@ -165,7 +165,7 @@ class Monitor:
         current, number, _, cache = self._now
         same_objects = objects == current.bound_rules.objects
         if same_objects is True:  # and no array of such answers
-            # A method that is looked up and called at once would be looked up in the class first.
+            # Calling through the instance would look up the method in the class first.
             key = cache.key
             try:
                 known = current.after.get(key(state))
@@ -191,7 +191,7 @@ class Monitor:
         number += 1
         bound_rules = current.bound_rules
         if same_objects is True:  # and no array of such answers
-            # They may be given in another order.
+            # The objects may be given in another order.
             objects = bound_rules.objects
         else:
             if not isinstance(objects, Mapping):
@@ -220,14 +220,14 @@ class Monitor:
         if same and known is not None:
             after = cache.remember(known, number, current, (after, changes))
         if after.n_violations > n_before:
-            # What an interrupted step has noted was none.
+            # Changes noted by an interrupted step are void.
             del self._violations[n_before:]
             self._violations += [
                 self._violation(change, None if change.ended else number)
                 for change in changes
                 if change.verdict == "violated"
             ]
-        # All at once: whatever interrupts this, the state has been taken or it has not.
+        # Assigned at once, so that an interrupt leaves the state either taken or not.
         self._now = after, number, changes, cache
         return SoFar(number, after.verdict, after.rules, changes, after.exact)
 

@@ -60,7 +60,7 @@ class TransitionCache:
                 return after
         shape, encoded = known
         if shape is not self._shape:
-            # One stranger changes nothing, two in a row do.
+            # A single state of another shape changes nothing, two in a row do.
             if self._shape is not None and self._last_stranger != number - 1:
                 self._last_stranger = number
                 return self._by_nodes.setdefault((after.nodes, after.inexact), after)

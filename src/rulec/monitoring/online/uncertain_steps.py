@@ -79,7 +79,7 @@ class UncertainSteps:
         self._n_steps += 1
         if self._n_steps > MOST_STEPS:
             self._n_steps = 0
-            # Monitors still have edges, but these are to keep nothing alive.
+            # Monitors may still hold edges, but these must not keep the cache alive.
             for known in self._edges.values():
                 known.successors.clear()
             self.rows.clear()
@@ -95,7 +95,7 @@ class UncertainSteps:
 
     def edge(self, states: Iterable[int], verdicts: Iterable[FourValued]) -> Edge:
         """The edges to any of these states, with verdicts from the worst to the best of these."""
-        # What was lost stays apart: who goes on from here may leave it out.
+        # Lost words are kept apart, so that a continuation may leave them out.
         lost = self._machine.lost.intersection(states := frozenset(states))
         members = self._machine.extremes(states - lost) | frozenset(sorted(lost)[:1])
         ranks = sorted(map(WORST_FIRST.index, verdicts))

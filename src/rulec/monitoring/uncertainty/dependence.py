@@ -69,7 +69,7 @@ class Dependence:
         every = frozenset(names)
         without = {name: self._decides(every - {name}, thoroughly=False) for name in names}
         surely = tuple([name for name in names if without[name] is False])
-        # If these decide, so do they with any others: none of which is needed.
+        # If these decide, they also decide with any others, so no other is needed.
         if len(surely) == len(names) or self.decides(frozenset(surely)):
             return surely
         needed = [
@@ -115,9 +115,9 @@ class Dependence:
         agree = self._agree if thoroughly else self._agree_by_few
         decides: bool | None = True
         for group in self._groups(names):
-            # Different words come to something else more often than one does
+            # Runs on different words differ in outcome more often than runs on the same word
             for word, other in sorted(product(group, repeat=2), key=lambda two: two[0] is two[1]):
-                # There is one run of a word all of whose reads are fixed
+                # A word whose reads are all fixed has only one run
                 if word is other and is_one and self._runs.are_settled(word, set(fixed)):
                     continue
                 agrees = agree(word, other, fixed, starts)
@@ -162,7 +162,7 @@ class Dependence:
             choices, look = runs.choices(*letters, fixed), 0
             for place in range(length):
                 if place == look:
-                    # To look is worth while now and then
+                    # Checking pays off only now and then
                     look = 2 * look + 1 if most is None else look + 1
                     at = begin + place
                     undecided = runs.undecided(pairs, first_prospects[at], second_prospects[at])

@@ -58,7 +58,7 @@ def doubtful_bindings(
         yield from cast.bindings(rule)
         return
     names = [variable.name for variable in rule.variables]
-    # All at first: to judge many and refuse the rest would be for nothing.
+    # Check all choices first: judging many and refusing the rest would be wasted work.
     every = list(search.choices())
     for chosen in _in_order(iter(every), begun, cast):
         binding = binding_of(dict(zip(names, chosen, strict=True)), cast.present, cast.n_states)

@@ -23,9 +23,9 @@ class Prospects:
     """
 
     def __init__(self, machine: OutcomeMachine) -> None:
-        # By classes of letters, of which one is looked at after the other.
+        # By classes of letters, one after the other.
         self._successors = list(zip(*machine.successors, strict=True))
-        # Few states have numbers of one byte, whose outcomes are looked up all at once.
+        # If there are few states, their numbers fit in bytes and are translated all at once.
         self._are_few = len(machine.successors) <= BYTES
         self._small = [bytes(targets) for targets in self._successors] if self._are_few else []
         self._outcomes = [
@@ -56,7 +56,7 @@ class Prospects:
                 if known is None:
                     known = self._before[key] = self._number(here, classes)
                 if known == here:
-                    # The same again, however often.
+                    # The table repeats itself from here on.
                     backward += [self._tables[here]] * (length - done)
                     break
                 here = known

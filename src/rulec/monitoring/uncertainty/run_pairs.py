@@ -126,7 +126,7 @@ class RunPairs:
     def choices(self, first: int, second: int, fixed: tuple[int, ...]) -> int:
         """The number of the possible pairs of two letters with equal digits of fixed reads."""
         if first == second:
-            # Reads with one digit divide nothing.
+            # Reads with one digit distinguish nothing.
             fixed = tuple([n for n in fixed if n in self._open[first]])
         key = first, second, fixed
         number = self._choices.get(key)
@@ -257,7 +257,7 @@ def _undecided(pairs: Pairs, first: bytes, second: bytes) -> Pairs | None:
     undecided = []
     for state, others in pairs:
         own, left = first[state], 0
-        # A lower bit is a better outcome.
+        # A lower bit means a better outcome.
         most = 2 * (own & -own)
         for other in bits_of(others):
             theirs = second[other]

@@ -79,7 +79,7 @@ class ConstantsReader:
             values = _values_of(self._vocabulary.declarations[subject[0]], bounds, formulas)
             if values:
                 options[subject] = values
-            # Facts of which nothing is unknown once this is supposed are not held against it.
+            # Axioms that become fully known by these values are not checked here.
             is_exact = is_exact and bool(values) and subject[0] not in self._in_facts
         if prod(map(len, options.values())) > MOST_ALTERNATIVES:
             return [{}], False

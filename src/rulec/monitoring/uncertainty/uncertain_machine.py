@@ -190,7 +190,7 @@ class UncertainMachine:
         depends_on = tuple([name for name in on if name])
         cases = () if before else tuple(self._outcomes(depends_on, alternatives, unknown))
         if len({case.outcome for case in cases}) == 1:
-            # It matters when they change: no value that they always have says how it comes out.
+            # It matters when they change, so no constant value determines the outcome.
             cases = ()
         return OpenReasons((*not_told, *before, *pending), depends_on, cases, smallest is not None)
 

@@ -109,7 +109,7 @@ class RequiredNames:
         """
         machine = self._machine
         letters = self._classes_in_the_dark(untold)
-        # If they do from the least states, they do from all.
+        # If they do from the least states, they do from all states.
         start = machine.least(sum(1 << state for state in machine.starts))
         if self._is_lost_by_runs(start, letters):
             return True

@@ -111,7 +111,7 @@ def _digits_of_sum(
             away = total - limit
             digits += away > 0
             unclear |= ~(np.abs(away) > error + abs(limit) * _UNIT)
-    # The same few numbers are at a limit again and again
+    # The same few numbers are often at a limit
     known: dict[tuple[float, ...], int] = {}
     for state in (unclear & ~ignored).nonzero()[0].tolist():
         own = _numbers_in(summands, state)

@@ -137,7 +137,7 @@ class _Columnizer:
             if filler is None:
                 if self._are_there_in_any(items, values):
                     raise UnencodableError
-                # Where an object is not there, nothing reads what would be said of it.
+                # Values about an absent object are never read.
                 filler = next(value for value in values if value is not _NOT_GIVEN)
             values = [filler if value is _NOT_GIVEN else value for value in values]
         cells, key = self._traces.cells, (declaration.name, items)

@@ -23,7 +23,7 @@ def columnize_lines(
     layout = layout_of(lines.lengths[order])
     rank = np.empty(len(order), dtype=np.int64)
     rank[order] = np.arange(len(order))
-    # From one trace after the other to one step after the other.
+    # Reorder from trace by trace to step by step.
     step = np.arange(layout.n_states) - (lines.lengths.cumsum() - lines.lengths).repeat(
         lines.lengths
     )

@@ -42,7 +42,7 @@ def steps_of(layout: Layout, first: int, last: int | None) -> list[Step]:
     """The steps from first to last (inclusive), or to each trace's end."""
     starts = layout.starts.tolist()
     steps = range(first, layout.n_steps if last is None else last + 1)
-    # No trace goes on after the last of these steps.
+    # No trace continues after the last of these steps.
     traces = [*(starts[step + 1] - starts[step] for step in steps), 0]
     return [
         Step(n_traces, n_continuing, slice(starts[step], starts[step] + n_traces))
@@ -75,7 +75,7 @@ def run_multi_step(
         for step in block[1:]:
             entry *= np.uint16(n_letters)
             entry += letters[step.part]
-        # A run has been in one state only before its first step.
+        # Only before its first step is a run certainly in one state.
         begins = n_states if place else 1
         if state is not None:
             entry += state
@@ -89,7 +89,7 @@ def run_multi_step(
     return result
 
 
-# Many traces come some thousand at a time, and the same machines run over them each time.
+# Traces arrive some thousands at a time, and the same machines run over each chunk.
 
 
 @lru_cache(maxsize=64)

@@ -56,7 +56,7 @@ def run(
         return _run_long(joint, cells, layout, first, last)
     steps = steps_of(layout, first, last)
     if is_cheaper(n_states, n_cells, layout.n_traces):
-        # The letters of the cells are worked into the tables.
+        # The letters of cells are built into the tables.
         return run_multi_step(*_by_cells(joint), cells, steps)
     if n_states * n_cells <= _BYTE and cells.dtype == np.uint8:
         return _run_bytes(joint, joint.letters, cells, steps)
@@ -151,7 +151,7 @@ def visited(successors: Sequence[Sequence[int]], letters: Array) -> NDArray[np.i
     rows = np.ascontiguousarray(word.reshape(n_pieces, length).T)
     width = len(successors[0])
     onward = np.array(successors, dtype=np.intp).ravel() * width
-    # One line for each state that pieces may begin in.
+    # One line for each possible start state of a piece.
     state = np.repeat(np.arange(n_states) * width, n_pieces).reshape(n_states, n_pieces)
     for row in rows:
         state = onward.take(state + row)
@@ -180,7 +180,7 @@ def first_lost_of_one(machine: MealyMonitor, letters: Array) -> int:
     """The index of the letter at which a word is lost; -1 if it is not."""
     if machine.rejecting_sink is None:
         return -1
-    # A finite word may be accepted if it ends here, though no longer one is: `weak next false`.
+    # A word that ends here may be accepted although no longer word is: `weak next false`.
     outputs = np.array(machine.outputs, dtype=bool)
     lost = (np.array(machine.successors) == machine.rejecting_sink) & ~outputs
     places = np.flatnonzero(lost[visited(machine.successors, letters), letters])
@@ -199,7 +199,7 @@ def first_lost(
         return np.full(len(lengths), -1, dtype=np.int64)
     width = len(machine.successors[0])
     successors = np.array(machine.successors, dtype=np.intp).ravel() * width
-    # A finite word may be accepted if it ends here, though no longer one is: `weak next false`.
+    # A word that ends here may be accepted although no longer word is: `weak next false`.
     lost = (successors == machine.rejecting_sink * width) & ~np.array(
         machine.outputs, dtype=bool
     ).ravel()
@@ -208,7 +208,7 @@ def first_lost(
     kept = np.zeros(len(lengths), dtype=np.int64)
     for cells in by_step:
         entry = state[: len(cells)] + classes.take(cells)
-        # Once lost, always lost: so many steps are kept as come before.
+        # Once lost, always lost: the number of kept steps is the index of the first lost one.
         kept[: len(cells)] += ~lost.take(entry)
         state = successors.take(entry)
     return np.where(kept < lengths, kept, -1)

@@ -96,7 +96,7 @@ class CrowdedStates:
         alike = self._alike(states)
         if alike is None:
             return None
-        # Much of what is supposed is of what these reads do not read
+        # Most supposed values are not read by these reads
         own = tuple([supposed.get((name, ())) for name in self._world])
         if own not in self._numbers:
             often = alike.often[alike.firsts]

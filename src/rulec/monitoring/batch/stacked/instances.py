@@ -56,7 +56,7 @@ class NumbersAt(Sequence[Numbers]):
     def part(self, spots: Spots, at: Places) -> NumbersAt:
         """The numbers at some of the spots, given by their places ``at``."""
         part = NumbersAt(self._rule, self._reader, spots)
-        # What is computed of several values need not be so again
+        # Numbers computed from several values are not recomputed
         part._known |= {
             place: own.take(at) if isinstance(own, np.ndarray) and own.ndim else own
             for place, own in self._known.items()
@@ -131,10 +131,10 @@ def doubtful_instances(rule: StackedRule, reader: StackReader) -> Instances:
     """
     stack = reader.stack
     for kind in rule.types:
-        # Of most rules about people, cycles or buses nobody is there
+        # For most rules about people, cycles or buses there is no such object
         if not stack.has_type(kind):
             return _NO_INSTANCES
-    # To count takes longest, and is seldom needed to see that nothing happens
+    # Counting is slow, and rarely needed to see that there is no effect
     if rule.counts_everywhere:
         uncounted = [
             read.unknown if read.count or read.variables else reader.numbers(read, None)

@@ -73,7 +73,7 @@ class MetValues:
 
     @property
     def _anywhere(self) -> Algebra[Truth]:
-        # Not kept: in a circle with these values it would keep all columns after their verdicts.
+        # Not stored: a reference cycle would keep all columns alive after their verdicts.
         return replace(KLEENE_COLUMNS, proposition=self._truth, identity=lambda _: _TRUE)
 
     def _truth(self, part: ltl.Proposition) -> Truth:
@@ -109,7 +109,7 @@ class MetValues:
     def _known_signals(self) -> Iterator[tuple[list[str], list[StackColumn]]]:
         """The names and columns of fully known signals, in groups as large as possible."""
         columns = self._stack.columns
-        # Only quantities are numbers that are no whole ones
+        # Only quantities can be non-integers
         kinds = {
             name: (len(column.values), column.values.dtype.kind)
             for name, column in columns.items()

@@ -125,7 +125,7 @@ class StackReader:
         known, signals = self._digits, self.met_values.signals
         for read in reads:
             if read.digits_key not in known:
-                # Most reads are of signals of which all values are known
+                # Most reads are of fully known signals
                 met = signals.get(read.names[0], 0) if read.ready is None else 0
                 known[read.digits_key] = (
                     read.of_met.get(met) or self._digits_met(read) or read.every

@@ -80,7 +80,7 @@ def outcomes(
         is_odd = np.logical_or.reduceat(words.odd, words.bounds[:-1])
         alternatives = [stretches(letters, words.bounds) for letters in words.letters]
         first_alike = _first_alike(words.letters, words.bounds)
-        # What is odd has a word of its own
+        # An odd choice has a word of its own
         by_itself = is_odd | is_odd[first_alike]
         first_alike = np.where(by_itself, np.arange(len(is_odd)), first_alike)
         answers: dict[int, Answer | None] = dict.fromkeys(is_odd.nonzero()[0].tolist())
@@ -106,7 +106,7 @@ def _few(words: StackedWords) -> StackedOutcomes:
         answer: Answer | None = None
         if not any_odd or not words.odd[begin:end].any():
             of_words = [words.rule.answer_to(own[begin:end]) for own in words.letters]
-            # What facts exclude is odd
+            # Letters that axioms exclude make a word odd
             answer = _joined([own for own in of_words if own is not None])
             if answer.worst == KEPT:
                 continue
@@ -275,7 +275,7 @@ def _are_surely_kept(
     n_words = len(bounds) - 1
     if n_words < FEW_WORDS:
         words = [rule.answer_to(letters[i:j]) for i, j in pairwise(bounds.tolist())]
-        # What cannot be, because facts exclude it, is never kept
+        # Letters that axioms exclude are never kept
         return np.array([word is not None and word.worst == KEPT for word in words])
     kept = np.zeros(n_words, dtype=bool)
     first_alike = _first_alike([letters], bounds)

@@ -238,7 +238,7 @@ class StackedRule:
         if len(begins) <= FEW_WORDS:
             words = zip(every.tolist(), last.tolist(), strict=True)
             return np.array([self._keep(*word) for word in words], dtype=bool)
-        # Words are mostly kept, and so are all of whose letters any word is
+        # Most words are kept, and a word is certainly kept if every word of its letters is
         if self._keep(*(int(np.bitwise_or.reduce(classes)) for classes in (every, last))):
             return np.ones(len(begins), dtype=bool)
         examples, which = different_pairs(every, last)
@@ -392,6 +392,6 @@ def _is_simple_read(read: StackedRead, rule: StackedRule) -> bool:
 
 def _counts_no_stranger(count: ltl.Count, variable: str) -> bool:
     """Whether nothing counts except the object that the variable stands for."""
-    # No name of a variable has a blank.
+    # Names of variables contain no space.
     binding = {variable: variable, count.variable: "a stranger"}
     return holds(count.body, binding, NOBODY) is False

@@ -104,14 +104,14 @@ def _check_objects(traces: Sequence[TraceArrays], vocabulary: Vocabulary) -> Non
 
 
 def _by_states(traces: Sequence[TraceArrays], rulebook: CompiledRulebook) -> list[Answer]:
-    # The engines for states, which few recordings need, take long to load.
+    # The engines for states load slowly, and few recordings need them.
     from rulec.monitoring.batch.batch_verify import verify_chunk
 
     return list(verify_chunk([trace.trace() for trace in traces], rulebook))
 
 
 def _by_its_states(trace: TraceArrays, rulebook: CompiledRulebook) -> Answer:
-    # As above: only where something is odd.
+    # As above: only for irregular traces.
     from rulec.monitoring.verify import verify_or_reason
 
     return verify_or_reason(trace.trace(), rulebook)

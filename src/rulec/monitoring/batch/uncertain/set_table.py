@@ -117,7 +117,7 @@ def set_table(monitor: SetMonitor, sets: Sequence[int]) -> SetTable | None:
         verdicts.append(
             [POSSIBLE * (step.best != VIOLATED) | CERTAIN * (step.worst == KEPT) for step in steps]
         )
-    # Sets with the same effects are one letter.
+    # Letter sets with the same effects form one letter.
     effects = list(zip(*successors, *verdicts, strict=True))
     places: dict[tuple[int, ...], int] = {}
     letter_of = [places.setdefault(effect, len(places)) for effect in effects]

@@ -257,7 +257,7 @@ class _Engine:
                 entangled_states |= columns.unknown[subject]
             if subject in columns.upper:
                 entangled_states |= columns.upper[subject] != columns.values[subject]
-            # What is supposed is not in the numbers of what counts.
+            # Supposed values are not included in the numbers of counts.
             where = rows.where_supposed(subject)
             if where is not None:
                 supposed |= where[1] >= 0

@@ -74,9 +74,9 @@ def breakpoints_of(rulebook: CompiledRulebook) -> Breakpoints:
                     all_matter.update(threshold_scale.names)
                 else:
                     floors[threshold_scale.quantity.name].update(threshold_scale.floors)
-    # Facts may tell other numbers apart than rules do.
+    # Axioms may distinguish other numbers than rules do.
     all_matter.update(name for axiom in rulebook.axioms for name in names_in(axiom.formula))
-    # Beyond, whole numbers and floats are no longer told apart by the same floors.
+    # Beyond this, the same floors no longer work for both integers and floats.
     most = float(EXACT_IN_FLOATS)
     return {
         name: None
@@ -104,7 +104,7 @@ def encoded_default(declaration: Declaration, breakpoints: Breakpoints) -> Any:
 
 
 def _encode_truths(values: tuple[Any, ...]) -> Encoded:
-    # As keys 1 and true are the same; as values of a signal they are not.
+    # As keys, 1 and True are equal; as values of a signal they are not.
     for value in values:
         if value is not True and value is not False:
             return _encode_some_truths(values)
@@ -123,7 +123,7 @@ def _with_unknown_digits(values: Iterable[Any]) -> Encoded:
 
 
 def _encode_numbers(values: tuple[Any, ...]) -> Encoded:
-    # Whole numbers and floats of this size that are equal have the same decimals. nan has no size.
+    # Equal integers and floats of this size have the same decimals; NaN compares as False.
     encode: Encoder = tuple
     for value in values:
         if type(value) in UNKNOWN_TYPES:
@@ -144,7 +144,7 @@ def _encode_digits(floors: Sequence[float], values: tuple[Any, ...]) -> Encoded:
             value if type(value) in UNKNOWN_TYPES else bisect_right(floors, value)
             for value in values
         )
-    # nan is above all floors.
+    # NaN sorts above all floors.
     if 0 in digits or len(floors) in digits or not types.issuperset(map(type, values)):
         raise LookupError
     return digits
@@ -181,7 +181,7 @@ class MonitorInput:
         if self.name is None or self.number is None or type(encoded) is Interval:
             return encoded
         floors = breakpoints[self.name]
-        # A number has reached just these of its own floors that the highest one of all has reached.
+        # The floors that a number reaches are those up to the highest common floor that it reaches.
         reached = encoded if floors is None else floors[encoded - 1]
         return bisect_right(self._floors, reached)
 
@@ -200,7 +200,7 @@ def _input(
     number: NumberRead | None = None,
     variables: tuple[str, ...] = (),
 ) -> MonitorInput:
-    # Inputs are looked up all the time, and hashing a sum takes long.
+    # Inputs are looked up very often, and hashing a sum is slow.
     floors = () if number is None else scale(number).floors
     return MonitorInput(name, places, number, variables, floors)
 

@@ -71,7 +71,7 @@ class StateShape:
         self.key: StateKey = self.encode
         self.key_of: Callable[[tuple[Encoded, ...]], Hashable] = lambda encoded: encoded
         if len(self._parts) == 1:
-            # In one go, because there may be nothing else to do.
+            # All at once, because often nothing else has to be done.
             self.key_of = lambda encoded: encoded[0]
             self.key = _key_of_one_part(self._parts[0], self._n_names)
             (declaration, *_) = declarations
@@ -183,7 +183,7 @@ def _of_objects(
             return encode_all(given)
         some = dict(zip(given, encode(tuple(given.values())), strict=True))
         values = tuple([some.pop(item, default) for item in items])
-        # What is left is about something else.
+        # The remaining values are about other names.
         if some:
             raise LookupError
         return values

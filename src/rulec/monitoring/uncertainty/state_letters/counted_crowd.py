@@ -102,7 +102,7 @@ def crowd_of(
         if len(strangers) > 1:
             return None
         for item in strangers:
-            # In one order for all, whatever their names.
+            # In one order for all objects, independent of their names.
             own[item].append((name, tuple("" if x == item else x for x in items), place))
         if not strangers:
             others.append(place)
@@ -193,7 +193,7 @@ class CountsApart:
             for place, value in zip(self._world, chosen, strict=True):
                 supposed[place] = value
             with suppress(LookupError):
-                # What is supposed has to keep the facts.
+                # Supposed values have to satisfy the axioms.
                 strict = len(ways) > 1
                 parts = [part.digits_of(supposed, strict) for part in self._parts]
                 joint |= self._joint(tuple(parts))

@@ -121,7 +121,7 @@ class EntangledReads:
         for n in self.numbers:
             if _is_coarse(reads[n]):
                 self.shared |= about[n]
-        # Facts about several objects tell how many of these may count.
+        # Axioms about several objects restrict how many of them may count.
         self._crowd = None
         if not is_local and all(map(is_of_one, axioms)):
             bound = frozenset(binding.values())
@@ -162,7 +162,7 @@ class EntangledReads:
         key: tuple[object, ...] = values
         if there is not None:
             if self._counts is not None and len(there) == len(self._everybody.objects):
-                # What is missing, and what contradicts facts, is found below.
+                # Missing values and contradictions of axioms are found below.
                 with suppress(LookupError):
                     return self._place((self._counts.letters(values), True))
             key = values, *there
@@ -199,7 +199,7 @@ class EntangledReads:
         self, values: Sequence[PartialValue | None], there: Mapping[str, str]
     ) -> tuple[Letters, bool]:
         if self._apart is not None:
-            # What is missing first is found below.
+            # The first missing value is found below.
             with suppress(MissingValueError):
                 return self._apart.letters(self._apart.key(values))
         given = with_values({}, dict(zip(self.subjects, values, strict=True)))
@@ -293,10 +293,10 @@ def _is_local(read: Read | NumberRead, rule: CompiledRule, vocabulary: Vocabular
     variables = {variable.name: variable.type for variable in rule.variables}
     for kind in variables.values():
         both = ({kind, count.type} <= set(vocabulary.ancestors(own)) for own in vocabulary.types)
-        # Else it is the type of the object that decides whether it counts.
+        # Otherwise the object's type decides whether it counts.
         if not vocabulary.is_subtype(kind, count.type) and any(both):
             return False
-    # No name of a variable has a blank.
+    # Names of variables contain no space.
     strangers = {f"some {kind}": kind for kind in vocabulary.types}
     everybody = NothingKnown({**variables, **strangers}, vocabulary)
     binding = {name: name for name in variables}

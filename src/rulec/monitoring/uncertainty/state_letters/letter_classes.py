@@ -126,7 +126,7 @@ class RuleLetters:
         self.entangled = entangled
         own = range(len(self.reads))
         self.independent = tuple([n for n in own if n not in entangled.numbers])
-        # Which place a read has among the others, and then the entangled ones.
+        # The place of each read among the independent ones, then those of the entangled ones.
         self._order = sorted(own, key=(*self.independent, *entangled.numbers).__getitem__)
         self._classes = classes
         self._known: dict[tuple[int, ...], int] = {}

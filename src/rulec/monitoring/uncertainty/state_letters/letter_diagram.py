@@ -31,7 +31,7 @@ class LetterDiagram:
         self._children: list[list[tuple[int, ...]]] = []
         sizes = [read.size for read in machine.reads]
         few = next((n for n in range(len(sizes)) if prod(sizes[:n]) >= _BLOCK), len(sizes))
-        # Large tables say the same again and again: parts of them are gone into once.
+        # Large tables repeat themselves, so equal parts are processed once.
         letters, width = machine.letters, prod(sizes[:few])
         blocks = [letters[start : start + width] for start in range(0, len(letters), width)]
         distinct, places = _distinct(blocks)
@@ -42,7 +42,7 @@ class LetterDiagram:
         for size in sizes[few:]:
             below = self._add_level(below, size)
         if self._children:
-            # One more than the class: 0 is for what facts exclude.
+            # One more than the class; 0 stands for letters that axioms exclude.
             self._children[0] = [tuple([letter + 1 for letter in row]) for row in self._children[0]]
         self.start = 1 << (below[0] if self._children else below[0] + 1)
         self._steps: dict[tuple[int, int, int], int] = {}
@@ -137,7 +137,7 @@ def _distinct_rows(numbers: Sequence[int], width: int) -> tuple[list[tuple[int, 
 
 def _distinct(rows: Iterable[tuple[int, ...]]) -> tuple[list[tuple[int, ...]], list[int]]:
     """The distinct rows, and the place of each row among them."""
-    # A row that is not there yet gets the next number; without a line of Python for each.
+    # A new row gets the next number, without executing Python code per row.
     places: defaultdict[tuple[int, ...], int] = defaultdict(count().__next__)
     place_of_row = list(map(places.__getitem__, rows))
     return list(places), place_of_row

@@ -40,13 +40,13 @@ class LetterSets:
         self._diagram = diagram
         self._meanings = meanings
         self._widths = [len(row) for row in meanings]
-        # Places of sets of nodes behind each read, and before all.
+        # The numbers of node sets before the first read and after each read.
         self._places: list[dict[int, int]] = [{} for _ in range(len(meanings))]
         self._places.append({diagram.start: 0})
         self._sets: list[int] = []
         self._several = [np.array([mask & (mask - 1) != 0 for mask in row]) for row in meanings]
         self._tables = [np.full((0, len(row)), -1, dtype=np.intp) for row in meanings]
-        # By the numbers of reads that have one only, the numbers of letters of all the others'
+        # Numbers of letters for all combinations, by the numbers of the reads that have only one
         self._together: dict[tuple[int | None, ...], NDArray[np.intp]] = {}
         self._kept = 0
 
@@ -96,7 +96,7 @@ class LetterSets:
                 varying.append((read, own))
                 given[read] = None
             else:
-                # One number for all letters may be in an array without an axis, too
+                # A single number for all letters may also be an array without axes
                 numbers[read] = given[read] = own.item()
         if width > MOST_CODES or width > max(_FEW_CODES, n_letters):
             return self._one_by_one(numbers)
@@ -162,7 +162,7 @@ class LetterSets:
         unmet = np.asarray(result) < 0
         if not unmet.any():
             return result
-        # The entries may be very many, and the table is small.
+        # There may be very many entries, while the table is small.
         is_missing = np.zeros(table.size, dtype=bool)
         is_missing[np.asarray(entry)[unmet]] = True
         missing = is_missing.nonzero()[0]

@@ -62,7 +62,7 @@ def bound_letters(
     if key not in scenes:
         if len(scenes) >= MOST_SCENES:
             scenes.clear()
-        # Which one it is holds as long as it is there
+        # An object keeps its constants for as long as it is present
         scenes[key] = vocabulary, {}
     return scenes[key][1]
 
@@ -262,7 +262,7 @@ class PossibleLetters:
         rows = zip(*columns, strict=True) if columns else [()] * len(numbers)
         places: list[int] = []
         try:
-            # One after the other, so that it is known in which state a value is missing.
+            # One after the other, so that the state with a missing value is known.
             if reads.is_local:
                 places.extend(map(reads.number, rows))
             else:

@@ -179,7 +179,7 @@ def read_digits(read: Read | NumberRead) -> ReadDigits:
         sum_ = _Sum(tuple([float(factor) for factor, _ in read.terms]), limits)
     match read.terms:
         case ((1, ltl.Count(variable, _, body) as counted),):
-            # Both would be looked up by the whole formula in each state.
+            # A lookup by the whole formula in each state would be slow.
             count = _Count(counted, alias_of(variable, body), evaluator_of(body))
     return ReadDigits(
         read,
@@ -207,7 +207,7 @@ def possible_digits(read: Read | NumberRead, value: PartialValue | Fraction | No
         known = scale(read)
         return _digits_between(known.digit(value.low), known.digit(value.high))
     if isinstance(value, Fraction):
-        # What is supposed of a number may be no float.
+        # A supposed number may not be a float.
         assert isinstance(read, NumberRead)
         return 1 << read.digit(value)
     return 1 << (read if isinstance(read, Read) else scale(read)).digit(value)

@@ -174,7 +174,7 @@ class _PartTable:
 
     def _possible(self, values: Sequence[PartialValue | None]) -> _PossibleDigits:
         if self._read_ways is not None:
-            # What is missing, and what contradicts facts, is found below.
+            # Missing values and contradictions of axioms are found below.
             with suppress(LookupError):
                 joint = self._read_ways.digits_of(values)
                 known = next(iter(joint)) if len(joint) == 1 and self._are_known(values) else None
@@ -285,7 +285,7 @@ class ReadsApart:
         if None not in sure:
             return (self._cube([own for own in sure if own is not None]),), True
         letters = [self._cube(chosen) for chosen in product(*[own.joint for own in parts])]
-        # One bit each, so that they are in the order of their digits.
+        # Each cube has one bit per read, so sorting gives the order of digits.
         return tuple(sorted(letters)), all(own.exact for own in parts)
 
     def _cube(self, digits: Sequence[Digits]) -> tuple[int, ...]:
@@ -308,7 +308,7 @@ class ReadsApart:
             (axiom, own) for axiom in axioms for _, _, own in instances_of(axiom, everybody)
         ]
         apart = joined_sets([*of_reads, *[own for _, own in of_facts]])
-        # Reads that depend on nothing are one more.
+        # Reads that depend on nothing form one more part.
         for own in [*apart, frozenset[Subject]()]:
             members = tuple([n for n, about in enumerate(of_reads) if about & own or about == own])
             if not members:

@@ -55,7 +55,7 @@ class CompletionSearch:
         values: Mapping[Subject, Sequence[Value]],
         points: Sequence[Mapping[Subject, Value | Fraction]],
     ) -> None:
-        # To look them up is to hash whole formulas
+        # A lookup would hash whole formulas
         self._links = [
             (link, None if link.formula is None else evaluator_of(link.formula)) for link in links
         ]
@@ -107,7 +107,7 @@ class CompletionSearch:
         subject = truth.name, truth.objects
         if subject in link.subjects and subject not in supposed:
             return subject
-        # Another one may show that the value that is missing is not needed
+        # Another link may show that the missing value is not needed
         other = self._unsupposed(link, supposed)
         if other is None and link.read is not None:
             raise MissingValueError(*subject)

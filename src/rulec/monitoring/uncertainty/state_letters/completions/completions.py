@@ -149,7 +149,7 @@ def _clusters(
 ) -> Iterator[_Cluster]:
     """The links in groups that share no subjects, with the axioms about these."""
     clusters = _joined_links([*links, *_links_of_axioms(axioms, view)])
-    # Axioms about what no read depends on decide nothing.
+    # Axioms on which no read depends are irrelevant.
     return (cluster for cluster in clusters if any(x.read is not None for x in cluster.links))
 
 

@@ -47,7 +47,7 @@ def points_of_cells(
         faces = [
             ((*sides, side), part) for sides, face in faces for side, part in _parts(face, beyond)
         ]
-        # A cell has some faces on the rectangle's edges besides its own.
+        # A cell may also have faces on the rectangle's edges.
         if len(faces) > 8 * most:
             return None
     cells = dict(faces)  # the last face of each
