@@ -1,6 +1,6 @@
-"""Concrete syntax: parsing text to a syntax tree, and printing formulas.
+"""Concrete syntax: parses text into a syntax tree, and prints formulas.
 
-The way through stands in the README beside this file.
+The README beside this file describes the steps.
 """
 
 from rulec.syntax.parser import parse, parse_formula, parse_head

@@ -1,4 +1,4 @@
-"""Assembly of parsed parts, with checks of their number and order."""
+"""Assembles parsed parts, checking their number and order."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from rulec.syntax.keywords import CLAUSE_WORDS, ITEM_WORDS
 from rulec.syntax.messages import structure
 
 ClausePart = tuple[str, Clause | None, Span]
-"""A clause's word, what it says (None if that could not be read), and the word's place."""
+"""A clause's keyword, its content (None if it could not be read), and the keyword's place."""
 
 _PLAIN = ("require", "cite", "says", "when", "source")
-"""Clauses that are the rule's field of that name."""
+"""Clauses that become the rule's field of that name."""
 
 _CONFIRMING = ("cite", "says", "source", "certainty", "topic")
 """Clauses that a confirmation may have."""
 
 Part = tree.HeaderLine | tree.Item
-"""What stands at the top level of a file."""
+"""The parts at the top level of a file."""
 
 
 def assemble_rule(
@@ -74,7 +74,7 @@ def assemble_rule(
 
 
 def assemble_file(source: Source, parts: Sequence[Part]) -> tuple[tree.File, list[Diagnostic]]:
-    """The file of its header lines and items."""
+    """Assemble the file from its header lines and items."""
     mistakes: list[Diagnostic] = []
     first = parts[0]
     file_line = first if isinstance(first, tree.FileLine) else None
@@ -119,7 +119,7 @@ _ONCE: Final = {
 
 
 def _may_use(item: tree.BrokenItem) -> bool:
-    """Tell whether unreadable text may have been ``use`` or ``extends``."""
+    """Whether unreadable text may have been ``use`` or ``extends``."""
     if item.word in ITEM_WORDS:
         return item.word in ("use", "extends")
     near = nearest_name(item.word, ITEM_WORDS | CLAUSE_WORDS)

@@ -1,4 +1,4 @@
-"""Pieces of a file that are parsed separately, as token ranges."""
+"""The pieces of a file that are parsed separately, as ranges of tokens."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ PieceKind = Literal["item", "rule_head", "clause", "example_head", "state", "for
 class Piece:
     """Tokens ``first`` to ``last`` (exclusive).
 
-    A ``reported`` piece is damaged by a mistake that has been reported, and is not parsed.
-    ``then`` is to be reported if the piece itself is in order.
+    A ``reported`` piece contains a mistake that has been reported, and is not parsed. ``then`` is
+    reported if the piece itself is correct.
     """
 
     kind: PieceKind
@@ -28,7 +28,7 @@ class Piece:
 
 @dataclass(frozen=True, slots=True)
 class ExamplePieces:
-    """An example: its head, its states; ``last`` is the token behind it."""
+    """An example: its head and its states; ``last`` is the token after it."""
 
     head: Piece
     states: tuple[Piece, ...]
@@ -37,7 +37,7 @@ class ExamplePieces:
 
 @dataclass(frozen=True, slots=True)
 class RulePieces:
-    """Pieces of a rule; ``last`` is the token behind it."""
+    """The pieces of a rule; ``last`` is the token after it."""
 
     head: Piece
     body: tuple[Piece | ExamplePieces, ...]
@@ -48,7 +48,7 @@ class RulePieces:
 def span_of(source: Source, tokens: list[Token], part: Piece | ExamplePieces | RulePieces) -> Span:
     """The span from a part's first token to its last.
 
-    The span of an empty part is empty and lies behind the token before.
+    The span of an empty part is empty and lies after the previous token.
     """
     first = part.head.first if isinstance(part, ExamplePieces) else part.first
     if first >= part.last:

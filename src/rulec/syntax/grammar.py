@@ -1,4 +1,4 @@
-"""The grammar at work; the only file that knows Lark."""
+"""Runs the grammar; the only file that depends on Lark."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def parse_piece(start: Start, text: str, begin: int, end: int) -> ParseNode | Mi
 
 @cache
 def _lark() -> Lark:
-    """The parser from its tables, made anew if these are stale."""
+    """The parser from its tables, which are rebuilt if they are stale."""
     grammar = grammar_file("rulec.lark").read_text(encoding="utf-8")
     try:
         text = grammar_file("rulec.tables.json").read_text(encoding="utf-8")
@@ -71,7 +71,7 @@ def tables_of(grammar: str) -> str:
 
 
 def accepted_after(start: Start, text: str) -> frozenset[str]:
-    """The terminals that can follow a piece's beginning; none if it cannot be read."""
+    """The terminals that may follow the beginning of a piece; none if it cannot be read."""
     try:
         return _accepted(start, text)
     except UnexpectedInput:
@@ -85,10 +85,10 @@ def _position(error: UnexpectedInput, end: int) -> int:
 
 
 def _accepted(start: Start, good: str) -> frozenset[str]:
-    """The terminals that could follow the part that can be read.
+    """The terminals that could follow the readable part.
 
-    It is read anew: what the error itself knows was found after the parser had made up its mind,
-    seeing the wrong token, and leaves out much of what could have come.
+    It is parsed again, because Lark's error lists only terminals found after the parser had acted
+    on the wrong token, and omits many that could have followed.
     """
     state = _lark().parse_interactive(good, start=start)
     state.exhaust_lexer()
@@ -98,7 +98,7 @@ def _accepted(start: Start, good: str) -> frozenset[str]:
 def _neutral(tree: Tree[Token], begin: int) -> ParseNode | TooDeep:
     """Convert Lark's tree to parse nodes, from the leaves up.
 
-    There is no recursion because a hostile tree may be very deep.
+    This is not recursive, because a hostile tree may be very deep.
     """
     done: list[ParseNode | ParseLeaf] = []
     todo: list[tuple[Tree[Token] | Token, int, bool]] = [(tree, 0, False)]

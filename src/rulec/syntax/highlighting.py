@@ -1,4 +1,4 @@
-"""Highlighting: the words of the language by kind, for every editor."""
+"""The keywords of the language by kind, for syntax highlighting in every editor."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _UNIT: Final = r"[^\W\d]\w*(?:\^-?\d+)?(?:/[^\W\d]\w*(?:\^-?\d+)?)*"
 NUMBER_WITH_UNIT: Final = (
     rf"({NUMBER})([^\S\n]*)([%°]|(?!(?:{'|'.join(sorted(keywords.RESERVED - {'step'}))})\b){_UNIT})"
 )
-"""A number and the unit behind it on the same line: groups 1 and 3."""
+"""A number and the unit after it on the same line: groups 1 and 3."""
 RULE_NAME: Final = r"\b(rule)(\s+)([^\W\d]\w*)"
 DEFINED_NAME: Final = r"\b(define|redefine)(\s+)([^\W\d]\w*)"
 SCOPES: Final = r"\bat\s+(?:start|some\s+point|end)\b"
@@ -33,7 +33,7 @@ SETTINGS: Final = (
     r"\b(?:(?<=traffic )(?:left|right)|(?<=semantics )(?:stutter|finite)|(?<== )(?:on|off)"
     r"|(?<=certainty )(?:verified|secondary|unverified))\b"
 )
-"""Words that are words in their place only, with one blank before them as the formatter has it."""
+"""Words that are keywords only in their place, preceded by one blank as the formatter writes it."""
 
 
 def any_of(words: tuple[str, ...]) -> str:

@@ -1,4 +1,4 @@
-"""Boundaries of items and clauses, found by a few nearby tokens."""
+"""Finds the boundaries of items and clauses from a few nearby tokens."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _PAIRS = (
     *(("force", ("from",)), ("silent", ("on",)), ("traffic", ("left", "right"))),
     *(("at", ("start", "end")), ("some", ("point",))),
 )
-"""A word, and those that it goes on with although each might be a name."""
+"""Keywords, with the words that continue them although each might be a name."""
 
 _TEXTS = ("string", "quoted", "unterminated")
 
@@ -38,15 +38,15 @@ class Landmarks:
         return token.text if token is not None and token.kind == kind else ""
 
     def is_symbol(self, index: int, text: str) -> bool:
-        """Tell whether a token is this symbol, outside of quotes."""
+        """Whether a token is this symbol, outside of quotes."""
         return self._text(index, "symbol") == text
 
     def is_word(self, index: int, *texts: str) -> bool:
-        """Tell whether a token is one of these words."""
+        """Whether a token is one of these words."""
         return self._text(index, "word") in texts
 
     def is_name(self, index: int) -> bool:
-        """Tell whether a token is a word that may be a name."""
+        """Whether a token is a word that may be a name."""
         word = self._text(index, "word")
         return word != "" and word not in keywords.RESERVED
 
@@ -54,7 +54,7 @@ class Landmarks:
         return self._text(index, "number") != ""
 
     def wants_more(self, index: int) -> bool:
-        """Tell whether the text must go on behind a token."""
+        """Whether the text must continue after a token."""
         if index < 0:
             return False
         token = self.tokens[index]
@@ -63,13 +63,17 @@ class Landmarks:
         return token.kind == "symbol" and token.text in _OPEN_SYMBOLS
 
     def begins_rule(self, index: int) -> bool:
-        """``hard``, ``soft``, ``override``, ``confirm``, ``rule``, or one misspelt before that."""
+        """Whether a rule begins here.
+
+        It does with ``hard``, ``soft``, ``override``, ``confirm``, ``rule``, or a misspelt word
+        before ``rule``.
+        """
         if self.is_word(index, *keywords.RULE_WORDS, *keywords.CHANGE_WORDS, "rule"):
             return True
         return self.is_name(index) and self.is_word(index + 1, "rule")
 
     def begins_item(self, index: int) -> bool:
-        """Tell whether an item begins at a token outside of braces."""
+        """Whether an item begins at a token outside of braces."""
         token = self.tokens[index]
         if token.kind != "word":
             return False
@@ -87,7 +91,7 @@ class Landmarks:
         )
 
     def _is_part_of_item(self, index: int) -> bool:
-        """An item's word that stands inside another item."""
+        """Whether an item's keyword is inside another item."""
         token = self.tokens[index]
         if token.text == "rule":
             return not token.first or self._heads_a_rule(index - 1)
@@ -102,7 +106,7 @@ class Landmarks:
         return False
 
     def goes_on(self, index: int) -> bool:
-        """Tell whether a possible name continues the line before."""
+        """Whether a possible name continues the line before."""
         if self.is_word(index, "weight"):
             return self._is_number(index + 1)
         if self.is_word(index, "at"):
@@ -113,7 +117,7 @@ class Landmarks:
         ) or (self.is_word(index - 1, "on") and self.is_word(index - 2, "silent"))
 
     def _is_glued(self, index: int) -> bool:
-        """Tell whether two names follow where only one can stand."""
+        """Whether two names follow where only one can be."""
         glued = self.is_name(index + 1) and not self.tokens[index + 1].first
         glued = glued and not self.is_word(index + 1, "weight")
         if not glued or not self._in_formula(index - 1):
@@ -125,10 +129,10 @@ class Landmarks:
         return token.text in _FORMULA_SIGNS or self.is_word(index, *keywords.OPERATOR_WORDS)
 
     def begins_item_inside(self, index: int) -> bool:
-        """Tell whether an item begins here although braces are still open.
+        """Whether an item begins here although braces are still open.
 
-        That takes more evidence: a line of its own behind something complete or before a name, or
-        ``hard rule``.
+        That takes more evidence: its own line after something complete or before a name, or ``hard
+        rule``.
         """
         token = self.tokens[index]
         if token.kind != "word":
@@ -150,14 +154,14 @@ class Landmarks:
         return self.is_word(index, *words)
 
     def begins_misspelt(self, index: int) -> bool:
-        """Tell whether a misspelt keyword begins a line here."""
+        """Whether a misspelt keyword begins a line here."""
         if index + 1 >= len(self.tokens) or not self.tokens[index].first:
             return False
         text = self.tokens[index + 1].kind in _TEXTS
         return self.is_name(index) and (text or self.is_symbol(index + 1, "{"))
 
     def begins_clause(self, index: int) -> bool:
-        """Tell whether a clause begins at a token."""
+        """Whether a clause begins at a token."""
         token = self.tokens[index]
         if token.kind != "word" or token.text not in keywords.CLAUSE_WORDS:
             return self._begins_in_force(index)
@@ -168,7 +172,7 @@ class Landmarks:
         return self.is_symbol(index - 1, "{") and not self._stands_alone(index)
 
     def _begins_in_force(self, index: int) -> bool:
-        """``in force``, which is no level of the name ``force``."""
+        """Whether this is ``in force`` and not a level named ``force``."""
         if not (self.is_word(index, "in") and self.is_word(index + 1, "force")):
             return False
         if self.is_symbol(index + 2, "{") or self.is_word(index + 2, "weight"):
@@ -181,7 +185,7 @@ class Landmarks:
         )
 
     def _begins_enumeration(self, index: int, *behind_is: str) -> bool:
-        """``name is`` or ``name(…) is``, and what is asked for behind that."""
+        """Whether this is ``name is`` or ``name(…) is``, followed by one of some words."""
         if not self.is_name(index):
             return False
         behind = index + 1

@@ -20,7 +20,7 @@ LISTING_WORDS: Final = ("topics", "provisions")
 
 RULE_WORDS: Final = ("hard", "soft")
 CHANGE_WORDS: Final = ("override", "confirm")
-"""The first words of rules that are laid over inherited ones."""
+"""The first words of rules that change inherited ones."""
 ITEM_WORDS: Final = frozenset(
     (
         *HEADER_WORDS,
@@ -38,7 +38,7 @@ CLAUSE_WORDS: Final = frozenset(
         *("require", "also", "unless", "when", "topic", "accept", "reject"),
     )
 )
-"""The first words of a rule's clauses, but for ``in force``, which begins with ``in``."""
+"""The first words of a rule's clauses, except ``in force``, which begins with ``in``."""
 
 CONTEXTUAL: Final = frozenset(
     (
@@ -46,7 +46,7 @@ CONTEXTUAL: Final = frozenset(
         *("weight", "force", "from", "at"),
     )
 )
-"""Words in their place only; elsewhere they may be names."""
+"""Words that are keywords only in their place; elsewhere they may be names."""
 
 OPERATOR_WORDS: Final = frozenset(
     (
@@ -68,7 +68,7 @@ RESERVED: Final = (
     | frozenset(("some", "every", "count", "if", "else"))
     | frozenset(("initially", "throughout", "because"))
 )
-"""What cannot be a name."""
+"""Words that cannot be names."""
 
 SYMBOLS: Final = {
     "not": "!",
@@ -93,7 +93,7 @@ SYMBOLS: Final = {
     "weak previously": "weak previously",
     "since": "S",
 }
-"""Operator in words -> in symbols; those that have no symbol keep their words."""
+"""Operators as words -> as symbols; those without a symbol keep their words."""
 
 UNARY_OPERATORS: Final = (
     *("not", "always", "never", "eventually", "next", "weak next"),
@@ -104,17 +104,17 @@ OF_ONE_STATE: Final = frozenset(("not", "and", "or", "implies", "iff", "xor"))
 """The operators that are not temporal."""
 
 BINDS_NARROWLY: Final = frozenset(("always", "never", "eventually"))
-"""The operators that are often taken to speak of all that follows them."""
+"""The operators that readers often take to apply to everything that follows."""
 
 JOINS_ALIKE: Final = frozenset(("and", "or", "xor"))
-"""The operators between parts that may each have an operator of time: `always p and never q`."""
+"""The operators between parts that may each have a temporal operator: `always p and never q`."""
 
 _LOOSEST_FIRST: Final = ("iff", "implies", "then", "xor", "or", "and")
 PRECEDENCE: Final = {
     **{word: level for level, word in enumerate(_LOOSEST_FIRST, 1)},
     **dict.fromkeys(("until", "release", "weak until", "strong release", "since"), 7),
 }
-"""Binary operator -> how tightly it binds; every unary operator binds tighter."""
+"""Binary operators -> their precedence; every unary operator binds tighter."""
 
 UNARY_PRECEDENCE: Final = 8
 COMPARISON_PRECEDENCE: Final = 9
@@ -124,7 +124,7 @@ MINUS_PRECEDENCE: Final = 12
 RIGHT_ASSOCIATIVE: Final = frozenset(
     ("implies", "then", "until", "release", "weak until", "strong release", "since")
 )
-"""The others associate to the left, which for them makes no difference to the meaning."""
+"""The others associate to the left, which makes no difference to their meaning."""
 
 
 def token_kind(words: str) -> str:

@@ -1,4 +1,4 @@
-"""What the grammar finds in a piece: nodes and tokens, or where it cannot go on."""
+"""The result of the grammar for a piece: nodes and tokens, or where it cannot continue."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Literal
 Start = Literal["item", "rule_head", "clause", "example_head", "state", "formula"]
 
 MAX_DEPTH = 200
-"""Operators and parentheses inside one another: far above any law, far below Python's stack."""
+"""The deepest nesting of operators and parentheses: far above any law, far below Python's stack."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,7 @@ class ParseNode:
 
 @dataclass(frozen=True, slots=True)
 class Mismatch:
-    """Syntax error at ``position``; ``accepted`` names the possible tokens."""
+    """A syntax error at ``position``; ``accepted`` names the possible tokens."""
 
     position: int
     accepted: frozenset[str]
@@ -51,9 +51,9 @@ class Mismatch:
 
 @dataclass(frozen=True, slots=True)
 class TooDeep:
-    """Formula nested too deeply at ``position``.
+    """A formula is nested too deeply at ``position``.
 
-    The part there stands inside more than ``MAX_DEPTH`` others.
+    The part there is inside more than ``MAX_DEPTH`` others.
     """
 
     position: int

@@ -1,4 +1,4 @@
-"""A source in, its tree and all its mistakes out."""
+"""Parses a source into its tree and all its mistakes."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ from rulec.syntax.scanner import Token, checked, scan
 from rulec.syntax.split_file import FileSplitter
 
 MAX_PIECE = 10_000
-"""Tokens in one piece; keeps what one formula can cost in time and memory small."""
+"""The most tokens in one piece, which limits the time and memory that a formula can take."""
 
 MOST_EXAMPLE_STATES = 10_000
-"""States of one example, which are read and judged whenever its rulebook is compiled."""
+"""The most states of one example, which are judged whenever its rulebook is compiled."""
 
 _BEHIND_NAME = ("is", "in", "default", "(", "=", ":")
 _NAMING_PROVISIONS = ("option", "param", "define")
@@ -40,8 +40,8 @@ _Built = TypeVar("_Built")
 def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
     """Parse a file; return its syntax tree and all mistakes in order.
 
-    What cannot be read is left out of the tree and leaves a mark there (``BrokenItem``,
-    ``complete``), so that later stages need not complain about it a second time.
+    Unreadable parts are left out of the tree and marked there (``BrokenItem``, ``complete``), so
+    that later stages do not report them again.
     """
     try:
         own = checked(source)
@@ -69,9 +69,9 @@ def parse(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
 
 
 def parse_head(source: Source) -> tree.File:
-    """The tree of a file's header lines, which stand before its rules and declarations.
+    """The tree of a file's header lines, which come before its rules and declarations.
 
-    Raises RulecError: the file is no text.
+    Raises RulecError if the file is not a text.
     """
     tokens = scan(checked(source))
     reader = PieceReader(source, tokens)
@@ -87,7 +87,7 @@ def parse_head(source: Source) -> tree.File:
 def parse_formula(text: str, name: str = "<formula>") -> tree.Formula:
     """The tree of one formula.
 
-    Raises RulecError: it is not a formula.
+    Raises RulecError if it is not a formula.
     """
     source = checked(Source(name, text))
     tokens = scan(source)
@@ -99,12 +99,12 @@ def parse_formula(text: str, name: str = "<formula>") -> tree.Formula:
 
 
 def by_place(diagnostic: Diagnostic) -> tuple[int, int]:
-    """A sort key: where something is wrong."""
+    """A sort key: the place of the mistake."""
     return (0, 0) if diagnostic.place is None else diagnostic.place.start
 
 
 def _messages() -> ModuleType:
-    """The messages about mismatches; a file without one starts faster without them."""
+    """The module of messages about mismatches, loaded on demand to speed up start-up."""
     from rulec.syntax.messages import mismatch  # 10 ms, only for mistakes
 
     return mismatch
@@ -112,7 +112,7 @@ def _messages() -> ModuleType:
 
 @dataclass(frozen=True, slots=True)
 class PieceReader:
-    """Parser of pieces; None stands for one with a reported mistake."""
+    """Parses pieces; returns None for a piece with a reported mistake."""
 
     source: Source
     tokens: list[Token]

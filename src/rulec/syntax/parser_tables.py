@@ -1,7 +1,7 @@
-"""Parser tables as a data file, so that no run generates them.
+"""Parser tables as a data file, so that they need not be generated at run time.
 
-What Lark serialises depends on the order in which Python happens to walk through sets; here states,
-tokens and rules are numbered anew, so that one grammar gives one file.
+Lark's serialisation depends on the order in which Python iterates over sets; here states, tokens
+and rules are renumbered, so that a grammar always gives the same file.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Serialized = dict[str, Any]
 
 
 def stamp(grammar: str, version: str) -> str:
-    """The origin of tables: a grammar's text, by a version of Lark."""
+    """The origin of tables: a grammar's text and the version of Lark."""
     return f"{version} {sha256(grammar.encode()).hexdigest()}"
 
 
@@ -66,7 +66,7 @@ def _lines(values: list[Any]) -> str:
 
 
 def _renumbered_memo(memo: Mapping[int, Any]) -> tuple[dict[int, int], list[Any]]:
-    """New numbers of rules and terminals, and these in new order."""
+    """The new numbers of rules and terminals, and these in their new order."""
     same = {old: _the_same_everywhere(value) for old, value in memo.items()}
     ranked = sorted(same.items(), key=lambda entry: json.dumps(entry[1], sort_keys=True))
     return {old: new for new, (old, _) in enumerate(ranked)}, [value for _, value in ranked]
@@ -84,7 +84,7 @@ def _refer(value: Any, numbers: Mapping[int, int]) -> Any:
 
 
 def _the_same_everywhere(value: Any) -> Any:
-    """A terminal or rule with an endless width equal across Pythons."""
+    """A terminal or rule with an unbounded width, made equal for all versions of Python."""
     pattern = value.get("pattern", {})
     if "_width" not in pattern:
         return value
@@ -93,7 +93,7 @@ def _the_same_everywhere(value: Any) -> Any:
 
 
 def _state_order(table: Mapping[str, Any]) -> dict[int, int]:
-    """New numbers of states by old ones, in order of a walk."""
+    """The new numbers of states by old ones, in the order of a traversal."""
     names = table["tokens"]
     order: dict[int, int] = {}
     todo = [state for _, state in sorted(table["start_states"].items(), reverse=True)]
@@ -114,9 +114,9 @@ def _row(
     order: Mapping[int, int],
     numbers: Mapping[int, int],
 ) -> list[Any]:
-    """Table row of a state: its shifts, then its reductions.
+    """The table row of a state: its shifts, then its reductions.
 
-    Token and next state in turn; then a rule and the tokens that it is reduced at.
+    Shifts are tokens and next states in turn; a reduction is a rule and its tokens.
     """
     shifts: list[tuple[int, int]] = []
     reductions: dict[int, list[int]] = {}

@@ -1,6 +1,6 @@
-"""From bytes to a text, and a coarse scanner that never fails, for finding pieces of it.
+"""Decodes bytes, and scans a text coarsely, without ever failing, to find its pieces.
 
-It knows strings, comments and line starts; the grammar decides what the tokens mean.
+It recognises strings, comments and line starts; the grammar decides what the tokens mean.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from rulec.files import MAX_SOURCE_BYTES, decoded, without_null
 from rulec.source_detection import beginning_of, is_foreign
 
 MAX_TOKENS = 1_000_000
-"""Far above what a file of the permitted size holds, far below what would exhaust memory."""
+"""The most tokens: far more than a file of the permitted size has, and still fit for memory."""
 
 # A text that runs on is taken for one if a quote ends the line that it ends on.
 _TOKEN = re.compile(
@@ -37,7 +37,8 @@ _TOKEN = re.compile(
 def decode(name: str, data: bytes) -> Source:
     """The text of a rulebook file; a byte order mark is dropped.
 
-    Raises RulecError: more than ``MAX_SOURCE_BYTES``, not UTF-8, or not a text at all.
+    Raises RulecError if it has more than ``MAX_SOURCE_BYTES``, is not UTF-8, or is not a text at
+    all.
     """
     _check_size(name, len(data))
     try:
@@ -50,9 +51,9 @@ def decode(name: str, data: bytes) -> Source:
 
 
 def checked(source: Source) -> Source:
-    """The source, if it can be a rulebook's text.
+    """The source, if it can be the text of a rulebook.
 
-    Raises RulecError: too large, or it holds a null character.
+    Raises RulecError if it is too large or contains a null character.
     """
     _check_size(source.name, len(source.text))
     return without_null(source)
@@ -68,7 +69,7 @@ def _check_size(name: str, size: int) -> None:
 
 
 class Token(NamedTuple):
-    """Characters ``start`` to ``end``; ``first`` tells the first token of a line."""
+    """Characters ``start`` to ``end``; ``first`` marks the first token of a line."""
 
     kind: str
     text: str
@@ -82,7 +83,7 @@ def scan(source: Source) -> list[Token]:
 
     ``kind`` is one of string, unterminated, quoted (in single quotes), word, number, symbol.
 
-    Raises RulecError: the text has more than ``MAX_TOKENS`` tokens.
+    Raises RulecError if the text has more than ``MAX_TOKENS`` tokens.
     """
     text = source.text
     tokens: list[Token] = []
@@ -109,10 +110,9 @@ def scan(source: Source) -> list[Token]:
 
 
 def _end_of_unterminated(text: str, start: int, end: int) -> int:
-    """The end of an unterminated text, before a brace that closes others.
+    """The end of an unterminated text, before a brace that closes an outer block.
 
-    The brace is left to the rest of the file, which needs it, so that one missing quote costs one
-    error.
+    The brace is left to the rest of the file, so that one missing quote causes one error.
     """
     line = text[start:end]
     surplus = line.count("{") - line.count("}")

@@ -1,7 +1,7 @@
-"""Cutting a file into header lines, declarations and rules.
+"""Splits a file into header lines, declarations and rules.
 
-Where braces are missing, the next item that begins on a line of its own says where they belong;
-such structural mistakes are reported here, one for each.
+Where braces are missing, the next item that begins on its own line shows where they belong; such
+structural mistakes are reported here, one for each.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from rulec.syntax.split_rule import RuleSplitter
 
 @dataclass(slots=True)
 class FileSplitter:
-    """Walks over the tokens once, in time proportional to their number."""
+    """Walks over the tokens once, in linear time."""
 
     source: Source
     tokens: list[Token]

@@ -1,4 +1,4 @@
-"""Splitting a rule into its head, clauses, and states of examples."""
+"""Splits a rule into its head, its clauses, and the states of its examples."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rulec.syntax.scanner import Token
 
 @dataclass(frozen=True, slots=True)
 class RuleSplitter:
-    """Adds structural mistakes to ``mistakes``."""
+    """Splits rules and adds structural mistakes to ``mistakes``."""
 
     tokens: list[Token]
     marks: Landmarks
@@ -85,10 +85,10 @@ class RuleSplitter:
         return index
 
     def _begins_anew(self, clause: int, index: int, *, inside: bool) -> bool:
-        """Tell whether a clause with a misspelt word begins here.
+        """Whether a clause with a misspelt keyword begins here.
 
-        It is a name on a line of its own where a formula cannot have one: behind something
-        complete, behind ``cite`` and ``says``, before a brace or a text.
+        The keyword is a name on its own line where a formula cannot have one: after something
+        complete, after ``cite`` and ``says``, before a brace or a text.
         """
         if self.tokens[index].first and self.marks.is_word(index, "in"):
             return True
@@ -131,7 +131,8 @@ class RuleSplitter:
     def _example_without_open(self, first: int, index: int) -> ExamplePieces:
         """Split an example whose opening brace is missing.
 
-        In ``accept b; l }`` the next ``}`` is the example's own unless the rule would lack one.
+        In ``accept b; l }`` the next ``}`` belongs to the example unless the rule would then lack
+        one.
         """
         label = self.tokens[first + 1] if first + 1 < len(self.tokens) else None
         if label is not None and label.kind == "unterminated" and "{" in label.text:

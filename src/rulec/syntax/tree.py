@@ -1,7 +1,7 @@
-"""The syntax tree: a file as written, every node with its span.
+"""The syntax tree: a file as written, with the span of every node.
 
 Nodes are equal when their structure is. Operators are spelled in words (``"weak until"``), whatever
-the file uses. Formulas and expressions are one kind of node: types are checked where names are
+the file uses. Formulas and expressions are the same kind of node: types are checked where names are
 resolved.
 """
 
@@ -13,19 +13,19 @@ from typing import Literal
 from rulec.diagnostics import Source, Span
 
 NOWHERE = Span(Source("", ""), 0, 0)
-"""The span of a node that was made by a program and not read from a file."""
+"""The span of a node that a program created, not read from a file."""
 
 
 @dataclass(frozen=True, slots=True)
 class _SyntaxNode:
-    """A part of a file; its ``span`` does not take part in comparison."""
+    """A part of a file; its ``span`` is ignored in comparisons."""
 
     span: Span = field(default=NOWHERE, kw_only=True, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
 class Grouping(_SyntaxNode):
-    """A node that may have parentheses around it, if ``grouped``: no part of the meaning."""
+    """A node with optional parentheses around it (``grouped``), which do not affect the meaning."""
 
     grouped: bool = field(default=False, kw_only=True, compare=False, repr=False)
 
@@ -39,16 +39,16 @@ class Name(_SyntaxNode):
 
 @dataclass(frozen=True, slots=True)
 class Text(_SyntaxNode):
-    """Text in double quotes; ``value`` has no quotes and no escapes."""
+    """A text in double quotes; ``value`` is without quotes and escapes."""
 
     value: str
 
 
 @dataclass(frozen=True, slots=True)
 class Parameter(_SyntaxNode):
-    """Parameter with its type: ``name: type``.
+    """A parameter with its type: ``name: type``.
 
-    In a declaration, not in a rule's head, the type may be left out.
+    In a declaration, but not in a rule's head, the type may be omitted.
     """
 
     name: Name
@@ -57,7 +57,7 @@ class Parameter(_SyntaxNode):
 
 @dataclass(frozen=True, slots=True)
 class AtomUse(_SyntaxNode):
-    """Use of a declared name, perhaps with arguments: ``name(arguments)``."""
+    """A use of a declared name, possibly with arguments: ``name(arguments)``."""
 
     name: Name
     arguments: tuple[Name, ...] = ()
@@ -72,7 +72,7 @@ class TruthLiteral(_SyntaxNode):
 
 @dataclass(frozen=True, slots=True)
 class NumberLiteral(_SyntaxNode):
-    """Unsigned number as written, with its unit or none: ``1.5 km/h``."""
+    """An unsigned number as written, with its unit, if any: ``1.5 km/h``."""
 
     text: str
     unit: str = ""
@@ -84,7 +84,7 @@ Amount = NumberLiteral | AtomUse
 
 @dataclass(frozen=True, slots=True)
 class BoundNode(_SyntaxNode):
-    """``[<= high]``, ``[>= low]``, ``[low .. high]``, or ``[low]``, which is ``exact``."""
+    """A bound: ``[<= high]``, ``[>= low]``, ``[low .. high]``, or ``[low]``, which is ``exact``."""
 
     low: Amount | None
     high: Amount | None
@@ -93,7 +93,7 @@ class BoundNode(_SyntaxNode):
 
 @dataclass(frozen=True, slots=True)
 class Prefix(Grouping):
-    """A unary operator before its operand."""
+    """A unary operator and its operand."""
 
     operator: str
     operand: Formula
@@ -103,7 +103,7 @@ class Prefix(Grouping):
 
 @dataclass(frozen=True, slots=True)
 class Infix(Grouping):
-    """A binary operator between its operands."""
+    """A binary operator and its operands."""
 
     operator: str
     left: Formula
@@ -114,7 +114,7 @@ class Infix(Grouping):
 
 @dataclass(frozen=True, slots=True)
 class Compare(Grouping):
-    """Comparison of two numbers: ``left < right``. ``relation`` is one of ``< <= = != >= >``."""
+    """A comparison of two numbers: ``left < right``. ``relation`` is one of ``< <= = != >= >``."""
 
     relation: Literal["<", "<=", "=", "!=", ">=", ">"]
     left: Formula
@@ -139,7 +139,7 @@ class Minus(Grouping):
 
 @dataclass(frozen=True, slots=True)
 class Conditional(Grouping):
-    """Conditional expression: ``value if condition else otherwise``."""
+    """A conditional expression: ``value if condition else otherwise``."""
 
     value: Formula
     condition: Formula
@@ -161,9 +161,9 @@ Formula = AtomUse | TruthLiteral | NumberLiteral | Operation | Aggregate
 
 @dataclass(frozen=True, slots=True)
 class StateLiteral(_SyntaxNode):
-    """Literal of an example's state: ``atom``, ``not atom``, or ``atom = value``.
+    """A literal of an example's state: ``atom``, ``not atom``, or ``atom = value``.
 
-    A ``value`` is a number, with ``Minus`` around it if it is negative.
+    A ``value`` is a number, inside ``Minus`` if it is negative.
     """
 
     atom: AtomUse
@@ -173,7 +173,7 @@ class StateLiteral(_SyntaxNode):
 
 @dataclass(frozen=True, slots=True)
 class ExampleState(_SyntaxNode):
-    """Literals of an example's state; none if all is by default."""
+    """The literals of an example's state; empty if everything has its default."""
 
     literals: tuple[StateLiteral, ...]
 
@@ -189,14 +189,17 @@ class ExampleItem(_SyntaxNode):
 
 
 Certainty = Literal["", "verified", "secondary", "unverified"]
-"""How sure something is: read in the law itself, read elsewhere, from memory; empty if unsaid."""
+"""How certain something is: read in the law itself, read elsewhere, or from memory.
+
+Empty if unstated.
+"""
 
 Scope = Literal["initially", "at start", "throughout", "at some point", "at end"]
 
 
 @dataclass(frozen=True, slots=True)
 class Unless(_SyntaxNode):
-    """``unless formula scope``; None where no scope is written.
+    """``unless formula scope``; the scope is None if none is written.
 
     ``also unless`` is added to the exceptions that an override inherits.
     """
@@ -208,10 +211,10 @@ class Unless(_SyntaxNode):
 
 @dataclass(frozen=True, slots=True)
 class RuleItem(_SyntaxNode):
-    """Rule, or an ``override`` with only the changed clauses.
+    """A rule, or an ``override`` with only the changed clauses.
 
-    ``confirm``: it is an override that says no more than whose law the rule is.
-    ``complete`` is false when a clause of it could not be read and is missing here.
+    ``confirm``: an override that only states whose law the rule is. ``complete`` is false if one of
+    its clauses could not be read and is missing here.
     """
 
     strength: Literal["hard", "soft"] | None
@@ -281,21 +284,21 @@ class QuantityItem(_SyntaxNode):
 
 @dataclass(frozen=True, slots=True)
 class FactItem(_SyntaxNode):
-    """``fact formula``: what always holds, for all objects that it speaks of."""
+    """``fact formula``: a condition that always holds, for all objects in it."""
 
     formula: Formula
 
 
 @dataclass(frozen=True, slots=True)
 class ConstantItem(_SyntaxNode):
-    """``constant names``: their values stay the same as long as a trace goes on."""
+    """``constant names``: their values do not change within a trace."""
 
     names: tuple[Name, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class PresumedItem(_SyntaxNode):
-    """``presumed names``: where no source tells them, their defaults hold."""
+    """``presumed names``: they have their defaults if no source provides them."""
 
     names: tuple[Name, ...]
 
@@ -309,7 +312,7 @@ Declaration = (
 class InForce(_SyntaxNode):
     """Dates in force: ``in force from DATE until DATE``.
 
-    ISO texts, empty where open. The last day counts.
+    They are ISO texts, empty if open. The last day is included.
     """
 
     since: str = ""
@@ -318,7 +321,7 @@ class InForce(_SyntaxNode):
 
 @dataclass(frozen=True, slots=True)
 class OptionItem(_SyntaxNode):
-    """Declaration of an option: ``option name = on``."""
+    """The declaration of an option: ``option name = on``."""
 
     name: Name
     value: bool
@@ -326,9 +329,9 @@ class OptionItem(_SyntaxNode):
 
 @dataclass(frozen=True, slots=True)
 class ParamItem(_SyntaxNode):
-    """Declaration of a parameter: ``param name : dimension = value``.
+    """The declaration of a parameter: ``param name : dimension = value``.
 
-    The dimension may be left out; ``in force …`` may follow.
+    The dimension may be omitted; ``in force …`` may follow.
     """
 
     name: Name
@@ -339,7 +342,7 @@ class ParamItem(_SyntaxNode):
 
 @dataclass(frozen=True, slots=True)
 class SetItem(_SyntaxNode):
-    """``set name = value``: of an inherited option (a bool) or parameter."""
+    """``set name = value``, for an inherited option (a bool) or parameter."""
 
     name: Name
     value: bool | Formula
@@ -348,7 +351,7 @@ class SetItem(_SyntaxNode):
 
 @dataclass(frozen=True, slots=True)
 class DefineItem(_SyntaxNode):
-    """Definition of a macro: ``define name(parameters) = body``.
+    """The definition of a macro: ``define name(parameters) = body``.
 
     A parameter without a type may be a relation.
 
@@ -392,7 +395,7 @@ Definition = OptionItem | ParamItem | SetItem | DefineItem | DropItem | SoftenIt
 
 @dataclass(frozen=True, slots=True)
 class TopicEntry(_SyntaxNode):
-    """``name "title" of rules``: rules of these names are about it, if they say nothing else."""
+    """``name "title" of rules``: the topic of these rules, unless they state another."""
 
     name: Name
     title: Text
@@ -401,18 +404,18 @@ class TopicEntry(_SyntaxNode):
 
 @dataclass(frozen=True, slots=True)
 class TopicsItem(_SyntaxNode):
-    """``topics { … }``: what rules can be about."""
+    """``topics { … }``: the topics that rules can have."""
 
     entries: tuple[TopicEntry, ...]
 
 
 Treatment = Literal["to do", "silent", "not machine-readable"]
-"""What is said of an article that no rule cites."""
+"""How an article that no rule cites is treated."""
 
 
 @dataclass(frozen=True, slots=True)
 class ArticleEntry(_SyntaxNode):
-    """``"number" "heading" silent because "…"``: an article, and why no rule comes from it."""
+    """``"number" "heading" silent because "…"``: an article, and why no rule is derived from it."""
 
     number: Text
     heading: Text
@@ -424,7 +427,7 @@ class ArticleEntry(_SyntaxNode):
 class ProvisionsItem(_SyntaxNode):
     """``provisions "link" as of DATE certainty WORD { … }``: the articles of a law on a day.
 
-    The date is ISO text, empty when not given, as is how sure the headings are.
+    The date is ISO text, empty if not given; so is the certainty of the headings.
     """
 
     link: Text
@@ -497,16 +500,16 @@ class SemanticsLine(HeaderLine):
 
 @dataclass(frozen=True, slots=True)
 class StepLine(HeaderLine):
-    """``step 0.5 s``: how far the states of examples are apart."""
+    """``step 0.5 s``: the time step of examples."""
 
     amount: NumberLiteral
 
 
 @dataclass(frozen=True, slots=True)
 class PriorityLine(HeaderLine):
-    """Order of priority levels: ``priority a > b = c``.
+    """The order of priority levels: ``priority a > b = c``.
 
-    ``relations[i]`` stands between levels i and i + 1.
+    ``relations[i]`` is between levels i and i + 1.
     """
 
     levels: tuple[Name, ...]
@@ -515,10 +518,10 @@ class PriorityLine(HeaderLine):
 
 @dataclass(frozen=True, slots=True)
 class BrokenItem(_SyntaxNode):
-    """Unreadable item; it may have declared any of ``names``.
+    """An unreadable item; it may have declared any of ``names``.
 
     ``word`` is its first word, ``"rule"`` for a rule whose head could not be read. A ``nameless``
-    one lacks the name that it declares.
+    item lacks the name that it declares.
     """
 
     names: frozenset[str]
@@ -531,7 +534,7 @@ Item = Declaration | Definition | Listing | RuleItem | BrokenItem
 
 @dataclass(frozen=True, slots=True)
 class File(_SyntaxNode):
-    """Syntax tree of a file; ``name`` is None if unreadable."""
+    """The syntax tree of a file; ``name`` is None if unreadable."""
 
     kind: Literal["rulebook", "vocabulary"]
     name: Name | None
@@ -540,7 +543,7 @@ class File(_SyntaxNode):
     uses: tuple[UseLine, ...] = ()
     items: tuple[Item, ...] = ()
     complete: bool = True
-    """False when a header line could not be read, or anything that might be one."""
+    """False if a header line, or anything that might be one, could not be read."""
     extends: ExtendsLine | None = None
     traffic: TrafficLine | None = None
     semantics: SemanticsLine | None = None

@@ -1,4 +1,4 @@
-"""Printing of formulas and clauses: reading them gives the same tree back."""
+"""Prints formulas and clauses such that reading them gives the same tree."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Literal
 from rulec.syntax import keywords, tree
 
 Style = Literal["words", "symbols", "written"]
-"""How operators are spelled: ``written`` is as in the file, parentheses included."""
+"""How operators are spelled; ``written`` means as in the file, including parentheses."""
 
 _INFINITE = 99
 
@@ -48,13 +48,13 @@ def print_formula(node: tree.Formula, style: Style = "words") -> str:
 
 
 def print_whole(node: tree.Formula, style: Style = "words") -> str:
-    """Text of a formula, with parentheses around a bare conditional."""
+    """The text of a formula, with parentheses around a bare conditional."""
     text = print_formula(node, style)
     return f"({text})" if isinstance(node, tree.Conditional) else text
 
 
 def _precedence(node: tree.Formula) -> int:
-    """The node's operator precedence; a larger number binds tighter."""
+    """The node's precedence; a larger number binds tighter."""
     match node:
         case tree.Conditional():
             return 0
@@ -73,7 +73,7 @@ def _precedence(node: tree.Formula) -> int:
 
 
 def _operand(node: tree.Formula, least: int, style: Style) -> str:
-    """Text in parentheses if it binds less tightly than ``least``, or the file has them there."""
+    """The text, in parentheses if it binds less tightly than ``least`` or has them in the file."""
     written = style == "written" and isinstance(node, tree.Grouping) and node.grouped
     text = print_formula(node, style)
     return f"({text})" if written or _precedence(node) < least else text

@@ -1,1 +1,1 @@
-"""Syntax tree nodes from parse nodes: one function per kind of piece."""
+"""Builds syntax tree nodes from parse nodes, with one function per kind of piece."""

@@ -1,4 +1,4 @@
-"""Names, texts and numbers, and the formulas made of them."""
+"""Builds names, texts and numbers, and formulas from them."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from rulec.syntax.parse_nodes import ParseLeaf, ParseNode
 
 @dataclass(frozen=True, slots=True)
 class NodeValues:
-    """Builder of one source's values; mistakes are added to ``mistakes``."""
+    """Builder of the values in one source; mistakes are added to ``mistakes``."""
 
     source: Source
     mistakes: list[Diagnostic] = field(default_factory=list)
 
     def span(self, node: ParseNode | ParseLeaf) -> Span:
-        """The characters of a node."""
+        """The span of a node."""
         return Span(self.source, node.start, node.end)
 
     def names(self, node: ParseNode, kind: str = "NAME") -> tuple[tree.Name, ...]:
@@ -30,11 +30,11 @@ class NodeValues:
         return tuple(tree.Name(leaf.text, span=self.span(leaf)) for leaf in node.leaves(kind))
 
     def text(self, node: ParseNode) -> tree.Text:
-        """The node's first text in quotes, its escapes and characters checked."""
+        """The node's first quoted text, with its escapes and characters checked."""
         return self._text(node.leaves("STRING")[0])
 
     def texts(self, node: ParseNode) -> tuple[tree.Text, ...]:
-        """All texts in quotes directly below a node."""
+        """All quoted texts directly below a node."""
         return tuple(map(self._text, node.leaves("STRING")))
 
     def _text(self, leaf: ParseLeaf) -> tree.Text:
@@ -55,14 +55,14 @@ class NodeValues:
         return tree.Text("".join(value), span=self.span(leaf))
 
     def date(self, leaf: ParseLeaf) -> str:
-        """ISO text of a date that exists."""
+        """The ISO text of an existing date."""
         wrong = why_not_a_day(leaf.text)
         if wrong:
             self.mistakes.append(literal_values.no_such_date(self.span(leaf), leaf.text, wrong))
         return "" if wrong else leaf.text
 
     def number(self, leaf: ParseLeaf) -> float:
-        """A finite number; 0 in place of one that is too large."""
+        """A finite number; 0 if it is too large."""
         number = float(leaf.text)
         if not math.isfinite(number):
             self.mistakes.append(literal_values.number_too_large(self.span(leaf)))

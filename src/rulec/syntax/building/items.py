@@ -164,7 +164,7 @@ def in_force(values: NodeValues, node: ParseNode) -> tree.InForce:
 
 
 def weight(values: NodeValues, node: ParseNode) -> tree.NumberLiteral | None:
-    """The number behind ``weight``, if there is one."""
+    """The number after ``weight``, if there is one."""
     for number in node.leaves("NUMBER"):
         values.number(number)
         return tree.NumberLiteral(number.text, span=values.span(number))
@@ -175,7 +175,7 @@ _SCOPES: dict[str, tree.Scope] = {token_kind(scope): scope for scope in get_args
 
 
 Clause = tree.Text | tree.Formula | tree.Unless | tree.InForce | tuple[tree.Name, ...] | str
-"""What a clause says; a text for ``certainty``, names for ``topic``."""
+"""The content of a clause; a text for ``certainty``, names for ``topic``."""
 
 
 def rule_head(values: NodeValues, node: ParseNode) -> tree.RuleItem:

@@ -1,1 +1,1 @@
-"""Trees of files that were read without a mistake, kept from one call to the next."""
+"""A cache of the trees of files that were read without mistakes, kept between calls."""

@@ -1,6 +1,6 @@
-"""Cache of syntax trees, by the text that they were read from; those of shipped texts ship, too.
+"""A cache of syntax trees by their text; those of shipped texts are shipped, too.
 
-Anything odd about a file of the cache, and the text is read anew.
+If anything is wrong with a cache file, the text is parsed again.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from rulec.syntax.caching.tree_codec import decoded, encoded
 from rulec.syntax.parser import parse
 
 MOST_TREES = 200
-"""So many are kept; those longest unused go first."""
+"""How many trees are kept; the longest unused ones are removed first."""
 
 SHIPPED = "tree"
 MAKERS = (
@@ -27,11 +27,11 @@ MAKERS = (
     *(f"syntax/{name}.py" for name in ("keywords", "parse_nodes", "parser", "parser_tables")),
     *(f"syntax/{name}.py" for name in ("scanner", "split_file", "split_rule", "tree")),
 )
-"""The kind of what ships, and the code that it comes from; all texts are in form."""
+"""The kind of the shipped cache, and the code on which it depends; all its texts are formatted."""
 
 
 def parsed(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
-    """What ``parse`` says of a text, from the cache if it is there, and kept there if not."""
+    """The result of ``parse`` for a text, from the cache if possible; otherwise it is added."""
     if not knows_shipped():
         return parse(source)
     known = _recalled(shipped(SHIPPED, MAKERS).recall(shipped_key(source.text)), source)
@@ -52,12 +52,12 @@ def parsed(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
 
 
 def ships_in_form(text: str) -> bool:
-    """Tell whether a text is one that ships, and so is in form."""
+    """Whether a text is a shipped one, and therefore formatted."""
     return knows_shipped() and shipped_key(text) in shipped(SHIPPED, MAKERS).keys
 
 
 def as_bytes(file: tree.File, source: Source) -> bytes:
-    """A tree as it is kept. Raises TypeError, ValueError or RecursionError if it cannot be."""
+    """A tree as it is stored. Raises TypeError, ValueError or RecursionError if it cannot be."""
     return json.dumps(encoded(file, source), separators=(",", ":")).encode()
 
 

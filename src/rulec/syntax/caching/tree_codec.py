@@ -1,8 +1,8 @@
-"""Syntax trees as lists of numbers, texts and lists, and back.
+"""Encodes syntax trees as lists of numbers, texts and lists, and decodes them.
 
-A node is the number of its kind, its span's start and end, then its other fields in order. A tuple
-is ``_TUPLE`` and its items, a further span ``_SPAN``, start and end. A span that belongs to no file
-has -1 for both.
+A node is the number of its kind, the start and end of its span, then its other fields in order. A
+tuple is ``_TUPLE`` and its items, a further span ``_SPAN``, start and end. A span that belongs to
+no file has -1 for both.
 """
 
 from __future__ import annotations
@@ -28,7 +28,10 @@ _PLAIN = (str, int, float, type(None))
 
 
 def encoded(file: tree.File, source: Source) -> list[Any]:
-    """A file's tree as data. Raises TypeError for what no tree without mistakes has in it."""
+    """A file's tree as data.
+
+    Raises TypeError for a node that occurs only in trees with mistakes.
+    """
 
     def place(span: Span) -> tuple[int, int]:
         if span.source is source:
@@ -56,9 +59,9 @@ def encoded(file: tree.File, source: Source) -> list[Any]:
 
 
 def decoded(data: Any, source: Source) -> tree.File:
-    """The tree that ``encoded`` wrote, of the same text.
+    """The tree that ``encoded`` wrote for the same text.
 
-    Raises TypeError, ValueError or LookupError for what it did not write.
+    Raises TypeError, ValueError or LookupError for other data.
     """
 
     def span_of(start: int, end: int) -> Span:

@@ -1,11 +1,11 @@
-"""A file in its one canonical form, with its comments.
+"""Formats a file into its canonical form, keeping its comments.
 
     text -> scanner, comments: tokens and what stands between them
-         -> split_file, grammar: what the parser sees, piece by piece
-         -> parentheses, spelling, pieces: documents, which know where lines may end
-         -> document: lines -> columns, arrangement: one below the other
+         -> split_file, grammar: parse nodes, piece by piece
+         -> parentheses, spelling, pieces: documents with possible line breaks
+         -> document: lines -> columns, arrangement: the whole file
 
-Nothing is given out before ``safety`` has compared it with what it was made from.
+The result is returned only after ``safety`` has compared it with the original.
 """
 
 from rulec.syntax.formatting.safe_format import FormattingError, format_source

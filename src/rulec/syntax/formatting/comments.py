@@ -1,4 +1,4 @@
-"""Comments of a file and their places, which the tree lacks."""
+"""The comments of a file and their places, which the tree lacks."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ _COMMENT = re.compile(r"#[^\n]*")
 
 @dataclass(frozen=True, slots=True)
 class Comment:
-    """Comment from its ``#`` at ``start``, without trailing blanks.
+    """A comment from its ``#`` at ``start``, without trailing blanks.
 
-    ``trails``: something else stands before it on its line. ``column`` counts from 0.
+    ``trails``: something else comes before it on its line. ``column`` counts from 0.
     """
 
     text: str
@@ -46,7 +46,7 @@ def _comment(source: Source, match_: re.Match[str]) -> Comment:
 
 
 def blank_line_before(text: str, position: int) -> bool:
-    """Tell whether an empty line precedes the token at ``position``."""
+    """Whether an empty line precedes the token at ``position``."""
     before = position
     while before and text[before - 1].isspace():
         before -= 1

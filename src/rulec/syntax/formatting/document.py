@@ -1,8 +1,8 @@
 """Documents with possible line breaks, and their layout in lines.
 
-After Oppen, "Pretty Printing" (1980), and Wadler, "A Prettier Printer" (2003): a group stands on
-one line if it fits there, otherwise all of its own breaks become line ends. The lines depend on
-nothing but the document, so that what has been laid out once is laid out the same again.
+After Oppen, "Pretty Printing" (1980), and Wadler, "A Prettier Printer" (2003): a group is put on
+one line if it fits there; otherwise all of its own breaks become line ends. The lines depend only
+on the document, so that formatting twice gives the same result.
 """
 
 from __future__ import annotations
@@ -12,24 +12,24 @@ from dataclasses import dataclass, field
 from rulec.syntax.formatting.comments import Comment
 
 WIDTH = 100
-"""Columns of a line."""
+"""The maximal length of a line."""
 
 _DEEPEST = 60
-"""No line begins further to the right: what is nested very deeply needs room, too."""
+"""Lines are indented no deeper than this, so that deeply nested text has room."""
 
 
 @dataclass(frozen=True, slots=True)
 class Break:
-    """``flat`` while its group stands on one line, otherwise a line end."""
+    """Printed as ``flat`` while its group is on one line, otherwise a line end."""
 
     flat: str = " "
 
 
 @dataclass(frozen=True, slots=True)
 class Fill:
-    """A space, or a line end if the next part is long.
+    """A space, or a line end if the next part is too long.
 
-    The next part goes up to the next break; its new line begins ``deeper``.
+    The next part extends to the next break; its new line is indented ``deeper``.
     """
 
     deeper: int = 4
@@ -37,7 +37,7 @@ class Fill:
 
 @dataclass(frozen=True, slots=True)
 class LineEnd:
-    """A certain line end, with the comments that stand there."""
+    """A fixed line end, with the comments that belong there."""
 
     trailing: Comment | None = None
     own: tuple[Comment, ...] = ()
@@ -47,12 +47,12 @@ class LineEnd:
 
 @dataclass(frozen=True, slots=True)
 class ColumnMark:
-    """Mark of a position in its row, for alignment in a column."""
+    """Marks a position in a line, for alignment in a column."""
 
 
 @dataclass(frozen=True, slots=True)
 class Nest:
-    """Lines that begin inside begin this much deeper."""
+    """Content whose lines are indented this much deeper."""
 
     deeper: int
     inside: Document
@@ -60,7 +60,7 @@ class Nest:
 
 @dataclass(frozen=True, slots=True)
 class GroupDocument:
-    """On one line if it fits; ``forced`` if it cannot be."""
+    """Content that is put on one line if it fits, unless ``forced`` to be broken."""
 
     inside: Document
     forced: bool
@@ -68,7 +68,7 @@ class GroupDocument:
 
 @dataclass(frozen=True, slots=True)
 class Concatenation:
-    """One after the other."""
+    """Documents one after the other."""
 
     parts: tuple[Document, ...]
     forced: bool
@@ -79,9 +79,9 @@ Document = str | Break | Fill | LineEnd | ColumnMark | Nest | GroupDocument | Co
 
 @dataclass(slots=True)
 class LaidOutLine:
-    """Line of the layout: its code, trailing comment and column mark.
+    """A line of the layout: its code, trailing comment and column mark.
 
-    ``opens``: it ends with the brace of a block.
+    ``opens``: it ends with the opening brace of a block.
     """
 
     code: str
@@ -91,18 +91,18 @@ class LaidOutLine:
 
 
 def run(*parts: Document) -> Concatenation:
-    """One after the other."""
+    """Documents one after the other."""
     return Concatenation(parts, any(map(has_line_end, parts)))
 
 
 def group(*parts: Document, forced: bool = False) -> GroupDocument:
-    """Document on one line if it fits and is not ``forced``."""
+    """A document that is put on one line if it fits and is not ``forced`` to be broken."""
     inside = run(*parts)
     return GroupDocument(inside, forced or inside.forced)
 
 
 def has_line_end(document: Document) -> bool:
-    """Tell whether a document has a certain line end."""
+    """Whether a document has a fixed line end."""
     match document:
         case LineEnd():
             return True
@@ -115,7 +115,7 @@ def has_line_end(document: Document) -> bool:
 
 
 _Todo = list[tuple[int, bool, Document]]
-"""What is still to be laid out, the next one last: indentation, on one line, document."""
+"""The remaining work, the next item last: indentation, whether on one line, document."""
 
 
 @dataclass(slots=True)
@@ -190,9 +190,9 @@ class _Layout:
 
 
 def lay_out(document: Document, indent: int = 0, width: int = WIDTH) -> list[LaidOutLine]:
-    """Lay out a document in rows of at most ``width`` columns.
+    """Lay out a document in lines of at most ``width`` columns.
 
-    A row is longer only where it cannot be broken.
+    A line is longer only if it cannot be broken.
     """
     return _Layout([(indent, False, document)], width).go()
 

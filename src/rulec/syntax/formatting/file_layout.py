@@ -1,4 +1,4 @@
-"""Layout of a file: its pieces, comments and blank lines in order, and aligned columns."""
+"""The layout of a file: its pieces, comments and blank lines in order, with aligned columns."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def align_marks(rows: Iterable[tuple[LaidOutLine | None, int]]) -> None:
 
 
 def with_comments(rows: Sequence[LaidOutLine]) -> list[str]:
-    """Rows with trailing comments, aligned where they were aligned before."""
+    """Lines with trailing comments, aligned if they were aligned before."""
     commented = [row for row in rows if row.comment is not None]
     for _, group in groupby(commented, key=lambda row: row.comment and row.comment.column):
         same = list(group)
@@ -60,7 +60,7 @@ _INDENT: Final = 2
 
 
 def arranged(source: Source) -> str:
-    """The text of a file without mistakes in its canonical form."""
+    """The canonical form of a file without mistakes."""
     tokens = scan(source)
     parts = list(FileSplitter(source, tokens).split())
     speller = DocumentBuilder(deque(comments_of(source, tokens)))
@@ -79,7 +79,7 @@ def arranged(source: Source) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Block:
-    """Writer of pieces below one another, indented by ``indent``, into ``rows``."""
+    """Writes pieces below one another, indented by ``indent``, into ``rows``."""
 
     text: str
     speller: DocumentBuilder
@@ -88,7 +88,7 @@ class _Block:
     indent: int = 0
 
     def add(self, parts: Sequence[Part], begin: int, end: int) -> None:
-        """Parts, with the comments around them from ``begin`` to ``end``."""
+        """Write parts, with the comments around them from ``begin`` to ``end``."""
         marks: list[tuple[LaidOutLine | None, int]] = []
         behind, after_rule = begin, False
         columns = self.pieces.columns(parts)
@@ -112,7 +112,7 @@ class _Block:
         self._add_comments(comments, [after_rule or blanks[0], *blanks[1:]] if blanks else [])
 
     def in_braces(self, parts: Sequence[Part], begin: int, end: int) -> None:
-        """Write braces behind the last row, with their content below."""
+        """Write braces after the last row, with their content below."""
         if not parts and not self.speller.holds_comment(end):
             self.rows[-1].code += " {}"
             return
@@ -144,7 +144,7 @@ class _Block:
     def _take(self, until: int) -> tuple[Comment, ...]:
         """Take comments up to a position; return those on their own lines.
 
-        A trailing one is put on the last row.
+        A trailing comment is put on the last row.
         """
         trailing, own = self.speller.take(until)
         if trailing is not None:
@@ -152,7 +152,7 @@ class _Block:
         return own
 
     def _blanks(self, starts: Sequence[int], behind: int) -> list[bool]:
-        """The author's blank lines. What stands before ``behind`` was inside a piece."""
+        """The author's blank lines. Text before ``behind`` was inside a piece."""
         return [start >= behind and blank_line_before(self.text, start) for start in starts]
 
     def _add_comments(self, comments: Sequence[Comment], blanks: Sequence[bool]) -> None:

@@ -1,4 +1,4 @@
-"""Operators of a parse node, parentheses that group nothing, and those that show what is meant."""
+"""Removes parentheses that group nothing, and adds those that make the meaning obvious."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _WHOLE = _FORMULAS_ONLY | {"unless_clause", "param_item", "set_item", "group"}
 
 
 def level(node: ParseNode) -> int:
-    """The binding strength of an infix, a comparison or an arithmetic operation."""
+    """The precedence of an infix, a comparison or an arithmetic operation."""
     sign = node.children[1]
     assert isinstance(sign, ParseLeaf), "the operator is between its operands"
     if node.kind == "compare":
@@ -43,9 +43,9 @@ def level(node: ParseNode) -> int:
 
 
 def with_fitting_parentheses(node: ParseNode) -> ParseNode:
-    """The node without parentheses that it never needs, with those that show what it means.
+    """The node without redundant parentheses, and with those that make its meaning obvious.
 
-    `never p and q` is written `(never p) and q`: few readers know that it means this.
+    `never p and q` is written `(never p) and q`, since few readers know that it means this.
     """
     shown = _fitted(node, shows=True)
     return shown if _depth(shown) <= MAX_DEPTH else _fitted(node, shows=False)
@@ -85,7 +85,7 @@ def _depth(node: ParseNode | ParseLeaf) -> int:
 
 
 def _end_shown(part: ParseNode | ParseLeaf, around: ParseNode) -> ParseNode | ParseLeaf:
-    """An operand with parentheses around the operator at its end that speaks of too little."""
+    """An operand, with parentheses around a final operator that could be misread."""
     if not isinstance(part, ParseNode) or part.kind not in ("infix", "prefix"):
         return part
     *before, last = part.children
@@ -113,5 +113,5 @@ def _speaks_of_time(node: ParseNode | ParseLeaf) -> bool:
 
 
 def _has_no_words_behind(node: ParseNode) -> bool:
-    """``unless (p or q) throughout`` reads better with them."""
+    """Whether no scope follows; ``unless (p or q) throughout`` keeps its parentheses."""
     return node.kind != "unless_clause" or isinstance(node.children[-1], ParseNode)

@@ -1,7 +1,7 @@
-"""Parse nodes as documents: where spaces stand and where lines may end.
+"""Parse nodes as documents: where spaces are, and where lines may end.
 
-The file's own words and signs are written again, in their order, one by one. Two things only are
-not: parentheses around what they don't group, and white space.
+The file's own words and signs are written again, one by one and in order. Only two things are not
+kept: redundant parentheses, and white space.
 """
 
 from __future__ import annotations
@@ -28,11 +28,13 @@ from rulec.syntax.parse_nodes import ParseLeaf, ParseNode
 
 Node = ParseNode | ParseLeaf
 Gap = Break | Fill | Literal["", " "]
-"""What stands between two tokens; only the first two can end a line, or hold a comment."""
+"""The space between two tokens; only the first two kinds can end a line or hold a comment."""
 
 _LEADS = frozenset(("AS", "IN", "BECAUSE", "DEFAULT", "UNTIL", "GREATER"))
-"""What may begin a line in a header line, a declaration, a provision or a head: no words that may
-be names elsewhere, since a name on a line of its own may begin something new."""
+"""Keywords that may begin a line in a header line, a declaration, a provision or a head.
+
+They exclude words that may be names elsewhere, since a name on its own line may begin an item.
+"""
 
 _SCOPES = frozenset(("INITIALLY", "AT_START", "THROUGHOUT", "AT_SOME_POINT", "AT_END"))
 
@@ -41,12 +43,12 @@ _CHAINS = frozenset(("infix", "arithmetic", "compare"))
 
 @dataclass(slots=True)
 class DocumentBuilder:
-    """Builder of documents in the file's order, with each comment once."""
+    """Builds documents in the order of the file, with each comment once."""
 
     comments: deque[Comment]
 
     def take(self, until: int) -> tuple[Comment | None, tuple[Comment, ...]]:
-        """Take the comments before a position: the trailing one, and others."""
+        """Take the comments before a position: the trailing one, and the others."""
         comments: list[Comment] = []
         while self.holds_comment(until):
             comments.append(self.comments.popleft())
@@ -54,7 +56,7 @@ class DocumentBuilder:
         return trailing, tuple(comment for comment in comments if comment is not trailing)
 
     def holds_comment(self, until: int) -> bool:
-        """Tell whether a comment before a position has not been taken yet."""
+        """Whether some comment before a position has not been taken yet."""
         return bool(self.comments) and self.comments[0].start < until
 
     def gap(self, gap: Gap, following: int) -> Document:
@@ -67,12 +69,12 @@ class DocumentBuilder:
         return LineEnd(trailing, own, gap.deeper if isinstance(gap, Fill) else 0)
 
     def closing_gap(self, flat: str, following: int) -> Document:
-        """The gap before a block's closing sign, with the block's last comments."""
+        """The gap before a block's closing brace, with the block's last comments."""
         gap = self.gap(Break(flat), following)
         return replace(gap, inner=2) if isinstance(gap, LineEnd) else gap
 
     def spell(self, node: Node) -> Document:
-        """A node of any kind."""
+        """The document of a node of any kind."""
         match node:
             case ParseLeaf():
                 return node.text if node.kind == "STRING" else " ".join(node.text.split())
@@ -109,7 +111,7 @@ class DocumentBuilder:
         return run(*parts)
 
     def worded(self, node: ParseNode, column: int, deeper: int = 4) -> Concatenation:
-        """A word and its content, which begins and continues at ``column``."""
+        """A keyword and its content, which begins and continues at ``column``."""
         word, *content = node.children
         start = self.spell(word)
         assert isinstance(start, str), "a word is a leaf"
@@ -122,7 +124,7 @@ class DocumentBuilder:
     def assigned(self, node: ParseNode, column: int, *, broken: bool) -> Document:
         """``word name = value``, with the name at ``column``.
 
-        The value is on lines of its own if it is ``broken`` off, or too long.
+        The value gets lines of its own if it is ``broken`` off, or too long.
         """
         at = next(index for index, child in enumerate(node.children) if _is_equals(child)) + 1
         word = self.spell(node.children[0])
@@ -134,7 +136,7 @@ class DocumentBuilder:
         )
 
     def block(self, node: ParseNode) -> Document:
-        """A head, and entries in braces, one on a line."""
+        """A head, and entries in braces, one per line."""
         at = next(index for index, child in enumerate(node.children) if child.kind == "LBRACE") + 1
         head = self.plain(node.children[:at], node.kind)
         inside: list[Document] = []
@@ -149,7 +151,7 @@ class DocumentBuilder:
         return group(head, Nest(2, run(*inside)), ends, closing, forced=True)
 
     def _chain(self, links: Sequence[Sequence[Node]]) -> Document:
-        """Operands of equally strong operators: on one line, or one per line."""
+        """Operands of operators of equal precedence: on one line, or one per line."""
         parts: list[Document] = []
         for index, link in enumerate(links):
             if index:
@@ -175,14 +177,14 @@ class DocumentBuilder:
 
 
 def first_leaf(node: Node) -> ParseLeaf:
-    """The position at which a node begins."""
+    """The first token of a node."""
     while isinstance(node, ParseNode):
         node = node.children[0]
     return node
 
 
 def last_leaf(node: Node) -> ParseLeaf:
-    """The position at which a node ends."""
+    """The last token of a node."""
     while isinstance(node, ParseNode):
         node = node.children[-1]
     return node
@@ -218,7 +220,7 @@ def _is_equals(node: Node) -> bool:
 
 
 def between(before: ParseLeaf, behind: ParseLeaf, inside: str, deeper: int) -> Gap:
-    """The gap between two tokens that are no operator's."""
+    """The gap between two tokens that are not around an operator."""
     match before.kind, behind.kind:
         case (_, "COMMA" | "RPAR" | "RSQB" | "LSQB") | ("LPAR" | "LSQB" | "MINUS", _):
             return ""

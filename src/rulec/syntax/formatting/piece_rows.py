@@ -1,4 +1,4 @@
-"""Rows of each piece of a file, and the columns they share."""
+"""The rows of each piece of a file, and the columns they share."""
 
 from __future__ import annotations
 
@@ -36,15 +36,15 @@ _WORDS: Final = (
     | (frozenset(PROVISION_WORDS) - {"define", "redefine"})
     | (CLAUSE_WORDS - {"also"} | set(_TWO_WORDS.values()))
 )
-"""What makes a column with others of its kind."""
+"""Keywords whose contents are aligned in a column with others of their kind."""
 
 _LONGEST_WORD: Final = 7
-"""Of the words that make a column: `certainty` or `semantics` would push all others away."""
+"""The longest keyword that is aligned; `certainty` or `semantics` would widen the column."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pieces:
-    """Pieces of one file without mistakes, laid out in their order."""
+    """The pieces of one file without mistakes, laid out in their order."""
 
     source: Source
     tokens: list[Token]
@@ -55,7 +55,7 @@ class Pieces:
         return span_of(self.source, self.tokens, part).start
 
     def end(self, part: Part) -> int:
-        """The character behind a part."""
+        """The character after a part."""
         return span_of(self.source, self.tokens, part).end
 
     def matched(self, piece: Piece) -> ParseNode:
@@ -85,14 +85,14 @@ class Pieces:
                 return self.speller.plain(node.children, node.kind)
 
     def clause(self, piece: Piece, column: int) -> Document:
-        """A clause, whose word ends at ``column``."""
+        """A clause, whose keyword ends at ``column``."""
         node = self.matched(piece)
         if node.kind == "in_force":
             return self.speller.plain(node.children, node.kind)
         return self.speller.worded(node, max(column, len(self.word(piece)) + 1))
 
     def example(self, example: ExamplePieces, column: int) -> Document:
-        """Rows of an example: one line, or one line per state."""
+        """The rows of an example: one line, or one line per state."""
         head = self.matched(example.head)
         column = max(column, len(self.word(example)) + 1)
         start = (
@@ -132,11 +132,11 @@ class Pieces:
         return text if len(text) <= WIDTH else ""
 
     def opening(self, part: ExamplePieces | RulePieces) -> Token:
-        """The brace behind the head."""
+        """The opening brace after the head."""
         return self.tokens[part.head.last]
 
     def closing(self, part: ExamplePieces | RulePieces) -> Token:
-        """The brace at the end."""
+        """The closing brace."""
         return self.tokens[part.last - 1]
 
     def word(self, part: Part) -> str:
@@ -146,7 +146,7 @@ class Pieces:
         return _TWO_WORDS.get(word, word)
 
     def columns(self, parts: Sequence[Part]) -> list[int]:
-        """Columns at which contents begin, shared by parts without blank lines between."""
+        """The columns at which contents begin, shared by parts without blank lines between them."""
         columns: list[int] = []
         together: list[int] = []
         for index, part in enumerate(parts):

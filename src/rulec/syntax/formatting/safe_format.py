@@ -1,4 +1,4 @@
-"""Formatting that cannot change what a file means."""
+"""Formatting that cannot change the meaning of a file."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rulec.syntax.scanner import scan
 
 
 class FormattingError(Exception):
-    """Error of the formatter: its output means something else than the file."""
+    """A bug in the formatter: its output would mean something else than the file."""
 
 
 def format_source(source: Source) -> str:

@@ -1,1 +1,1 @@
-"""Parsing a text anew after an edit, by reading only what is near it."""
+"""Parses a text again after an edit, reading only the part near the edit."""

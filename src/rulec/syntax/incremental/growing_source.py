@@ -1,4 +1,4 @@
-"""A source that only grows, so that the spans of what an edit leaves alone stay as they are."""
+"""A source that only grows, so that the spans of unedited parts stay valid."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ from rulec.diagnostics import Source
 
 
 class GrowingSource(Source):
-    """The texts of a file's parts, one behind the other, in the order in which they were read.
+    """The texts of a file's parts, in the order in which they were read.
 
-    What replaces a part is put at the end; what it replaced stays, and nobody asks for it. Each
-    text is made of whole lines. Equal to itself alone, whatever is added.
+    Text that replaces a part is appended; the replaced text stays, unused. Each text consists of
+    whole lines. A source is equal only to itself, whatever is appended.
     """
 
     __slots__ = ()
 
     def append(self, text: str) -> tuple[int, int]:
-        """Add lines; where they begin: line (from 1) and character (from 0)."""
+        """Append lines; returns where they begin: line (from 1) and character (from 0)."""
         starts = self._lines()
         offset = len(self.text)
         if offset and not self.text.endswith("\n"):

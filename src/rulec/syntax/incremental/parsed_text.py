@@ -1,4 +1,4 @@
-"""A text as it was last parsed, from which its next state is parsed."""
+"""A text as last parsed, from which its next version is parsed."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from rulec.syntax.parser import by_place, parse
 from rulec.syntax.scanner import checked, scan
 
 MOST_CHARACTERS = 1_000_000
-"""A longer text is parsed as a whole."""
+"""Longer texts are always parsed as a whole."""
 
 _RUN_ON = 21
-"""A text in quotes that runs on is looked for in no more lines than these."""
+"""A quoted text that is not closed is searched for in at most so many lines."""
 
 _MOST_GROWTH = 64
-"""A source that has become so many times longer than its text is begun anew."""
+"""A source that is this many times longer than its text is rebuilt at once."""
 
 _LITTLE_GROWTH = 8
-"""In a pause it is begun anew already when it is so many times longer."""
+"""In a pause, a source is rebuilt if it is this many times longer than its text."""
 
 
 @dataclass(frozen=True, slots=True)
 class ParsedText:
-    """A text, its tree, and what is wrong with it, in places of the text.
+    """A text, its tree and its mistakes, with places in the text.
 
-    The spans in ``file`` are those of ``source``; ``offset`` and ``placed`` lead from there to the
-    text. Without ``segments`` it was parsed as a whole, and they are the same.
+    The spans in ``file`` are those of ``source``; ``offset`` and ``placed`` map them to the text.
+    Without ``segments`` the text was parsed as a whole, and they are the same.
     """
 
     text: str
@@ -48,10 +48,10 @@ class ParsedText:
     starts: tuple[int, ...] = ()
     """How many characters of the text are above each segment."""
     by_start: tuple[int, ...] = ()
-    """The segments in the order in which they stand in ``source``."""
+    """The segments in their order in ``source``."""
 
     def _segment_at(self, start: int) -> int | None:
-        """The number of the segment with a character of the source."""
+        """The number of the segment that contains a character of the source."""
         where = bisect_right(self.by_start, start, key=lambda n: self.segments[n].start) - 1
         if where < 0:
             return None
@@ -60,14 +60,14 @@ class ParsedText:
         return number if start <= segment.start + len(segment.text) else None
 
     def offset(self, start: int) -> int:
-        """The character of the text for one of the source."""
+        """The character of the text for a character of the source."""
         number = self._segment_at(start)
         if number is None:
             return start
         return self.starts[number] + start - self.segments[number].start
 
     def placed(self, place: SourceLocation) -> SourceLocation:
-        """A place of the source as one of the text."""
+        """The place in the text for a place in the source."""
         if not self.segments or place.file != self.source.name or place.line is None:
             return place
         where = bisect_right(self.by_start, place.line, key=lambda n: self.segments[n].line) - 1
@@ -75,7 +75,7 @@ class ParsedText:
         return shifted(place, 1 + self.lines[number] - self.segments[number].line)
 
     def in_text(self, mistake: Diagnostic) -> Diagnostic:
-        """A diagnostic about the source as one about the text."""
+        """The diagnostic with its places in the text instead of the source."""
         return self._moved(mistake, None) if self.segments else mistake
 
     def _moved(self, mistake: Diagnostic, of: int | None) -> Diagnostic:
@@ -98,9 +98,9 @@ class ParsedText:
 
 
 def parsed_text(source: Source, before: ParsedText | None = None) -> ParsedText:
-    """Parse a text; what is as it was ``before``, under the same name, is not read again.
+    """Parse a text; parts that are unchanged since ``before``, under the same name, are reused.
 
-    Tree and mistakes are those of ``parse``, but for the spans (see ``ParsedText``).
+    Tree and mistakes are those of ``parse``, except for the spans (see ``ParsedText``).
     """
     text = source.text
     if before is not None and before.text == text:
@@ -129,7 +129,7 @@ def _whole(source: Source) -> ParsedText:
 
 
 def _assembled(source: GrowingSource, segments: Sequence[Segment], text: str) -> ParsedText | None:
-    """The file of its segments; None if it is no rulebook, or empty."""
+    """The file of the segments; None if it is not a rulebook, or empty."""
     parts = [part for segment in segments for part in segment.parts]
     if not parts:
         return None
@@ -169,7 +169,7 @@ def _assembled(source: GrowingSource, segments: Sequence[Segment], text: str) ->
 
 
 def _edited(before: ParsedText, source: GrowingSource, text: str) -> ParsedText | None:
-    """The text after an edit; None if all of it has to be read."""
+    """The text after an edit; None if all of it has to be parsed."""
     if _has_grown(source, text, _MOST_GROWTH):
         return None
     old = before.segments
@@ -200,7 +200,7 @@ def _edited(before: ParsedText, source: GrowingSource, text: str) -> ParsedText 
 
 
 def renewed(parsed: ParsedText) -> ParsedText:
-    """The text parsed as a whole, if its source has grown much: for a pause in typing."""
+    """The text parsed as a whole if its source has grown much; to be called when typing pauses."""
     if not _has_grown(parsed.source, parsed.text, _LITTLE_GROWTH):
         return parsed
     return parsed_text(Source(parsed.source.name, parsed.text))
@@ -221,7 +221,7 @@ def _alike(segments: Sequence[Segment], text: str) -> int:
 
 
 def _alike_at_end(segments: Sequence[Segment], text: str, least: int) -> int:
-    """How many segments the text ends with, which may not reach above character ``least``."""
+    """How many segments the text ends with; they must not extend above character ``least``."""
     end = len(text)
     for number, segment in enumerate(reversed(segments)):
         start = end - len(segment.text)
@@ -232,10 +232,10 @@ def _alike_at_end(segments: Sequence[Segment], text: str, least: int) -> int:
 
 
 def _first(segments: Sequence[Segment], changed: int) -> int:
-    """The first segment to look at again: one that nothing behind it can change.
+    """The first segment to parse again: nothing after it can change the segments before.
 
-    It is clean and ends a rule; nothing above it that is not clean is near enough to be read
-    otherwise, for a quote that is not closed.
+    It is clean and ends a rule, and no segment with mistakes is close enough above it to be
+    affected by an unclosed quote.
     """
     first = max(0, changed - 1)
     while first > 0:
@@ -247,7 +247,7 @@ def _first(segments: Sequence[Segment], changed: int) -> int:
 
 
 def _near_above(segments: Sequence[Segment], first: int) -> int | None:
-    """A segment that is not clean, no more lines above than a quote runs on."""
+    """A segment with mistakes that is no more lines above than an unclosed quote extends."""
     lines = 0
     for number in range(first - 1, -1, -1):
         if not segments[number].is_clean:
@@ -259,7 +259,7 @@ def _near_above(segments: Sequence[Segment], first: int) -> int | None:
 
 
 def _last(segments: Sequence[Segment], changed: int) -> int:
-    """The segment before which to stop: those before it are read as they were."""
+    """The segment before which to stop: the segments before it are unchanged."""
     last = min(len(segments), changed + 1)
     while last < len(segments):
         behind = "".join(segment.text for segment in segments[changed:last])
@@ -272,6 +272,6 @@ def _last(segments: Sequence[Segment], changed: int) -> int:
 
 
 def _wrong_above(segments: Sequence[Segment]) -> int:
-    """How many segments there are up to the last one with a mistake shown above itself."""
+    """How many segments there are up to the last one with a mistake shown above it."""
     reach = [number for number, segment in enumerate(segments, 1) if segment.reaches_before()]
     return reach[-1] if reach else 0

@@ -1,4 +1,4 @@
-"""Segments of a file: lines with the items that begin in them, and what they were read as."""
+"""Segments of a file: lines with the items that begin in them, and the parsed result."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from rulec.syntax.split_file import FileSplitter
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """Whole lines of a file with the comments above them, and what was read there.
+    """Whole lines of a file, with the comments above them, and the items parsed from them.
 
-    ``line`` and ``start`` are where they begin in the growing source, a line from 1 and a
-    character. ``split`` are mistakes about braces, ``read`` those within pieces; both may stand in
-    the lines around it as they were when it was read. ``closes``: its last part is a rule.
+    ``line`` and ``start`` are where they begin in the growing source: a line from 1, and a
+    character. ``split`` are mistakes about braces, ``read`` those within pieces; the places of both
+    may lie in surrounding lines as these were at that time. ``closes``: its last part is a rule.
     ``foreign``: it has words that are not ASCII.
     """
 
@@ -34,7 +34,7 @@ class Segment:
 
     @property
     def is_clean(self) -> bool:
-        """Tell whether nothing is wrong with it, so that what is around it is read apart."""
+        """Whether it has no mistakes, so that its surroundings can be parsed independently."""
         return bool(self.parts) and not (self.split or self.read)
 
     def lines(self) -> int:
@@ -42,7 +42,7 @@ class Segment:
         return self.text.count("\n")
 
     def reaches_before(self) -> bool:
-        """Tell whether a mistake of it depends on what is above: it shows it, or found nothing."""
+        """Whether one of its mistakes depends on text above: it refers to it, or lacks it."""
         if any(not mistake.labels for mistake in self.split):
             return True
         return any(
@@ -62,7 +62,7 @@ def places_of(mistake: Diagnostic) -> Iterator[SourceLocation]:
 
 
 def shifted(place: SourceLocation, lines: int) -> SourceLocation:
-    """A place some lines further down."""
+    """A place moved down by some lines."""
     if place.line is None or not lines:
         return place
     end = None if place.end_line is None else place.end_line + lines
@@ -71,7 +71,7 @@ def shifted(place: SourceLocation, lines: int) -> SourceLocation:
 
 @dataclass(frozen=True, slots=True)
 class _Group:
-    """Characters of a window from one item to the next that begins on a line of its own."""
+    """The characters of a window from one item to the next that begins on its own line."""
 
     begin: int
     end: int
@@ -81,10 +81,10 @@ class _Group:
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """Lines of a file, from where an item begins or the file does; ``start`` is in ``source``.
+    """Lines of a file, from the beginning of an item or of the file; ``start`` is in ``source``.
 
-    ``above`` and ``below`` are segments at its beginning and its end that were there before. What
-    is clean of them is taken as it is, if it ends where it did.
+    ``above`` and ``below`` are existing segments at its beginning and end. Clean segments of these
+    are reused if they end where they did.
     """
 
     source: Source
@@ -96,7 +96,7 @@ class Window:
 
 
 def segments_of(window: Window) -> list[Segment]:
-    """The segments of a window. Raises RulecError: it has too many tokens."""
+    """The segments of a window. Raises RulecError if it has too many tokens."""
     source, start = window.source, window.start
     tokens = [
         Token(token.kind, token.text, token.start + start, token.end + start, token.first)

@@ -1,5 +1,5 @@
 """Messages about syntax errors, one for each mistake.
 
-``mismatch`` speaks where a piece cannot be parsed, ``advice`` guesses what was meant, ``structure``
-speaks about braces.
+``mismatch`` reports pieces that cannot be parsed, ``advice`` guesses what was meant, ``structure``
+reports missing or misplaced braces.
 """

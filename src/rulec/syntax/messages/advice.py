@@ -1,4 +1,4 @@
-"""Help for mistakes that people make, by what was probably meant."""
+"""Help for common mistakes, by what was probably meant."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _WITHIN: Final = {"within": "eventually", "for": "always", "during": "always", "
 
 
 def advise_on_bound(ctx: ParseContext) -> str:
-    """Inside brackets, and where a bound was meant to stand."""
+    """Help inside brackets, and where a bound was probably meant."""
     if ctx.opened("[", "]") is not None and not ctx.operand:
         return _inside(ctx)
     text, before = ctx.text, ctx.text_before
@@ -69,7 +69,7 @@ def advise_on_bound(ctx: ParseContext) -> str:
 
 
 def _holds_a_formula(ctx: ParseContext) -> bool:
-    """Tell whether what a bracket opens begins with no time."""
+    """Whether the content of a bracket does not begin with a time."""
     behind = ctx.token(ctx.at + 1)
     return behind is not None and (behind.kind == "word" or behind.text in ("!", "("))
 
@@ -110,7 +110,7 @@ def _inside(ctx: ParseContext) -> str:
 
 
 def _both_ends(low: str, high: str, unit: str) -> str:
-    """How a stretch of time is written, with what its ends are where these are known."""
+    """How a time interval is written, with its ends as far as they are known."""
     if not (_NUMBER.fullmatch(low) and _NUMBER.fullmatch(high) and unit.isalpha()):
         low, high, unit = "3", "4", "s"
     return f"write the unit at both ends, and `..` between: `[{low} {unit} .. {high} {unit}]`"
@@ -125,7 +125,7 @@ _SINGLE: Final = ("'", "“", "”", "„", "‘", "’", "«", "»")
 
 
 def advise(ctx: ParseContext) -> str:
-    """The way out, empty when there is none to suggest."""
+    """The suggested correction; empty if there is none."""
     return next(filter(None, (advice(ctx) for advice in _IN_ORDER)), "")
 
 
@@ -186,7 +186,7 @@ def _name_of_two_words(ctx: ParseContext) -> str:
 
 
 def _misspelt_prefix(ctx: ParseContext) -> str:
-    """At an operand behind a name that is much like a prefix: `alway not p`, `evry x: vehicle`."""
+    """Help at an operand after a name that resembles a prefix: `alway not p`, `evry x: vehicle`."""
     token, before = ctx.unexpected, ctx.before
     if token is None or not ctx.operator:
         return ""
@@ -203,7 +203,7 @@ def _misspelt_prefix(ctx: ParseContext) -> str:
 
 
 _MUCH_ALIKE: Final = 0.75
-"""Less, and a name such as `now` would count as `not`."""
+"""The least similarity; with less, a name such as `now` would count as `not`."""
 _AFTER_STRENGTH: Final = ("next", "previously", "until", "release")
 _OPERAND_WORDS: Final = frozenset(
     (*UNARY_OPERATORS, *AGGREGATES, *PREFIX_LETTERS, "!", "weak", "true", "false")
@@ -293,13 +293,13 @@ def _parentheses(ctx: ParseContext) -> str:
 
 
 def _left_open(before: str) -> bool:
-    """Tell whether the clause that a text ends with has a parenthesis that is not closed."""
+    """Whether the clause at the end of a text has an unclosed parenthesis."""
     clause = before[before.rfind("require") :]
     return clause.count("(") > clause.count(")")
 
 
 def _closed_before_a_clause(ctx: ParseContext) -> str:
-    """Advice on what is open where a clause begins: that word may have been meant for a formula."""
+    """Help where a clause begins inside an open formula: its keyword may be part of the formula."""
     behind = ctx.source.text[ctx.tokens[-1].end :]
     word, *_ = (*behind.split(maxsplit=1), "")
     line = behind.lstrip().partition("\n")[0]
@@ -312,7 +312,7 @@ def _closed_before_a_clause(ctx: ParseContext) -> str:
 
 
 def _form(ctx: ParseContext) -> str:
-    """The form of the whole line, if no better advice is known."""
+    """The form of the whole line, if there is no better advice."""
     unfinished = ctx.unexpected is None and ctx.text_before == "="
     formula = not unfinished and (ctx.operand or ctx.operator or ctx.quantity)
     return "" if formula or ctx.kind != "item" else FORMS.get(ctx.first, "")

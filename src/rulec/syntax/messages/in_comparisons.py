@@ -1,4 +1,4 @@
-"""Help where numbers are written, added up or compared."""
+"""Help with numbers, sums and comparisons."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ def advise_on_comparison(ctx: ParseContext) -> str:
 
 
 def _any_value(ctx: ParseContext) -> str:
-    """Advice on ``lateral(v) in {left_of, right_of}``: each value is true or false by itself."""
+    """Advice on ``lateral(v) in {left_of, right_of}``: write an atom for each value."""
     values: list[str] = []
     for token in ctx.tokens[ctx.at + 2 :]:
         if token.kind == "word":

@@ -58,7 +58,7 @@ def advise_on_formula(ctx: ParseContext) -> str:
 
 
 def advise_on_aggregate(ctx: ParseContext) -> str:
-    """At ``some``, ``every``, ``count``, and what others call them."""
+    """Help at ``some``, ``every``, ``count``, and their equivalents in other languages."""
     text, before = ctx.text, ctx.text_before
     if ctx.operator and before == "at" and ctx.text_behind in ("time", "times"):
         return f"for `at {text} {ctx.text_behind}` write `always`"

@@ -52,7 +52,7 @@ _OTHER_WORDS: Final = {
 
 
 def other_word(word: str) -> str:
-    """Advice on another language's item word; empty if it is unknown."""
+    """Advice on an item keyword of another language; empty if it is unknown."""
     form = _OTHER_WORDS.get(word)
     return f"write `{form}`" if form else ""
 
@@ -99,7 +99,7 @@ def advise_on_item(ctx: ParseContext) -> str:
 
 
 def advise_on_dates(ctx: ParseContext) -> str:
-    """At ``in force from DATE until DATE``."""
+    """Help at ``in force from DATE until DATE``."""
     if ctx.accepted == {"DATE"} and ctx.unexpected is not None:
         return how_a_date_is_written(ctx.source.text[ctx.unexpected.start :][:16])
     if ctx.first not in _DATED and ctx.kind != "clause":
@@ -155,9 +155,9 @@ _NO_OPERATORS: Final = ("from", "force", "valid", "except", "exempt", "given", "
 
 
 def other_clause(word: str, others: Container[str] = ()) -> str:
-    """Advice on another language's clause word; empty if it is unknown.
+    """Advice on a clause keyword of another language; empty if it is unknown.
 
-    ``others`` are the words and signs behind it.
+    ``others`` are the words and signs after it.
     """
     if word == "if" and "then" in others:
         return "write `require always (p implies q)` for `if p then q`"

@@ -1,4 +1,4 @@
-"""Help where a formula is written as a sentence of everyday language."""
+"""Help where a formula is written like a sentence of everyday language."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _SMALL_WORDS: Final = ("is", "at", "in", "on", "the", "a", "an", "not")
 
 
 def advise_on_sentence(ctx: ParseContext) -> str:
-    """Advice on words that a formula says otherwise, or not at all; empty if there is none."""
+    """Advice on words that a formula writes otherwise or lacks; empty if there is none."""
     if not ctx.operator or ctx.unexpected is None:
         return ""
     text, before, behind = ctx.text, ctx.text_before, ctx.text_behind
@@ -49,7 +49,7 @@ def advise_on_sentence(ctx: ParseContext) -> str:
 
 
 def _predicate(ctx: ParseContext) -> str:
-    """What is said of ego: `junction` of `ego is at the junction`."""
+    """What is stated about ego: `junction` in `ego is at the junction`."""
     words = (token.text for token in ctx.tokens[ctx.at :])
     subject = next((word for word in words if word not in _SMALL_WORDS), "")
     return subject if subject.isidentifier() and subject not in keywords.RESERVED else ""

@@ -1,4 +1,4 @@
-"""Literals: characters that a text may hold, dates that exist."""
+"""Checks of literals: the characters of texts, and dates."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ _DAY_FIRST = re.compile(r"([0-9]{1,2})\. ?([0-9]{1,2})\. ?([0-9]{4})\b")
 _BY_THE_CLOCK = re.compile(r"([0-9]{1,2})\s*[hH:.]\s*([0-5][0-9])(?:\s*h)?")
 
 _DIRECTION_CONTROLS = frozenset("\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
-"""Unicode's bidirectional controls: they show a text in another order than it is read."""
+"""Unicode's bidirectional controls, which display a text in another order than it is read."""
 
 
 def why_not_a_day(text: str) -> str:
-    """Empty for a day of the Gregorian calendar in ISO 8601's form."""
+    """Why a text is not a day of the Gregorian calendar in ISO 8601's form; empty if it is."""
     if not _ISO_DATE.fullmatch(text):
         return how_a_date_is_written(text)
     year, month, day = (int(part) for part in text.split("-"))
@@ -30,7 +30,10 @@ def why_not_a_day(text: str) -> str:
 
 
 def how_a_date_is_written(text: str) -> str:
-    """The way out for what is no date in ISO 8601's form: in that form, where it is one."""
+    """Help for a text that is not a date in ISO 8601's form.
+
+    It gives the date in that form, if the text is a date.
+    """
     if match := _DAY_FIRST.match(text):
         day, month, year = (int(part) for part in match.groups())
         written = f"{year:04}-{month:02}-{day:02}"
@@ -40,7 +43,7 @@ def how_a_date_is_written(text: str) -> str:
 
 
 def how_hours_are_written(text: str) -> str:
-    """The way out for ``8:30`` or ``8h30``, a time of day by the clock; empty for anything else."""
+    """Help for ``8:30`` or ``8h30``, a time of day; empty for anything else."""
     match = _BY_THE_CLOCK.fullmatch(text)
     if match is None:
         return ""
@@ -51,9 +54,9 @@ def how_hours_are_written(text: str) -> str:
 
 
 def misleads(character: str) -> bool:
-    """Tell whether a character could mislead the reader of its line.
+    """Whether a character could mislead the reader of its line.
 
-    It is a control character, or breaks or reorders the line.
+    Such characters are control characters, and those that break or reorder the line.
     """
     category = unicodedata.category(character)
     return character in _DIRECTION_CONTROLS or (

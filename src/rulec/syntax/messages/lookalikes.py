@@ -1,7 +1,8 @@
 """Misleading characters in comments, and confusable names.
 
-After UTS #39 (Unicode Security Mechanisms): two names are confusable if they have one skeleton, the
-text with each letter replaced by the one that all that look like it stand for.
+After UTS #39 (Unicode Security Mechanisms): two names are confusable if they have the same
+skeleton, which is the text with each letter replaced by the common representative of all letters
+that look like it.
 """
 
 from __future__ import annotations
@@ -65,13 +66,13 @@ def looks_like(place: Span, other: str, first: Span | None) -> Diagnostic:
 
 
 HIDES = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
-"""Characters that hide or reorder what is around them, if they stand in a comment."""
+"""Characters that hide or reorder the text around them in a comment."""
 MOST = 20
-"""So many places of a kind are named."""
+"""The most places of a kind that are named."""
 
 
 def hidden_meaning(source: Source, tokens: Sequence[Token]) -> list[Diagnostic]:
-    """Mistakes for what drives or reorders a line of a comment, warnings for names alike."""
+    """Errors for comments that hide or reorder a line, and warnings for confusable names."""
     diagnostics = []
     if HIDES.search(source.text):
         diagnostics += [hidden_in_comment(place) for place in _hidden(source, tokens)]
@@ -81,7 +82,7 @@ def hidden_meaning(source: Source, tokens: Sequence[Token]) -> list[Diagnostic]:
 
 
 def _hidden(source: Source, tokens: Sequence[Token]) -> Iterator[Span]:
-    """The first hidden character of each comment; of those in texts others speak."""
+    """The first hidden character of each comment; texts are checked elsewhere."""
     ends = [token.end for token in tokens]
     starts = [token.start for token in tokens]
     for end, start in zip([0, *ends], [*starts, len(source.text)], strict=True):
@@ -118,19 +119,19 @@ def _alike(source: Source, tokens: Sequence[Token]) -> Iterator[Diagnostic]:
 
 
 def _own_scripts(names: Sequence[str]) -> set[str]:
-    """Scripts that the file uses: not only for letters that look like Latin ones."""
+    """The scripts that the file uses for more than letters that look like Latin ones."""
     letters = {letter for name in names for letter in name}
     return {_script(letter) for letter in letters if not skeleton_of(letter).isascii()}
 
 
 @cache
 def _script(letter: str) -> str:
-    """The first word of a letter's name in Unicode, which is its script for nearly all."""
+    """The first word of a letter's Unicode name, which is nearly always its script."""
     return name_of(letter, "").partition(" ")[0]
 
 
 def skeleton_of(name: str) -> str:
-    """What a name looks like: equal for all names that look alike (UTS #39, section 4)."""
+    """A text that is equal for all names that look alike (UTS #39, section 4)."""
     table = _table()
     letters = normalize("NFD", name)
     return normalize("NFD", "".join(table.get(letter, letter) for letter in letters))

@@ -84,7 +84,7 @@ _WHAT = {
     "require": "the formula",
 }
 _CLAUSE_BEGINS = keywords.CLAUSE_WORDS | {"throughout", "initially"}
-"""Words that may stand first on a line of a rule: clauses, and the scope of the exception above."""
+"""Words that may come first on a line of a rule: clauses, and the scope of an exception."""
 
 _BY_KIND = {"rule_head": "the rule's head", "state": "the state", "formula": "the formula"}
 

@@ -1,4 +1,4 @@
-"""Position of a syntax error, with the tokens expected there."""
+"""The position of a syntax error, with the tokens expected there."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ _SPELLINGS: Final = {
     "TIMES": "*",
     "OVER": "/",
 }
-"""Spelling of the tokens whose names in the grammar are not their words in capitals."""
+"""The spelling of tokens whose grammar names are not their words in capitals."""
 
 _ORDER: Final = (
     *("NAME", "STRING", "DATE", "NUMBER", "UNIT", "NOT"),
@@ -66,7 +66,7 @@ def spelling(kind: str) -> str:
 
 
 def in_words(accepted: Iterable[str]) -> str:
-    """Phrase for the accepted tokens, such as ``expected a name``."""
+    """A phrase for the accepted tokens, such as ``expected a name``."""
     rest = set(accepted)
     before: list[str] = []
     behind: list[str] = []
@@ -96,7 +96,7 @@ def _rank(kind: str) -> int:
 
 @dataclass(frozen=True, slots=True)
 class ParseContext:
-    """Context of a syntax error: a piece, readable up to ``at``."""
+    """The context of a syntax error in a piece that is readable up to ``at``."""
 
     source: Source
     kind: str
@@ -139,7 +139,7 @@ class ParseContext:
         return self.text_at(self.at + 1)
 
     def with_a_point(self) -> str:
-        """Advice on a comma between two numbers; dots before it part thousands."""
+        """Advice on a comma between two numbers; dots before it are thousands separators."""
         whole = self.text_before.replace(".", "")
         return f"write a point: `{whole}.{self.text_behind}`"
 
@@ -151,26 +151,26 @@ class ParseContext:
         return self.unexpected is not None and self.unexpected.kind == "word"
 
     def touches(self) -> bool:
-        """Tell whether no space precedes ``unexpected``."""
+        """Whether no space precedes ``unexpected``."""
         return bool(self.unexpected and self.before and self.before.end == self.unexpected.start)
 
     @property
     def operand(self) -> bool:
-        """Tell whether a formula could begin here."""
+        """Whether a formula could begin here."""
         return self.accepted >= _OPERANDS
 
     @property
     def quantity(self) -> bool:
-        """Tell whether a quantity or a number could stand here."""
+        """Whether a quantity or a number could come here."""
         return self.accepted >= _QUANTITIES
 
     @property
     def operator(self) -> bool:
-        """Tell whether a binary operator could stand here."""
+        """Whether a binary operator could come here."""
         return self.accepted >= _OPERATORS
 
     def opened(self, opening: str, closing: str) -> int | None:
-        """The index of the last ``opening`` before ``at`` that is not closed."""
+        """The index of the last unclosed ``opening`` before ``at``."""
         depth = 0
         for index in range(self.at - 1, -1, -1):
             token = self.tokens[index]
@@ -187,5 +187,5 @@ DELETE_IT: Final = "delete the character there, which cannot be seen"
 
 
 def is_invisible(text: str) -> bool:
-    """True for a character that no screen shows, as word processors put between others."""
+    """Whether a character is invisible, such as those that word processors insert."""
     return len(text) == 1 and unicodedata.category(text) == "Cf"

@@ -1,4 +1,4 @@
-"""Messages about the parts of a file: what is missing, misplaced, or without its brace."""
+"""Messages about the parts of a file that are missing, misplaced, or lack a brace."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ def given_twice(clause: str, again: Span, first: Span) -> Diagnostic:
 
 
 def no_beginning(source: Source) -> Diagnostic:
-    """What there is to say of a file that begins like no source, without a word of it."""
+    """The message about a file that does not begin like a source; it quotes nothing of it."""
     start, end = first_word_at(source.text)
     word = source.text[start:end]
     line, column = source.position(start)
@@ -127,7 +127,7 @@ def no_beginning(source: Source) -> Diagnostic:
 
 
 _COMPILED, _HEAD = '"rulec compiled rulebook"', 1000
-"""What a compiled rulebook says at its beginning."""
+"""The text at the beginning of a compiled rulebook, and how many characters are searched."""
 
 
 UNBALANCED_BRACE = Code(
@@ -159,7 +159,7 @@ class StructureMessages:
     tokens: list[Token]
 
     def place(self, index: int) -> SourceLocation:
-        """The token, or the empty place behind the last one."""
+        """The token's place, or the empty place after the last token."""
         if index < len(self.tokens):
             token = self.tokens[index]
             return Span(self.source, token.start, token.end).place
@@ -181,7 +181,7 @@ class StructureMessages:
         )
 
     def no_open(self, before: int, content: str, *, confirms: bool = False) -> Diagnostic:
-        """A ``{`` is missing behind token ``before``, perhaps of a confirmation."""
+        """A ``{`` is missing after token ``before``, perhaps in a confirmation."""
         way_out = "write `{` before them"
         if confirms:
             way_out = 'write which provision confirms it, such as `{ cite "s. 12" }`'
