@@ -1,1 +1,1 @@
-"""Rulebooks as meant: names resolved, types checked, overlays applied; see README.md."""
+"""Rulebooks with resolved names, checked types and applied overlays; see README.md."""

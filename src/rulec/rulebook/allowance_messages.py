@@ -1,4 +1,4 @@
-"""Comments that allow warnings, and are wrong."""
+"""Messages about invalid comments that allow warnings."""
 
 from __future__ import annotations
 

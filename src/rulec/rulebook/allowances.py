@@ -12,11 +12,11 @@ _ALLOWANCE = re.compile(
     r"#\s*rulec:\s*allow\s+(?P<codes>R\d{4}(?:\s*,\s*R\d{4})*)\b[ \t]*(?:because[ \t]+(?P<why>\S))?"
 )
 _OF_A_CHECK = ("R01", "R02", "R03")
-"""So the codes begin that a check finds; of others it does not say that they are not there."""
+"""The prefixes of codes that a check finds; unused allowances of other codes are not reported."""
 
 
 def judged_allowances(findings: Sequence[Diagnostic], source: Source) -> tuple[Diagnostic, ...]:
-    """The findings of a source that no comment allows, and what is wrong with such comments."""
+    """The findings of a source that no comment allows, and mistakes in such comments."""
     return (*without_allowed(findings), *_unfit(findings, source))
 
 
@@ -60,7 +60,7 @@ def _unfit(findings: Sequence[Diagnostic], source: Source) -> Iterator[Diagnosti
 
 
 def _without(source: Source, comment: re.Match[str]) -> Fix:
-    """The line of a comment without it."""
+    """The fix that removes the comment from its line."""
     before = source.text[: comment.start()]
     end = source.text.find("\n", comment.end())
     start = len(before.rstrip(" \t"))

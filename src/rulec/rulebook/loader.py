@@ -1,4 +1,4 @@
-"""Loading of rulebooks from files and text, with all mistakes collected."""
+"""Loads rulebooks from files and text, collecting all mistakes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from rulec.vocabulary import Vocabulary
 
 @dataclass(frozen=True, slots=True)
 class RulebookFile:
-    """Text of a rulebook with its path, if any, and search path."""
+    """The text of a rulebook with its path, if any, and search path."""
 
     source: Source
     data: bytes
@@ -33,7 +33,7 @@ class RulebookFile:
 
 @dataclass(frozen=True, slots=True)
 class Trees:
-    """Syntax trees of a rulebook and of its dependencies, with mistakes.
+    """The syntax trees of a rulebook and of its dependencies, with mistakes.
 
     ``books`` are those that it extends, the most general first, and itself. Without
     ``dependencies`` a file could not be read, so that any name may be missing for that reason.
@@ -50,7 +50,7 @@ class Trees:
 
 @dataclass(frozen=True, slots=True)
 class Loaded:
-    """Rulebook without errors, with its warnings and the syntax trees as in ``Trees``."""
+    """A rulebook without errors, with its warnings and the syntax trees as in ``Trees``."""
 
     rulebook: Rulebook
     warnings: tuple[Diagnostic, ...] = ()
@@ -65,9 +65,9 @@ class Loaded:
 
 @dataclass(frozen=True, slots=True)
 class Diagnosis:
-    """All that there is to say about a file, and the other files that it depends on.
+    """All diagnostics about a file, and the other files that it depends on.
 
-    None of them are known if one is missing, as any new file could make a difference.
+    The dependencies are unknown if one is missing, since any new file could make a difference.
     """
 
     findings: tuple[Diagnostic, ...]
@@ -77,7 +77,7 @@ class Diagnosis:
 def load_rulebook(
     reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
 ) -> Rulebook:
-    """A rulebook as meant: ``read_rulebook`` without its warnings."""
+    """A resolved rulebook: ``read_rulebook`` without its warnings."""
     return read_rulebook(reference, search_path, at).rulebook
 
 
@@ -125,7 +125,7 @@ def parse_all(file: RulebookFile) -> Trees:
 
 
 def with_book(trees: Trees, source: Source, search_path: Sequence[Path] = ()) -> Trees:
-    """The trees with one more rulebook, which extends the last, and what vocabularies it uses."""
+    """The trees with one more rulebook, which extends the last one, and its vocabularies."""
     book, mistakes = parse(source)
     files = ReferencedFiles(search_path)
     read = [files.vocabulary(use, None) for use in _distinct(book.uses)]
@@ -151,7 +151,7 @@ def resolve_trees(trees: Trees, at: str = "", traffic: Traffic = "") -> Loaded:
 def parse_rulebook(
     text: str, name: str = "<text>", search_path: Sequence[Path] = (), at: str = ""
 ) -> Rulebook:
-    """A rulebook whose text is at hand; messages call it ``name``. Raises RulecError."""
+    """A rulebook from its text; messages call it ``name``. Raises RulecError."""
     data = text.encode("utf-8", "surrogatepass")
     file = RulebookFile(Source(name, text), data, None, tuple(search_path))
     return resolve_trees(parse_all(file), at).rulebook
@@ -212,7 +212,7 @@ def trees_of(file: RulebookFile, own: tree.File, mistakes: Sequence[Diagnostic])
 
 
 def day_of(trees: Trees, at: str = "") -> str:
-    """The day (ISO) whose law a rulebook is: what is asked for, that of its law, or today."""
+    """The day (ISO) whose law applies: the requested one, that of the law, or today."""
     law = trees.books[-1].law
     return at or (law.as_of if law else "") or date.today().isoformat()  # noqa: DTZ011
 
@@ -248,8 +248,8 @@ def reported(
 ) -> tuple[Diagnostic, ...]:
     """The diagnostics of ``mistakes`` to report, in order, without those that comments allow.
 
-    Of unknown words they name the rulebooks and vocabularies that have them. ``placed`` leads from
-    places in the trees to those in a text that was edited since it was parsed.
+    For unknown words they name the rulebooks and vocabularies that have them. ``placed`` maps
+    places in the trees to those in a text that was edited after parsing.
     """
     findings = in_order(trees.name, judged_allowances(mistakes, source))
     read = [file.name.text for file in (*trees.books, *trees.vocabularies) if file.name]

@@ -1,4 +1,4 @@
-"""A query: a formula whose moments in traces are looked for."""
+"""A query: a formula whose moments in traces are searched for."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from rulec.vocabulary import Vocabulary
 
 @dataclass(frozen=True, slots=True)
 class FormulaQuery:
-    """A formula with its variables, which a ``rule`` has, in the words of a vocabulary.
+    """A formula with its variables, as a ``rule``, in the words of a vocabulary.
 
-    ``semantics`` says how a trace ends, ``traffic`` on which side it drives.
+    ``semantics`` says how a trace ends, ``traffic`` the side on which traffic drives.
     """
 
     __repr__ = short_repr

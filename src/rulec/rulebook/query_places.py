@@ -1,4 +1,4 @@
-"""Places of diagnostics about a query: from the program around its formula to its own text."""
+"""Places of diagnostics about a query, mapped from the surrounding program to the query."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from rulec.diagnostics import Diagnostic, Source, SourceLocation, Span
 
 @dataclass(frozen=True, slots=True)
 class QueryPlaces:
-    """The text of a ``query``, and the ``program`` in which parts of it stand.
+    """The text of a ``query``, and the ``program`` that contains parts of it.
 
-    ``parts`` are where each begins in the program, where in the query, and its length, in
-    characters. Both texts are called alike in messages.
+    ``parts`` are the start of each part in the program, its start in the query, and its length, in
+    characters. Messages use the same name for both texts.
     """
 
     query: Source
@@ -20,7 +20,10 @@ class QueryPlaces:
     parts: tuple[tuple[int, int, int], ...]
 
     def relocated(self, problem: Diagnostic) -> Diagnostic:
-        """The diagnostic with its places in the query, without those in the rest of the program."""
+        """The diagnostic with its places in the query.
+
+        Places in the rest of the program are dropped.
+        """
         place = problem.place and self._place(problem.place)
         moved = ((label, self._place(label.place)) for label in problem.labels)
         labels = tuple(

@@ -1,4 +1,4 @@
-"""Reader of queries: a formula is read as the only rule of a rulebook around it, the program."""
+"""Reads queries: a formula is read as the only rule of a rulebook built around it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from rulec.rulebook.rulebook_model import Rulebook
 from rulec.syntax.parser import parse_formula
 
 _HEAD = re.compile(r"\s*(\(\s*\w+\s*(?::\s*\w+\s*)(?:,\s*\w+\s*(?::\s*\w+\s*)?)*\))")
-"""Variables with their types, as in the head of a rule; no formula begins so."""
+"""Variables with their types, as in the head of a rule; no formula begins like this."""
 
 _NAME = "what_is_asked"
 _QUERY = "the formula"
@@ -52,8 +52,7 @@ def read_query(
     """Read a formula, with its variables before it, as in ``(v: vehicle) gap(v) < 5 m``.
 
     It is in the words of a vocabulary, of a ``rulebook`` with its definitions and parameters, or of
-    both; of ``road`` where neither is named.
-    Raises RulecError with all that is wrong with it.
+    both; by default of ``road``. Raises RulecError with all mistakes.
     """
     head = _HEAD.match(text)
     begin = head.end() if head else 0
@@ -91,7 +90,7 @@ def read_query(
 
 
 def _in_words(problem: Diagnostic) -> Diagnostic:
-    """The diagnostic without the rule's name, and with ways out for a formula that is no rule."""
+    """The diagnostic without the rule's name, and with help for a formula instead of a rule."""
     way_out = problem.help.replace("behind the rule's name", "before the formula")
     way_out = re.sub(r": `use (\w+)`$", r": `--use \1`", way_out)
     # Nothing is declared in a formula.
@@ -101,7 +100,7 @@ def _in_words(problem: Diagnostic) -> Diagnostic:
 
 
 def _word(vocabulary: str, folders: Sequence[Path]) -> str:
-    """The name of a vocabulary. Raises RulecError R0703 for what can be none."""
+    """The name of a vocabulary. Raises RulecError R0703 for an impossible name."""
     if re.fullmatch(r"[^\W\d]\w*", vocabulary) is None:
         try:
             load_vocabulary(vocabulary, folders)

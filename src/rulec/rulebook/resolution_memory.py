@@ -1,4 +1,4 @@
-"""Results of a rulebook's last resolution that an edit leaves valid."""
+"""Results of a rulebook's last resolution that remain valid after an edit."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _Provision = tree.OptionItem | tree.ParamItem | tree.SetItem | tree.DefineItem
 
 @dataclass(frozen=True, slots=True)
 class ResolvedTrees:
-    """Trees, what their formulas can speak of, the rulebook if it has no error, and findings."""
+    """Trees, the names their formulas can use, the rulebook if it has no error, and findings."""
 
     trees: Trees
     names: BookNames
@@ -37,10 +37,10 @@ class ResolvedTrees:
 
 @dataclass(frozen=True, slots=True)
 class _Known:
-    """A rule as it was translated, and the parts of trees that it was made of.
+    """A translated rule, and the parts of trees from which it was made.
 
-    ``provisions`` are those that its formulas use, also through others. ``certain``: all names were
-    known for sure, so that nothing was passed over for what could not be read.
+    ``provisions`` are those that its formulas use, also indirectly. ``certain``: no name was
+    missing because of unreadable text.
     """
 
     own: tuple[object, ...]
@@ -53,7 +53,7 @@ class _Known:
 
 @dataclass(slots=True)
 class ResolutionMemory:
-    """Resolver of one rulebook's trees, again and again, as it is edited.
+    """Resolves one rulebook's trees repeatedly while it is edited.
 
     Parts of trees are compared by identity: what an edit has not touched is the same object.
     """
@@ -66,7 +66,10 @@ class ResolutionMemory:
     _used: dict[int, tuple[tree.Item, frozenset[str]]] = field(default_factory=dict)
 
     def resolved(self, trees: Trees, at: str = "") -> ResolvedTrees:
-        """What ``resolve`` says of trees; ``at`` is the day (ISO), as for ``read_rulebook``."""
+        """The result of ``resolve`` for trees.
+
+        ``at`` is the day (ISO), as for ``read_rulebook``.
+        """
         day = day_of(trees, at)
         files = (*trees.vocabularies, *trees.books)
         opaque = trees.dependencies is None
@@ -142,7 +145,7 @@ class ResolutionMemory:
 
 
 def _is_certain(names: BookNames) -> bool:
-    """Tell whether no name may be missing because something could not be read."""
+    """Whether no name may be missing because of unreadable text."""
     symbols, laid = names.symbols, names.constants.overlay
     open_names = symbols.opaque or symbols.opaque_types or symbols.suspects
     return not (laid.unsure or laid.unsure_rules or laid.suspects or open_names)
@@ -161,9 +164,9 @@ def _same(parts: Sequence[object], others: Sequence[object]) -> bool:
 def _apart_from_rules(
     files: Iterable[tree.File],
 ) -> tuple[tuple[object, ...], tuple[object, ...]]:
-    """All but rules in files; and of that, what no rule can be told apart from.
+    """Everything except rules in files, split into what affects every rule and the rest.
 
-    The rest is what a rule shows that it uses, or what it does not depend on without a mistake.
+    The rest only affects rules that visibly use it, or that do not depend on it without a mistake.
     """
     stable: list[object] = []
     declared: list[object] = []
@@ -180,7 +183,7 @@ def _apart_from_rules(
 
 
 def _with_rules_of(trees: Trees, names: BookNames) -> BookNames:
-    """The same names for other rules: they are laid over one another anew."""
+    """The same names for other rules, which are applied to one another again."""
     symbols, old = names.symbols, names.constants
     spans = {**symbols.type_spans, **symbols.spans}
     laid = overlay(trees.books, spans, unsure=old.overlay.unsure)
@@ -192,7 +195,7 @@ def _with_rules_of(trees: Trees, names: BookNames) -> BookNames:
 
 
 def _by_rule(books: Iterable[tree.File]) -> dict[str, list[object]]:
-    """What is said of each rule, by its name."""
+    """Statements about each rule, by its name."""
     items: dict[str, list[object]] = {}
     for book in books:
         for item in book.items:

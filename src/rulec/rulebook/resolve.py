@@ -1,4 +1,4 @@
-"""Resolution of syntax trees to the rulebook that they mean."""
+"""Resolves syntax trees to a rulebook."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ from rulec.vocabulary import Vocabulary
 
 @dataclass(frozen=True, slots=True)
 class BookNames:
-    """What the formulas of a rulebook can speak of on a day, and what is wrong with that.
+    """The names that the formulas of a rulebook can use on a day, and mistakes in them.
 
-    ``known_levels`` are the levels that a rule may name; None if they are not known for sure.
+    ``known_levels`` are the levels that a rule may name; None if they are not known for certain.
     """
 
     symbols: SymbolTable
@@ -54,9 +54,9 @@ class BookNames:
 
 @dataclass(frozen=True, slots=True)
 class TranslatedRule:
-    """A rule as meant, None if it has mistakes, which are then among its ``mistakes``.
+    """A resolved rule, None if it has mistakes, which are then among its ``mistakes``.
 
-    ``contradictions`` are the states of its examples that facts rule out.
+    ``contradictions`` are the states of its examples that axioms exclude.
     """
 
     rule: Rule | None
@@ -65,11 +65,11 @@ class TranslatedRule:
 
 
 Translate = Callable[[RuleEntry, BookNames, bool], TranslatedRule]
-"""From a rule's entry, what it can speak of, and whether it is the rulebook's own law."""
+"""Resolves a rule's entry, given the names it can use, and whether it is the rulebook's own law."""
 
 
 def translated(entry: RuleEntry, names: BookNames, confirmed: bool) -> TranslatedRule:
-    """A rule as meant, with everything that is wrong with it."""
+    """A resolved rule, with all mistakes in it."""
     rule, mistakes = translate_rule(
         entry, names.symbols, names.constants, names.known_levels, confirmed=confirmed
     )
@@ -155,9 +155,9 @@ def with_rules(
     *,
     whole: bool,
 ) -> tuple[Rulebook | None, tuple[Diagnostic, ...]]:
-    """The rulebook of trees whose names are known, and everything that is wrong.
+    """The rulebook of trees whose names are resolved, and all mistakes.
 
-    ``whole``: all files could be read, with all that is in them.
+    ``whole``: all files could be read completely.
     """
     file, laid, at = books[-1], names.constants.overlay, names.constants.at
     mistakes = list(names.mistakes)
@@ -215,7 +215,7 @@ def with_rules(
 
 
 def resolve_vocabulary(file: tree.File) -> tuple[Vocabulary | None, tuple[Diagnostic, ...]]:
-    """A vocabulary by itself, and what is wrong with it."""
+    """A vocabulary by itself, and mistakes in it."""
     symbols = symbol_table([file])
     mark_constant_and_presumed(symbols, [file])
     axioms, wrong_facts = axioms_of([file], symbols, ConstantsAndMacros(Overlay(), ""))
@@ -240,7 +240,7 @@ def _distinct_mistakes(mistakes: Sequence[Diagnostic]) -> list[Diagnostic]:
 
 
 def is_whole(file: tree.File) -> bool:
-    """Tell whether all of a file could be read."""
+    """Whether a file could be read completely."""
     broken = any(
         isinstance(item, tree.BrokenItem) or (isinstance(item, tree.RuleItem) and not item.complete)
         for item in file.items

@@ -1,4 +1,4 @@
-"""A rulebook as meant: names resolved, types checked."""
+"""A resolved rulebook: names resolved, types checked."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Variable:
 
 
 Semantics = Literal["stutter", "finite"]
-"""How a finite trace ends: its last state goes on for ever, or nothing comes after it."""
+"""How a finite trace ends: its last state is repeated for ever, or nothing follows it."""
 
 Traffic = Literal["", "left", "right"]
 """The side on which traffic drives; empty if the rulebook does not say."""
@@ -37,7 +37,7 @@ ExampleState = Mapping[tuple[str, tuple[str, ...]], bool | str | float]
 
 @dataclass(frozen=True, slots=True)
 class Example:
-    """Trace that its rule must accept or reject. Unmentioned values take their defaults."""
+    """A trace that its rule must accept or reject. Unmentioned values have their defaults."""
 
     __repr__ = short_repr
 
@@ -45,10 +45,10 @@ class Example:
     states: tuple[ExampleState, ...]
     label: str = ""
     objects: tuple[Variable, ...] = ()
-    """Objects that are there besides those that the rule's variables name."""
+    """The objects present in addition to those that the rule's variables name."""
     span: Span | None = field(default=None, compare=False, repr=False)
     state_spans: tuple[Span, ...] = field(default=(), compare=False, repr=False)
-    """Where each state is written; empty for an example that was not read from a text."""
+    """The place of each state; empty for an example that was not read from a text."""
 
 
 ExemptionScope = Literal["initially", "at start", "throughout", "at some point", "at end"]
@@ -64,9 +64,9 @@ class Exemption:
 
 @dataclass(frozen=True, slots=True)
 class RuleParts:
-    """What a rule requires, where it is exempt from that, and the condition under which it counts.
+    """What a rule requires, its exemptions, and the condition under which it applies.
 
-    The rule's formula has all of them worked in.
+    The rule's formula combines all of them.
     """
 
     required: Formula
@@ -76,14 +76,14 @@ class RuleParts:
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """One rule. Without variables it speaks of ego and the world alone.
+    """One rule. Without variables it is only about ego and the world.
 
-    ``formula`` is all of it, exceptions included; its bounds may be in seconds. ``level`` is its
-    place in the rulebook's priorities, empty if it has none. ``book`` is the rulebook that it is
-    written in. The states of its examples are ``step_s`` seconds apart. ``required`` is the formula
-    without its exemptions and the condition (``when``) under which it is in force; None where there
-    are none. ``inherited_from`` is the rulebook whose law it is, which last gave it a provision, if
-    the rulebook at hand has not confirmed that it is its own law, too; else empty.
+    ``formula`` is the whole rule, including exceptions; its bounds may be in seconds. ``level`` is
+    its place in the rulebook's priorities, empty if it has none. ``book`` is the rulebook in which
+    it is written. The states of its examples are ``step_s`` seconds apart. ``required`` is the
+    formula without exemptions and the condition (``when``) under which it is in force; None if
+    there are none. ``inherited_from`` is the rulebook whose law it is, which last gave it a
+    provision, unless the rulebook at hand has confirmed it as its own law; else empty.
     """
 
     __repr__ = short_repr
@@ -112,19 +112,19 @@ class Rule:
 
 
 def parts_of(rule: Rule) -> RuleParts | None:
-    """The parts of a rule; None if it is nothing but what it requires."""
+    """The parts of a rule; None if it consists only of its requirement."""
     if rule.required is None:
         return None
     return RuleParts(rule.required, rule.exemptions, rule.condition)
 
 
 def cited_law(cite: str, inherited_from: str) -> str:
-    """A rule's provision; whose it is where the rulebook has not confirmed the rule."""
+    """A rule's provision, with the law's name if the rulebook has not confirmed the rule."""
     return f"inherited, not confirmed: {inherited_from} {cite}".rstrip() if inherited_from else cite
 
 
 def provision_note(rule: str, cite: str) -> str:
-    """What is said below a finding within a rule: which provision that is."""
+    """The note below a finding within a rule that names its provision."""
     return f"rule `{rule}` is {cite}"
 
 
@@ -147,7 +147,7 @@ class Axiom:
 
 @dataclass(frozen=True, slots=True)
 class Remark:
-    """Remark, with its reason, on a changed rule or silent topic; ``book`` makes it."""
+    """A remark, with its reason, on a changed rule or silent topic; ``book`` makes it."""
 
     name: str
     because: str
@@ -157,7 +157,7 @@ class Remark:
 
 @dataclass(frozen=True, slots=True)
 class Topic:
-    """What rules can be about, such as zebra crossings."""
+    """A topic that rules can have, such as zebra crossings."""
 
     name: str
     title: str
@@ -170,8 +170,8 @@ Treatment = Literal["to do", "silent", "not machine-readable"]
 class Provision:
     """An article of the rulebook's law, in the text of a day (ISO); ``link`` is its official page.
 
-    ``number`` is how rules cite it. ``treatment`` is what becomes of it as long as no rule does,
-    and ``because`` why; ``certainty`` is how sure number and heading are.
+    ``number`` is how rules cite it. ``treatment`` says what becomes of it while no rule cites it,
+    and ``because`` why; ``certainty`` is that of its number and heading.
     """
 
     number: str
@@ -187,10 +187,10 @@ class Provision:
 class Rulebook(Rows):
     """A jurisdiction's rules over one vocabulary.
 
-    ``priorities`` is a pre-order of levels: all pairs (higher, lower), transitive; levels that are
-    equal stand in both orders. ``extends`` are the rulebooks that it builds upon, nearest first.
-    ``at`` is the day (ISO) whose law it is: what was not in force then has been left out.
-    ``topics`` are those of its chain, ``provisions`` the articles of its own law.
+    ``priorities`` is a pre-order of levels: all pairs (higher, lower), transitive; equal levels are
+    paired in both orders. ``extends`` are the rulebooks that it builds upon, nearest first. ``at``
+    is the day (ISO) whose law it is; what was not in force then has been left out. ``topics`` are
+    those of its chain, ``provisions`` the articles of its own law.
     """
 
     __repr__ = short_repr
@@ -214,11 +214,11 @@ class Rulebook(Rows):
     provisions: tuple[Provision, ...] = ()
 
     def rows(self) -> list[dict[str, Any]]:
-        """One row a rule."""
+        """One row per rule."""
         return rule_rows(self.rules)
 
 
 def rule_rows(rules: Iterable[Any]) -> list[dict[str, Any]]:
-    """One row a rule, of a rulebook's rules or of compiled ones."""
+    """One row per rule, for a rulebook's rules or compiled ones."""
     columns = ("strength", "level", "cite", "says", "book")
     return [{"rule": x.name, **{column: getattr(x, column) for column in columns}} for x in rules]

@@ -1,4 +1,4 @@
-"""A rulebook to start from: on its own, or upon another one."""
+"""A rulebook to start from: on its own, or extending another one."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def new_rulebook(name: str, today: date) -> str:
 
 
 def new_rulebook_upon(name: str, base: str, today: date, search_path: Sequence[Path] = ()) -> str:
-    """Text of a new rulebook that extends another one, with all that it could change as comments.
+    """The text of a new rulebook that extends another one, with possible changes as comments.
 
     Raises RulecError if a rulebook cannot have this name (R0738), or if the base cannot be read.
     """

@@ -1,4 +1,4 @@
-"""Phrases of the vocabularies that ship: how sentences speak of their words, by language."""
+"""The phrases of shipped vocabularies: how sentences express their words, by language."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class HasSources(Protocol):
-    """A rulebook, compiled or not, which knows the files that it was made of."""
+    """A rulebook, compiled or not, which knows its source files."""
 
     @property
     def sources(self) -> Sequence[SourceFile]:
@@ -30,8 +30,8 @@ class HasSources(Protocol):
 def phrases_of(rulebook: HasSources, language: str = "en") -> Mapping[str, str]:
     """The phrases for the words of a rulebook, by the names of signals, values and quantities.
 
-    They are those of the vocabularies, and of rulebooks with words of their own, that it uses as
-    they ship, from ``vocabulary/phrases``; none for words of its own.
+    They are those of the unchanged shipped vocabularies and rulebooks that it uses, from
+    ``vocabulary/phrases``; its own words have none.
     """
     phrases: dict[str, str] = {}
     for name in _vocabularies(rulebook):
@@ -40,7 +40,7 @@ def phrases_of(rulebook: HasSources, language: str = "en") -> Mapping[str, str]:
 
 
 def types_of(rulebook: HasSources, language: str) -> Mapping[str, TypeWords]:
-    """How to speak of the types of a rulebook; none for types of its own."""
+    """How to express the types of a rulebook; none for its own types."""
     types: dict[str, TypeWords] = {}
     for name in _vocabularies(rulebook):
         types.update(types_in(name, language))
@@ -48,7 +48,7 @@ def types_of(rulebook: HasSources, language: str) -> Mapping[str, TypeWords]:
 
 
 def _vocabularies(rulebook: HasSources) -> Iterator[str]:
-    """What ships, has phrases, and is used by a rulebook as it is: vocabularies, and books."""
+    """The shipped vocabularies and rulebooks with phrases that a rulebook uses unchanged."""
     for source in rulebook.sources:
         file = Path(source.name)
         folders = ["vocabulary"]
@@ -61,13 +61,13 @@ def _vocabularies(rulebook: HasSources) -> Iterator[str]:
 
 
 def phrases_in(vocabulary: str, language: str) -> Mapping[str, str]:
-    """The phrases of a vocabulary that ships; none if it has none in that language."""
+    """The phrases of a shipped vocabulary; none if it has none in that language."""
     words = _file(f"{vocabulary}.{language}.toml").items()
     return {name: phrase for name, phrase in words if isinstance(phrase, str)}
 
 
 def types_in(vocabulary: str, language: str) -> Mapping[str, TypeWords]:
-    """How to speak of the types of a vocabulary that ships; none in English, which has rules."""
+    """How to express the types of a shipped vocabulary; none in English, which has rules."""
     # Patterns of sentences, 10 ms: whoever asks for phrases alone does without.
     from rulec.logic.sentences.language import TypeWords
 
@@ -76,19 +76,19 @@ def types_in(vocabulary: str, language: str) -> Mapping[str, TypeWords]:
 
 
 def titles_in(language: str) -> Mapping[str, str]:
-    """The titles of the rules that ship, by their names; in English those that need one."""
+    """The titles of shipped rules, by name; in English only those that need one."""
     titles = _file(f"titles.{language}.toml").items()
     return {name: title for name, title in titles if isinstance(title, str)}
 
 
 def topics_in(language: str) -> Mapping[str, str]:
-    """The titles of the topics that ship, by their names; none in English, where they have one."""
+    """The titles of shipped topics, by name; none in English, where the source has them."""
     topics: Mapping[str, str] = _file(f"titles.{language}.toml").get("topics", {})
     return topics
 
 
 def synonyms_of_the_field() -> Mapping[str, Sequence[str]]:
-    """The words of the vocabularies that ship, and how others say the same, in any language."""
+    """The words of shipped vocabularies, with synonyms in any language."""
     return _file("synonyms.toml")
 
 

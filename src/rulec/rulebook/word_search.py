@@ -1,4 +1,4 @@
-"""Words by their names alone, in whichever vocabulary or rulebook declares them."""
+"""Finds words by name alone, in whichever vocabulary or rulebook declares them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rulec.syntax.caching.tree_cache import parsed
 
 @dataclass(frozen=True, slots=True)
 class FoundWord:
-    """A word, the file that declares it, and all that is declared there and in what it uses."""
+    """A word, the file that declares it, and all declarations there and in what it uses."""
 
     name: str
     file: tree.File
@@ -50,7 +50,7 @@ def _in_rulebooks(name: str, search_path: Sequence[Path]) -> Iterator[FoundWord]
 
 
 def _trees_with(name: str, book: str, search_path: Sequence[Path]) -> Trees | None:
-    """The trees of a rulebook in whose text a word stands."""
+    """The trees of a rulebook whose text contains a word."""
     with suppress(RulecError):
         file = find(book, search_path)
         return parse_all(file) if name in file.source.text else None

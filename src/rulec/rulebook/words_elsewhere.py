@@ -26,9 +26,9 @@ _DEFINITION = re.compile(r"^\s*define\s+(\w+)", re.M)
 def with_words_elsewhere(
     findings: Iterable[Diagnostic], read: Sequence[str], search_path: Sequence[Path] = ()
 ) -> tuple[Diagnostic, ...]:
-    """Findings that say of unknown names in which rulebook or vocabulary these are.
+    """Findings that say for unknown names which rulebooks or vocabularies have them.
 
-    ``read`` are the rulebooks and vocabularies whose words there are already.
+    ``read`` are the rulebooks and vocabularies whose words are available already.
     """
     known = tuple(findings)
     names = [_unknown_name(finding) for finding in known]
@@ -53,7 +53,7 @@ def with_words_elsewhere(
 
 
 def _unknown_name(finding: Diagnostic) -> str:
-    """The name that nothing is called; empty if it is about something else, or misspelt."""
+    """The unknown name in a finding; empty if it is about something else, or misspelt."""
     place = finding.place
     if finding.code != UNKNOWN_NAME.code or place is None or place.column is None:
         return ""

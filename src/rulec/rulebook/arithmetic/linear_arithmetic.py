@@ -16,22 +16,22 @@ from rulec.logic.linear_comparison import comparison
 from rulec.vocabulary.dimensions import Dimension
 
 MOST_CASES = 64
-"""More cases in one comparison are no condition that anyone could check by reading."""
+"""The most cases in one comparison; more could not be checked by reading."""
 
 _LONGEST_TEXT = 50_000
 _MOST_BITS = 20_000
-"""Parameters that use another one twice double its text, or its digits."""
+"""A limit of a value's text and digits, which double if parameters use each other twice."""
 
 SUM, PRODUCT, SIGN, PRIMARY = range(4)
-"""How tightly the outermost operator of a number's text binds."""
+"""The precedence of the outermost operator of a number's text."""
 
 
 @dataclass(frozen=True, slots=True)
 class Linear:
     """A sum of coefficients times terms, and a constant, in base units.
 
-    ``dimension`` is None for a bare 0, which fits any. ``text`` is how a rulebook would say it,
-    ``binding`` how tightly its outermost operator binds.
+    ``dimension`` is None for a bare 0, which fits any dimension. ``text`` is how a rulebook would
+    write it, ``binding`` the precedence of its outermost operator.
     """
 
     coefficients: Mapping[ltl.Term, Fraction]
@@ -54,12 +54,12 @@ class Linear:
 Conditions = tuple[ltl.Formula, ...]
 
 Case = tuple[Conditions, Linear]
-"""The conditions under which a number is this one; none for a number without cases."""
+"""A number, and the conditions under which it applies; none for a number without cases."""
 
 
 @dataclass(frozen=True, slots=True)
 class NumberByCases:
-    """Number by cases, exactly one of which holds."""
+    """A number by cases, exactly one of which holds."""
 
     cases: tuple[Case, ...]
 
@@ -70,28 +70,28 @@ class NumberByCases:
 
     @property
     def is_constant(self) -> bool:
-        """Tell whether the number is the same for all states."""
+        """Whether the number is the same in all states."""
         return len(self.cases) == 1 and not self.cases[0][1].coefficients
 
     @property
     def varies(self) -> bool:
-        """Tell whether the number depends on quantities or counts, not on conditions alone."""
+        """Whether the number depends on quantities or counts, not only on conditions."""
         return any(linear.coefficients for _, linear in self.cases)
 
     @property
     def text(self) -> str:
-        """The number as a rulebook would say it."""
+        """The number as a rulebook would write it."""
         if len(self.cases) == 1:
             return self.cases[0][1].text
         return " or ".join(linear.text for _, linear in self.cases)
 
 
 class TooManyCasesError(Exception):
-    """Error: an expression has too many cases or is too large."""
+    """An expression has too many cases or is too large."""
 
 
 def constant(value: Fraction, dimension: Dimension | None, text: str) -> NumberByCases:
-    """A number that is always the same."""
+    """A number that is the same in all states."""
     return NumberByCases((((), Linear({}, value, dimension, text)),))
 
 
@@ -110,7 +110,7 @@ def combined(
 def _pairs(
     left: NumberByCases, right: NumberByCases
 ) -> Iterator[tuple[Conditions, Linear, Linear]]:
-    """Pairs of two numbers' cases, without those that exclude each other."""
+    """The pairs of two numbers' cases, without those that exclude each other."""
     for (first, linear), (second, other) in product(left.cases, right.cases):
         both = (*first, *(condition for condition in second if condition not in first))
         if not any(negated(condition) in first for condition in second):

@@ -1,4 +1,4 @@
-"""Size limits of formulas with definitions, conditions and exceptions expanded."""
+"""Size limits of formulas, with definitions, conditions and exceptions expanded."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from typing import Literal
 from rulec.logic import formula as ltl
 
 MOST_PARTS = 20_000
-"""Operators, atoms and comparisons of a rule's formula, those inside of counts included."""
+"""The most operators, atoms and comparisons of a rule's formula, including those within counts."""
 
 DEEPEST = 240
-"""Operators inside one another, those of definitions that have been put in included."""
+"""The deepest nesting of operators, including those of expanded definitions."""
 
 Limit = Literal["deep", "large"]
 
 
 class OverLimitError(Exception):
-    """Error: an expression, definitions put in, exceeds ``DEEPEST`` or ``MOST_PARTS``."""
+    """An expression with expanded definitions exceeds ``DEEPEST`` or ``MOST_PARTS``."""
 
     def __init__(self, limit: Limit) -> None:
         super().__init__(limit)
@@ -24,7 +24,7 @@ class OverLimitError(Exception):
 
 
 def exceeded_limit(formula: ltl.Formula) -> Limit | None:
-    """The limit that a formula exceeds, if any; repeated parts count again."""
+    """The limit that a formula exceeds, if any; repeated parts count repeatedly."""
     rest = [(formula, 1)]
     parts = 0
     while rest:

@@ -1,7 +1,7 @@
-"""Cache of answers that take long, valid while all sources that they come from are unchanged.
+"""A cache of answers that take long to compute, valid while all their sources are unchanged.
 
-An answer is JSON, a file for each question, in the folder of the cache of checks. Anything odd
-about one, and the question is answered anew.
+An answer is JSON, in one file per question, in the folder of the cache of checks. If anything is
+wrong with a file, the answer is computed again.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from rulec.rulebook.files.source_walk import rules_files
 from rulec.version import __version__
 
 MOST_ANSWERS = 200
-"""So many are kept; those longest unused go first."""
+"""How many answers are kept; the longest unused ones are removed first."""
 
 _ENDING = ".answer"
 
 
 @dataclass(frozen=True, slots=True)
 class AnswerQuestion:
-    """Key of an answer: the ``words`` of the question, options included, and the search path."""
+    """The key of an answer: the ``words`` of the question with its options, and the search path."""
 
     words: tuple[str, ...]
     search_path: tuple[Path, ...]

@@ -1,6 +1,6 @@
-"""Rules that stand in a text without a provision or without an example, found without parsing it.
+"""Finds the rules of a text that lack a provision or an example, without parsing it.
 
-It is for a remark on what is in order otherwise; `rulec audit` and `rulec test` look into them.
+This serves for a remark on files without mistakes; `rulec audit` and `rulec test` give details.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ _EXAMPLE = re.compile(r"\b(?:accept|reject)\b")
 
 
 def bare_rules(text: str) -> tuple[list[str], list[str]]:
-    """The rules that cite nothing, and those that have no example; not what overrides another."""
+    """The rules that cite nothing, and those that have no example; overrides are left out."""
     plain = _COMMENT_OR_TEXT.sub(" ", text)
     heads = [*_RULE.finditer(plain)]
     ends = [*[head.start() for head in heads], len(plain)][1:]

@@ -28,9 +28,10 @@ _STANDARD_INPUT = Path("standard input")
 
 @dataclass(frozen=True, slots=True)
 class Checked(Rows):
-    """Result of a batch check: checked files, findings, unread files, files left alone.
+    """The result of a batch check: checked files, findings, unread and skipped files.
 
-    ``uncited`` are rules without a provision, ``untested`` those without an example: no mistakes.
+    ``uncited`` are rules without a provision, ``untested`` those without an example; neither is a
+    mistake.
     """
 
     __repr__ = short_repr
@@ -143,10 +144,10 @@ def named_rulebooks(
     search_path: Sequence[Path] = (),
     excluded: Exclusion | None = None,
 ) -> tuple[list[str], FoundSources]:
-    """Names and paths of rulebooks, with those in folders and of patterns in place of these.
+    """The names and paths of rulebooks, with those in folders and those that match patterns.
 
-    Of folders and patterns vocabularies are left out. The second result has what was left alone
-    and refused on the way.
+    Vocabularies in folders and patterns are left out. The second result has what was skipped and
+    refused.
     """
     names: dict[str, None] = {}
     on_the_way = FoundSources()
@@ -173,7 +174,7 @@ def named_rulebooks(
 
 
 def is_vocabulary(path: Path) -> bool:
-    """True for a file that says that it is one."""
+    """Whether a file says that it is a vocabulary."""
     with suppress(RulecError):
         text = beginning_of(search.read_bytes(path))
         start, end = first_word_at(text)
@@ -230,7 +231,7 @@ def find_sources(
 
 
 def _matching(pattern: str, excluded: Exclusion | None) -> FoundSources:
-    """The sources that a pattern matches, and those in folders that it matches."""
+    """The sources that match a pattern, and those in folders that match it."""
     sources = FoundSources()
     # As the shell does it: what begins with a point has to be named so.
     for path in sorted(glob(pattern, recursive=True)):  # noqa: PTH207

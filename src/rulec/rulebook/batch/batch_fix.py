@@ -1,4 +1,4 @@
-"""Fixes of findings, written into the sources in which they were found."""
+"""Applies the fixes of findings to the sources in which they were found."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from rulec.syntax import decode
 
 
 def write_fixes(files: Iterable[str], findings: Sequence[Diagnostic]) -> tuple[int, list[str]]:
-    """Write the fixes of findings into the files that were asked for.
+    """Write the fixes of findings into the requested files.
 
-    Of fixes that overlap one is written; the rest is found again. Return the number of fixes and
-    the paths of the files. Raises RulecError.
+    Of overlapping fixes one is written; the others will be found again. Returns the number of fixes
+    and the paths of the files. Raises RulecError.
     """
     wanted = [finding.fix for finding in findings if finding.fix is not None]
     done: list[Formatted] = []
@@ -34,7 +34,7 @@ def write_fixes(files: Iterable[str], findings: Sequence[Diagnostic]) -> tuple[i
 
 
 def fixed(source: Source, fixes: Iterable[Fix]) -> tuple[str, int]:
-    """The text of a source with fixes made that do not overlap, and how many those are."""
+    """The text of a source with non-overlapping fixes applied, and their number."""
     parts: list[str] = []
     at = number = 0
     for fix in sorted(fixes, key=lambda fix: fix.place.start):

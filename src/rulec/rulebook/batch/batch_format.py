@@ -1,4 +1,4 @@
-"""Formatting of several files in their canonical form."""
+"""Formats several files into their canonical form."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from rulec.syntax.caching.tree_cache import ships_in_form
 
 @dataclass(frozen=True, slots=True)
 class Formatted:
-    """File before and after formatting; ``path`` is None for standard input."""
+    """A file before and after formatting; ``path`` is None for standard input."""
 
     name: str
     path: Path | None
@@ -29,13 +29,13 @@ class Formatted:
 
     @property
     def changed(self) -> bool:
-        """Tell whether the file is not in canonical form."""
+        """Whether the file is not in canonical form."""
         return self.before != self.after
 
 
 @dataclass(frozen=True, slots=True)
 class FormattedFiles:
-    """Files formatted, why others could not be, and what was left alone."""
+    """The formatted files, why others could not be formatted, and what was skipped."""
 
     files: tuple[Formatted, ...]
     refused: tuple[Diagnostic, ...]
@@ -49,11 +49,11 @@ def format_files(
     *,
     recalls: bool = False,
 ) -> FormattedFiles:
-    """Format the files at the paths, each once, and collect errors; none of them is written.
+    """Format the files at the paths, each once, and collect errors; nothing is written.
 
-    ``search_path`` is for who gives a name instead, ``excluded`` is left alone in folders. With
-    ``recalls`` the cache knows which texts are in form, and is told. Raises FormattingError, a
-    mistake in rulec.
+    ``search_path`` is used for help when a name is given, ``excluded`` is skipped in folders. With
+    ``recalls``, the cache of formatted texts is used and updated. Raises FormattingError for a bug
+    in rulec.
     """
     known = KnownForms.read() if recalls else KnownForms()
     done: dict[str, Formatted] = {}
@@ -109,7 +109,7 @@ def _named(reference: str, search_path: Sequence[Path]) -> Path | None:
 
 
 def formatted(name: str, path: Path | None, data: bytes) -> Formatted:
-    """Format one file. Raises RulecError, or FormattingError, a mistake in rulec."""
+    """Format one file. Raises RulecError, or FormattingError for a bug in rulec."""
     # The parser, 75 ms: not where all is known to be in form.
     from rulec.syntax import decode
     from rulec.syntax.formatting import format_source
@@ -118,7 +118,7 @@ def formatted(name: str, path: Path | None, data: bytes) -> Formatted:
 
 
 def replace_files(files: Sequence[Formatted]) -> tuple[Diagnostic, ...]:
-    """Write changed files, each whole or not at all; return errors."""
+    """Write changed files, each completely or not at all; returns the errors."""
     refused: list[Diagnostic] = []
     for file in files:
         if file.path is None or not file.changed:

@@ -1,9 +1,9 @@
-"""Cache of a check's findings, valid while its files are unchanged.
+"""A cache of a check's findings, valid while its files are unchanged.
 
-Checking a rulebook means parsing it and all that it builds upon; asking whether any of that has
-changed means reading the files alone. What is kept are diagnostics, one small file for each
-rulebook, in the user's cache folder. Anything odd about it, and the check is made anew: a file of
-which a bit is not as it was written, or one that somebody else has written or could have written.
+Checking a rulebook means parsing it and everything that it builds upon; finding out whether any of
+that has changed means only reading the files. The findings are kept in one small file per rulebook,
+in the user's cache folder. The check is done again if anything is wrong with that file: if it was
+changed, or if another user has written it or could have.
 """
 
 from __future__ import annotations
@@ -22,20 +22,20 @@ from rulec.rulebook.files.search_path import Dependency, locate_base, locate_voc
 from rulec.version import __version__
 
 MOST_FILES = 1000
-"""Of so many rulebooks the findings are kept; the ones longest unused go first."""
+"""For how many rulebooks the findings are kept; the longest unused ones are removed first."""
 
 MOST_CHARACTERS = 1_000_000
-"""Findings that would take more are not kept: each of them has the line that it is about."""
+"""Findings that would take more are not kept: each of them includes the line that it is about."""
 
 _WORDS = 200
-"""About so many characters a finding has of its own."""
+"""The approximate number of characters of a finding itself."""
 
 
 @dataclass(frozen=True, slots=True)
 class CheckQuestion:
-    """Key of a check: its inputs except for other files.
+    """The key of a check: its inputs except for other files.
 
-    ``path`` is empty for standard input; ``day`` is the day whose law it is by default.
+    ``path`` is empty for standard input; ``day`` is the default day whose law is applied.
     """
 
     name: str
@@ -46,12 +46,12 @@ class CheckQuestion:
     day: str
 
     def place(self) -> str:
-        """Name of the cache file, independent of the files' contents."""
+        """The name of the cache file, independent of the files' contents."""
         parts = (self.name, self.path, str(Path.cwd()), self.at, *self.search_path)
         return sha256("\0".join(parts).encode("utf-8", "surrogatepass")).hexdigest()[:40]
 
     def stamp(self) -> list[str]:
-        """The content that has to be as it was."""
+        """The content that must be unchanged."""
         return [sha256(self.data).hexdigest(), self.day, __version__, program_digest()]
 
 
@@ -93,7 +93,7 @@ def _size(findings: Sequence[Diagnostic]) -> int:
 
 
 def is_as_it_was(dependency: Dependency, search_path: Sequence[Path]) -> bool:
-    """Tell whether the same name still leads to the same content."""
+    """Whether the same name still leads to the same content."""
     user = Path(dependency.user) if dependency.user else None
     locate = locate_base if dependency.kind == "base" else locate_vocabulary
     path = locate(dependency.name, user, search_path)
@@ -106,7 +106,7 @@ def is_as_it_was(dependency: Dependency, search_path: Sequence[Path]) -> bool:
 
 
 def diagnostic_of(data: dict[str, Any]) -> Diagnostic:
-    """The diagnostic that ``asdict`` made this of. Raises TypeError or LookupError."""
+    """The diagnostic from which ``asdict`` made the data. Raises TypeError or LookupError."""
     place = None if data["place"] is None else SourceLocation(**data["place"])
     labels = [Label(SourceLocation(**label["place"]), label["message"]) for label in data["labels"]]
     mend = data["fix"]

@@ -1,7 +1,7 @@
-"""Cache of what is in canonical form: digests of texts, for this program alone.
+"""A cache of digests of formatted texts, for this version of rulec only.
 
-Whether a text is in form depends on nothing but the text and the formatter. Anything odd about the
-file, and all is formatted anew.
+Whether a text is formatted depends only on the text and the formatter. If anything is wrong with
+the cache file, everything is formatted again.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from rulec.cache.kept_json import keep_json, recall_json
 from rulec.version import __version__
 
 MOST_TEXTS = 10_000
-"""So many are known; of more, the ones used last."""
+"""How many texts are kept, the most recently used ones."""
 
 _FILE = "in_form"
 
 
 @dataclass(slots=True)
 class KnownForms:
-    """Digests of texts that are in form, those used last at the end."""
+    """Digests of formatted texts, the most recently used ones at the end."""
 
     digests: dict[str, None] = field(default_factory=dict)
     is_changed: bool = False
 
     @classmethod
     def read(cls) -> KnownForms:
-        """What the cache knows."""
+        """The content of the cache."""
         folder = usable_folder()
         kept: Any = None if folder is None else recall_json(folder / _FILE)
         with suppress(TypeError, LookupError):
@@ -39,16 +39,16 @@ class KnownForms:
         return cls()
 
     def has(self, text: bytes) -> bool:
-        """Tell whether a text is known to be in form."""
+        """Whether a text is known to be formatted."""
         return sha256(text).hexdigest() in self.digests
 
     def add(self, text: bytes) -> None:
-        """Note that a text is in form."""
+        """Record that a text is formatted."""
         self.digests[sha256(text).hexdigest()] = None
         self.is_changed = True
 
     def write(self) -> None:
-        """Keep what is known, if that is possible and something is new."""
+        """Write the cache, if possible and if something is new."""
         folder = usable_folder()
         if folder is not None and self.is_changed:
             kept = {"program": _program(), "digests": list(self.digests)[-MOST_TEXTS:]}

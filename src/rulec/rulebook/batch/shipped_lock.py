@@ -1,4 +1,4 @@
-"""``rulec.lock``: what ships with rulec and a project builds upon, by content."""
+"""``rulec.lock``: the hashes of shipped files that a project builds upon."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ def lock_file() -> Path:
 
 
 def write_lock(files: Iterable[str], search_path: Sequence[Path], at: str) -> tuple[Path, int]:
-    """Lock what rulebooks and vocabularies build upon; the path, and how many files that is.
+    """Lock what rulebooks and vocabularies build upon; returns the path, and the number of files.
 
-    Raises RulecError: R0702, and what is wrong in them.
+    Raises RulecError: R0702, and for mistakes in the files.
     """
     # Rulebooks, 100 ms: not for `check` alone.
     from rulec.rulebook.loader import read_rulebook
@@ -55,7 +55,7 @@ def write_lock(files: Iterable[str], search_path: Sequence[Path], at: str) -> tu
 
 
 def not_as_locked() -> tuple[Diagnostic, ...]:
-    """What differs from the lock, if there is one. Raises RulecError R0101, R0701, R0726."""
+    """The differences from the lock, if there is one. Raises RulecError R0101, R0701, R0726."""
     path = lock_file()
     if not path.exists():
         return ()

@@ -1,1 +1,1 @@
-"""Expressions as written to formulas and numbers, with all checks of types."""
+"""Turns written expressions into formulas and numbers, with all type checks."""

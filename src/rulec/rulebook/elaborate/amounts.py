@@ -1,4 +1,4 @@
-"""Numbers as written, with their units, and the bounds of time made of them."""
+"""Written numbers with their units, and time bounds made of them."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from rulec.syntax import tree
 from rulec.vocabulary.dimensions import DIMENSIONS
 
 _LONGEST = 400
-"""Characters of a number; and what its exponent may be. Floats need fewer."""
+"""The most characters of a number, and its largest exponent. Floats need fewer."""
 
 _EXPONENT = re.compile(r"[eE]([+-]?[0-9]+)$")
 
 _IN_THOUSANDS = re.compile(r"[1-9][0-9]{0,2}\.[0-9]{2}0")
-"""How numbers of thousands are written in most of Europe, and nobody writes decimals."""
+"""How most of Europe writes numbers of thousands, and nobody writes decimals."""
 
 _ONE_INSTANT = frozenset(("next", "weak next", "previously", "weak previously"))
 
@@ -44,7 +44,7 @@ def literal(node: tree.NumberLiteral, scope: Scope) -> NumberByCases | None:
 
 
 def exact_value(node: tree.NumberLiteral, scope: Scope) -> Fraction | None:
-    """Exact value of a number literal, without unit; None if it is too long or too large."""
+    """The exact value of a number literal, without unit; None if it is too long or too large."""
     exponent = _EXPONENT.search(node.text)
     short = len(node.text) <= _LONGEST and (exponent is None or abs(int(exponent[1])) <= _LONGEST)
     if not math.isfinite(float(node.text)):
@@ -60,7 +60,7 @@ def bound_of(
 ) -> Bound | Literal[False] | None:
     """The meaning of an operator's bound; False if it has a reported mistake.
 
-    ``evaluate`` gives the number that a parameter stands for.
+    ``evaluate`` gives the value of a parameter.
     """
     bound = node.bound
     if bound is None:

@@ -1,4 +1,4 @@
-"""Messages about bounds of time."""
+"""Messages about time bounds."""
 
 from __future__ import annotations
 

@@ -21,9 +21,9 @@ from rulec.vocabulary.dimensions import DIMENSIONS
 def check_constants_and_macros(
     symbols: SymbolTable, constants: ConstantsAndMacros
 ) -> list[Diagnostic]:
-    """Mistakes in parameters and definitions; the broken ones are noted in ``constants``.
+    """Mistakes in parameters and definitions; broken ones are recorded in ``constants``.
 
-    Each comes after those that it uses, so that a mistake is met first where it was made.
+    Each is checked after those that it uses, so that a mistake is first found where it was made.
     """
     mistakes: list[Diagnostic] = []
     for name in _in_order_of_use(constants):

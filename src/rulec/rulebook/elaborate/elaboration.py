@@ -160,7 +160,7 @@ def _infix(node: tree.Infix, scope: Scope) -> ltl.Formula | None:
 
 
 def _out_of_place(node: tree.Prefix | tree.Infix, scope: Scope) -> bool:
-    """Tell, and report, whether a temporal operator stands where one state is spoken of."""
+    """Whether a temporal operator is used where only one state is considered; if so, report it."""
     misplaced = scope.in_moment and node.operator not in OF_ONE_STATE
     if misplaced:
         scope.report(say.temporal_in_count(node))
@@ -189,7 +189,7 @@ def _compare(node: tree.Compare, scope: Scope) -> ltl.Formula | AnyArgument | No
 
 
 def _checked(formula: ltl.Formula) -> ltl.Formula:
-    """The formula. Raises TooManyCasesError: conditions have doubled its parts too often."""
+    """The formula. Raises TooManyCasesError if conditions have multiplied its parts too often."""
     if exceeded_limit(formula):
         raise TooManyCasesError
     return formula
@@ -215,7 +215,7 @@ def _fit(
     right: NumberByCases,
     scope: Scope,
 ) -> bool:
-    """Tell whether two numbers have one dimension; else report."""
+    """Whether two numbers have the same dimension; if not, report it."""
     if left.dimension is None or right.dimension in (None, left.dimension):
         return True
     scope.report(say.two_dimensions(node, left, right, scope))

@@ -1,4 +1,4 @@
-"""Messages about numbers, truths and objects where another of them is needed."""
+"""Messages about a number, truth value or object where another kind is needed."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ def no_number(
 def values_compared(
     node: tree.Compare, side: tree.AtomUse, item: Enumeration, compared: tree.Formula, scope: Scope
 ) -> Diagnostic:
-    """``surface = crossing``: an enumeration's value is an atom by itself."""
+    """``surface = crossing``: a value of an enumeration is an atom by itself."""
     name = side.name.text
     value = compared.name.text if isinstance(compared, tree.AtomUse) else ""
     relative = value in SIDES and set(SIDES[value].values()) <= set(item.values)
@@ -224,7 +224,7 @@ def _unit_help(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:
 
 
 def _parameter_help(node: tree.Formula, kind: str, beside: tree.Formula, scope: Scope) -> str:
-    """The way out for a parameter without a unit, or in one of another kind than it is beside."""
+    """Help for a parameter without a unit, or of another dimension than what is beside it."""
     unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
     is_param = isinstance(node, tree.AtomUse) and scope.constants.overlay.kind_of(node.name.text)
     if is_param != "parameter" or not unit:
@@ -235,7 +235,7 @@ def _parameter_help(node: tree.Formula, kind: str, beside: tree.Formula, scope: 
 
 
 def _other_unit(node: tree.Formula, beside: tree.Formula, scope: Scope) -> str:
-    """The way out for a number in a unit of another kind than what it is compared with."""
+    """Help for a number of another dimension than what it is compared with."""
     unit = scope.symbols.unit_text(beside.name.text) if isinstance(beside, tree.AtomUse) else ""
     if not (isinstance(node, tree.NumberLiteral) and unit):
         return ""
@@ -266,7 +266,7 @@ def _speed_help(
     right: tuple[tree.Formula, NumberByCases],
     scope: Scope,
 ) -> str:
-    """The way out for a length beside a time, where there is a word for ego's speed."""
+    """Help for a length beside a time, if the vocabulary has ego's speed."""
     symbols = scope.symbols
     speeds = [
         name
@@ -387,7 +387,7 @@ def endless_phase(phase: tree.Prefix, sequence: tree.Infix) -> Diagnostic:
 
 
 def parentheses_behind(prefix: tree.Prefix, until: int) -> Fix:
-    """What an operator is to speak of, up to a position, in parentheses."""
+    """The fix that puts an operator's intended operand, up to a position, in parentheses."""
     source, start = prefix.span.source, prefix.span.start
     behind = start + len(prefix.sign) if prefix.bound is None else prefix.bound.span.end
     head, inside = source.text[start:behind], source.text[behind:until].strip()

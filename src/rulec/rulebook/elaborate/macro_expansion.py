@@ -1,4 +1,4 @@
-"""Definitions and parameters: what is put in the place of their uses."""
+"""Expansion of definitions and parameters at their uses."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def expand_macro(
 
 
 def _closes_circle(use: tree.AtomUse, kind: str, scope: Scope) -> bool:
-    """Tell, and report, whether a definition or parameter is made of itself."""
+    """Whether a definition or parameter depends on itself; if so, report it."""
     names = {call.name for call in scope.calls}
     if use.name.text not in names:
         return False
@@ -80,7 +80,7 @@ def _relation(argument: tree.Name, scope: Scope) -> str | AnyArgument | None:
 
 
 def parameter_value(use: tree.AtomUse, scope: Scope, evaluate: Evaluate) -> NumberByCases | None:
-    """Value of a parameter on the day in question; None after a reported mistake."""
+    """The value of a parameter on the day in question; None after a reported mistake."""
     if _closes_circle(use, "parameter", scope):
         return None
     known = scope.constants.numbers
@@ -136,7 +136,10 @@ def _evaluated(
 
 
 def _dimension(name: str, value: Value, scope: Scope, evaluate: Evaluate) -> Dimension | None:
-    """The declared dimension, else that of the first value; None if unknown or if that is it."""
+    """The declared dimension, else that of the first value.
+
+    None if that is unknown or the one at hand.
+    """
     values = scope.constants.overlay.parameters[name]
     items = [value.item for value in values if isinstance(value.item, tree.ParamItem)]
     names = [item.dimension.text for item in items if item.dimension is not None]

@@ -1,7 +1,7 @@
-"""Places where `and` or `or` stands beside `until` or an operator like it, without parentheses.
+"""Places where `and` or `or` is beside `until` or a similar operator, without parentheses.
 
-``a until b and c`` is ``(a until b) and c``. Half of its readers take it for
-``a until (b and c)``, so that it is worth a pair of parentheses.
+``a until b and c`` means ``(a until b) and c``, but half of its readers take it for ``a until (b
+and c)``, so it deserves parentheses.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from rulec.syntax.keywords import JOINS_ALIKE, PRECEDENCE
 def until_warnings(
     node: tree.Formula, before: tree.Infix | None = None, behind: tree.Infix | None = None
 ) -> Iterator[Diagnostic]:
-    """Warnings for the operators like `until` in a formula that can be read in two ways.
+    """Warnings for operators like `until` in a formula that can be read in two ways.
 
     ``before`` is the nearest operation whose right operand begins with the formula, ``behind`` the
-    nearest whose left operand ends with it.
+    nearest one whose left operand ends with it.
     """
     if isinstance(node, tree.Grouping) and node.grouped:
         before = behind = None
@@ -52,7 +52,7 @@ def _last(node: tree.Infix) -> tree.Formula:
 
 
 def _misleads(join: tree.Infix | None, nearest: tree.Formula, *, right: bool) -> bool:
-    """Tell whether a join may be taken to join its neighbour to the ``nearest`` operand alone."""
+    """Whether a join may seem to join its neighbour only to the ``nearest`` operand."""
     if join is None or join.operator not in JOINS_ALIKE:
         return False
     grouped = isinstance(nearest, tree.Grouping) and nearest.grouped

@@ -19,7 +19,7 @@ from rulec.syntax import tree
 from rulec.syntax.messages.mismatch import FORMULA_TOO_DEEP
 
 CROWD = 30
-"""So many objects are around in dense traffic."""
+"""The number of objects around in dense traffic."""
 
 UNUSED_VARIABLE = Code(
     "R0207",
@@ -201,7 +201,7 @@ def unused_variable(
 
 
 def many_choices(item: tree.RuleItem, n_variables: int) -> Diagnostic | None:
-    """A warning if a crowd of objects has more choices than are usually looked at."""
+    """A warning if a crowd of objects has more choices than rulec usually tries."""
     number = perm(CROWD, n_variables)
     if number <= CHOICES.usual:
         return None
@@ -280,7 +280,7 @@ def no_multiple(rule: Rule, error: NotAMultipleError) -> Diagnostic:
 
 
 def only_fitting_traces(rule: Rule, error: NotAMultipleError) -> Diagnostic:
-    """R0407 as a warning: no state of the rulebook's own step is where a bound of the rule ends."""
+    """R0407 as a warning: at the rulebook's own step, a bound falls between two states."""
     return replace(
         no_multiple(rule, error),
         severity="warning",
@@ -292,7 +292,7 @@ def only_fitting_traces(rule: Rule, error: NotAMultipleError) -> Diagnostic:
 
 
 def exceptions_on_one_line(item: tree.RuleItem) -> Iterator[Diagnostic]:
-    """A warning for each exception that stands on the line on which another one ends."""
+    """A warning for each exception that begins on the line on which another one ends."""
     for first, second in pairwise(item.unless):
         before, here = first.span.place, second.span.place
         same_line = (before.file, before.end_line) == (here.file, here.line)

@@ -21,14 +21,14 @@ from rulec.vocabulary import Enumeration, Quantity, Signal
 
 SIDES = {"near_side_of": {"right": "right_of", "left": "left_of"}}
 SIDES["far_side_of"] = {"right": "left_of", "left": "right_of"}
-"""Relation -> traffic -> the absolute side that it is."""
+"""Maps a relation and the side of traffic to the absolute side."""
 
 
 @dataclass(frozen=True, slots=True)
 class BoundVariable:
-    """Bound variable: its type, None if unknown, and its place.
+    """A bound variable: its type, None if unknown, and its place.
 
-    ``actual`` is its name in the rule: inside a definition that is the argument's.
+    ``actual`` is its name in the rule; inside a definition it is the argument's name.
     """
 
     type: str | None
@@ -38,12 +38,12 @@ class BoundVariable:
 
 @dataclass(frozen=True, slots=True)
 class AnyArgument:
-    """Object or relation, unknown while a definition is checked by itself."""
+    """An object or relation that is unknown while a definition is checked by itself."""
 
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """Expansion of a definition, used at ``span``, or evaluation of a parameter, in progress."""
+    """An expansion of a definition, used at ``span``, or an evaluation of a parameter."""
 
     name: str
     span: Span | None
@@ -51,12 +51,12 @@ class Call:
 
 @dataclass(slots=True)
 class Scope:
-    """One rule's or definition's view: the declarations, provisions and its variables.
+    """What one rule or definition can refer to: the declarations, constants and its variables.
 
     ``relations`` are the parameters of a definition that stand for relations. ``calls`` are the
-    definitions that are being put in, outermost first. ``in_moment`` tells that the formula speaks
-    of one state alone, as in a count and in a parameter. ``counted`` are the variables (actual
-    names) of the counts around, ``taken`` all actual names in use.
+    definitions being expanded, outermost first. ``in_moment``: the formula is about a single state,
+    as in a count and in a parameter. ``counted`` are the variables (actual names) of the
+    surrounding counts, ``taken`` all actual names in use.
     """
 
     symbols: SymbolTable
@@ -74,10 +74,10 @@ class Scope:
     """Where uses of definitions begin that have been found to be wrong."""
 
     def report(self, mistake: Diagnostic) -> None:
-        """Note a mistake, with the uses of definitions that led to it.
+        """Record a mistake, with the uses of definitions that led to it.
 
-        A definition has been checked by itself. If what is wrong is how it is used, one mistake is
-        enough to say so.
+        Definitions are also checked by themselves. If one is merely used wrongly, one mistake is
+        reported for that use.
         """
         outermost = self.calls[0].span if self.calls else None
         if outermost is not None and mistake.severity == "error":
@@ -96,7 +96,7 @@ class Scope:
 
     @contextmanager
     def within_limits(self, part: str, name: tree.Name) -> Iterator[None]:
-        """Elaborate a whole expression; report it if it is too deep or too large."""
+        """Elaborate a whole expression, and report it if it is too deep or too large."""
         self.constants.begin()
         try:
             yield
@@ -106,7 +106,7 @@ class Scope:
     def unused(
         self, variables: Iterable[tree.Parameter], owner: tree.RuleItem | tree.DefineItem
     ) -> Iterator[Diagnostic]:
-        """Warnings for the variables of ``owner`` that its formula says nothing about."""
+        """Warnings for the variables of ``owner`` that its formula does not use."""
         for variable in variables:
             if variable.name.text not in self.used:
                 yield unused_variable(variable, owner)
@@ -119,11 +119,11 @@ class Scope:
         return self.symbols.behind_atom(name)
 
     def relation_names(self) -> list[str]:
-        """Names that can be given to a definition for a relation."""
+        """The names that can be given to a definition for a relation."""
         return [*self.symbols.atoms(), *SIDES, *self.constants.names(), *self.relations]
 
     def _absolute(self, use: tree.AtomUse) -> str | None:
-        """The name with ``near_side_of`` resolved by traffic; None if reported."""
+        """The name with ``near_side_of`` resolved by the side of traffic; None if reported."""
         name = use.name.text
         if name not in SIDES or self.behind(name) is not None:
             return name
@@ -139,7 +139,7 @@ class Scope:
         return side
 
     def enumeration(self, use: tree.AtomUse) -> Enumeration | None:
-        """The enumeration of that name, which is no atom: its values are."""
+        """The enumeration of that name, which is not an atom, as only its values are."""
         item = self.symbols.items.get(use.name.text)
         hidden = use.name.text in {*self.variables, *self.relations}
         return item if isinstance(item, Enumeration) and not hidden else None
@@ -205,7 +205,8 @@ class Scope:
     ) -> str | None:
         """The actual name of an argument; None after a reported mistake.
 
-        ``parameter`` of a declaration asks for it; one of ``relations`` could be meant instead.
+        It is the argument for ``parameter`` of a declaration; one of ``relations`` could be meant
+        instead.
         """
         self.used.add(argument.text)
         if isinstance(self.relations.get(argument.text), AnyArgument):
@@ -231,7 +232,7 @@ class Scope:
 
 
 Evaluate = Callable[[tree.Formula, Scope], NumberByCases | None]
-"""What elaborates a number."""
+"""A function that elaborates a number."""
 
 
 def bound_variables(

@@ -1,7 +1,6 @@
-"""Formulas in which operators of time speak of less than it seems.
+"""Formulas in which temporal operators apply to less than it seems.
 
-They are read as they are written, and they are right: what is found here is worth a warning,
-because hardly anyone means it.
+They are well-formed and read as written, but hardly anyone means them, so they deserve a warning.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from rulec.syntax.keywords import BINDS_NARROWLY, JOINS_ALIKE, OF_ONE_STATE
 def requirement_warnings(
     node: tree.Formula, symbols: SymbolTable, overlay: Overlay
 ) -> Iterator[Diagnostic]:
-    """Warnings for the parts of a requirement that speak of the first state only."""
+    """Warnings for the parts of a requirement that apply to the first state only."""
     parts = [*_conjuncts(node)]
     for part in parts:
         if not _speaks_of_time(part, overlay.definitions) and _changes(part, symbols, overlay):
@@ -30,7 +29,7 @@ def requirement_warnings(
 
 
 def operator_warnings(node: tree.Formula, overlay: Overlay) -> Iterator[Diagnostic]:
-    """Warnings for the operators of time in a formula that reach less far than it may seem."""
+    """Warnings for temporal operators in a formula that apply to less than it may seem."""
     narrow = [*_narrow(node, (), overlay.definitions)]
     yield from narrow
     for warning in until_warnings(node):
@@ -39,7 +38,7 @@ def operator_warnings(node: tree.Formula, overlay: Overlay) -> Iterator[Diagnost
 
 
 def covers(first: Diagnostic, warning: Diagnostic) -> bool:
-    """Tell whether what a warning is about, or its fix rewrites, is the place of another one."""
+    """Whether the place, or the fix, of one warning covers the place of another one."""
     place = first.place if first.fix is None else first.fix.place
     if place is None or warning.place is None or place.file != warning.place.file:
         return False
@@ -59,7 +58,10 @@ def _narrow(
     behind: Sequence[tree.Infix],
     definitions: Mapping[str, tree.DefineItem],
 ) -> Iterator[Diagnostic]:
-    """Go through a formula; ``behind`` are the operations that go on behind it, nearest first."""
+    """Walk through a formula.
+
+    ``behind`` are the operations that continue after it, nearest first.
+    """
     if isinstance(node, tree.Grouping) and node.grouped:
         behind = ()
     match node:
@@ -88,7 +90,7 @@ def _reach(
     behind: Sequence[tree.Infix],
     definitions: Mapping[str, tree.DefineItem],
 ) -> int:
-    """The end of what the operator was probably meant to govern: the place of a character."""
+    """The end of what the operator was probably meant to apply to, as a character position."""
     end = prefix.span.end
     for operation in behind:
         alike = operation.operator in JOINS_ALIKE
@@ -99,7 +101,7 @@ def _reach(
 
 
 def _speaks_of_time(node: tree.Formula, definitions: Mapping[str, tree.DefineItem]) -> bool:
-    """Tell whether a formula has an operator of time, also in the definitions that it uses."""
+    """Whether a formula has a temporal operator, also in the definitions that it uses."""
     pending, seen = [node], set[str]()
     while pending:
         part = pending.pop()
@@ -114,7 +116,7 @@ def _speaks_of_time(node: tree.Formula, definitions: Mapping[str, tree.DefineIte
 
 
 def _changes(node: tree.Formula, symbols: SymbolTable, overlay: Overlay) -> bool:
-    """Tell whether a formula reads something that may change while a trace goes on."""
+    """Whether a formula reads something that may change within a trace."""
     pending, seen = [node], set[str]()
     while pending:
         for use in atoms_in(pending.pop()):

@@ -1,4 +1,4 @@
-"""Messages about how much of a formula, and of a trace, an operator of time speaks of."""
+"""Messages about how much of a formula, and of a trace, a temporal operator applies to."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ TWO_READINGS = Code(
 
 
 def first_state_only(node: tree.Formula, reads: str, *, alone: bool) -> Diagnostic:
-    """A requirement, or a part of one if not ``alone``, without an operator of time."""
+    """A requirement, or a part of one if not ``alone``, without a temporal operator."""
     text = node.span.text
     bare = isinstance(node, tree.AtomUse | tree.Aggregate)
     if isinstance(node, tree.Prefix):
@@ -80,7 +80,7 @@ def narrow_operator(prefix: tree.Prefix, follows: str, until: int) -> Diagnostic
 def two_readings(
     node: tree.Infix, before: tree.Infix | None, behind: tree.Infix | None
 ) -> Diagnostic:
-    """``a until b and c``, with what joins something to the front or the end of it, or both."""
+    """``a until b and c``, with what is joined to its front or its end, or both."""
     start, end = node.span.start, node.span.end
     operator = _sign(node) + (node.bound.span.text if node.bound else "")
     left, right = _operand_text(node.left), _operand_text(node.right)
@@ -106,6 +106,6 @@ def _sign(node: tree.Infix) -> str:
 
 
 def _operand_text(node: tree.Formula) -> str:
-    """An operand on one line, short, in its parentheses if it has some."""
+    """A short operand on one line, in its parentheses if it has some."""
     grouped = isinstance(node, tree.Grouping) and node.grouped
     return f"({short(node)})" if grouped else short(node)

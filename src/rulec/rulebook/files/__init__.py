@@ -1,1 +1,1 @@
-"""Files of rulebooks and vocabularies: where they are, and which need which."""
+"""The files of rulebooks and vocabularies: where they are, and how they depend on each other."""

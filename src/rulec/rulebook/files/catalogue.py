@@ -1,4 +1,4 @@
-"""Catalogue of the available rulebooks and vocabularies."""
+"""The catalogue of available rulebooks and vocabularies."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Entry:
 
 
 def list_rulebooks(search_path: Sequence[Path] = ()) -> list[Entry]:
-    """The rulebooks with their titles; one that cannot be read has none."""
+    """The rulebooks with their titles; one that cannot be read has no title."""
     return [
         Entry(path.stem, file.title.text.value if file and file.title else "", path)
         for path in _rulebooks(search_path)
@@ -39,7 +39,7 @@ def rulebook_heads(search_path: Sequence[Path] = ()) -> list[tree.File]:
 
 
 def rulebooks_with_rule(name: str, search_path: Sequence[Path] = ()) -> list[str]:
-    """The rulebooks in whose text a rule of this name stands; what they inherit does not."""
+    """The rulebooks whose own text has a rule of this name, not counting inherited rules."""
     rule = re.compile(rb"\brule\s+%b\b" % re.escape(name.encode(errors="replace")))
     names = []
     for path in _rulebooks(search_path):

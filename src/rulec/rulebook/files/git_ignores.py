@@ -1,8 +1,8 @@
-"""Files that git ignores, by ``.gitignore`` as gitignore(5) describes it.
+"""Files that git ignores, by ``.gitignore`` as described in gitignore(5).
 
-Own ones and not a library's, since a stranger writes the patterns: matching takes time that grows
-with the length of pattern times name, however many ``*`` there are. The user's own list of patterns
-(`core.excludesFile`) is not read, so that a check comes out alike on every machine.
+This is not a library's implementation, since the patterns may come from strangers: matching takes
+time proportional to the length of pattern times name, however many ``*`` there are. The user's own
+patterns (`core.excludesFile`) are not read, so that a check gives the same result on every machine.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pathlib import Path
 from rulec.work_trees import is_ordinary, leads_out
 
 MOST_BYTES = 100_000
-"""Of a file of patterns; further ones are not obeyed."""
+"""The most bytes of a file of patterns; the rest is ignored."""
 
 _NAMED_CLASS = re.compile(r"\[:(\w+):\]")
 _CLASSES = {
@@ -36,26 +36,26 @@ _NOTHING = re.compile(r"(?!)")
 
 @dataclass(frozen=True, slots=True)
 class IgnorePattern:
-    """A line of a ``.gitignore`` file: parts between slashes, and what they are for."""
+    """A line of a ``.gitignore`` file: the parts between slashes, and what they apply to."""
 
     parts: tuple[str, ...]
     includes: bool
     folders_only: bool
 
     def matches(self, names: Sequence[str], *, is_folder: bool) -> bool:
-        """Tell whether it is about a path, given by its names below the file of patterns."""
+        """Whether it matches a path, given by its names below the file of patterns."""
         return (is_folder or not self.folders_only) and _fit(self.parts, names)
 
 
 @dataclass(frozen=True, slots=True)
 class IgnoreFile:
-    """The patterns of one file, for what is below its folder; the last that matches decides."""
+    """The patterns of one file, for paths below its folder; the last match decides."""
 
     folder: Path
     patterns: tuple[IgnorePattern, ...]
 
     def verdict(self, path: Path, *, is_folder: bool) -> bool | None:
-        """True if it is ignored, False if it is taken in again, None if nothing is said."""
+        """True if a path is ignored, False if it is included again, None without a match."""
         names = path.relative_to(self.folder).parts
         for pattern in reversed(self.patterns):
             if pattern.matches(names, is_folder=is_folder):
@@ -64,7 +64,7 @@ class IgnoreFile:
 
 
 def is_ignored(path: Path, files: Sequence[IgnoreFile], *, is_folder: bool) -> bool:
-    """Tell whether git ignores a path, by files of patterns of which the nearest come last."""
+    """Whether git ignores a path, by files of patterns with the nearest one last."""
     verdicts = (file.verdict(path, is_folder=is_folder) for file in reversed(files))
     return next((verdict for verdict in verdicts if verdict is not None), False)
 
@@ -79,7 +79,7 @@ def ignore_files(folder: Path, tree: Path) -> list[IgnoreFile]:
 
 
 def patterns_in(folder: Path, tree: Path) -> list[IgnoreFile]:
-    """The patterns of a folder's own ``.gitignore``, if it has one that is its own."""
+    """The patterns of a folder's own ``.gitignore``, if it has one."""
     return _patterns_of(folder / ".gitignore", folder, tree)
 
 
@@ -99,7 +99,7 @@ def _patterns(file: Path) -> tuple[IgnorePattern, ...]:
 
 
 def pattern_of(line: str) -> IgnorePattern | None:
-    """The pattern that a line stands for; None for comments and what cannot match."""
+    """The pattern of a line; None for comments and what cannot match."""
     line = line.removesuffix("\r")
     if line.startswith("#"):
         return None
@@ -119,7 +119,7 @@ def pattern_of(line: str) -> IgnorePattern | None:
 
 @lru_cache(maxsize=4096)
 def _expression(part: str) -> re.Pattern[str]:
-    """A part as a regular expression that never goes back to an earlier ``*``."""
+    """A part as a regular expression that never backtracks to an earlier ``*``."""
     signs = _signs(part)
     if sum(sign != "*" for sign in signs) > _LONGEST_NAME:
         return _NOTHING
@@ -135,7 +135,7 @@ def _expression(part: str) -> re.Pattern[str]:
 
 
 def _between_stars(signs: Sequence[str]) -> list[str]:
-    """Regular expressions of what stands before, between and after the ``*``."""
+    """Regular expressions for the text before, between and after the ``*``."""
     patterns = [""]
     for sign in signs:
         if sign == "*":
@@ -154,7 +154,7 @@ def _of_sign(sign: str) -> str:
 def _fit(pattern: Sequence[str], names: Sequence[str]) -> bool:
     """Match a path; ``**`` stands for any number of names.
 
-    Only the last ``**`` is tried anew, since where an earlier one ends makes no difference.
+    Only the last ``**`` is extended, since where an earlier one ends makes no difference.
     """
     # Behind the last part, `**` is everything inside, but not the folder itself.
     least = 1 if pattern and len(pattern) > 1 and pattern[-1] == "**" else 0

@@ -1,4 +1,4 @@
-"""Sources that are open in an editor and hide the files of their paths."""
+"""Sources that are open in an editor and replace the files at their paths."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _IN_FORCE: ContextVar[Mapping[str, bytes]] = ContextVar("open_documents", defaul
 
 @contextmanager
 def shown(documents: Mapping[str, bytes]) -> Iterator[None]:
-    """Have sources read as they are in an editor: real path -> what it shows."""
+    """Read sources as they are in an editor; maps real paths to their text."""
     before = _IN_FORCE.set(documents)
     try:
         yield
@@ -24,7 +24,7 @@ def shown(documents: Mapping[str, bytes]) -> Iterator[None]:
 
 
 def open_text(path: Path) -> bytes | None:
-    """What an editor shows of a file; None if it is not open."""
+    """The text of a file that is open in an editor; None if it is not open."""
     documents = _IN_FORCE.get()
     try:
         return documents.get(os.path.realpath(path)) if documents else None

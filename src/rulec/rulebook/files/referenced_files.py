@@ -1,4 +1,4 @@
-"""The rulebooks that one extends and the vocabularies that it uses, read from files."""
+"""Reads the rulebooks that one extends and the vocabularies that they use."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from rulec.syntax import decode, tree
 from rulec.syntax.caching.tree_cache import parsed
 
 MOST_BASES = 50
-"""Far more than any family of laws has."""
+"""The longest chain of rulebooks, far longer than any family of laws has."""
 
 
 @dataclass(frozen=True, slots=True)
 class Book:
-    """Syntax tree of a rulebook, with its path or None."""
+    """The syntax tree of a rulebook, with its path or None."""
 
     file: tree.File
     path: Path | None
@@ -31,7 +31,7 @@ class Book:
 
 @lru_cache(maxsize=16)
 def _parsed(source: Source) -> tuple[tree.File, tuple[Diagnostic, ...]]:
-    """What ``parse`` says: whoever reads many rulebooks meets the same bases again and again."""
+    """The cached result of ``parse``, since many rulebooks have the same bases."""
     return parsed(source)
 
 
@@ -44,7 +44,7 @@ def source_file(name: str, data: bytes) -> SourceFile:
 
 @dataclass(slots=True)
 class ReferencedFiles:
-    """Reader of the files that rulebooks refer to, with records and mistakes.
+    """Reads the files that rulebooks refer to, recording them and their mistakes.
 
     ``failed``: one of them could not be read.
     """
@@ -88,7 +88,7 @@ class ReferencedFiles:
         return Book(file, path)
 
     def vocabulary(self, use: tree.UseLine, user: Path | None) -> tree.File | None:
-        """Syntax tree of a vocabulary; None if unreadable or already read."""
+        """The syntax tree of a vocabulary; None if it is unreadable or was read before."""
         name = use.name
         try:
             path = search.find_vocabulary(name.text, name.span, user, self.search_path)

@@ -64,7 +64,7 @@ def find_rulebook(reference: str | Path, search_path: Sequence[Path]) -> Path:
 
 
 def meant_by(name: str, known: Sequence[str], search_path: Sequence[Path]) -> str:
-    """What may be meant by a name that nothing has: a file of another ending, a country."""
+    """Help for an unknown name: a file with another ending, or a country."""
     if "." in name and _is_file(Path(name)):
         if Path(name).suffix.lower() in _DOCUMENTS:
             return f"save it as plain text, in UTF-8, with a name that ends in `{SUFFIX}`"
@@ -180,7 +180,7 @@ OWN_NAMES = {
     "us": ("usa", "america"),
     "us-ca": ("ca", "calif"),
 }
-"""What those who live there, their neighbours and lawyers call the countries that ship."""
+"""What inhabitants, neighbours and lawyers call the countries whose rulebooks ship."""
 
 _TITLE = re.compile(rb'^title[ \t]+"([^"\n]*)"', re.M)
 
@@ -201,7 +201,7 @@ def _by_title(name: str, known: Sequence[str], search_path: Sequence[Path]) -> s
 def _not_found(
     kind: str, name: str, place: Span, known: Sequence[str], *notes: str, by: str = ""
 ) -> RulecError:
-    """Say that there is no such file; ``by`` is a way out other than by likeness."""
+    """The error that there is no such file; ``by`` is help other than by similarity."""
     return NAME_NOT_FOUND.error(
         place,
         f"there is no {kind} `{name}`",
@@ -236,7 +236,7 @@ def read_bytes(path: Path, use: Span | None = None) -> bytes:
 
 
 def _instead_of(path: Path) -> str:
-    """The way out where a file cannot be read: the rulebook that ships under its name."""
+    """Help where a file cannot be read: the shipped rulebook of that name."""
     if not os.path.lexists(path) and _by_name(path.stem, ()) is not None:
         return f"`{path.stem}` ships with rulec: leave out `{SUFFIX}`"
     return "check its name and its permissions"
@@ -263,7 +263,7 @@ def is_same_file(path: Path, other: Path) -> bool:
 
 
 def _lead(path: Path) -> str:
-    """The first word of a file, which says what it is."""
+    """The first word of a file, which tells its kind."""
     try:
         with path.open("rb") as stream:
             text = beginning_of(stream.read(LEAD_BYTES))

@@ -1,4 +1,4 @@
-"""The sources in and below a folder, and what is left alone there."""
+"""The sources in a folder at any depth, and what is skipped there."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ from rulec.work_trees import is_ordinary, refuse_no_source, tree_of
 SUFFIX = ".rules"
 
 ENVIRONMENTS = frozenset({"__pypackages__", "node_modules", "site-packages", "venv"})
-"""Folders of programs that others wrote; hidden ones such as ``.venv`` are left alone anyway."""
+"""Folders of other authors' programs; hidden ones such as ``.venv`` are skipped anyway."""
 
 DEEPEST_FOLDER = 200
-"""Folders so deep in one another are not entered."""
+"""Deeper folders are not entered."""
 
 _MARKS = ("pyvenv.cfg", "conda-meta")
-"""A folder that has one of them is an environment of Python's, whatever it is called."""
+"""A folder with one of these is a Python environment, whatever its name."""
 
 
 @dataclass(frozen=True, slots=True)
 class LeftAlone:
-    """A file or a folder that was not looked into, and why."""
+    """A file or folder that was skipped, and why."""
 
     path: str
     why: str
@@ -45,7 +45,7 @@ class LeftAlone:
 
 @dataclass(slots=True)
 class FoundSources:
-    """Sources in order, what was left alone, and what was refused."""
+    """Sources in order, what was skipped, and what was refused."""
 
     paths: list[Path] = field(default_factory=list)
     left_alone: list[LeftAlone] = field(default_factory=list)
@@ -53,11 +53,11 @@ class FoundSources:
 
 
 def sources_below(folder: str, excluded: Exclusion | None = None) -> FoundSources:
-    """The sources in and below a folder, in order.
+    """The sources in a folder at any depth, in order.
 
-    Hidden folders, environments, links to folders and what is very deep are not entered. What git
-    ignores or is ``excluded``, and what begins neither with `rulebook` nor with `vocabulary`, is
-    left alone. Links out of the tree, pipes and devices are refused.
+    Hidden folders, environments, links to folders and very deep folders are not entered. Files that
+    git ignores, that are ``excluded``, or that begin with neither `rulebook` nor `vocabulary`, are
+    skipped. Links out of the tree, pipes and devices are refused.
     """
     sources = FoundSources()
     top = Path(os.path.abspath(folder))  # noqa: PTH100 - Path.absolute() keeps `..`
@@ -108,14 +108,14 @@ def _patterns(excluded: Exclusion | None) -> IgnoreFile | None:
 
 
 def _is_excluded(path: Path, own: IgnoreFile | None, *, is_folder: bool = False) -> str:
-    """Why a path is left alone by the project's own settings; empty if it is not."""
+    """Why the project's own settings exclude a path; empty if they do not."""
     if own is None or own.folder not in path.parents:
         return ""
     return "excluded" if is_ignored(path, [own], is_folder=is_folder) else ""
 
 
 def _sort(path: Path, left: str, tree: Path, sources: FoundSources) -> None:
-    """Put a file where it belongs, ``left`` being why it is left alone."""
+    """Add a file to its list, ``left`` being the reason to skip it."""
     if left:
         sources.left_alone.append(LeftAlone(str(path), left))
         return
@@ -131,7 +131,7 @@ def _sort(path: Path, left: str, tree: Path, sources: FoundSources) -> None:
 
 
 def is_other_file(path: Path) -> bool:
-    """True for another program's file. What cannot be read, or is empty, is none."""
+    """Whether a file belongs to another program. Unreadable and empty files do not."""
     try:
         with path.open("rb") as stream:
             data = stream.read(LEAD_BYTES)
@@ -141,7 +141,7 @@ def is_other_file(path: Path) -> bool:
 
 
 def in_words(left_alone: Sequence[LeftAlone], most: int = 3) -> str:
-    """How much was left alone, and why, with the first names of each kind; empty for nothing."""
+    """How much was skipped, and why, with the first names of each kind; empty for nothing."""
     kinds = Counter(file.why for file in left_alone)
     return "; ".join(
         f"{count:,} {why} ({_first([file.path for file in left_alone if file.why == why], most)})"
@@ -176,7 +176,7 @@ def _is_compiled(path: Path) -> bool:
 
 
 _HEAD_BYTES = 1000
-"""So far into a compiled rulebook its format is said."""
+"""The first bytes of a compiled rulebook, which contain its format."""
 
 
 def _locked(problem: OSError) -> Diagnostic:
@@ -186,7 +186,10 @@ def _locked(problem: OSError) -> Diagnostic:
 
 
 def rules_files(folder: Path) -> Iterator[Path]:
-    """Files of a folder, and of those in it, that may be sources: pipes and links out are none."""
+    """Files at any depth of a folder that may be sources.
+
+    Pipes and links out of it are left out.
+    """
     tree = tree_of(folder)
     with suppress(OSError):
         for pattern in (f"*{SUFFIX}", f"*/*{SUFFIX}"):

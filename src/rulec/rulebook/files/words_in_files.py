@@ -1,4 +1,4 @@
-"""Words that occur in the texts of vocabularies, which are searched and not parsed."""
+"""Words in the texts of vocabularies, found by searching without parsing."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Symbol tables: the declarations of files, and what refers to them."""
+"""Symbol tables: the declarations of files, and references to them."""

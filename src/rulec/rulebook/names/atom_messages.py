@@ -112,7 +112,7 @@ NUMBER_OR_FORMULA = Code(
 )
 
 _ALIKE = 0.75
-"""How alike a name is to what it is a slip of; what is less alike more often means another word."""
+"""The least similarity of a misspelt name; less similar ones are usually other words."""
 
 _COMPARED = re.compile(r"\s*(?:[<>]=?|!?=)\s*[\d.]+[ \t]*([^\W\d][\w/^%]*|%)?")
 _PARTED_UNIT = re.compile(r"\d[ \t]*([^\W\d]+)[ \t]*/[ \t]*\Z")
@@ -127,9 +127,9 @@ def explain(
     variables: Mapping[str, str | None],
     others: Collection[str],
 ) -> Diagnostic:
-    """Mistake: a name is no atom, but something else or unknown.
+    """The mistake that a name is not an atom: it is something else, or unknown.
 
-    ``variables`` have types, None if not known; ``others`` are names that a formula may use too.
+    ``variables`` have types, None if unknown; ``others`` are further names that a formula may use.
     """
     name = use.name.text
     item = symbols.items.get(name)
@@ -183,13 +183,13 @@ def _unknown(
 
 
 def _by_meaning(name: str, known: Sequence[str], symbols: SymbolTable) -> str:
-    """Words of the vocabularies that ship which mean what a name says."""
+    """Words of the shipped vocabularies that mean what a name seems to mean."""
     vocabularies = {Path(file.name).stem for file in symbols.of_vocabularies}
     return offer(name, tuple(word for word in described(known, vocabularies) if word.phrase))
 
 
 def _declaration(use: tree.AtomUse, variables: Mapping[str, str | None]) -> str:
-    """The declaration of a name: of a quantity where it is compared with a number."""
+    """A declaration of the name: as a quantity if it is compared with a number."""
     compared = _COMPARED.match(use.span.source.text, use.span.end)
     if compared is None:
         return f"signal {_as_used(use, variables)}"
@@ -207,7 +207,7 @@ def _as_used(use: tree.AtomUse, variables: Mapping[str, str | None]) -> str:
 
 
 def no_traffic(use: tree.AtomUse, name: str) -> Diagnostic:
-    """Mistake: ``near_side_of`` without a declared side of traffic."""
+    """The mistake of ``near_side_of`` without a declared side of traffic."""
     return UNKNOWN_SIDE.at(
         use.name.span,
         f"`{name}` depends on the side on which traffic drives, and the rulebook does not say it",
@@ -276,7 +276,7 @@ def wrong_number(
 
 
 def _declared(name: str, item: Signal | Enumeration | Quantity) -> str:
-    """The way out where there is no variable yet."""
+    """Help where there is no variable yet."""
     letters = "xyz"[: len(item.parameters)]
     pairs = zip(letters, item.parameters, strict=False)
     variables = ", ".join(f"{letter}: {parameter}" for letter, parameter in pairs)
@@ -305,9 +305,9 @@ def unknown_variable(
     *,
     owner: str,
 ) -> Diagnostic:
-    """Mistake: the rule or definition ``owner`` lacks a variable.
+    """The mistake that the rule or definition ``owner`` has no such variable.
 
-    In the place of one a definition could take ``relations``.
+    In its place a definition could take one of ``relations``.
     """
     kind = next(iter(symbols.types), "vehicle")
     if owner == "example":

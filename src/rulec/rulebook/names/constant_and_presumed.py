@@ -1,4 +1,4 @@
-"""Declarations that are constant or presumed, as lines of their own say."""
+"""Marks declarations as constant or presumed, according to lines of their own."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from rulec.syntax import tree
 from rulec.vocabulary import Enumeration
 
 MOST_PRESUMED = 12
-"""Each is named with every verdict that rests on it; nobody reads more."""
+"""The most presumed names: each is listed with every verdict that rests on it."""
 
 
 def mark_constant_and_presumed(symbols: SymbolTable, files: Sequence[tree.File]) -> None:
-    """Change the declarations of the names that `constant` and `presumed` lines have.
+    """Mark the declarations of the names in `constant` and `presumed` lines.
 
-    A file says it of a name once; files that build upon each other may say it again.
+    A file marks a name once; files that build upon each other may repeat the mark.
     """
     for file in files:
         seen: dict[tuple[type, str], tree.Name] = {}

@@ -6,10 +6,10 @@ from rulec.diagnostics import Span
 
 
 def description(span: Span) -> str:
-    """Description of an item: the comment behind it, else those above.
+    """The description of an item: the comment after it, else the comments above.
 
-    With one behind the item, those above it may be about several items. A comment with a blank line
-    below it is about more than the next item. Empty if there is none.
+    If there is one after the item, those above may be about several items. A comment followed by a
+    blank line is about more than the next item. Empty if there is none.
     """
     source = span.source
     last, column = source.position(span.end)

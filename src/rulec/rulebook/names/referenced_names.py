@@ -1,4 +1,4 @@
-"""The names that a tree speaks of."""
+"""The names used in a tree."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def names_used(item: tree.Item) -> Iterator[str]:
 
 
 def formulas_of(item: tree.Item) -> Iterator[tree.Formula]:
-    """An item's formulas, as they stand there, without its examples."""
+    """An item's formulas as written, without its examples."""
     match item:
         case tree.RuleItem(require=require, when=when, unless=unless):
             for formula in (require, when, *(exception.formula for exception in unless)):

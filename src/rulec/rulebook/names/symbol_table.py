@@ -1,4 +1,4 @@
-"""Declarations of one or more files as one vocabulary."""
+"""The declarations of one or more files as one vocabulary."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from rulec.vocabulary.units import parse_unit
 
 @dataclass(slots=True)
 class SymbolTable:
-    """Symbol table: declarations of the files, and where; filled by ``symbol_table``.
+    """The declarations of the files, with their places; filled by ``symbol_table``.
 
-    ``suspects`` are names that an unreadable item may have declared; with ``opaque`` any name may
-    be missing for a reason that has been reported, with ``opaque_types`` any type. ``uncertain``
-    are types whose parents, and enumerations whose defaults, are not known for such a reason.
+    ``suspects`` are names that an unreadable item may have declared. ``opaque``: any name may be
+    missing because of a reported mistake; ``opaque_types``: any type may be. ``uncertain`` are
+    types with unknown parents, and enumerations with unknown defaults, for such a reason.
     """
 
     types: dict[str, ObjectType] = field(default_factory=dict)
@@ -40,7 +40,7 @@ class SymbolTable:
     opaque_types: bool = False
     mistakes: list[Diagnostic] = field(default_factory=list)
     shared: dict[tuple[Source, Source], list[str]] = field(default_factory=dict)
-    """Names that two vocabularies declare: the earlier one, the later one, and which."""
+    """Names declared by two vocabularies: the earlier one, the later one, and the names."""
 
     def twice(self, kind: str, again: tree.Name, first: Span) -> None:
         """Note that something is declared twice."""
@@ -52,11 +52,11 @@ class SymbolTable:
             self.mistakes.append(say.twice(kind, again, first))
 
     def vocabulary(self, name: str) -> Vocabulary:
-        """The declarations as data; only of use when there were no mistakes."""
+        """The declarations as data; valid only if there were no mistakes."""
         return Vocabulary(name, MappingProxyType(self.types), MappingProxyType(self.items))
 
     def unit(self, text: str) -> Unit | None:
-        """The unit of a text, parsed once; None if there is none."""
+        """The unit of a text, parsed once; None if it is invalid."""
         if text not in self.units:
             self.units[text] = parse_unit(text)
         return self.units[text]
@@ -87,12 +87,12 @@ class SymbolTable:
         return signal if isinstance(signal, Signal) else self.value_of.get(name)
 
     def may_know(self, name: str) -> bool:
-        """Tell whether unreadable text may declare a name, or ``b`` of a name ``b_v``."""
+        """Whether unreadable text may declare a name, or ``b`` of a name ``b_v``."""
         heads = (name[:at] for at, letter in enumerate(name) if letter == "_")
         return self.opaque or not self.suspects.isdisjoint((name, *heads))
 
     def known_type(self, name: tree.Name, report: Callable[[Diagnostic], object]) -> str | None:
-        """The type of a name; else None, reported unless unreadable text may declare it."""
+        """The type of a name; if unknown, None, reported unless unreadable text may declare it."""
         if name.text in self.types:
             return name.text
         if not self.opaque_types and not self.may_know(name.text):
@@ -100,7 +100,7 @@ class SymbolTable:
         return None
 
     def ancestors(self, type_name: str) -> list[str]:
-        """The type and those above it; stops where they close a circle."""
+        """The type and its supertypes; stops at a cycle."""
         names: dict[str, None] = {}
         current: str | None = type_name
         while current is not None and current in self.types and current not in names:
@@ -109,14 +109,14 @@ class SymbolTable:
         return list(names)
 
     def fits(self, type_name: str, wanted: str) -> bool:
-        """Tell whether a type may be a subtype of ``wanted``."""
+        """Whether a type may be a subtype of ``wanted``."""
         above = self.ancestors(type_name)
         unsure = wanted not in self.types or not self.uncertain.isdisjoint(above) or not above
         return unsure or wanted in above
 
 
 def symbol_table(files: Sequence[tree.File], *, opaque: bool = False) -> SymbolTable:
-    """Symbol table of the used vocabularies, then of the using file."""
+    """The symbol table of the used vocabularies, then of the using file."""
     vocabularies = {file.span.source for file in files if file.name and file.kind == "vocabulary"}
     symbols = SymbolTable(
         of_vocabularies=vocabularies, opaque=opaque or not all(file.complete for file in files)
@@ -146,7 +146,7 @@ def _use_of(vocabulary: Source, files: Sequence[tree.File]) -> tree.UseLine:
 
 
 def _note_lookalikes(symbols: SymbolTable) -> None:
-    """Warn of a name that looks like one of another file; within a file the parser does."""
+    """Warn of a name that looks like one in another file; within a file the parser does."""
     spans = {**symbols.type_spans, **symbols.spans}
     if all(map(str.isascii, spans)):
         return
@@ -188,7 +188,7 @@ def _declare_types(symbols: SymbolTable, file: tree.File) -> None:
 
 
 def _limit_depth(symbols: SymbolTable, fresh: Sequence[tree.TypeItem]) -> None:
-    """Cut chains of types that are too long for all that goes through them."""
+    """Cut off chains of types that are too long for later stages."""
     most = TYPE_DEPTH.value()
     depths: dict[str, int] = {}
     for item in fresh:

@@ -1,9 +1,10 @@
-"""Words of a vocabulary by what they mean: offers for a name that nothing is called.
+"""Words of a vocabulary by their meaning, to suggest one for an unknown name.
 
-A word is about what its own name and its phrases say, whose parts are brought to stems, and to one
-word of those that mean the same. A name is about its parts in the same way; rare
-parts weigh more than frequent ones (Robertson and Spärck Jones, 1976). What covers nearly all of a
-name, and no other word as well, is offered as what was meant; what covers most of it as candidates.
+A word is described by the parts of its own name and of its phrases, which are reduced to stems and
+to one representative of each group of synonyms. A name is described by its parts in the same way;
+rare parts weigh more than frequent ones (Robertson and Spärck Jones, 1976). A word that covers
+nearly all of a name, more than any other word, is suggested as what was meant; words that cover
+most of it are suggested as candidates.
 """
 
 from __future__ import annotations
@@ -19,15 +20,15 @@ from unicodedata import combining, normalize
 from rulec.rulebook.vocabulary_phrases import phrases_in, synonyms_of_the_field
 
 _NAME, _PHRASE, _TRANSLATED = 1.0, 0.8, 0.6
-"""How surely a word is about a part of its name, of its phrase, and of that in other languages."""
+"""The weights of the parts of a word's name, of its phrase, and of that in other languages."""
 
 _MEANT: Final = 0.75
 _LEAD: Final = 0.1
 _CANDIDATE: Final = 0.65
-"""Of a name, at least so much is covered by what was meant, with this lead, or by a candidate.
+"""The least share of a name that a word must cover: to be meant, with this lead, or a candidate.
 
-Of a hundred names of which half have a word, and which were made up after the synonyms, these
-offered 32, three of them wrongly; no offer was made for any of the other half.
+Of a hundred names, made up after the synonyms, of which half have a word, these thresholds gave a
+suggestion for 32, three of them wrong, and none for the other half.
 """
 
 _MOST_CANDIDATES: Final = 3
@@ -46,7 +47,7 @@ _SHORTEST_STEM: Final = 4
 
 @dataclass(frozen=True, slots=True)
 class DescribedWord:
-    """A word, the phrase in which sentences speak of it, and that in other languages."""
+    """A word, its phrase in English, and its phrases in other languages."""
 
     name: str
     phrase: str = ""
@@ -54,7 +55,7 @@ class DescribedWord:
 
 
 def described(names: Iterable[str], vocabularies: Iterable[str]) -> tuple[DescribedWord, ...]:
-    """Words with their phrases in vocabularies that ship; those without one have their names."""
+    """Words with their phrases in shipped vocabularies; words without phrases have their names."""
     in_english, *others = (
         {
             word: text
@@ -72,7 +73,7 @@ def described(names: Iterable[str], vocabularies: Iterable[str]) -> tuple[Descri
 
 
 def offer(name: str, words: tuple[DescribedWord, ...]) -> str:
-    """The way out that names words which mean what ``name`` says; empty if none surely does."""
+    """Help that names the words which mean what ``name`` says; empty if none certainly does."""
     stems = set(_stems(name))
     about = {word.name: _about(word) for word in words}
     if not stems or not about:
@@ -101,7 +102,7 @@ def _shown(word: DescribedWord) -> str:
 
 @cache
 def _about(word: DescribedWord) -> Mapping[str, float]:
-    """What a word is about, and how surely."""
+    """The parts that describe a word, with their weights."""
     parts: dict[str, float] = {}
     texts = [
         (word.name, _NAME),
@@ -121,7 +122,7 @@ def _rarity(part: str, about: Iterable[Mapping[str, float]]) -> float:
 
 @cache
 def _by_form() -> tuple[Mapping[str, str], int]:
-    """The main word of each form and of its stem, and of how many parts the longest form is."""
+    """The main word of each form and of its stem, and the number of parts of the longest form."""
     forms = [
         (form, main) for main, others in synonyms_of_the_field().items() for form in (main, *others)
     ]
@@ -131,7 +132,7 @@ def _by_form() -> tuple[Mapping[str, str], int]:
 
 
 def _stems(text: str) -> Iterator[str]:
-    """The parts of a name or a text, of those that mean the same always the same one."""
+    """The stems of a name's or text's parts, with synonyms replaced by their representative."""
     main_of, longest = _by_form()
     parts = [_without_accents(part.casefold()) for part in _PART.findall(text)]
     stems = [_stem(part) for part in parts]
@@ -161,7 +162,7 @@ _LETTERS: Final = str.maketrans(
 
 
 def _without_accents(part: str) -> str:
-    """As the synonyms are written: `å` is `aa`, `é` is `e`."""
+    """The text without accents, as the synonyms are written: `å` is `aa`, `é` is `e`."""
     if part.isascii():
         return part
     plain = normalize("NFKD", part.translate(_LETTERS))

@@ -1,1 +1,1 @@
-"""Rulebooks laid over those that they extend: rules, constants, macros, priorities."""
+"""Applies rulebooks to those that they extend: rules, constants, macros, priorities."""

@@ -16,8 +16,7 @@ from rulec.rulebook.rulebook_model import Traffic
 class ConstantsAndMacros:
     """Constants and macros that formulas may use, on the day ``at`` (ISO).
 
-    ``numbers`` are the parameters' values, None for one that has none or a wrong one, filled as
-    they are asked for.
+    ``numbers`` are the parameters' values, computed on demand; None for a missing or wrong value.
     """
 
     overlay: Overlay
@@ -25,18 +24,18 @@ class ConstantsAndMacros:
     traffic: Traffic = ""
     numbers: dict[str, NumberByCases | None] = field(default_factory=dict)
     broken: set[str] = field(default_factory=set)
-    """Definitions with a mistake that has been reported."""
+    """Definitions with a reported mistake."""
     parts: int = 0
     depth: int = 0
-    """How much of the expression at hand has been looked at, and how deep in it we are."""
+    """The number of parts of the current expression visited so far, and the current depth."""
 
     def begin(self) -> None:
-        """Begin another expression, whose parts are counted anew."""
+        """Begin another expression, and reset the counts."""
         self.parts = self.depth = 0
 
     @contextmanager
     def one_deeper(self) -> Iterator[None]:
-        """Look at one more part. Raises OverLimitError."""
+        """Visit one more part. Raises OverLimitError."""
         self.parts += 1
         if self.parts > MOST_PARTS:
             raise OverLimitError("large")
@@ -53,5 +52,5 @@ class ConstantsAndMacros:
         return [*self.overlay.options, *self.overlay.parameters, *self.overlay.definitions]
 
     def may_know(self, name: str) -> bool:
-        """Tell whether unreadable text may declare a name."""
+        """Whether unreadable text may declare a name."""
         return self.overlay.unsure or name in self.overlay.suspects

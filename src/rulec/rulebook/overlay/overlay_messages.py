@@ -157,7 +157,10 @@ def rule_twice(again: tree.RuleItem, first: tree.RuleItem) -> Diagnostic:
 
 
 _ALIKE: Final = 0.75
-"""Names of rules have many parts alike: `queue_weaving` is no slip of `bus_leaving`."""
+"""The least similarity of misspelt rule names, which often share parts.
+
+Thus `queue_weaving` is not a misspelt `bus_leaving`.
+"""
 
 
 def nothing_to(
@@ -178,7 +181,7 @@ def nothing_to(
 
 
 def not_inherited(name: tree.Name, kind: str, verb: str, known: tree.Name) -> Diagnostic:
-    """A change of something of the same rulebook, such as by ``set`` or ``override``."""
+    """A change to something of the same rulebook, such as by ``set`` or ``override``."""
     article = "an" if kind == "option" else "a"
     return NOT_INHERITED.at(
         name.span,
@@ -252,7 +255,7 @@ def value_of_another_kind(item: tree.SetItem) -> Diagnostic:
 
 
 def soft_already(item: tree.SoftenItem, known: tree.RuleItem) -> Diagnostic:
-    """``soften`` of a soft rule, without a new place or weight."""
+    """``soften`` of a soft rule, without a new level or weight."""
     return NOT_INHERITED.at(
         item.name.span,
         f"rule `{item.name.text}` is soft already",
@@ -280,7 +283,7 @@ def priority_circle(
 
 
 def idle_override(item: tree.RuleItem) -> Diagnostic:
-    """An override that says nothing new."""
+    """An override that changes nothing."""
     name = item.name.text
     return IDLE_OVERRIDE.at(
         item.name.span,
@@ -310,7 +313,7 @@ def lost_exceptions(item: tree.RuleItem, gone: Sequence[tree.Unless]) -> Diagnos
 
 
 def _added(plain: Sequence[tree.Unless]) -> Fix | None:
-    """The fix, where one word mends it."""
+    """The fix, if adding one word suffices."""
     span = plain[0].span
     return (
         Fix(Span(span.source, span.start, span.start).place, "also ") if len(plain) == 1 else None

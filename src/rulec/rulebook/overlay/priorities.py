@@ -11,7 +11,7 @@ from rulec.rulebook.overlay.overlay_messages import priority_circle
 from rulec.syntax import tree
 
 MOST_LEVELS = 100
-"""More levels are no order that anyone could keep in mind."""
+"""The most levels; more would be incomprehensible."""
 
 
 def pre_order(
@@ -19,8 +19,8 @@ def pre_order(
 ) -> tuple[tuple[str, ...], frozenset[tuple[str, str]], list[Diagnostic]]:
     """Levels in order of first mention, their pre-order, and the mistakes.
 
-    The pre-order is all pairs (higher, lower), transitive; levels that are equal stand in both
-    orders. What contradicts the lines before it is reported and left out.
+    The pre-order consists of all pairs (higher, lower) and is transitive; equal levels are paired
+    in both orders. A line that contradicts earlier ones is reported and ignored.
     """
     levels: dict[str, tree.Name] = {}
     order: set[tuple[str, str]] = set()
@@ -52,7 +52,7 @@ def pre_order(
 
 
 def _with_pair(order: set[tuple[str, str]], pair: tuple[str, str]) -> set[tuple[str, str]]:
-    """Transitive closure of an order and one more pair, without reflexive pairs."""
+    """The transitive closure of an order and one more pair, without reflexive pairs."""
     higher, lower = pair
     above = [higher, *(level for level, other in order if other == higher)]
     below = [lower, *(level for other, level in order if other == lower)]

@@ -1,4 +1,4 @@
-"""Effect of an override on an inherited rule, and its losses."""
+"""The effect of an override on an inherited rule, and what it loses."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ _CLAUSES = (
 
 
 def merged(base: tree.RuleItem, over: tree.RuleItem) -> tree.RuleItem:
-    """A rule with the clauses that an override gives it replaced.
+    """The rule, with the clauses of the override replacing its own.
 
-    Where a provision was read, and how sure that is, goes with the provision.
+    The source and certainty of a provision are replaced together with the provision.
     """
     if over.cite:
         base = replace(base, source=None, certainty="")
@@ -54,9 +54,9 @@ def _replaces_exceptions(over: tree.RuleItem) -> bool:
 
 
 def lost_exceptions(base: tree.RuleItem, over: tree.RuleItem) -> tuple[tree.Unless, ...]:
-    """Inherited exceptions that an override replaces without saying anew what they say.
+    """Inherited exceptions that an override replaces without repeating them.
 
-    One that says what must hold anew has its own exceptions, too.
+    An override with a requirement of its own has its own exceptions, too.
     """
     if over.require is not None or not _replaces_exceptions(over):
         return ()

@@ -1,6 +1,6 @@
-"""Overlay of a rulebook on its bases: rules, options and definitions.
+"""Applies a rulebook to its bases: rules, options and definitions.
 
-Everything here is still as written; meaning comes afterwards, so that an inherited rule uses the
+Everything here is still as written and is resolved afterwards, so that an inherited rule uses the
 definitions of the rulebook that inherits it.
 """
 
@@ -21,9 +21,9 @@ from rulec.syntax import tree
 class RuleEntry:
     """A rule after all overrides.
 
-    ``book`` is the file that it, or its last override, stands in, ``examples_from`` the one that
-    its examples stand in, ``law`` the one whose law it is: that last declared it, confirmed it or
-    gave it another provision. ``changed`` is the name in the last line that changed it.
+    ``book`` is the file with the rule or its last override, ``examples_from`` the one with its
+    examples, and ``law`` the one whose law it is: which last declared it, confirmed it or gave it
+    another provision. ``changed`` is the name in the last line that changed it.
     """
 
     item: tree.RuleItem
@@ -35,7 +35,7 @@ class RuleEntry:
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """Value of a parameter, from file number ``level`` of the chain."""
+    """A value of a parameter, from file number ``level`` of the chain."""
 
     item: tree.ParamItem | tree.SetItem
     level: int
@@ -43,34 +43,34 @@ class Value:
 
 @dataclass(slots=True)
 class Overlay:
-    """A chain of rulebooks, each laid over its base; filled by ``overlay``.
+    """A chain of rulebooks, each applied to its base; filled by ``overlay``.
 
-    An option, a parameter and a definition never have the same name.
+    Options, parameters and definitions all have different names.
     """
 
     spans: Mapping[str, Span] = field(default_factory=dict)
-    """Where the names of the vocabularies' and rulebooks' declarations stand."""
+    """The places of the names in the declarations of vocabularies and rulebooks."""
     options: dict[str, bool] = field(default_factory=dict)
     parameters: dict[str, list[Value]] = field(default_factory=dict)
     definitions: dict[str, tree.DefineItem] = field(default_factory=dict)
     rules: dict[str, RuleEntry] = field(default_factory=dict)
     gone: dict[str, tree.Name] = field(default_factory=dict)
-    """Where a rule was last dropped or passed over in silence."""
+    """Where a rule was last dropped or declared silent."""
     remarks: list[Remark] = field(default_factory=list)
     declared_at: dict[str, tree.Name] = field(default_factory=dict)
-    """Where each option, parameter and definition was first named."""
+    """Where each option, parameter and definition was first declared."""
     changed_at: dict[str, tree.Name] = field(default_factory=dict)
-    """Where an option or a definition was last ``set`` or redefined."""
+    """Where an option or definition was last ``set`` or redefined."""
     mistakes: list[Diagnostic] = field(default_factory=list)
     topics: dict[str, tree.TopicEntry] = field(default_factory=dict)
     provisions: list[tuple[tree.File, tree.ProvisionsItem]] = field(default_factory=list)
-    """The lists of articles, each with the rulebook that it stands in."""
+    """The lists of articles, each with its rulebook."""
     unsure: bool = False
-    """A rulebook of the chain could not be read whole: names may be missing for that reason."""
+    """Whether a rulebook of the chain was partly unreadable, so that names may be missing."""
     unsure_rules: bool = False
-    """The head of a rule could not be read: it may have any name."""
+    """Whether the head of some rule could not be read, so that it may have any name."""
     suspects: set[str] = field(default_factory=set)
-    """Names in what could not be read."""
+    """The names in unreadable text."""
 
     def kind_of(self, name: str) -> str:
         """``option``, ``parameter``, ``definition``, or empty for any other name."""
@@ -81,7 +81,7 @@ class Overlay:
         return "definition" if name in self.definitions else ""
 
     def lay(self, item: tree.Item, file: tree.File, level: int) -> None:
-        """Lay an item of a file, ``level`` files above the most general one, over the rest."""
+        """Apply an item of a file, ``level`` files above the most general one, to the others."""
         dates: tree.InForce | None = getattr(item, "in_force", None)
         if dates is not None and never_in_force(dates):
             self.mistakes.append(say.never_in_force(dates))
@@ -159,11 +159,11 @@ class Overlay:
         return True
 
     def _is_own(self, name: tree.Name) -> bool:
-        """Tell whether the file that names something has also declared it."""
+        """Whether the file that uses a name has also declared it."""
         return self.declared_at[name.text].span.source is name.span.source
 
     def _inherited(self, names: Iterable[str], user: tree.Name) -> list[str]:
-        """The options, parameters or definitions that are not of the user's own file."""
+        """The options, parameters or definitions that are not from the user's own file."""
         source = user.span.source
         return [name for name in names if self.declared_at[name].span.source is not source]
 
@@ -173,7 +173,7 @@ class Overlay:
             self.mistakes.append(twice("topic", entry.name, known.name.span))
 
     def _add_provisions(self, item: tree.ProvisionsItem, file: tree.File) -> None:
-        """Take a list of articles; each stands in a rulebook once."""
+        """Add a list of articles; a rulebook may have only one."""
         first = {
             entry.number.value: entry.number
             for book, earlier in self.provisions
@@ -187,9 +187,9 @@ class Overlay:
         self.provisions.append((file, item))
 
     def topics_of(self, rule: tree.RuleItem) -> tuple[str, ...]:
-        """The topics of a rule: those that it names, else those that name it.
+        """The topics of a rule: those that it names, else those that list it.
 
-        One that names the beginning of its name does, too; the longest such name decides.
+        A topic also lists rules by the beginning of their names; the longest match decides.
         """
         if not rule.topics:
             named = [
@@ -203,7 +203,7 @@ class Overlay:
         return tuple(name.text for name in rule.topics)
 
     def wrong_topics(self, rule: tree.RuleItem) -> Iterator[Diagnostic]:
-        """Topics of a rule that are not declared, and are nothing that could not be read."""
+        """Undeclared topics of a rule, except those that unreadable text may declare."""
         known = self.topics.keys() | self.suspects
         for name in () if self.unsure else rule.topics:
             if name.text not in known:
@@ -223,14 +223,14 @@ class Overlay:
             self.options[name.text] = item.value
 
     def _is_inherited(self, name: tree.Name, kind: str, verb: str) -> bool:
-        """Tell whether an option, parameter or definition is inherited; else report."""
+        """Whether an option, parameter or definition is inherited; if not, report it."""
         own = self._is_own(name)
         if own:
             self.mistakes.append(say.not_inherited(name, kind, verb, self.declared_at[name.text]))
         return not own
 
     def _changes(self, name: tree.Name, kind: str, verb: str) -> bool:
-        """Note the first change of an inherited name; report mistakes."""
+        """Record the first change of an inherited name; report mistakes."""
         if not self._is_inherited(name, kind, verb):
             return False
         before = self.changed_at.get(name.text)
@@ -275,7 +275,7 @@ class Overlay:
         self.remarks.append(Remark(item.name.text, because, "softened", _name(file)))
 
     def _is_inherited_rule(self, name: tree.Name, verb: str, file: tree.File) -> bool:
-        """Tell whether a name is an inherited rule; report anything else."""
+        """Whether a name is an inherited rule; if not, report it."""
         known = self.rules.get(name.text)
         before = self.gone.get(name.text) if known is None else known.changed
         if before is not None and before.span.source is name.span.source:
@@ -300,9 +300,9 @@ class Overlay:
 
 
 def overlay(chain: Sequence[tree.File], spans: Mapping[str, Span], *, unsure: bool) -> Overlay:
-    """Lay rulebooks over one another, the most general first.
+    """Apply rulebooks to one another, the most general first.
 
-    ``spans`` are where the names of declarations stand; ``unsure``: a file could not be read.
+    ``spans`` are the places of declared names; ``unsure``: a file could not be read.
     """
     laid = Overlay(spans, unsure=unsure)
     for level, file in enumerate(chain):
@@ -312,24 +312,24 @@ def overlay(chain: Sequence[tree.File], spans: Mapping[str, Span], *, unsure: bo
 
 
 def own_law(chain: Sequence[tree.File]) -> Sequence[tree.File]:
-    """The rulebooks at a chain's end that are its own law: from the last that names a law on.
+    """The rulebooks at the end of a chain that form its own law: from the last that names a law on.
 
-    What changes a rulebook without naming another law, as a variant or a depot's book does, is of
-    the same law. Where none names a law, it is the last one alone.
+    A rulebook that extends another without naming a law, as a variant or a depot's book does,
+    belongs to the same law. If none names a law, only the last one is returned.
     """
     named = [number for number, file in enumerate(chain) if file.law and file.law.text.value]
     return chain[named[-1] if named else -1 :]
 
 
 def in_force(dates: tree.InForce | None, day: str) -> bool:
-    """Tell whether a day (ISO) lies within dates, the last included."""
+    """Whether a day (ISO) lies within dates, the last one included."""
     if dates is None:
         return True
     return dates.since <= day and (not dates.until or day <= dates.until)
 
 
 def never_in_force(dates: tree.InForce | None) -> bool:
-    """Tell whether the dates end before they begin."""
+    """Whether the dates end before they begin."""
     return dates is not None and bool(dates.until) and dates.until < dates.since
 
 

@@ -1,1 +1,1 @@
-"""Rules, exemptions, examples and axioms as written to those as meant."""
+"""Resolves rules, exemptions, examples and axioms."""

@@ -1,4 +1,4 @@
-"""Antecedents: the conditions under which a rule asks for anything.
+"""Antecedents: the conditions under which a rule requires anything.
 
 A rule whose antecedent never holds is vacuous (Beer, Ben-David, Eisner, Rodeh, "Efficient detection
 of vacuity in temporal model checking", 2001).
@@ -32,19 +32,19 @@ class Antecedent:
 
     @property
     def in_words(self) -> str:
-        """What it is of its rule."""
+        """Its role in the rule."""
         return _IN_WORDS[self.kind]
 
 
 def antecedents(rule: Rule) -> Iterator[Antecedent]:
-    """The antecedents of a rule but for what an option has switched off."""
+    """The antecedents of a rule, except what an option has switched off."""
     for antecedent in _all(rule):
         if not has_constant(antecedent.formula):
             yield antecedent
 
 
 def has_constant(formula: Formula) -> bool:
-    """True if some part has one value for good, like an option."""
+    """Whether some part has a fixed value, like an option."""
     match formula:
         case Constant():
             return True

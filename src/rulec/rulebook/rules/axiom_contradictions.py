@@ -1,6 +1,6 @@
-"""Facts that leave no state, and rules that wait for what can be in none.
+"""Axioms that exclude all states, and rules whose trigger is excluded.
 
-That is found without automata, where few values have to be tried; the rest is left to the compiler
+These are found without automata if few values have to be tried; the rest is left to the compiler
 and to `rulec analyze`.
 """
 
@@ -24,13 +24,13 @@ from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.vocabulary_model import number_of_choices
 
 _MOST_INSTANCES = 200
-"""So many instances of facts are looked at together."""
+"""The most instances of axioms that are examined together."""
 
 
 def contradictions(
     variables: Sequence[Variable], axioms: Sequence[Axiom], vocabulary: Vocabulary
 ) -> Iterator[Diagnostic]:
-    """Errors (R0409) for axioms that leave no state of objects that variables stand for.
+    """Errors (R0409) for axioms that exclude all states of the objects that variables stand for.
 
     No axiom is in two of them.
     """
@@ -44,7 +44,7 @@ def contradictions(
 
 
 def all_contradictions(axioms: Sequence[Axiom], vocabulary: Vocabulary) -> list[Diagnostic]:
-    """The same of the objects that each of the axioms speaks of, each set of facts once."""
+    """The same for the objects in each of the axioms, with each set of axioms once."""
     scenes = dict.fromkeys(axiom.variables for axiom in axioms)
     diagnostics: dict[object, Diagnostic] = {}
     for variables in sorted(scenes, key=len):
@@ -56,9 +56,9 @@ def all_contradictions(axioms: Sequence[Axiom], vocabulary: Vocabulary) -> list[
 def impossible_triggers(
     rule: Rule, axioms: Sequence[Axiom], vocabulary: Vocabulary, span: Span | None
 ) -> Iterator[Diagnostic]:
-    """Warnings (R0363), about a place, for what a rule waits for and no state can be like.
+    """Warnings (R0363), about a place, for triggers that no state can satisfy.
 
-    A fact that an option switches on says nothing of the rulebook with another one.
+    An axiom that an option switches on says nothing about the rulebook with another option.
     """
     lasting = [axiom for axiom in axioms if not has_constant(axiom.formula)]
     groups = [*_groups(rule.variables, lasting, vocabulary)]
@@ -74,7 +74,7 @@ def impossible_triggers(
 def _groups(
     variables: Sequence[Variable], axioms: Sequence[Axiom], vocabulary: Vocabulary
 ) -> Iterator[tuple[AxiomInstance, ...]]:
-    """Instances of axioms in groups that have nothing to do with each other; none if too many."""
+    """Instances of axioms in independent groups; none if there are too many."""
     objects = {variable.name: variable.type for variable in variables}
     types = ([variable.type for variable in axiom.variables] for axiom in axioms)
     number = sum(number_of_choices(own, objects, vocabulary) for own in types)
@@ -93,7 +93,7 @@ def _triggers(rule: Rule) -> Iterator[tuple[str, ltl.Formula]]:
 def _needed(
     instances: Sequence[AxiomInstance], others: Sequence[ltl.Formula], vocabulary: Vocabulary
 ) -> tuple[AxiomInstance, ...]:
-    """Instances that cannot hold together with other formulas, none of them needlessly."""
+    """A minimal set of instances that cannot hold together with other formulas."""
     needed = [*instances]
     for instance in instances:
         fewer = [axiom for axiom in needed if axiom is not instance]

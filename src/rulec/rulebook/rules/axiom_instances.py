@@ -1,8 +1,8 @@
-"""Axioms of a rulebook, instantiated for the variables of a rule.
+"""The axioms of a rulebook, instantiated for the variables of a rule.
 
-A fact holds for all distinct objects of its types, so it holds for a rule's variables in every way
-that they fit. Facts that count are no part of this: how many objects there are, and which, is
-another matter in every state, so traces alone can tell (``rulec.monitoring.axiom_violations``).
+An axiom holds for all distinct objects of its types, so it holds for a rule's variables in every
+way that they fit. Counting axioms are not included: how many objects there are, and which, differs
+from state to state, so only traces can tell (``rulec.monitoring.axiom_violations``).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from rulec.vocabulary.vocabulary_model import choices
 
 @dataclass(frozen=True, slots=True)
 class AxiomInstance:
-    """Axiom instantiated for a rule's ``variables``, in order of its own."""
+    """An axiom instantiated for a rule's ``variables``, in the order of its own."""
 
     fact: Axiom
     variables: tuple[str, ...]
@@ -31,7 +31,7 @@ def axiom_instances(
 ) -> tuple[AxiomInstance, ...]:
     """Instances of every axiom for distinct variables of its types or subtypes.
 
-    Facts without variables are said once, facts that count are left out.
+    Axioms without variables occur once, counting axioms are left out.
     """
     types = {variable.name: variable.type for variable in variables}
     instances = []
@@ -59,7 +59,7 @@ def counts(formula: ltl.Formula) -> bool:
 
 
 def linked(instances: Iterable[AxiomInstance]) -> Iterator[tuple[AxiomInstance, ...]]:
-    """The instances in groups that have nothing to do with each other."""
+    """The instances in independent groups."""
     groups: list[tuple[set[object], list[AxiomInstance]]] = []
     for instance in instances:
         about, members = subjects_of([instance]), [instance]
@@ -73,7 +73,7 @@ def linked(instances: Iterable[AxiomInstance]) -> Iterator[tuple[AxiomInstance, 
 
 
 def subjects_of(instances: Iterable[AxiomInstance]) -> set[object]:
-    """What instances speak of."""
+    """The subjects of instances."""
     return {
         ltl.subject_of(atom) for instance in instances for atom in ltl.atoms_of(instance.formula)
     }

@@ -1,4 +1,4 @@
-"""Messages about facts that leave no state, or none in which a rule asks for anything."""
+"""Messages about axioms that exclude all states, or all in which a rule requires anything."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ IMPOSSIBLE_TRIGGER = Code(
 def contradictory_facts(
     instances: Iterable[AxiomInstance], variables: Sequence[Variable]
 ) -> Diagnostic:
-    """R0409: facts that contradict each other of objects that variables stand for."""
+    """R0409: axioms that contradict each other for the objects that variables stand for."""
     instances = tuple(instances)
     first, *others = axioms = _facts_of(instances)
     types = {variable.name: variable.type for variable in variables}
@@ -71,7 +71,7 @@ def contradictory_facts(
 def ruled_out(
     role: str, trigger: Formula, instances: Iterable[AxiomInstance], span: Span | None
 ) -> Diagnostic:
-    """R0363: what a rule waits for, which ``role`` names, is ruled out, perhaps by facts."""
+    """R0363: a rule's trigger, named by ``role``, is excluded, possibly by axioms."""
     axioms = _facts_of(instances)
     many = "s" if len(axioms) > 1 else ""
     return IMPOSSIBLE_TRIGGER.at(

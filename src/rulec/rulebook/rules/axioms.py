@@ -1,4 +1,4 @@
-"""Facts: what a vocabulary knows of every state, whatever the rules say."""
+"""Axioms: what a vocabulary states about every state, whatever the rules say."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def _axiom(
     constants: ConstantsAndMacros,
     mistakes: list[Diagnostic],
 ) -> Axiom | None:
-    """Axiom of a fact. Its variables are of the types that what it says of them is about."""
+    """The axiom of a fact. Its variables have the types that its atoms require."""
     formula = item.formula
     if isinstance(formula, tree.Prefix) and formula.operator == "always" and not formula.bound:
         # Facts hold always; one may say so.
@@ -82,7 +82,7 @@ def _required_types(
 ) -> Iterator[tuple[tree.Name, str]]:
     """Every object in a formula, with the type required of it.
 
-    ``counted`` are the variables of the counts around it, which are no objects of the fact's.
+    ``counted`` are the variables of surrounding counts, which are not objects of the fact.
     """
     if isinstance(formula, tree.AtomUse):
         types = _parameter_types(formula.name.text, symbols, constants)
@@ -99,7 +99,7 @@ def _required_types(
 def _parameter_types(
     name: str, symbols: SymbolTable, constants: ConstantsAndMacros
 ) -> Sequence[str | None]:
-    """Parameter types of a name; None where any argument will do."""
+    """The parameter types of a name; None where any argument will do."""
     definition = constants.overlay.definitions.get(name)
     if definition is not None:
         written = (parameter.type for parameter in definition.parameters)
@@ -112,9 +112,9 @@ def _parameter_types(
 
 @dataclass(frozen=True, slots=True)
 class ExampleValues:
-    """Values of an example's state, and defaults for others read.
+    """The values of an example's state, with defaults for other values that are read.
 
-    What neither of them speaks of is not known. ``read`` are those: declarations and objects.
+    Values in neither are unknown. ``read`` are the declarations and objects that are read.
     """
 
     given: ExampleState
@@ -181,9 +181,9 @@ def _violated(state: ExampleValues, axioms: Sequence[Axiom]) -> tuple[Axiom, str
 # Each is asked about for every state of every example.
 @lru_cache(maxsize=1024)
 def _deciding_names(formula: ltl.Formula) -> frozenset[str] | None:
-    """The names of which something must be known for a fact to be broken; None if nothing must.
+    """The names that must be known for an axiom to be violated; None if none must be.
 
-    A count may be zero, and objects the same, whatever is known.
+    A count may be zero, and objects may coincide, whatever is known.
     """
     parts = [formula]
     while parts:

@@ -1,4 +1,4 @@
-"""Diagnostics within a rule, with a note of the provision cited."""
+"""Adds a note with the cited provision to diagnostics within a rule."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ def with_provisions(
     books: Sequence[tree.File],
     placed: Callable[[SourceLocation], SourceLocation],
 ) -> tuple[Diagnostic, ...]:
-    """Findings, those within a rule with a note of what it cites.
+    """Findings; those within a rule get a note with what it cites.
 
-    ``books`` are those that a rulebook extends, the most general first, and itself: an override
-    that cites nothing is the rule of what is overridden. ``placed`` leads from where their trees
-    say that something is to where findings do.
+    ``books`` are those that a rulebook extends, the most general first, and itself; an override
+    that cites nothing has the provision of the overridden rule. ``placed`` maps places in their
+    trees to places in findings.
     """
     diagnostics = tuple(findings)
     if not diagnostics:

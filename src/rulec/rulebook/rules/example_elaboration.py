@@ -1,4 +1,4 @@
-"""A rule's examples as meant: the values that each state gives."""
+"""Resolves a rule's examples to the values of each state."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from rulec.syntax import tree
 from rulec.vocabulary.written_numbers import number_of
 
 Key = tuple[str, tuple[str, ...]]
-"""A declaration, and the objects that it is asked about."""
+"""A declaration, with the objects that it is about."""
 
 
 def example_of(example: tree.ExampleItem, formula: ltl.Formula | None, scope: Scope) -> Example:
-    """The example; what is wrong with it is reported."""
+    """The example; mistakes in it are reported."""
     variables = dict(scope.variables)
     for parameter in example.objects:
         name = parameter.name

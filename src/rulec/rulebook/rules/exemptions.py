@@ -1,11 +1,11 @@
 """``unless`` and ``when``: what a rule exempts, and when.
 
-A rule that never lets a sequence happen guards a stretch of it: the phases between the first and
-the last, which only say where the sequence comes from and where it leads. Of a sequence of two
-phases the stretch is the last instant of the first and the first instant of the second; of a single
-phase, and of ``always``, it is the one instant. An exception exempts a sequence if it holds at the
-stretch's start, at its end, throughout it, or at some point of it. A sequence is counted against
-the rule if no exception exempts it.
+A rule that forbids a sequence guards a stretch of it: the phases between the first and the last,
+which only say where the sequence comes from and where it leads. For a sequence of two phases the
+stretch is the last instant of the first and the first instant of the second; for a single phase,
+and for ``always``, it is one instant. An exception exempts a sequence if it holds at the stretch's
+start, at its end, throughout it, or at some point of it. A sequence violates the rule if no
+exception exempts it.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from rulec.rulebook.rulebook_model import Exemption, ExemptionScope, Rule
 _THEN, _UNTIL = BinaryOperator.THEN, BinaryOperator.UNTIL
 
 MOST_THROUGHOUT = 4
-"""Exceptions of one rule that have to hold throughout; the formula grows exponentially in them."""
+"""The most exceptions of a rule that must hold throughout; the formula grows exponentially."""
 
 _MOST_WAYS = 2_000
-"""Ways for them to fail in one phase or the other; with many phases there are more of them."""
+"""The most ways in which they can fail in different phases; more phases give more ways."""
 
 
 class ExemptionError(Exception):
-    """Error: a formula guards no stretch or bounds its phases, or has too many exemptions."""
+    """A formula guards no stretch, or bounds its phases, or has too many exemptions."""
 
     def __init__(self, problem: Literal["no stretch", "bounded phase", "too many"]) -> None:
         super().__init__(problem)
@@ -60,14 +60,17 @@ def exempted(formula: Formula, exemptions: Sequence[Exemption]) -> Formula:
 
 
 def rule_trigger(rule: Rule) -> Formula | None:
-    """What has to hold in a state for the rule to be breached there; None if nothing is named."""
+    """What must hold in a state for the rule to be breached there.
+
+    None if its form has no trigger.
+    """
     exceptions = [(part.formula, part.scope == "initially") for part in rule.exemptions]
     return trigger_of_parts(rule.required or rule.formula, exceptions, rule.condition)
 
 
 @dataclass(frozen=True, slots=True)
 class _Phase:
-    """Phase of a sequence with its duration; the last has none."""
+    """A phase of a sequence with its duration; the last one has none."""
 
     formula: Formula
     bound: Bound | None = None
@@ -82,7 +85,7 @@ def _phases(formula: Formula) -> list[_Phase]:
 
 
 def _counted(phases: list[_Phase], exemptions: Sequence[Exemption]) -> Formula:
-    """The sequence of these phases as far as no exemption exempts it."""
+    """The sequence of these phases, unless an exemption exempts it."""
     denied: dict[ExemptionScope, list[Formula]] = {}
     for exemption in exemptions:
         denied.setdefault(exemption.scope, []).append(negated(exemption.formula))
@@ -109,9 +112,10 @@ def _counted(phases: list[_Phase], exemptions: Sequence[Exemption]) -> Formula:
 def _border(
     phases: list[_Phase], before: Formula, behind: Formula, throughout: Sequence[Formula]
 ) -> Formula:
-    """Formula of two phases, split at the border between them.
+    """The formula of two phases, split at the border between them.
 
-    ``before`` holds in the last instant of the first, ``behind`` in the first one of the second.
+    ``before`` holds in the last instant of the first phase, ``behind`` in the first instant of the
+    second.
     """
     first, second = phases
     ways = [
@@ -129,7 +133,7 @@ def _border(
 
 
 def _ends(phase: _Phase, at_last: Formula, behind: Formula) -> Formula:
-    """Formula of the rest of a phase and the instant behind.
+    """The formula of the rest of a phase and the instant after it.
 
     ``at_last`` holds in its last instant, ``behind`` in the one after it.
     """
@@ -146,8 +150,8 @@ def _ends(phase: _Phase, at_last: Formula, behind: Formula) -> Formula:
 class _Inner:
     """A sequence of at least three phases; the inner ones are guarded.
 
-    ``at_start``, ``at_end``, ``everywhere`` have to hold at the first, the last, at all instants of
-    the stretch for the sequence to be counted.
+    ``at_start``, ``at_end`` and ``everywhere`` must hold at the first, the last, and all instants
+    of the stretch for the sequence to violate the rule.
     """
 
     phases: list[_Phase]
@@ -156,7 +160,7 @@ class _Inner:
     everywhere: Formula
 
     def whole(self, somewhere: tuple[Formula, ...]) -> Formula:
-        """Formula of all phases, with each of ``somewhere`` to hold somewhere in the stretch."""
+        """The formula of all phases, each of ``somewhere`` holding somewhere in the stretch."""
         first = self.phases[0]
         return Binary(_THEN, first.formula, self._enter(1, somewhere), first.bound)
 
@@ -167,7 +171,7 @@ class _Inner:
         return all_of([self.at_start, inside]) if index == 1 else inside
 
     def _inside(self, index: int, rest: tuple[Formula, ...]) -> Formula:
-        """From some instant of an inner phase on."""
+        """The formula from some instant of an inner phase on."""
         phase = replace(
             self.phases[index], formula=all_of([self.phases[index].formula, self.everywhere])
         )

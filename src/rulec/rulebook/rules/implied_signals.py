@@ -1,4 +1,4 @@
-"""Signals implied by facts: a parked vehicle stands."""
+"""Signals implied by axioms: a parked vehicle is stationary."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from rulec.vocabulary import Signal, Vocabulary
 def with_implied(vocabulary: Vocabulary, facts: Iterable[Formula]) -> Vocabulary:
     """The vocabulary with what follows from its signals by ``facts``.
 
-    Only facts that say of one signal that it implies another one of the same objects fill in what
-    a state leaves out, and none that speaks of a constant: what one state says of it holds in all.
+    Missing values are filled in only from axioms by which one signal implies another one of the
+    same objects, neither of them a constant, since a constant's value in one state holds in all.
     """
     following: dict[str, list[str]] = {}
     for cause, effect in _implications(facts, vocabulary):
@@ -27,7 +27,7 @@ def with_implied(vocabulary: Vocabulary, facts: Iterable[Formula]) -> Vocabulary
 
 
 def with_what_follows(given: ExampleState, vocabulary: Vocabulary) -> ExampleState:
-    """What an example's state says, and what follows from it that it does not mention."""
+    """The values of an example's state, and what follows from them."""
     known = dict(given)
     ahead = [name for name, value in given.items() if value is True]
     while ahead:
@@ -48,7 +48,7 @@ def _implications(facts: Iterable[Formula], vocabulary: Vocabulary) -> Iterator[
 
 
 def _fits(cause: Atom, effect: Atom, vocabulary: Vocabulary) -> bool:
-    """Whether both are signals that may change, and whoever has the one has the other."""
+    """Whether both are signals that may change, and every object of the one has the other."""
     first, second = vocabulary.declarations[cause.name], vocabulary.declarations[effect.name]
     return (
         isinstance(first, Signal)

@@ -1,7 +1,7 @@
-"""Whether there is a state in which formulas hold together, by trying values (Davis, Putnam).
+"""Whether some state satisfies formulas together, by trying values (Davis, Putnam).
 
-What a formula says of other moments, and numbers that are sums, may be anything here: a state that
-is not found there is none, one that is found there may be.
+The truth of a formula about other moments, and sums of numbers, are taken to be anything. So if no
+state is found, there is none; if one is found, there may be one.
 """
 
 from __future__ import annotations
@@ -18,19 +18,21 @@ from rulec.vocabulary import Enumeration, Vocabulary
 
 _MOST_ATOMS = 100
 _MOST_LOOKED_AT = 200_000
-"""So many atoms there may be in one question, and so often one of them is looked at; what takes
-more is left to the compiler."""
+"""The most atoms in one question, and the most evaluations.
+
+Larger questions are left to the compiler.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class _Open:
-    """The value that decides, and is not known yet: of an atom, a number, or a part with time."""
+    """The unknown value that decides: of an atom, a number, or a temporal part."""
 
     subject: object
 
 
 def may_hold(formulas: Sequence[ltl.Formula], vocabulary: Vocabulary) -> bool:
-    """False if no state satisfies all formulas; also true where that takes too long to say."""
+    """False if no state satisfies all formulas; True also if this takes too long to decide."""
     atoms = [atom for formula in formulas for atom in ltl.atoms_of(formula)]
     if len(atoms) > _MOST_ATOMS:
         return True
@@ -45,7 +47,7 @@ class _Search:
     left: int = field(default=_MOST_LOOKED_AT)
 
     def finds(self, known: Mapping[object, object]) -> bool:
-        """Tell whether what is known of a state can be made up so that all formulas hold."""
+        """Whether what is known of a state can be completed such that all formulas hold."""
         self.left -= self.size
         if self.left < 0:
             return True
@@ -115,7 +117,7 @@ def _joined(
 def _values(
     atoms: Iterable[ltl.Proposition], vocabulary: Vocabulary
 ) -> dict[object, Sequence[object]]:
-    """The values to be tried of all that atoms speak of, the most usual first."""
+    """The values to try for everything in atoms, the most usual first."""
     limits: dict[tuple[tuple[Fraction, ltl.Term], ...], set[Fraction]] = {}
     values: dict[object, Sequence[object]] = {}
     for proposition in atoms:
@@ -133,7 +135,7 @@ def _values(
 
 
 def _around(limits: Iterable[Fraction]) -> list[Fraction]:
-    """A number in each part of the line that limits cut it into."""
+    """A number in each part of the number line between limits."""
     ascending = sorted(limits)
     between = [(low + high) / 2 for low, high in pairwise(ascending)]
     return [*ascending, *between, ascending[0] - 1, ascending[-1] + 1]

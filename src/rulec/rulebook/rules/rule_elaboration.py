@@ -1,4 +1,4 @@
-"""From a rule as written to a rule as meant."""
+"""Resolves a written rule."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ def translate_rule(
     *,
     confirmed: bool = True,
 ) -> tuple[Rule | None, list[Diagnostic]]:
-    """Elaborate a rule; return it or None, its mistakes and warnings.
+    """Elaborate a rule; returns it or None, with its mistakes and warnings.
 
-    ``levels`` are those of the rulebook's priorities; None if they are not known for sure.
+    ``levels`` are those of the rulebook's priorities; None if they are not known for certain.
     ``confirmed``: it is the rulebook's own law.
     """
     item = entry.item
