@@ -24,8 +24,8 @@ NOT_UTF8 = Code(
 FILE_TOO_LARGE = Code(
     "R0102",
     title="a file is too large",
-    why="A rulebook or a vocabulary may have 5,000,000 bytes. No law is that long; if a program "
-    "wrote the file, split it into several rulebooks.",
+    why="A rulebook or a vocabulary may have 5,000,000 bytes, more than any law needs. If a "
+    "program wrote the file, split it into several rulebooks.",
     bad="{ echo 'rulebook a signal p hard rule r { require always p }'\n"
     "  head -c 5000000 /dev/zero | tr '\\0' '#'; } | rulec check -",
     good="{ echo 'rulebook a signal p hard rule r { require always p }'\n"
@@ -35,10 +35,10 @@ FILE_TOO_LARGE = Code(
 
 TOO_LONG_TO_READ = Code(
     "R0736",
-    title="a file is longer than any of its kind",
-    why="Texts of laws, saved audits and monitors, compiled rulebooks and settings are read as a "
-    "whole, so each kind has a limit on its bytes, those of a packed file unpacked. A small file "
-    "may hide gigabytes.",
+    title="a file is too long for its kind",
+    why="Texts of laws, saved audits and monitors, compiled rulebooks and settings are read "
+    "completely, so their size is limited, for compressed files after decompression, since a "
+    "small file may expand to gigabytes.",
     bad="head -c 6000000 /dev/zero | gzip > law.md.gz\nrulec audit vienna --law law.md.gz",
     good="printf '### Article 1 Scope\\nText.\\n' > law.md\nrulec audit vienna --law law.md",
     kind="command",
@@ -47,8 +47,8 @@ TOO_LONG_TO_READ = Code(
 UNREADABLE_FILE = Code(
     "R0701",
     title="a file cannot be read",
-    why="There is no such file, it is a folder, or it may not be read, or it is "
-    "packed (gzip) and damaged; the message says which.",
+    why="The file does not exist, is a folder, may not be read, or is a damaged gzip file; the "
+    "message says which.",
     bad="rulec check ./no_such.rules",
     good="echo 'rulebook a signal p hard rule r { require always p }' > such.rules\n"
     "rulec check ./such.rules",
@@ -58,8 +58,8 @@ UNREADABLE_FILE = Code(
 UNWRITABLE_FILE = Code(
     "R0702",
     title="a file cannot be written",
-    why="The folder does not exist and cannot be made, something else has its name, it may not be "
-    "written to, or the disk is full. Nothing is left behind half written.",
+    why="The folder does not exist and cannot be created, the name is taken by something else, "
+    "the file may not be written, or the disk is full. No half-written file remains.",
     bad="echo notes > build\nrulec compile esterle2019 -o build",
     good="echo notes > notes\nrulec compile esterle2019 -o build",
     kind="command",
@@ -69,7 +69,7 @@ WRONG_SETTINGS = Code(
     "R0704",
     title="a project's settings are wrong",
     why="The nearest `rulec.toml`, in the working folder or above it, is not TOML, has an unknown "
-    "setting, or lists in `search_path` something that is no folder.",
+    "setting, or lists in `search_path` something that is not a folder.",
     bad="echo 'search_path = [\"no_such\"]' > rulec.toml\nrulec compile esterle2019 -o out",
     good="mkdir books\necho 'search_path = [\"books\"]' > rulec.toml\n"
     "rulec compile esterle2019 -o out",
@@ -79,8 +79,8 @@ WRONG_SETTINGS = Code(
 NO_OUTPUT = Code(
     "R0720",
     title="standard output cannot be written to",
-    why="The disk of the file is full to which the answer is sent, or its device does not take it; "
-    "the answer is not whole. Whoever leaves before the end, as `head` does, is no mistake.",
+    why="The disk of the output file is full, or its device does not accept data, so the answer "
+    "is incomplete. A reader that stops early, such as `head`, is not an error.",
     bad="rulec list > /dev/full",
     good="rulec list > /dev/null",
     kind="command",
@@ -89,7 +89,8 @@ NO_OUTPUT = Code(
 NO_INPUT = Code(
     "R0721",
     title="standard input cannot be read",
-    why="The device that it comes from fails, or it is open for writing alone. `-` stands for it.",
+    why="Reading from its device fails, or it is open only for writing. `-` stands for standard "
+    "input.",
     bad="rulec check - 0> written",
     good="echo 'rulebook a signal p hard rule r { require always p }' | rulec check -",
     kind="command",
@@ -97,9 +98,9 @@ NO_INPUT = Code(
 
 NO_WORKING_FOLDER = Code(
     "R0722",
-    title="there is no working folder any more",
-    why="The folder in which the command was started has been removed meanwhile, so that no path "
-    "leads anywhere. Change to one that there is.",
+    title="the working folder no longer exists",
+    why="The folder in which the command was started has been removed, so relative paths lead "
+    "nowhere. Change to an existing folder.",
     bad="mkdir gone\ncd gone\nrmdir ../gone\nrulec list",
     good="mkdir there\ncd there\nrulec list",
     kind="command",
@@ -107,19 +108,19 @@ NO_WORKING_FOLDER = Code(
 
 REFUSED_BY_SYSTEM = Code(
     "R0723",
-    title="the system does not give what rulec needs",
+    title="the system lacks a resource that rulec needs",
     why="No further process can be started, no further file opened, or there is no room for "
-    "temporary files (in the folder that TMPDIR names); the message says for which file or program "
-    "and why. Nothing is wrong with the input.",
+    "temporary files (in the folder named by TMPDIR); the message says for which file or program "
+    "and why. The input is not at fault.",
     kind="circumstance",
 )
 
 LINK_OUT = Code(
     "R0730",
     title="a link leads out of its tree",
-    why="A file in a stranger's checkout may be a link to any file of this machine, so rulec "
-    "neither reads nor writes through links that lead out of the tree: the git work tree, and "
-    "where there is none, the folder that was named. If you do mean that file, give its own path.",
+    why="A file in somebody else's checkout may be a link to any file on this machine, so rulec "
+    "does not read or write through links that lead out of the tree, which is the git work tree "
+    "or, without one, the named folder. If you do mean that file, give its own path.",
     bad="mkdir books\necho 'rulebook a signal p hard rule r { require always p }' > a.rules\n"
     "ln -s ../a.rules books/a.rules\nrulec check books",
     good="mkdir books\necho 'rulebook a signal p hard rule r { require always p }' > a.rules\n"
@@ -129,9 +130,9 @@ LINK_OUT = Code(
 
 NO_ORDINARY_FILE = Code(
     "R0731",
-    title="something is no ordinary file",
+    title="something is not an ordinary file",
     why="A pipe, a socket or a device has the name of a source. Reading it might never end, so it "
-    "is left alone. Standard input is called `-`.",
+    "is skipped. Standard input is called `-`.",
     bad="mkfifo pipe.rules\nrulec check .",
     good="mkfifo pipe\necho 'rulebook a signal p hard rule r { require always p }' > pipe &\n"
     "rulec check - < pipe",
@@ -140,9 +141,10 @@ NO_ORDINARY_FILE = Code(
 
 OUT_OF_TREE = Code(
     "R0732",
-    title="a setting names a folder out of its tree",
-    why="A `rulec.toml` may come with a stranger's checkout, so the folders of its `search_path` "
-    "lie in the same git work tree, or without one below the file itself, and have relative names.",
+    title="a setting names a folder outside of its tree",
+    why="A `rulec.toml` may come from somebody else's checkout, so the folders in its "
+    "`search_path` must have relative names and be in the same git work tree or, without one, "
+    "below the file itself.",
     bad="echo 'search_path = [\"/tmp\"]' > rulec.toml\nrulec list",
     good="mkdir books\necho 'search_path = [\"books\"]' > rulec.toml\nrulec list",
     kind="command",
@@ -150,10 +152,10 @@ OUT_OF_TREE = Code(
 
 NOTHING_LEFT = Code(
     "R0733",
-    title="a folder has no source",
-    why="No file in or below the folder is called `….rules` and begins with `rulebook` or "
-    "`vocabulary`, comments aside; or all of them are left alone, since git ignores them or they "
-    "are in an environment such as `venv`. A file that is named itself is never left alone.",
+    title="a folder contains no source",
+    why="No file in the folder, at any depth, is called `….rules` and begins with `rulebook` or "
+    "`vocabulary` (apart from comments); or all of them are skipped, because git ignores them or "
+    "they are in an environment such as `venv`. A file that is named explicitly is never skipped.",
     bad="echo 'package x; rule y' > other.rules\nrulec check .",
     good="echo 'package x; rule y' > other.rules\n"
     "echo 'rulebook a signal p hard rule r { require always p }' > mine.rules\nrulec check .",
@@ -162,10 +164,10 @@ NOTHING_LEFT = Code(
 
 NOT_THE_SAME_FILE = Code(
     "R0734",
-    title="a file would not be the same after it is rewritten",
-    why="What `rulec fmt` changes is a new file with the old one's name, so that none is ever half "
-    "written. A file with several names (hard links) would then be two, and one whose owner you "
-    "are not might have you for its owner. Such files are left as they are.",
+    title="rewriting a file would change its links or owner",
+    why="When `rulec fmt` changes a file it replaces it by a new one, so that it is never half "
+    "written. A file with several names (hard links) would then become two files, and a file of "
+    "another owner might become yours. Such files are not changed.",
     bad="echo 'rulebook a  signal p hard rule r { require always p }' > a.rules\n"
     "ln a.rules b.rules\nrulec fmt a.rules",
     good="echo 'rulebook a  signal p hard rule r { require always p }' > a.rules\n"
@@ -175,10 +177,9 @@ NOT_THE_SAME_FILE = Code(
 
 OVERWRITES_INPUT = Code(
     "R0735",
-    title="an answer would take the place of what is read",
-    why="The file that an answer is to be written to is one that the command reads, perhaps by "
-    "another path or a link, or a source that is there already. Nothing was read or written. "
-    "Give the answer another name.",
+    title="the output would overwrite an input",
+    why="The output file is one that the command reads, possibly by another path or a link, or an "
+    "existing source. Nothing was read or written. Choose another output file.",
     bad="echo 'rulebook a signal p hard rule r { require always p }' > a.rules\n"
     "rulec doc ./a.rules -o a.rules --output-format markdown",
     good="echo 'rulebook a signal p hard rule r { require always p }' > a.rules\n"

@@ -6,12 +6,12 @@ from rulec.diagnostics.code import Code
 
 OVER_LIMIT = Code(
     "R0718",
-    title="a question is larger than its limit",
-    why="What costs time or memory that grows with a number in the input, not with its size, has a "
-    "limit: a small file could otherwise take all memory of the machine, or days. The message says "
-    "how much was asked for, what the limit is, and how to lift it, by `rulec --limit NAME=NUMBER "
-    "VERB ...`, or by `NAME=NUMBER` in the environment variable `RULEC_LIMITS` for programs, too. "
-    "docs/limits.md lists all limits.",
+    title="a computation exceeds its limit",
+    why="Computations whose time or memory grows with a number in the input, rather than with its "
+    "size, are limited, because a small file could otherwise use up all memory, or take days. The "
+    "message says how much was requested, what the limit is, and how to raise it: by `rulec "
+    "--limit NAME=NUMBER VERB ...`, or, also for programs, by `NAME=NUMBER` in the environment "
+    "variable `RULEC_LIMITS`. docs/limits.md lists all limits.",
     bad="""cat > close.rules <<.
 rulebook close
 type car
@@ -33,9 +33,9 @@ rulec --limit choices=2 verify t.jsonl -r close.rules""",
 
 NO_LIMIT = Code(
     "R0719",
-    title="a limit is set that there is not",
-    why="A limit is set by its name and a whole number, as in `choices=5000000`; several in "
-    "`RULEC_LIMITS` have spaces between them. docs/limits.md lists all names.",
+    title="a limit is unknown",
+    why="A limit is set by its name and a whole number, as in `choices=5000000`; in "
+    "`RULEC_LIMITS` several are separated by spaces. docs/limits.md lists all names.",
     bad="rulec --limit choices=many list",
     good="rulec --limit choices=5000000 list",
     kind="command",

@@ -23,8 +23,8 @@ def test_a_code(code, capsys):
     assert out == (
         "R0305: a default is not one of the values\n"
         "\n"
-        "An enumeration's default is what holds where nothing is said, so it has to be\n"
-        "one of the values.\n"
+        "The default of an enumeration applies where no value is given, so it must be one\n"
+        "of the values.\n"
         "\n"
         "Wrong (to check):\n"
         "\n"
@@ -32,7 +32,7 @@ def test_a_code(code, capsys):
         "    light is one of red, green default grean\n"
         "    hard rule r { require always red }\n"
         "\n"
-        "Mended:\n"
+        "Corrected:\n"
         "\n"
         "    rulebook example\n"
         "    light is one of red, green default green\n"
@@ -97,7 +97,7 @@ def test_several_codes(capsys):
 
 def test_markdown_of_one_code(capsys):
     _, out, _ = explain(capsys, "R0606", "--output-format", "markdown")
-    assert out.startswith("# R0606: horizon and step do not fit together\n\nThe horizon is cut")
+    assert out.startswith("# R0606: horizon and step do not fit together\n\nThe horizon is divided")
     assert "```toml wrong\nhorizon_s = 4.0\n" in out
 
 

@@ -117,7 +117,7 @@ def test_sarif_rules_are_those_of_the_results():
     assert [result["ruleIndex"] for result in run["results"]] == [0, 1, 0]
     for rule in rules:
         assert rule["shortDescription"]["text"] == all_codes()[rule["id"]].title
-        assert "Mended:" in rule["help"]["text"]
+        assert "Corrected:" in rule["help"]["text"]
         assert "```rulec mended\n" in rule["help"]["markdown"]
 
 

@@ -19,42 +19,41 @@ from rulec.rulebook.rules.axiom_messages import contradictory_facts
 FAILED_CHECK = Code(
     "R0402",
     title="the compiled automaton failed its check against the formula",
-    why="After every compilation the automaton is compared with the formula that it came from. If "
-    "they differ there is a mistake in Spot or in rulec, none in the rulebook. Please report "
-    "the rule.",
+    why="After every compilation the automaton is compared with its formula. If they differ, the "
+    "mistake is in Spot or in rulec, not in the rulebook. Please report the rule.",
     kind="circumstance",
 )
 
 COMPILERS_DISAGREE = Code(
     "R0417",
-    title="two compilers make different tables of a rule",
-    why="Where Spot is installed, `rulec compile` translates each rule twice: by Spot, and by "
-    "rulec's own compiler, which shares nothing with it from the formula to the automaton. The "
-    "smallest table is unique, so both have to come to the same one. If they do not, there is a "
-    "mistake in one of them, none in the rulebook, and nothing is written. Please report the rule.",
+    title="two compilers produce different tables for a rule",
+    why="If Spot is installed, `rulec compile` translates each rule twice: by Spot, and by "
+    "rulec's own compiler, which shares no code with it from formula to automaton. The minimal "
+    "table is unique, so both must produce the same one. If they differ, one of them has a bug; "
+    "the rulebook is not at fault, and nothing is written. Please report the rule.",
     kind="circumstance",
 )
 
 SPOT_MISSING = Code(
     "R0403",
-    title="Spot is not there, and it is needed",
-    why="Where Spot is not installed, rulec translates formulas itself: those that a beginning of "
-    "a trace decides, what recurs without end, all that joins these by `and`, `or` and `not`, and "
-    "everything where traces end. What is left takes Spot: obligations without end inside one "
-    "another, and a past of which the future decides, such as `once always p`. With "
-    "`RULEC_COMPILER=spot` everything does. There is a package for Linux on x86-64 (`pip install "
-    "spottl`), and one for other systems (`conda install -c conda-forge spot`). A rulebook that "
-    "was compiled elsewhere runs without Spot.",
+    title="Spot is required but not installed",
+    why="Without Spot, rulec translates most formulas itself: those decided by a beginning of a "
+    "trace, those about what recurs for ever, combinations of these by `and`, `or` and `not`, and "
+    "everything if traces end. Only nested obligations without end, and a past that depends on "
+    "the future, such as `once always p`, need Spot. With `RULEC_COMPILER=spot` everything does. "
+    "Spot is available as a package for Linux on x86-64 (`pip install spottl`) and for other "
+    "systems (`conda install -c conda-forge spot`). A rulebook compiled elsewhere runs without "
+    "Spot.",
     kind="circumstance",
 )
 
 SPOT_NOT_CONFINED = Code(
     "R0415",
-    title="the process that compiles cannot be confined",
-    why="Spot runs in a process that can write no file, open no connection and start no program: "
-    "Linux keeps it from that, by Landlock from 5.13 on and by seccomp. On other systems and older "
-    "kernels it runs all the same, unless the environment variable `RULEC_REQUIRE_CONFINED` asks "
-    "for more.",
+    title="the compiling process cannot be confined",
+    why="Spot runs in a process that cannot write files, open connections or start programs: "
+    "Linux prevents this by Landlock (from 5.13 on) and by seccomp. On other systems and older "
+    "kernels it runs without this confinement, unless the environment variable "
+    "`RULEC_REQUIRE_CONFINED` demands it.",
     kind="circumstance",
 )
 

@@ -7,11 +7,11 @@ from rulec.diagnostics.code import Code
 
 PROCESS_LOST = Code(
     "R0708",
-    title="a process was stopped before it had judged its file",
-    why="Files are judged in several processes, as `-j N` says. One of them was killed, as a "
-    "system does whose memory is used up; another one judged the file again, and was killed, too. "
-    "The other files are judged; of this one nothing more is known than what was said until then. "
-    "Use one process, or fewer.",
+    title="a process was killed before it had judged its file",
+    why="Files are judged in several processes, as set by `-j N`. One of them was killed, for "
+    "instance because memory ran out; another process judged the file again and was killed, too. "
+    "The other files are judged; for this one nothing more is known than was reported until then. "
+    "Use fewer processes.",
     kind="circumstance",
 )
 

@@ -10,10 +10,10 @@ from rulec.rulebook.rulebook_model import Rule
 
 EXAMPLE_FAILED = Code(
     "R0406",
-    title="an example comes out otherwise than it says",
+    title="an example has another outcome than it states",
     why="An `accept` example is a trace that the rule must allow, a `reject` example one that it "
-    "must forbid. If one comes out otherwise, either the formula or the example does not say "
-    "what is meant. `rulec test` runs them all.",
+    "must forbid. If the outcome differs, either the formula or the example does not express what "
+    "is meant. `rulec test` runs all examples.",
     bad="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
     "  require always not r(v)\n  reject { b(v); l(v); f(v) }\n}\n",
     good="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
@@ -23,10 +23,9 @@ EXAMPLE_FAILED = Code(
 
 NOTHING_TO_RUN = Code(
     "R0460",
-    title="no rule and no example is matched by `--rule`",
-    why="With `--rule PATTERN`, `rulec test` runs the examples whose `RULE` or `RULE/LABEL` the "
-    "pattern matches. If it matches none, nothing was tested and nothing is covered, which says "
-    "as little about the rulebook as a test that was never written.",
+    title="no rule and no example matches `--rule`",
+    why="With `--rule PATTERN`, `rulec test` runs the examples whose `RULE` or `RULE/LABEL` "
+    "matches the pattern. If none matches, nothing is tested and nothing is covered.",
     bad="rulec test esterle2019 --rule R7",
     good="rulec test esterle2019 --rule R1",
     kind="command",
@@ -35,10 +34,10 @@ NOTHING_TO_RUN = Code(
 RULE_NOT_EXERCISED = Code(
     "R0408",
     title="a rule is not exercised by its examples",
-    why="Examples show that a formula says what is meant only if it can be wrong in both ways: a "
-    "trace that the rule must allow, and one that it must forbid. A rule all of whose examples "
-    "it accepts would pass them also if it required nothing at all. `rulec test` says so, and "
-    "with `--coverage` what else the examples do not show.",
+    why="Examples show that a formula is right only if they can fail in both ways: with a trace "
+    "that the rule must allow, and one that it must forbid. If a rule accepts all its examples, "
+    "they would also pass if it required nothing. `rulec test` reports this; with `--coverage` it "
+    "also reports what else the examples do not show.",
     bad="rulebook example\nsignal wet, slow default false\nhard rule r {\n"
     "  require always (wet implies slow)\n  accept { not wet; wet and slow }\n}\n",
     good="rulebook example\nsignal wet, slow default false\nhard rule r {\n"

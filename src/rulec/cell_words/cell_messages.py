@@ -8,9 +8,9 @@ from rulec.diagnostics.code import Code
 CHANGED_SCENE = Code(
     "R0418",
     title="a recorded scene that was changed cannot be mirrored",
-    why="Where a recording's traffic keeps to the other side of the road than the rulebook's, its "
-    "mirror image is judged. The mirror image is made from the recording, so it would lack what "
-    "was changed in the scene afterwards, except its step and its horizon.",
+    why="If a recording's traffic keeps to the other side of the road than the rulebook's, its "
+    "mirror image is judged. The mirror image is made from the recording, so it would lack later "
+    "changes to the scene, except those of its step and horizon.",
     kind="circumstance",
 )
 

@@ -10,12 +10,12 @@ from rulec.diagnostics.code import Code
 
 NO_MONITOR_IN_C = Code(
     "R0750",
-    title="there can be no monitor in C",
-    why="A monitor in C has a size that is known when it is compiled, and tables whose entries "
-    "have 16 bits: a rule has at most 16,383 states and 6 variables, and all rules together 65,535 "
-    "choices of objects, with as many objects as `--objects` allows. It is for one step: of a "
-    "rulebook that was compiled for several one has to be chosen. And a rulebook without rules has "
-    "nothing to watch. Types are those of the vocabulary.",
+    title="a monitor in C is not possible",
+    why="A monitor in C has a fixed size and tables with entries of 16 bits: a rule may have at "
+    "most 16,383 states and 6 variables, and all rules together 65,535 choices of objects, for as "
+    "many objects as `--objects` allows. It has one step: for a rulebook compiled for several "
+    "steps one must be chosen. A rulebook without rules has nothing to monitor. Types must be "
+    "those of the vocabulary.",
     bad="rulec compile esterle2019 --emit c --objects lorry=2 -o build\n",
     good="rulec compile esterle2019 --emit c --objects vehicle=2 -o build\n",
     kind="command",
@@ -41,21 +41,20 @@ def no_engine_in_c(error: RulecError, place: SourceLocation | None) -> RulecErro
 
 NO_MONITOR_COMPILER = Code(
     "R0751",
-    title="there is no compiler for a monitor",
-    why="Monitors are proved, and judge as the engine `c`, after the user's own compiler has "
-    "compiled them: in C the one that the environment variable `CC` names, or `cc`, in Rust "
-    "`rustc`. rulec brings none along, and takes no other engine instead. To write a monitor takes "
-    "none.",
+    title="there is no compiler for the monitor",
+    why="Proving a monitor, or judging by the engine `c`, needs a compiler: for C the one named "
+    "by the environment variable `CC`, or `cc`; for Rust `rustc`. rulec does not include one, and "
+    "does not fall back to another engine. Writing a monitor needs no compiler.",
     kind="circumstance",
 )
 
 MONITOR_COMPILER_FAILED = Code(
     "R0752",
-    title="the compiler of a monitor has failed",
-    why="What rulec writes is C99, or Rust of the edition 2021, and has to compile without a "
-    "warning. The message has the command and what the compiler said. If it is no compiler for "
-    "C99, name another one in the environment variable `CC`; if `rustc` is older than 1.56, get a "
-    "newer one; else please report the rulebook.",
+    title="compiling the monitor has failed",
+    why="The monitor is C99, or Rust of the 2021 edition, and must compile without a warning. The "
+    "message shows the command and the compiler's output. If the compiler does not support C99, "
+    "name another one in the environment variable `CC`; if `rustc` is older than 1.56, update it; "
+    "otherwise please report the rulebook.",
     kind="circumstance",
 )
 
@@ -107,10 +106,10 @@ def compiler_failed(command: str, output: str, status: int | None = None) -> Rul
 
 MONITOR_DIFFERS = Code(
     "R0753",
-    title="a monitor in C is not what its tables say",
-    why="With `compile --emit c --prove`, rulec compiles what it is about to write and holds it "
-    "against the tables and the monitor in Python. If they differ there is a mistake in rulec or "
-    "in the C compiler, none in the rulebook, and nothing is written. Please report the rulebook "
+    title="a monitor in C does not match its tables",
+    why="With `compile --emit c --prove`, rulec compiles the monitor and compares it with the "
+    "tables and the monitor in Python. If they differ, there is a bug in rulec or in the C "
+    "compiler; the rulebook is not at fault, and nothing is written. Please report the rulebook "
     "and the compiler.",
     kind="circumstance",
 )

@@ -11,21 +11,21 @@ from rulec.recordings.recording_messages import NET_MISSING
 
 CUT_DRIVE = Code(
     "R0709",
-    title="a drive is cut",
-    why="A drive is judged as a whole: half of one has other violations than the whole. Engines "
-    "cut tables wherever it suits them, so rows of one drive may be in two batches. Group them "
-    "first, by the columns that say which recording or trace a row is of: with Ray "
+    title="a drive is split",
+    why="A drive must be judged as a whole, since a part of it has other violations. Engines "
+    "split tables anywhere, so the rows of one drive may be in two batches. Group the rows by the "
+    "columns that identify a recording or trace first: with Ray "
     "`dataset.groupby('recording').map_groups(judge)`, with Spark "
-    "`frame.groupBy('recording').applyInArrow(judge, schema)`. `rulec fleet` does that itself.",
+    "`frame.groupBy('recording').applyInArrow(judge, schema)`. `rulec fleet` does this itself.",
     kind="circumstance",
 )
 
 NO_DRIVES_TABLE = Code(
     "R0710",
-    title="a table has neither tracks nor traces",
-    why="A table of tracks has the columns `track`, `t`, `x` and `y`, and `recording` if it has "
-    "more than one; a table of traces has `trace`, `step`, `object` and `type`, and a column for "
-    "each name. docs/fleet.md has both.",
+    title="a table contains neither tracks nor traces",
+    why="A table of tracks has the columns `track`, `t`, `x` and `y`, and `recording` if there "
+    "are several; a table of traces has `trace`, `step`, `object` and `type`, and a column for "
+    "each name. Both are described in docs/fleet.md.",
     kind="circumstance",
 )
 
@@ -61,7 +61,7 @@ NOT_COMPILED = Code(
     "R0711",
     title="a rulebook is not compiled",
     why="Workers of other engines get a compiled rulebook, so that they need neither Spot nor a "
-    "parser, and all judge by the same. `rulec compile NAME --step S -o FOLDER` writes one.",
+    "parser and all judge in the same way. `rulec compile NAME --step S -o FOLDER` writes one.",
     kind="circumstance",
 )
 
@@ -104,19 +104,18 @@ def other_types(path: str, why: str) -> RulecError:
 OTHER_FLEET = Code(
     "R0712",
     title="a folder has findings of another fleet",
-    why="Findings in one folder are added up, so they are of one rulebook, one version of rulec, "
-    "the same thresholds, assumptions and map. A run in a folder that is there already goes on "
-    "with what was begun: its inputs may be more than before, not fewer. One run at a time writes "
-    "into a folder.",
+    why="Findings in one folder are added up, so they must be of one rulebook, one version of "
+    "rulec, and the same thresholds, assumptions and map. A run in an existing folder continues "
+    "the earlier one: it may have more inputs than before, not fewer. Only one run at a time may "
+    "write to a folder.",
     kind="circumstance",
 )
 
 ENGINE_MISSING = Code(
     "R0713",
     title="an engine is not installed",
-    why="Ray and Spark are installed on request: `.venv/bin/python -m pip install -e '.[ray]'` "
-    "in the checkout, or `'.[spark]'`, which takes Java 17 as well. `--on local` needs "
-    "neither.",
+    why="Ray and Spark are installed on request: `.venv/bin/python -m pip install -e '.[ray]'` in "
+    "the checkout, or `'.[spark]'`, which also needs Java 17. `--on local` needs neither.",
     kind="circumstance",
 )
 

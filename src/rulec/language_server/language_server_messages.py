@@ -8,9 +8,9 @@ from rulec.diagnostics.missing_package import missing_package
 
 LANGUAGE_SERVER_UNAVAILABLE = Code(
     "R0760",
-    title="the language server takes a package that is not installed",
-    why="What editors ask while a rulebook is written takes the package `pygls`, which is "
-    "installed on request: `.venv/bin/python -m pip install -e '.[lsp]'` in the checkout.",
+    title="the language server needs a package that is not installed",
+    why="The language server needs the package `pygls`, which is installed on request: "
+    "`.venv/bin/python -m pip install -e '.[lsp]'` in the checkout.",
     kind="circumstance",
 )
 

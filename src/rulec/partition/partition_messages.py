@@ -10,8 +10,8 @@ _CAR = '[[obstacle]]\nid = "car"\ntype = "vehicle"\nlength = 5.0\nwidth = 1.8\n'
 NO_START_CELL = Code(
     "R0607",
     title="ego has no free cell to start from",
-    why="An obstacle will be in ego's place within the first step, so no maneuver can begin there: "
-    "ego would be hit. Move one of them, or take a shorter step.",
+    why="An obstacle occupies ego's place within the first step, so no maneuver can begin there "
+    "without a collision. Move one of them, or use a shorter step.",
     bad=f"{_GOOD}\n{_CAR}s = 0.0\nd = 0.0\nspeed = 20.0\n",
     good=f"{_GOOD}\n{_CAR}s = 20.0\nd = 0.0\nspeed = 20.0\n",
     kind="scenario",
@@ -30,8 +30,8 @@ UNKNOWN_PARTITION = Code(
 NOT_A_PATH = Code(
     "R0609",
     title="a path does not follow the navigation graph",
-    why="A path has one cell for each layer, from the first on, and from each to the next there "
-    "is an edge. Paths come from `Maneuvers.cheapest`, or from walking through `successors`.",
+    why="A path has one cell for each layer, starting with the first one, and an edge from each "
+    "cell to the next. Paths come from `Maneuvers.cheapest`, or from following `successors`.",
     bad="import rulec\n\n"
     'graph = rulec.navigation_graph("s1")\nrulec.envelope(graph, [graph.start, 999])\n',
     good="import rulec\n\n"

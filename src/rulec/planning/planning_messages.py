@@ -7,9 +7,9 @@ from rulec.diagnostics.code import Code
 TWO_PARTITIONS = Code(
     "R0405",
     title="a rulebook reads relations of two partitions",
-    why="A navigation graph knows where ego is in the relations of one partition: `position` of "
-    "the paper's four regions, or `station` and `lateral` of the fine one. A rulebook that "
-    "reads both can judge traces that supply both, and no graph.",
+    why="A navigation graph describes ego's position by the relations of one partition: "
+    "`position` for the four regions of the paper, or `station` and `lateral` for the fine one. A "
+    "rulebook that reads both can judge traces that contain both, but no graph.",
     bad="rulebook example\nuse paper\nlateral(o: obstacle) is one of left_of, same_lane, right_of\n"
     "hard rule r (v: vehicle) { require always not (f(v) and same_lane(v)) }\n",
     good="rulebook example\nuse paper\nhard rule r (v: vehicle) { require always not f(v) }\n",
@@ -23,10 +23,10 @@ cat > past.jsonl <<.
 """
 UNFITTING_PAST = Code(
     "R0511",
-    title="a past does not lead up to a scenario",
-    why="With `--after` the maneuvers of a scenario go on where a trace has ended: the first layer "
-    "is the state after its last one. So there is one such trace, and its states are as far "
-    "apart as the layers.",
+    title="a past does not end where a scenario begins",
+    why="With `--after`, the maneuvers of a scenario continue a trace: the first layer is the "
+    "state after the last state of the trace. So the file must contain exactly one trace, with "
+    "the time step of the layers.",
     bad=_FIRST_HALF + "rulec maneuvers s2 -r esterle2019 --after past.jsonl",
     good=_FIRST_HALF + "rulec maneuvers s2 -r esterle2019 --after past.jsonl --step 0.5",
     kind="command",
@@ -43,12 +43,12 @@ rulec maneuvers s2 --step 0.25 --rank 1 -r ./many.rules
 """
 TOO_MANY_MANEUVERS = Code(
     "R0616",
-    title="rules keep too many maneuvers apart",
-    why="Maneuvers are counted and ranked together where they are at one place, the automata of "
-    "all rules are in one state, and what is violated costs the same. Rules of the law come to "
-    "few such states and costs, but there can be as many states as the product of all automata "
-    "has, and as many costs as rules have subsets. Judge by fewer rules at a time, choose a "
-    "larger step, or let rules that matter alike have one weight.",
+    title="rules distinguish too many maneuvers",
+    why="Maneuvers are counted and ranked together if they are in the same place, the automata of "
+    "all rules are in the same state, and their violations cost the same. For rules of law there "
+    "are few such states and costs, but in general there can be as many states as in the product "
+    "of all automata, and as many costs as there are subsets of rules. Use fewer rules at a time, "
+    "choose a larger step, or give equally important rules the same weight.",
     bad=_WEIGHTS.format(weight="$w"),
     good=_WEIGHTS.format(weight="1"),
     kind="command",

@@ -9,9 +9,9 @@ from rulec.diagnostics.missing_package import missing_package
 JUDGED_OTHERWISE = Code(
     "R0715",
     title="findings were judged differently and cannot be added up",
-    why="A rate says how often a rule is violated, so all drives have to be judged by the same "
-    "rules, by the same version of rulec, with the same thresholds and on the same assumptions. "
-    "Different rulebooks can be told apart by `--by rulebook`.",
+    why="A rate says how often a rule is violated, so all drives must be judged by the same rules "
+    "and version of rulec, with the same thresholds and assumptions. Different rulebooks can be "
+    "kept apart by `--by rulebook`.",
     bad="""\
 echo '{"kind": "drive", "vehicle": "v", "rulec": "1.0", "duration_s": 60}' > found.jsonl
 echo '{"kind": "drive", "vehicle": "w", "rulec": "2.0", "duration_s": 60}' >> found.jsonl
@@ -25,10 +25,10 @@ rulec rates found.jsonl""",
 
 NO_FINDINGS = Code(
     "R0716",
-    title="a file has no findings that rates can be made of",
-    why="Rates are made of the rows of drives and of rules that `rulec verify --exposure -o FILE` "
-    "writes, as JSON Lines, CSV or Parquet, and `rulec fleet`. Rows of violations alone do not say "
-    "how long anybody drove. And no drive may be there twice.",
+    title="a file has no findings from which rates can be computed",
+    why="Rates are computed from the rows of drives and rules that `rulec fleet` writes, and "
+    "`rulec verify --exposure -o FILE` as JSON Lines, CSV or Parquet. Violations alone do not "
+    "show how long anybody drove. No drive may occur twice.",
     bad="""\
 echo '{"rule": "stop_sign", "outcome": "violated"}' > found.jsonl
 rulec rates found.jsonl""",
@@ -40,8 +40,8 @@ rulec rates found.jsonl""",
 
 RATES_UNAVAILABLE = Code(
     "R0717",
-    title="intervals take a package that is not installed",
-    why="Exact intervals take the package `scipy`, which is installed on request: "
+    title="intervals need a package that is not installed",
+    why="Exact intervals need the package `scipy`, which is installed on request: "
     "`.venv/bin/python -m pip install -e '.[rates]'` in the checkout.",
     kind="circumstance",
 )

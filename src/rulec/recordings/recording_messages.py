@@ -29,11 +29,11 @@ END
 NOT_A_RECORDING = Code(
     "R0610",
     title="a file cannot be read as recorded traffic",
-    why="What is read `rulec formats` lists: CommonRoad, SUMO, ASAM OSI, Argoverse 2, Waymo, "
-    "ScenarioNet, 123D, tracks as tables, and maps. What a file is shows in its name and its first "
-    "bytes; `--input-format` says so where it does not. A file has to be complete and as its "
-    "format says; the message names the line, byte, row or record where it is not. XML has to do "
-    "without a `DOCTYPE`, and a pickle without programs: what these define may do anything.",
+    why="Supported are the formats that `rulec formats` lists: CommonRoad, SUMO, ASAM OSI, "
+    "Argoverse 2, Waymo, ScenarioNet, 123D, tracks as tables, and maps. The format is detected "
+    "from the file's name and first bytes; otherwise give it by `--input-format`. A file must be "
+    "complete and valid; the message names the line, byte, row or record where it is not. XML "
+    "must not have a `DOCTYPE`, and a pickle must not contain code, since these could do anything.",
     bad=_COMMONROAD.replace("2018b", "2017a") + "rulec maneuvers road.xml -r esterle2019",
     good=_COMMONROAD + "rulec maneuvers road.xml -r esterle2019",
     kind="command",
@@ -42,10 +42,10 @@ NOT_A_RECORDING = Code(
 NOT_IN_RECORDING = Code(
     "R0612",
     title="what is chosen is not in the recorded scene",
-    why="A recorded scene has its own ids for planning problems, vehicles and lanelets, and "
-    "its own times. The message names those that can be chosen with `--ego`, `--at-time` and "
-    "`--reference`. Without any choice, ego is the first planning problem's, so there has to "
-    "be one, and it has to be on a lane.",
+    why="A recorded scene has its own ids for planning problems, vehicles and lanelets, and its "
+    "own times. The message lists what can be chosen by `--ego`, `--at-time` and `--reference`. "
+    "By default ego is that of the first planning problem, so there must be one, and it must be "
+    "on a lane.",
     bad=_COMMONROAD + "rulec maneuvers road.xml -r esterle2019 --ego 7",
     good=_COMMONROAD + "rulec maneuvers road.xml -r esterle2019 --ego 2",
     kind="command",
@@ -53,11 +53,11 @@ NOT_IN_RECORDING = Code(
 
 OTHER_CHOICE = Code(
     "R0613",
-    title="a choice for recorded scenes was made for another scenario",
-    why="What `--ego`, `--at-time`, `--reference`, `--prediction` and `--congested-below` choose "
-    "from is what was recorded. A built-in scenario, or one in TOML, says itself where ego and "
-    "the road are and how others move. `--map` is for tracks that have no roads of their "
-    "own, `--scenario` for files that hold several recordings.",
+    title="an option for recorded scenes is used with another scenario",
+    why="The options `--ego`, `--at-time`, `--reference`, `--prediction` and `--congested-below` "
+    "choose from what was recorded. A built-in scenario, or one in TOML, itself defines ego, the "
+    "road and how others move. `--map` is for tracks without roads, `--scenario` for files with "
+    "several recordings.",
     bad="rulec maneuvers s1 -r esterle2019 --ego 2",
     good="rulec maneuvers s1 -r esterle2019",
     kind="command",
@@ -83,11 +83,11 @@ END
 """
 NET_MISSING = Code(
     "R0614",
-    title="recorded traffic without roads of its own has no map",
-    why="Floating-car data of SUMO's and tracks as a table say where everybody was, but not where "
-    "the roads are; that is in a map, such as SUMO's net. Without `--map` it is the net that a "
-    "comment at the head of SUMO's data names, or the only file `*.net.xml` in the same folder; "
-    "for a table `NAME.csv` the lanes in `NAME.lanes.csv`, or in `lanes.csv`.",
+    title="recorded traffic without roads has no map",
+    why="SUMO's floating-car data and tracks as a table contain positions but no roads; these are "
+    "in a map, such as SUMO's net. Without `--map`, it is the net named in a comment at the head "
+    "of SUMO's data, or the only `*.net.xml` file in the same folder; for a table `NAME.csv` the "
+    "lanes in `NAME.lanes.csv`, or in `lanes.csv`.",
     bad=_FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
     good=_NET + _FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
     kind="command",
@@ -96,9 +96,9 @@ NET_MISSING = Code(
 OTHER_NET = Code(
     "R0615",
     title="recorded traffic and the map do not belong together",
-    why="All lanes and edges that SUMO's data name are in the net that they were made with, and "
-    "everybody is near its roads. Tracks as a table are in the frame of their map, x and y in "
-    "metres. Data with geographic coordinates cannot be used.",
+    why="All lanes and edges that SUMO's data refer to must be in the net with which they were "
+    "made, and all vehicles must be near its roads. Tracks as a table use the coordinates of "
+    "their map, x and y in metres. Data with geographic coordinates cannot be used.",
     bad=_NET.replace("east", "west") + _FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
     good=_NET + _FCD + "rulec maneuvers fcd.xml -r esterle2019 --ego f.0",
     kind="command",
@@ -106,9 +106,9 @@ OTHER_NET = Code(
 
 NOT_BUILT = Code(
     "R0617",
-    title="a recording that a program builds makes no sense",
-    why="Lanelets and participants have arrays of the right shapes, finite numbers, ids that occur "
-    "once, and refer to others that are there. All that is wrong is said at once.",
+    title="a recording built by a program is invalid",
+    why="Lanelets and participants need arrays of the right shapes, finite numbers and unique "
+    "ids, and may refer only to existing ones. All mistakes are reported at once.",
     bad='import rulec\n\nrulec.build_lanelet("east", [(0, 0)], width=3.5)\n',
     good='import rulec\n\nrulec.build_lanelet("east", [(0, 0), (100, 0)], width=3.5)\n',
     kind="python",

@@ -10,8 +10,8 @@ from rulec.diagnostics.code import Code
 NO_NAME = Code(
     "R0738",
     title="a rulebook cannot have this name",
-    why="A rulebook's name is written in its first line and in rules that build upon it: letters, "
-    "digits, `_` and `-`, a letter first, and no word of the language.",
+    why="A rulebook's name is used in its first line and in rulebooks that extend it: it consists "
+    "of letters, digits, `_` and `-`, begins with a letter, and is not a word of the language.",
     bad="rulec new 'Belgium 2'",
     good="rulec new belgium_2",
     kind="command",

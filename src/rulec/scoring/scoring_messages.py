@@ -14,11 +14,11 @@ world = rulec.TrafficWorld(rulec.build_recording([road], [ego], step_s=0.5), "eg
 
 BAD_CANDIDATES = Code(
     "R0780",
-    title="futures to be scored make no sense",
-    why="Candidates are an array of three axes: candidate, state, and x, y (m), heading (rad) and "
-    "speed (m/s) of ego's middle, a state for each step of the world from the one after the "
-    "present on. What was before has the same four columns, a row for each state, the last one "
-    "being the present. All are finite numbers.",
+    title="candidates to be scored are invalid",
+    why="Candidates are an array with three axes: candidate, state, and x, y (m), heading (rad) "
+    "and speed (m/s) of ego's centre, with a state for each step of the world after the present. "
+    "The past has the same four columns, with a row for each state; the last one is the present. "
+    "All numbers are finite.",
     bad=f'{_WORLD}rulec.score([[20, 0, 0, 10], [25, 0, 0, 10]], world, "de")\n',
     good=f'{_WORLD}rulec.score([[[20, 0, 0, 10], [25, 0, 0, 10]]], world, "de")\n',
     kind="python",

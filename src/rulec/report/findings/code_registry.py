@@ -133,4 +133,4 @@ def as_page() -> str:
 def _examples(code: Code) -> Iterator[tuple[str, str]]:
     if code.kind != "circumstance":
         yield f"Wrong ({_KINDS[code.kind][0]})", code.bad.rstrip("\n")
-        yield "Mended", code.good.rstrip("\n")
+        yield "Corrected", code.good.rstrip("\n")

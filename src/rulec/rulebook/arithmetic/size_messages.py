@@ -6,9 +6,9 @@ from rulec.diagnostics.code import Code
 
 FORMULA_TOO_LARGE = Code(
     "R0323",
-    title="a formula grows too large when definitions, conditions and exceptions are put in",
-    why="Each is put in the place where it is used. Definitions that use others twice, conditional "
-    "numbers beside each other, and exceptions that hold throughout multiply.",
+    title="a formula becomes too large when definitions, conditions and exceptions are expanded",
+    why="Each of them is expanded where it is used. Definitions that use others twice, several "
+    "conditional numbers, and exceptions that hold throughout multiply the size.",
     bad="rulebook example\nsignal wet, a, b, c, d, e\nhard rule r {\n  require never (wet then "
     "not wet)\n"
     "  unless a throughout unless b throughout unless c throughout\n"

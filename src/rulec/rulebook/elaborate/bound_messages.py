@@ -12,9 +12,9 @@ from rulec.vocabulary.dimensions import LENGTH
 
 SENSELESS_BOUND = Code(
     "R0317",
-    title="a bound of time makes no sense",
-    why="Bounds are fixed times or whole numbers of steps: `[<= 3 s]`, `[>= 2 steps]`, "
-    "`[1 s .. 4 s]`. `next` and `previously` look at one instant: `next[2 steps]`.",
+    title="a time bound makes no sense",
+    why="Bounds are fixed times or whole numbers of steps: `[<= 3 s]`, `[>= 2 steps]`, `[1 s .. 4 "
+    "s]`. `next` and `previously` refer to one instant: `next[2 steps]`.",
     bad="rulebook example\nsignal wet\nhard rule r { require eventually[4 s .. 1 s] wet }\n",
     good="rulebook example\nsignal wet\nhard rule r { require eventually[1 s .. 4 s] wet }\n",
 )

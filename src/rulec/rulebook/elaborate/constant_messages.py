@@ -29,9 +29,8 @@ if TYPE_CHECKING:
 
 CIRCULAR_DEFINITION = Code(
     "R0316",
-    title="a definition or a parameter is made of itself",
-    why="A definition is put in the place of its name, so it cannot contain itself, not even by "
-    "way of another.",
+    title="a definition or a parameter refers to itself",
+    why="A definition replaces its name, so it cannot contain itself, not even indirectly.",
     bad="rulebook example\nsignal wet\ndefine slippery = wet or slippery\n"
     "hard rule r { require never slippery }\n",
     good="rulebook example\nsignal wet\ndefine slippery = wet\n"
@@ -41,8 +40,8 @@ CIRCULAR_DEFINITION = Code(
 NO_SINGLE_VALUE = Code(
     "R0320",
     title="a parameter has no value on the day in question, or two",
-    why="Values can be dated by `in force from … until …`. The day is the one asked for, else that "
-    "of the rulebook's `law` line, else today. On it there has to be one value.",
+    why="Values can be dated by `in force from … until …`. The day is the requested one, else "
+    "that of the rulebook's `law` line, else today. On that day there must be exactly one value.",
     bad='rulebook example\nlaw "Highway Code" as of 2019-01-01\nquantity gap in m default 9\n'
     "param least : length = 1.5 m in force from 2020-04-28\n"
     "hard rule r { require always gap >= least }\n",

@@ -21,9 +21,10 @@ from rulec.vocabulary.units import hour_in_another_language
 POINT_OF_THOUSANDS = Code(
     "R0365",
     title="a number may be meant in thousands",
-    why="A point parts the decimals of a number: `3.500 kg` is three and a half kilograms. Where "
-    "points part thousands, as in German or Danish, it would be 3500. Three decimals that end with "
-    "a 0 are hardly written for anything else. Without the 0, or without the point, it is clear.",
+    why="A point separates the decimals of a number: `3.500 kg` is three and a half kilograms. In "
+    "languages that use the point for thousands, such as German or Danish, it would be 3500. "
+    "Three decimals ending in 0 are rarely written for anything else. Remove the 0 or the point "
+    "to make it clear.",
     bad="rulebook example\nquantity mass in kg default 0\n"
     "hard rule r { require always mass <= 3.500 kg }\n",
     good="rulebook example\nquantity mass in kg default 0\n"
@@ -32,9 +33,9 @@ POINT_OF_THOUSANDS = Code(
 
 OPERATOR_BEFORE_THEN = Code(
     "R0311",
-    title="an operator speaks of a phase before `then`, not of the sequence",
+    title="an operator applies to a phase before `then`, not to the sequence",
     why="Operators such as `never` bind tightest, so `never a then b` means `(never a) then b`: a "
-    "phase without `a`, then `b`. A whole sequence stands in parentheses.",
+    "phase without `a`, then `b`. Put a whole sequence in parentheses.",
     bad="rulebook example\nsignal a, b\nhard rule r { require never a then b }\n",
     good="rulebook example\nsignal a, b\nhard rule r { require never (a then b) }\n",
 )
@@ -42,7 +43,7 @@ OPERATOR_BEFORE_THEN = Code(
 NOT_LINEAR = Code(
     "R0314",
     title="two numbers that change are multiplied or divided",
-    why="Comparisons are linear: numbers that states give are added, subtracted, and multiplied or "
+    why="Comparisons are linear: values of quantities can be added, subtracted, and multiplied or "
     "divided by fixed numbers and parameters, except by 0.",
     bad="rulebook example\nquantity gap in m default 100\nquantity speed in m/s default 0\n"
     "hard rule r { require always gap / speed >= 2 s }\n",
@@ -52,9 +53,9 @@ NOT_LINEAR = Code(
 
 MISPLACED_TEMPORAL_OPERATOR = Code(
     "R0319",
-    title="a temporal operator stands in a count, a parameter or a fact",
-    why="The words `some`, `every` and `count` go over the objects of one moment, and a parameter "
-    "is a number of one moment. What happens to one object over time is said by a variable of the "
+    title="a temporal operator is inside a count, a parameter or a fact",
+    why="The words `some`, `every` and `count` range over the objects of one moment, and a "
+    "parameter is a number at one moment. To follow one object over time, use a variable of the "
     "rule.",
     bad="rulebook example\ntype car\nsignal near(c: car) default false\n"
     "hard rule r { require every c: car (always not near(c)) }\n",

@@ -25,8 +25,8 @@ UNUSED_VARIABLE = Code(
     "R0207",
     title="a variable is not used",
     why="The rule is judged for every choice of objects for its variables. A variable that the "
-    "formula never speaks of makes more choices and changes no verdict, except where there "
-    "is no such object: then the rule is not judged at all.",
+    "formula does not use multiplies the choices without changing any verdict, except that the "
+    "rule is not judged at all if there is no such object.",
     bad="rulebook example\nuse paper\n"
     "hard rule r (v: vehicle, p: pedestrian) { require always not r(v) }\n",
     good="rulebook example\nuse paper\nhard rule r (v: vehicle) { require always not r(v) }\n",
@@ -34,11 +34,11 @@ UNUSED_VARIABLE = Code(
 
 EXCEPTION_BEHIND_ANOTHER = Code(
     "R0364",
-    title="an exception stands right behind another one",
-    why="Each `unless` of a rule exempts by itself, so `unless signposted unless night` exempts at "
-    "night, signposted or not. It may be read as an exception of the exception, which is one "
-    "formula: `unless signposted and not night`. Where either exempts, each stands on a line of "
-    "its own, as `rulec fmt` writes them.",
+    title="an exception directly follows another one",
+    why="Each `unless` of a rule applies by itself, so `unless signposted unless night` exempts "
+    "at night, signposted or not. It may be misread as an exception to the exception, which would "
+    "be one formula: `unless signposted and not night`. If either is meant to exempt, put each on "
+    "its own line, as `rulec fmt` does.",
     bad="rulebook example\nsignal turning, signposted, night default false\n"
     "hard rule r {\n  require never turning\n  unless signposted unless night\n}\n",
     good="rulebook example\nsignal turning, signposted, night default false\n"
@@ -48,7 +48,7 @@ EXCEPTION_BEHIND_ANOTHER = Code(
 UNUSED_CONSTANT = Code(
     "R0208",
     title="an option, a parameter or a definition is not used",
-    why="No rule, parameter or definition of the rulebook speaks of it, so it changes nothing.",
+    why="No rule, parameter or definition of the rulebook uses it, so it has no effect.",
     bad="rulebook example\nsignal wet\noption strict = on\nhard rule r { require never wet }\n",
     good="rulebook example\nsignal wet\noption strict = on\n"
     "hard rule r { require always (strict implies not wet) }\n",
@@ -58,10 +58,10 @@ MANY_CHOICES = Code(
     "R0326",
     title="a rule has very many choices of objects",
     why="A rule is judged for every choice of different objects for its variables, and each "
-    "variable multiplies them: five variables have 17 million choices of thirty objects. What is "
-    "read of some of the objects often shows that the others do not matter; where it does not, a "
-    "trace is not judged, since there is a limit (docs/limits.md). A rule about pairs says most of "
-    "what a rule about five says; `some`, `every` and `count` speak of many objects without "
+    "variable multiplies the choices: with thirty objects, five variables have 17 million. Often "
+    "the values of some objects show that the others do not matter; otherwise a trace is not "
+    "judged, because of a limit (docs/limits.md). A rule about pairs usually expresses most of "
+    "what a rule about five objects does; `some`, `every` and `count` cover many objects without "
     "choosing them.",
     bad="rulebook example\ntype car\nsignal close(a: car, b: car) default false\n"
     "hard rule r (a: car, b: car, c: car, d: car, e: car) {\n"
@@ -73,8 +73,8 @@ MANY_CHOICES = Code(
 UNKNOWN_PRIORITY = Code(
     "R0215",
     title="a level of priority is unknown",
-    why="A rule's place, such as `in legal`, is one of the levels that the `priority` lines of the "
-    "rulebook, or of those that it extends, put in order.",
+    why="The level of a rule, as in `in legal`, must be one of the levels ordered by the "
+    "`priority` lines of the rulebook or of those that it extends.",
     bad="rulebook example\npriority safety > legal\nsignal wet\n"
     "hard rule r in lawful { require never wet }\n",
     good="rulebook example\npriority safety > legal\nsignal wet\n"
@@ -84,9 +84,10 @@ UNKNOWN_PRIORITY = Code(
 UNFITTING_SCOPE = Code(
     "R0318",
     title="an exception's scope does not fit the rule",
-    why="Exceptions `at start`, `throughout`, `at some point` and `at end` speak of the stretch of "
-    "time that a rule guards, which begins with `never` or `always`. Other rules can except what "
-    "holds `initially`. What holds `throughout` phases whose length is bounded cannot be said.",
+    why="Exceptions `at start`, `throughout`, `at some point` and `at end` refer to the stretch "
+    "of time that a rule guards, which begins with `never` or `always`. Other rules can only have "
+    "exceptions that hold `initially`. `throughout` cannot be combined with phases of bounded "
+    "length.",
     bad="rulebook example\nsignal wet, fog\n"
     "hard rule r { require eventually wet unless fog throughout }\n",
     good="rulebook example\nsignal wet, fog\n"
@@ -95,9 +96,9 @@ UNFITTING_SCOPE = Code(
 
 NOT_ABOVE_ZERO = Code(
     "R0322",
-    title="a weight or a step is not above 0",
-    why="A weight says how much a rule counts beside others of its level, a step how far the "
-    "states of examples are apart in time.",
+    title="a weight or a step is not greater than 0",
+    why="A weight says how much a rule counts compared to others of its level; a step is the time "
+    "between the states of examples.",
     bad="rulebook example\nsignal wet\nsoft rule r weight 0 { require never wet }\n",
     good="rulebook example\nsignal wet\nsoft rule r weight 1 { require never wet }\n",
 )
@@ -105,11 +106,11 @@ NOT_ABOVE_ZERO = Code(
 NOT_A_MULTIPLE = Code(
     "R0407",
     title="a bound is not a multiple of the step",
-    why="A bound in seconds becomes a number of states, with the time from one state of a trace "
-    "to the next, its step. If a bound falls between two states, nobody knows what held "
-    "there. Choose a bound that is a multiple of the step, or traces with a finer one. Of a rule "
-    "without examples it is a warning, since traces of a step that fits can be judged by it; those "
-    "of another step are, too, but where it hangs on that bound the verdict is open.",
+    why="A bound in seconds is converted to a number of states by the time step of a trace. If a "
+    "bound falls between two states, it is unknown what held at that moment. Choose a bound that "
+    "is a multiple of the step, or traces with a finer step. For a rule without examples this is "
+    "only a warning: traces with a fitting step can be judged, and others as well, but their "
+    "verdict is open where it depends on that bound.",
     bad="rulebook example\nsignal wet default false\n"
     "hard rule r { require always (wet implies eventually[<= 1.5 s] not wet) }\n",
     good="rulebook example\nstep 0.5 s\nsignal wet default false\n"

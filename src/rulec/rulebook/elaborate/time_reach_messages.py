@@ -9,11 +9,11 @@ from rulec.syntax import tree
 
 FIRST_STATE_ONLY = Code(
     "R0360",
-    title="a rule requires something of the first state only",
-    why="A formula speaks of the state in which a trace begins, unless an operator of time such as "
-    "`always` or `never` says otherwise: who starts slowly keeps `require speed <= limit`. "
-    "`rulec check --fix` puts `always` before it. Where the first state is meant, say so: "
-    "`always (previously true or p)` asks for `p` in the only state that has none before it.",
+    title="a rule requires something only in the first state",
+    why="Without a temporal operator such as `always` or `never`, a formula is only about the "
+    "first state of a trace: a vehicle that starts slowly satisfies `require speed <= limit`. "
+    "`rulec check --fix` puts `always` before it. If you mean the first state, write `always "
+    "(previously true or p)`, which requires `p` only in the state that has none before it.",
     bad="rulebook example\nquantity speed in km/h default 0\n"
     "hard rule r { require speed <= 50 km/h }\n",
     good="rulebook example\nquantity speed in km/h default 0\n"
@@ -22,11 +22,11 @@ FIRST_STATE_ONLY = Code(
 
 NARROW_OPERATOR = Code(
     "R0361",
-    title="an operator of time speaks of less than what stands behind it",
+    title="a temporal operator applies to less than what follows it",
     why="The operators `never`, `always` and `eventually` bind tighter than `and`, `or` and "
-    "`implies`: `never a and b` is `(never a) and b`, which asks for `b` in the first state alone. "
-    "`rulec check --fix` puts what follows into parentheses; whoever means the other reading puts "
-    "these around the operator, as `rulec fmt` does, so that it can be seen.",
+    "`implies`: `never a and b` means `(never a) and b`, which requires `b` only in the first "
+    "state. `rulec check --fix` puts what follows in parentheses. If you mean the other reading, "
+    "put the parentheses around the operator, as `rulec fmt` does, to make it visible.",
     bad="rulebook example\nsignal a, b\nhard rule r { require always a implies b }\n",
     good="rulebook example\nsignal a, b\nhard rule r { require always (a implies b) }\n",
 )
@@ -34,10 +34,10 @@ NARROW_OPERATOR = Code(
 TWO_READINGS = Code(
     "R0362",
     title="an `and` or `or` beside `until` can be read in two ways",
-    why="The operators `until`, `release`, `weak until`, `strong release` and `since` bind tighter "
-    "than `and`, `or` and `xor`: `a until b and c` is `(a until b) and c`, which asks for `c` at "
-    "once, not when `b` comes. Many read it the other way. With parentheses around the one part or "
-    "the other everybody sees what is meant; the message has both.",
+    why="The operators `until`, `release`, `weak until`, `strong release` and `since` bind "
+    "tighter than `and`, `or` and `xor`: `a until b and c` means `(a until b) and c`, which "
+    "requires `c` immediately, not when `b` occurs. Many read it the other way. Parentheses "
+    "around one part or the other make the meaning clear; the message shows both.",
     bad="rulebook example\nsignal a, b, c default false\n"
     "hard rule r { require always (a implies b until c and not a) }\n",
     good="rulebook example\nsignal a, b, c default false\n"

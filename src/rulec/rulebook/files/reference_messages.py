@@ -14,7 +14,7 @@ if TYPE_CHECKING:  # a check that is recalled does not load the parser
 
 WRONG_KIND_OF_FILE = Code(
     "R0206",
-    title="a file is of another kind or name than expected",
+    title="a file has another kind or name than expected",
     why="A rulebook has rules and can be compiled; a vocabulary has declarations and can be used. "
     "A vocabulary `NAME` is found in a file `NAME.rules` that begins with `vocabulary NAME`.",
     bad="echo 'vocabulary town { signal fog }' > town.rules\nrulec compile ./town.rules -o build",
@@ -27,7 +27,8 @@ WRONG_KIND_OF_FILE = Code(
 EXTENDS_CIRCLE = Code(
     "R0213",
     title="rulebooks extend each other in a circle",
-    why="Each rulebook builds upon a more general one, up to one that extends no other.",
+    why="Each rulebook builds upon a more general one, up to one that extends no other. A cycle "
+    "is not possible.",
     bad="printf 'rulebook a\\nextends b\\n' > a.rules\n"
     "printf 'rulebook b\\nextends a\\n' > b.rules\nrulec check a.rules\n",
     good="printf 'rulebook a\\nextends b\\n' > a.rules\n"
@@ -39,9 +40,9 @@ EXTENDS_CIRCLE = Code(
 NAME_NOT_FOUND = Code(
     "R0703",
     title="a name was not found on the search path",
-    why="A rulebook or a vocabulary with this name is neither beside the file that asks for it "
-    "nor among those that ship with rulec (`rulec list`). A file is given by its path, such "
-    "as `./mine.rules`.",
+    why="There is no rulebook or vocabulary of this name beside the file that refers to it or "
+    "among those that ship with rulec (`rulec list`). To refer to a file, give its path, such as "
+    "`./mine.rules`.",
     bad="rulebook example\nuse papr\nhard rule r { require never CONGESTED }\n",
     good="rulebook example\nuse paper\nhard rule r { require never CONGESTED }\n",
 )

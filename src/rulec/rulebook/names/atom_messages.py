@@ -18,8 +18,8 @@ from rulec.vocabulary.units import parse_unit
 UNKNOWN_NAME = Code(
     "R0202",
     title="a name in a formula or a state is unknown",
-    why="A formula speaks of signals and of the values of enumerations. They have to be declared "
-    "in the rulebook or in a vocabulary that it uses.",
+    why="Formulas consist of signals and values of enumerations. They must be declared in the "
+    "rulebook or in a vocabulary that it uses.",
     bad="rulebook example\nuse paper\nhard rule r { require always not CONGESTD }\n",
     good="rulebook example\nuse paper\nhard rule r { require always not CONGESTED }\n",
 )
@@ -27,7 +27,7 @@ UNKNOWN_NAME = Code(
 UNKNOWN_VARIABLE = Code(
     "R0203",
     title="a variable is unknown",
-    why="The variables of a rule are those in the parentheses behind its name, each with a type.",
+    why="The variables of a rule are declared in parentheses after its name, each with a type.",
     bad="rulebook example\nuse paper\nhard rule r (v: vehicle) { require always not r(w) and b(v) "
     "}\n",
     good="rulebook example\nuse paper\n"
@@ -36,8 +36,8 @@ UNKNOWN_VARIABLE = Code(
 
 UNKNOWN_SIDE = Code(
     "R0211",
-    title="the near or the far side is not known",
-    why="The near side is the one of the kerb: the right one where traffic drives on the right. "
+    title="the near or the far side is undefined",
+    why="The near side is the side of the kerb: the right one where traffic drives on the right. "
     "`near_side_of` and `far_side_of` need a `traffic` line in the rulebook or in one that it "
     "extends, and a vocabulary with `left_of` and `right_of`.",
     bad="rulebook example\nuse road\n"
@@ -50,7 +50,7 @@ WRONG_ARITY = Code(
     "R0301",
     title="an atom has the wrong number of arguments",
     why="A signal or an enumeration is about the world, or about as many objects as its "
-    "declaration has parameters; in a formula it stands with as many variables.",
+    "declaration has parameters. In a formula it needs that many variables.",
     bad="rulebook example\nuse paper\nhard rule r (v: vehicle) { require f(v) or CONGESTED(v) }\n",
     good="rulebook example\nuse paper\n"
     "hard rule r (v: vehicle) { require always (f(v) or CONGESTED) }\n",
@@ -59,7 +59,7 @@ WRONG_ARITY = Code(
 WRONG_ARGUMENT_TYPE = Code(
     "R0302",
     title="an argument is of the wrong type",
-    why="What is declared for one type can be said of its subtypes, and of no other objects.",
+    why="A declaration for one type applies to its subtypes, but not to other objects.",
     bad="rulebook example\ntype car\ntype pedestrian\nsignal braking(c: car)\n"
     "hard rule r (p: pedestrian) { require never braking(p) }\n",
     good="rulebook example\ntype car\ntype pedestrian\nsignal braking(c: car)\n"
@@ -68,9 +68,9 @@ WRONG_ARGUMENT_TYPE = Code(
 
 NOT_BOOLEAN = Code(
     "R0303",
-    title="a name stands for something that cannot be true or false",
-    why="Formulas are made of what is true or false in a state: signals, and values of "
-    "enumerations. Quantities, types, objects and an enumeration as a whole are neither.",
+    title="a name is neither true nor false",
+    why="Formulas consist of what is true or false in a state: signals, and values of "
+    "enumerations. Quantities, types, objects and whole enumerations are neither.",
     bad="rulebook example\nsurface is one of road, crossing\n"
     "hard rule r { require never surface }\n",
     good="rulebook example\nsurface is one of road, crossing\n"
@@ -80,8 +80,8 @@ NOT_BOOLEAN = Code(
 AMBIGUOUS_NAME = Code(
     "R0309",
     title="a name can be read in two ways",
-    why="The name `b_v` is short for `b(v)`. Where the underscores of a name can be read in two "
-    "ways, parentheses say which is meant.",
+    why="The name `b_v` is short for `b(v)`. If the underscores of a name can be read in two "
+    "ways, use parentheses.",
     bad="rulebook example\ntype t\nsignal a(o: t), a_b(o: t)\n"
     "hard rule r (b_c: t, c: t) { require a_b_c and a(c) and a(b_c) }\n",
     good="rulebook example\ntype t\nsignal a(o: t), a_b(o: t)\n"
@@ -91,8 +91,8 @@ AMBIGUOUS_NAME = Code(
 
 MIXED_DIMENSIONS = Code(
     "R0312",
-    title="numbers of two kinds are put together",
-    why="A length is not compared with a speed, and a number without a unit not with either. Only "
+    title="numbers of two kinds are combined",
+    why="A length cannot be compared with a speed, nor a number without a unit with either. Only "
     "a bare 0 fits every kind.",
     bad="rulebook example\nquantity speed in km/h default 0\n"
     "hard rule r { require always speed <= 50 }\n",
@@ -102,7 +102,7 @@ MIXED_DIMENSIONS = Code(
 
 NUMBER_OR_FORMULA = Code(
     "R0313",
-    title="a number stands where something true or false is needed, or the other way round",
+    title="a number is used where a truth value is needed, or the other way round",
     why="Formulas are made of what is true or false: signals, values and comparisons. Comparisons "
     "are made of numbers: quantities, parameters, counts, and numbers with their units.",
     bad="rulebook example\nquantity speed in km/h default 0\n"

@@ -15,8 +15,8 @@ from rulec.vocabulary.units import hour_in_another_language, known_unit_names, u
 UNKNOWN_TYPE = Code(
     "R0201",
     title="a type is unknown",
-    why="A type has to be declared in the rulebook or in a vocabulary that it uses. Names are the "
-    "same only if their letters are, capitals included.",
+    why="A type must be declared in the rulebook or in a vocabulary that it uses. Names are "
+    "case-sensitive.",
     bad="rulebook example\nuse paper\nhard rule r (v: vehicel) { require always not r(v) }\n",
     good="rulebook example\nuse paper\nhard rule r (v: vehicle) { require always not r(v) }\n",
 )
@@ -24,9 +24,9 @@ UNKNOWN_TYPE = Code(
 DECLARED_TWICE = Code(
     "R0204",
     title="a name is declared twice",
-    why="Types, signals, quantities, enumerations and their values share one set of names, with "
-    "those of the vocabularies that are used. Give one of the two another name. Two "
-    "vocabularies that share names cannot be used together.",
+    why="Types, signals, quantities, enumerations and their values share one namespace with those "
+    "of the vocabularies in use. Rename one of the two. Two vocabularies with names in common "
+    "cannot be used together.",
     bad="rulebook example\nsignal wet\nsurface is one of dry, wet\n"
     "hard rule r { require always dry }\n",
     good="rulebook example\nsignal raining\nsurface is one of dry, wet\n"
@@ -37,8 +37,8 @@ DECLARED_TWICE = Code(
 UNKNOWN_UNIT = Code(
     "R0209",
     title="a unit of measure is unknown",
-    why="Numbers carry units, and those of quantities, parameters and comparisons have to be known "
-    "so that they can be converted into one another exactly. Capitals matter.",
+    why="Numbers have units. The units of quantities, parameters and comparisons must be known so "
+    "that they can be converted exactly. Units are case-sensitive.",
     bad="rulebook example\nquantity speed in KMH default 0\n"
     "hard rule r { require always speed <= 50 KMH }\n",
     good="rulebook example\nquantity speed in km/h default 0\n"
@@ -48,8 +48,8 @@ UNKNOWN_UNIT = Code(
 UNKNOWN_DIMENSION = Code(
     "R0210",
     title="a kind of number is unknown",
-    why="Behind its colon a parameter says what kind of number it is: a length, a time, a speed, "
-    "an acceleration, a mass, an angle, an area, a frequency, or just a number.",
+    why="After the colon, a parameter states its kind of number: a length, time, speed, "
+    "acceleration, mass, angle, area, frequency, or a plain number.",
     bad="rulebook example\nquantity speed in km/h default 0\nparam pace : velocity = 7 km/h\n"
     "hard rule r { require always speed <= pace }\n",
     good="rulebook example\nquantity speed in km/h default 0\nparam pace : speed = 7 km/h\n"
@@ -58,7 +58,7 @@ UNKNOWN_DIMENSION = Code(
 
 TYPE_CIRCLE = Code(
     "R0304",
-    title="types are subtypes of one another in a circle",
+    title="types are subtypes of each other in a circle",
     why="A type can be a subtype of another, that of a third, and so on, but never of itself.",
     bad="rulebook example\ntype bus is vehicle\ntype vehicle is bus\nsignal p\n"
     "hard rule r { require always p }\n",
@@ -69,8 +69,8 @@ TYPE_CIRCLE = Code(
 UNFITTING_DEFAULT = Code(
     "R0305",
     title="a default is not one of the values",
-    why="An enumeration's default is what holds where nothing is said, so it has to be one of "
-    "the values.",
+    why="The default of an enumeration applies where no value is given, so it must be one of the "
+    "values.",
     bad="rulebook example\nlight is one of red, green default grean\n"
     "hard rule r { require always red }\n",
     good="rulebook example\nlight is one of red, green default green\n"
@@ -80,8 +80,8 @@ UNFITTING_DEFAULT = Code(
 PARAMETER_WITHOUT_TYPE = Code(
     "R0308",
     title="a parameter's type is left out where it is not clear",
-    why="Without a type, `signal near(o)` is about objects of the one type that has no parent. If "
-    "there are several such types, or none, the type has to be written.",
+    why="Without a type, `signal near(o)` is about objects of the only type without a parent. If "
+    "there is none, or more than one, the type must be written.",
     bad="rulebook example\ntype vehicle\ntype pedestrian\nsignal near(o)\n"
     "hard rule r (v: vehicle) { require never near(v) }\n",
     good="rulebook example\ntype vehicle\ntype pedestrian\nsignal near(o: vehicle)\n"
@@ -90,10 +90,10 @@ PARAMETER_WITHOUT_TYPE = Code(
 
 NOTHING_TO_MARK = Code(
     "R0216",
-    title="what is called constant or presumed is not declared",
-    why="A `constant` or `presumed` line names signals, quantities and enumerations, which have to "
-    "be declared in the rulebook or in a vocabulary that it uses. Of an enumeration it names "
-    "the whole and not a value; of what is about objects it has the name alone.",
+    title="a constant or presumed name is not declared",
+    why="A `constant` or `presumed` line lists signals, quantities and enumerations, which must "
+    "be declared in the rulebook or in a vocabulary that it uses. It lists an enumeration, not "
+    "one of its values, and the bare name of a declaration about objects.",
     bad="rulebook example\nkind is one of a_car, a_truck\nconstant kinds\n"
     "hard rule r { require always a_car }\n",
     good="rulebook example\nkind is one of a_car, a_truck\nconstant kind\n"
@@ -103,10 +103,10 @@ NOTHING_TO_MARK = Code(
 NOT_TO_BE_PRESUMED = Code(
     "R0325",
     title="a name cannot be presumed",
-    why="Where no source tells a presumed name, its default holds, so it needs one. Every verdict "
-    "that rests on it names it: a rulebook and its vocabularies may presume a dozen, since "
-    "a verdict that rests on more says little of what was seen. What is not presumed is "
-    "unknown where nobody tells it.",
+    why="A presumed name has its default where no source provides it, so it needs a default. "
+    "Every verdict that rests on it says so. A rulebook and its vocabularies may presume a dozen "
+    "names, since a verdict that rests on more says little about what was observed. Names that "
+    "are not presumed are unknown where nothing provides them.",
     bad="rulebook example\nsignal waved_through\npresumed waved_through\n"
     "hard rule r { require never waved_through }\n",
     good="rulebook example\nsignal waved_through default false\npresumed waved_through\n"

@@ -15,8 +15,8 @@ from rulec.syntax.tree_printer import print_parameters
 RULE_TWICE = Code(
     "R0205",
     title="two rules have the same name",
-    why="Verdicts name the rule that is violated, and each has a file of its own when it is "
-    "compiled; so every rule needs a name of its own.",
+    why="Verdicts refer to rules by name, and compiling writes one file per rule, so every rule "
+    "needs a unique name.",
     bad="rulebook example\nsignal p, q\nhard rule a { require always p }\n"
     "hard rule a { require always q }\n",
     good="rulebook example\nsignal p, q\nhard rule a { require always p }\n"
@@ -26,8 +26,8 @@ RULE_TWICE = Code(
 NOT_INHERITED = Code(
     "R0212",
     title="there is nothing to override, confirm, drop, soften, set or redefine",
-    why="These words change what a rulebook inherits from the one that it extends. If that has "
-    "nothing of the name, the line would have no effect.",
+    why="These words change something inherited from the extended rulebook. If it has nothing of "
+    "that name, the line would have no effect.",
     bad='rulebook example\nextends esterle2019\ndrop rule R4 because "not in this country"\n',
     good='rulebook example\nextends esterle2019\ndrop rule R3 because "not in this country"\n',
 )
@@ -35,10 +35,10 @@ NOT_INHERITED = Code(
 LOST_EXCEPTION = Code(
     "R0260",
     title="an override replaces exceptions that it inherits",
-    why="Each kind of clause that stands in an override replaces those of its kind, so `unless` "
-    "replaces every inherited exception: the rule forbids again what they allowed. `also unless` "
-    "adds an exception to the inherited ones. Who means to replace them repeats those that stay, "
-    "or says what the rule is now, in words by `says` or as a formula by `require`.",
+    why="A clause in an override replaces all inherited clauses of its kind, so `unless` replaces "
+    "every inherited exception, and the rule again forbids what these allowed. `also unless` adds "
+    "an exception to the inherited ones. If you mean to replace them, repeat those that remain, "
+    "or state the new rule by `says` or `require`.",
     bad="rulebook example\nextends vienna\n"
     "override rule keep_near_side { unless congested at some point }\n",
     good="rulebook example\nextends vienna\n"
@@ -48,9 +48,9 @@ LOST_EXCEPTION = Code(
 IDLE_OVERRIDE = Code(
     "R0261",
     title="an override changes nothing",
-    why="What `override rule` does not say stays as it is inherited, and whose law the rule is, "
-    "too. An override that says nothing new has no effect: either what is different is missing, or "
-    "the rule is this rulebook's own law as it is, which `confirm rule` says.",
+    why="Everything that an `override rule` does not mention stays as inherited, including whose "
+    "law the rule is. An override that says nothing new has no effect: either the difference is "
+    "missing, or the rule is this rulebook's own law unchanged, which `confirm rule` states.",
     bad="rulebook example\nextends vienna\noverride rule keep_near_side { }\n",
     good='rulebook example\nextends vienna\nconfirm rule keep_near_side { cite "s. 1" }\n',
 )
@@ -58,8 +58,8 @@ IDLE_OVERRIDE = Code(
 INHERITED_ALREADY = Code(
     "R0214",
     title="a name is inherited already",
-    why="A rulebook has all rules, options, parameters and definitions of the one that it extends. "
-    "To change one of them says so: `override rule`, `set`, `redefine`.",
+    why="A rulebook inherits all rules, options, parameters and definitions of the one that it "
+    "extends. To change one of them, use `override rule`, `set` or `redefine`.",
     bad="rulebook example\nextends esterle2019\n"
     "hard rule R3 (p: pedestrian) { require always not (R_pc and l_p) }\n",
     good="rulebook example\nextends esterle2019\n"
@@ -70,8 +70,8 @@ INHERITED_ALREADY = Code(
 
 PRIORITY_CIRCLE = Code(
     "R0321",
-    title="levels of priority go round in a circle",
-    why="With `a > b` level a is above level b. Levels of one rank are written `a = b`.",
+    title="levels of priority form a circle",
+    why="With `a > b`, level a is above level b. Equal levels are written `a = b`.",
     bad="rulebook example\npriority safety > legal\npriority legal > safety\nsignal wet\n"
     "hard rule r in legal { require never wet }\n",
     good="rulebook example\npriority safety > legal\nsignal wet\n"
@@ -81,8 +81,8 @@ PRIORITY_CIRCLE = Code(
 NEVER_IN_FORCE = Code(
     "R0324",
     title="something is in force until a day before it begins",
-    why="What is `in force from` one day `until` another is in force on both and on all between "
-    "them. If the second day comes first there is none.",
+    why="What is `in force from` one day `until` another applies on both days and in between. If "
+    "the second day comes first, there is no such day.",
     bad="rulebook example\nsignal wet\nhard rule r {\n"
     "  in force from 2024-07-01 until 2020-06-30\n"
     "  require never wet\n}\n",
@@ -94,8 +94,8 @@ NEVER_IN_FORCE = Code(
 UNKNOWN_TOPIC = Code(
     "R0217",
     title="a topic is declared nowhere",
-    why="A rule names the topics that it is about, for tables of what rulebooks cover. They are "
-    'declared in a rulebook or in one that it extends, by `topics { NAME "title" }`.',
+    why="Rules name their topics, from which tables of coverage are made. Topics are declared in "
+    'the rulebook or in one that it extends, by `topics { NAME "title" }`.',
     bad='rulebook example\nsignal p\ntopics { zebra "Zebra crossings" }\n'
     "hard rule r {\n  topic zebras\n  require always p\n}\n",
     good='rulebook example\nsignal p\ntopics { zebra "Zebra crossings" }\n'

@@ -15,9 +15,8 @@ from rulec.rulebook.rules.axiom_instances import AxiomInstance
 CONTRADICTORY_AXIOMS = Code(
     "R0409",
     title="facts contradict each other",
-    why="A `fact` holds in every state. If several cannot hold together, or one cannot hold at "
-    "all, there is no state that a rule could speak of. The message names facts that "
-    "contradict each other, none of them needlessly.",
+    why="A `fact` holds in every state. If several facts cannot hold together, or one cannot hold "
+    "at all, there is no state to judge. The message names a minimal set of contradictory facts.",
     bad="rulebook example\nsignal wet, fog default false\nfact wet or fog\nfact not wet\n"
     "fact not fog\nhard rule r { require always not (wet and fog) }\n",
     good="rulebook example\nsignal wet, fog default false\nfact not (wet and fog)\n"
@@ -26,13 +25,14 @@ CONTRADICTORY_AXIOMS = Code(
 
 IMPOSSIBLE_TRIGGER = Code(
     "R0363",
-    title="what a rule waits for can be in no state",
-    why="The left side of an `implies` that always holds, the first phase of a sequence that is "
-    "forbidden, a condition (`when`), an exception (`unless`), or all that a rule forbids can be "
-    "in no state: the rule, or its exception, has no effect. No number is above 22 and below 6, "
-    "and an enumeration has one value: where one of them is enough, write `or`. Or facts say so: "
-    "either one says too much, or the rule is not needed. The message names facts that rule it "
-    "out, none of them needlessly. `rulec analyze` looks at several states, too (R0805).",
+    title="what triggers a rule is possible in no state",
+    why="The left side of an `implies` that always holds, the first phase of a forbidden "
+    "sequence, a condition (`when`), an exception (`unless`), or everything that a rule forbids "
+    "is impossible in every state, so the rule or its exception has no effect. A number cannot be "
+    "both above 22 and below 6, and an enumeration has only one value: if one of them suffices, "
+    "write `or`. Or facts exclude it: then either a fact says too much, or the rule is not "
+    "needed. The message names a minimal set of facts that exclude it. `rulec analyze` also "
+    "considers sequences of states (R0805).",
     bad="rulebook example\nsignal parked, standing, lit default false\n"
     "fact parked implies standing\n"
     "hard rule r { require always (parked and not standing implies lit) }\n",

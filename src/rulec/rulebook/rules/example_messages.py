@@ -21,9 +21,9 @@ from rulec.vocabulary.units import hour_in_another_language
 CONTRADICTORY_STATE = Code(
     "R0306",
     title="a state of an example contradicts itself or a fact",
-    why="In one state a signal is true or false, an enumeration has one value, and what the "
-    "vocabulary calls a `fact` holds. What a state does not say has its default, if the rule "
-    "reads it. Two states, one after the other, are separated by `;`.",
+    why="In one state a signal is true or false, an enumeration has exactly one value, and every "
+    "`fact` of the vocabulary holds. Values that a state does not mention have their default, if "
+    "the rule reads them. Successive states are separated by `;`.",
     bad="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
     "  require always not r(v)\n  accept { b(v) and l(v) }\n}\n",
     good="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
@@ -32,9 +32,10 @@ CONTRADICTORY_STATE = Code(
 
 INCOMPLETE_STATE = Code(
     "R0307",
-    title="a state leaves open what has no default",
-    why="What an example does not say takes the default of its declaration. Without a default "
-    "every state has to say it if the formula needs it: a missing value is never taken for false.",
+    title="a state lacks a value that has no default",
+    why="Values that an example does not mention have the default of their declaration. Without a "
+    "default, every state must give the value if the formula needs it: a missing value is never "
+    "taken to be false.",
     bad="rulebook example\nsignal wet, fog\nhard rule r {\n  require always not (wet and fog)\n"
     "  accept { wet }\n}\n",
     good="rulebook example\nsignal wet, fog\nhard rule r {\n  require always not (wet and fog)\n"
@@ -44,8 +45,8 @@ INCOMPLETE_STATE = Code(
 DENIED_VALUE = Code(
     "R0310",
     title="a state denies a value instead of naming one",
-    why="In a state of an example an enumeration has exactly one value, so the state names it. "
-    "That it is not one of them would leave open which it is.",
+    why="In a state of an example an enumeration has exactly one value, which the state must "
+    "name. Excluding one value would leave open which of the others it has.",
     bad="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"
     "  require always not r(v)\n  accept { not r(v) }\n}\n",
     good="rulebook example\nuse paper\nhard rule r (v: vehicle) {\n"

@@ -7,17 +7,17 @@ from rulec.diagnostics.code import Code
 
 UNKNOWN_ESCAPE = Code(
     "R0106",
-    title="a text holds an unknown escape",
-    why='In a text a backslash makes a quote (`\\"`) or a backslash (`\\\\`), and nothing else.',
+    title="a text contains an unknown escape",
+    why='In a text, a backslash can only be followed by a quote (`\\"`) or a backslash (`\\\\`).',
     bad='rulebook example\ntitle "either\\or"\nsignal p\nhard rule r { require always p }\n',
     good='rulebook example\ntitle "either\\\\or"\nsignal p\nhard rule r { require always p }\n',
 )
 
 CONTROL_CHARACTER = Code(
     "R0107",
-    title="a text holds a control character",
-    why="Texts are shown in terminals and in reports. Characters that drive a terminal, or turn "
-    "the direction of the text around, could make a rule look like another one.",
+    title="a text contains a control character",
+    why="Texts are shown in terminals and reports. Characters that control a terminal, or reverse "
+    "the direction of the text, could make one rule look like another.",
     bad='printf \'rulebook a title "\\033[2J" signal p '
     "hard rule r { require always p }' | rulec check -",
     good='printf \'rulebook a title "clear" signal p '
@@ -28,7 +28,7 @@ CONTROL_CHARACTER = Code(
 NO_SUCH_DATE = Code(
     "R0110",
     title="a date is not in the calendar",
-    why="A date is written `year-month-day` and has to exist, behind `as of` and in `in force`.",
+    why="A date is written `year-month-day` and must exist. Dates follow `as of` and `in force`.",
     bad='rulebook example\nlaw "A law" as of 2023-02-29\nsignal p\n'
     "hard rule r { require always p }\n",
     good='rulebook example\nlaw "A law" as of 2024-02-29\nsignal p\n'
@@ -38,7 +38,8 @@ NO_SUCH_DATE = Code(
 NUMBER_TOO_LARGE = Code(
     "R0112",
     title="a number is too large or too long",
-    why="Numbers reach to about 1.8e308, as in nearly all programs, and have at most 400 digits.",
+    why="Numbers may be as large as about 1.8e308, as in most programs, and have at most 400 "
+    "digits.",
     bad="rulebook example\nquantity speed in km/h default 1e999\nsignal p\n"
     "hard rule r { require always p }\n",
     good="rulebook example\nquantity speed in km/h default 130\nsignal p\n"

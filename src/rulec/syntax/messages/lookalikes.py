@@ -23,10 +23,10 @@ from rulec.syntax.scanner import Token
 
 HIDDEN_IN_COMMENT = Code(
     "R0118",
-    title="a comment holds a control character",
-    why="A character that drives a terminal, or turns the direction of the text around, can show a "
-    "comment as if it were a rule, or a rule as if it were a comment (CVE-2021-42574). Comments "
-    "hold what can be seen, and tabs.",
+    title="a comment contains a control character",
+    why="A character that controls a terminal, or reverses the direction of the text, can make a "
+    "comment look like a rule or a rule like a comment (CVE-2021-42574). Comments may contain "
+    "only visible characters, spaces and tabs.",
     bad=r"printf 'rulebook a signal p # \342\200\256\n"
     r"hard rule r { require always p }' | rulec check -",
     good="printf 'rulebook a signal p # left\\nhard rule r { require always p }' | rulec check -",
@@ -36,9 +36,10 @@ HIDDEN_IN_COMMENT = Code(
 CONFUSABLE_NAME = Code(
     "R0119",
     title="a name looks like another one",
-    why="Two names look alike and are not the same; or a name that looks Latin mixes letters of "
-    "several scripts, or is in one that the file has no other word of (Unicode Technical Standard "
-    "39). A rule about the wrong one of them is never violated. Write one of them otherwise.",
+    why="Two names look alike but are different, or a name that looks Latin mixes letters of "
+    "several scripts or uses a script that no other word of the file uses (Unicode Technical "
+    "Standard 39). A rule about the wrong one of two such names would never be violated. Rename "
+    "one of them.",
     bad="rulebook example\nsignal stop, \u0455top\n"
     "hard rule r { require never (stop and \u0455top) }\n",
     good="rulebook example\nsignal stop, halt\nhard rule r { require never (stop and halt) }\n",

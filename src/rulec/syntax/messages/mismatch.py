@@ -21,12 +21,12 @@ from rulec.syntax.scanner import Token
 
 UNEXPECTED_WORD = Code(
     "R0104",
-    title="something stands where the language has no place for it",
-    why="Up to the underlined place the text can be read, and there it cannot go on. Beside the "
-    "place stands what could have come; often an operator is spelt otherwise, a word is "
-    "misspelt, or a separator is missing. Of two comparisons in a row each is written out: "
-    "`1 m < gap(v) and gap(v) < 2 m`; a conditional inside a formula stands in parentheses; a "
-    "bound's numbers have a unit.",
+    title="something is not allowed at this place",
+    why="The text can be read up to the underlined place, but it cannot continue as it does. The "
+    "message lists what is possible there; often an operator is spelt differently, a word is "
+    "misspelt, or a separator is missing. Two comparisons in a row are written out: `1 m < gap(v) "
+    "and gap(v) < 2 m`; a conditional inside a formula needs parentheses; the numbers of a bound "
+    "need a unit.",
     bad="rulebook example\nsignal rain, wet\nhard rule r { require rain => wet }\n",
     good="rulebook example\nsignal rain, wet\nhard rule r { require always (rain implies wet) }\n",
 )
@@ -34,18 +34,18 @@ UNEXPECTED_WORD = Code(
 UNTERMINATED_TEXT = Code(
     "R0105",
     title="a text has no closing quote",
-    why="A text stands in straight double quotes and ends on the line on which it begins. A long "
-    'sentence stays on one line; a quote inside is written `\\"`.',
+    why="A text is enclosed in straight double quotes and ends on the line on which it begins, "
+    'even if the line is long. A quote inside a text is written `\\"`.',
     bad='rulebook example\ntitle "An example\nsignal p\nhard rule r { require always p }\n',
     good='rulebook example\ntitle "An example"\nsignal p\nhard rule r { require always p }\n',
 )
 
 FORMULA_TOO_DEEP = Code(
     "R0111",
-    title="a formula is too deep, or it or an example too long",
-    why="A formula may be nested 200 levels deep and have 10,000 words and signs, an "
-    "example 10,000 states. Nobody can read more, and it comes from a program: say a formula's "
-    "parts in rules of their own, and judge a drive that was recorded as a trace of its own.",
+    title="a formula is nested too deeply, or a formula or an example is too long",
+    why="A formula may be nested 200 levels deep and have 10,000 words and signs, an example "
+    "10,000 states. Larger ones are not readable and usually come from a program. Divide the "
+    "formula into several rules, and judge a recorded drive as a trace.",
     bad=f"rulebook example\nsignal p\nhard rule r {{\n  require\n{'    ' + '!' * 67}\n"
     f"{'    ' + '!' * 67}\n{'    ' + '!' * 67} p\n}}\n",
     good="rulebook example\nsignal p\nhard rule r { require never p }\n",
@@ -54,8 +54,8 @@ FORMULA_TOO_DEEP = Code(
 RESERVED_WORD = Code(
     "R0113",
     title="a word of the language is used as a name",
-    why="Words such as `rule`, `always` and `G` have a meaning of their own wherever they stand. "
-    "Letters' case makes names different: `g` can be a name.",
+    why="Words such as `rule`, `always` and `G` are reserved everywhere. Names are "
+    "case-sensitive: `g` can be a name.",
     bad="rulebook example\nsignal always\nhard rule r { require true }\n",
     good="rulebook example\nsignal at_all_times\nhard rule r { require true }\n",
 )

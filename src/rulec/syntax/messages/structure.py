@@ -17,8 +17,8 @@ HOW_TO_BEGIN = "a rulebook begins with `rulebook NAME`, a vocabulary with `vocab
 EMPTY_FILE = Code(
     "R0103",
     title="a file is empty",
-    why="There is nothing in the file but blank space and comments. A rulebook begins with "
-    "`rulebook NAME`, a vocabulary with `vocabulary NAME {`.",
+    why="The file contains only white space and comments. A rulebook begins with `rulebook NAME`, "
+    "a vocabulary with `vocabulary NAME {`.",
     bad="# nothing yet\n",
     good="# as short as can be\nrulebook shortest\nsignal p\n"
     "hard rule keep_it { require always p }\n",
@@ -26,10 +26,10 @@ EMPTY_FILE = Code(
 
 MISSING_PART = Code(
     "R0114",
-    title="something that must be there is missing",
-    why="A file says first what it is; a rulebook has a rule, or extends another; every rule has "
-    "one `require`, but for those that override or confirm another and leave it as it is; what "
-    "confirms one has a `cite`.",
+    title="a required part is missing",
+    why="A file first states what it is. A rulebook has at least one rule, or extends another "
+    "rulebook. Every rule has one `require`, unless it overrides or confirms another rule without "
+    "changing its requirement. A confirmation has a `cite`.",
     bad='rulebook example\nhard rule r { says "Drive with care." }\n',
     good="rulebook example\nsignal careful\n"
     'hard rule r { says "Drive with care." require always careful }\n',
@@ -37,10 +37,10 @@ MISSING_PART = Code(
 
 MISPLACED_LINE = Code(
     "R0115",
-    title="a line stands in the wrong part of a file",
+    title="a line is in the wrong part of a file",
     why="Header lines (`title`, `law`, `use`, `extends`, `traffic`, `semantics`, `step`, "
-    "`priority`) stand between `rulebook NAME` and the first item; a vocabulary holds "
-    "declarations only; a file holds one rulebook or one vocabulary.",
+    "`priority`) come between `rulebook NAME` and the first item; a vocabulary contains only "
+    "declarations; a file contains one rulebook or one vocabulary.",
     bad="vocabulary town {\n  signal fog\n  hard rule r { require never fog }\n}\n",
     good="rulebook town\nsignal fog\nhard rule r { require never fog }\n",
 )
@@ -48,18 +48,18 @@ MISPLACED_LINE = Code(
 GIVEN_TWICE = Code(
     "R0116",
     title="something is given twice",
-    why="A rulebook has one title, one law, and extends one other; a rule has one `require`, "
-    "`cite`, `says` and `when`, and as many `unless` and examples as it needs. Two demands are "
-    "joined by `and`, or stand in two rules.",
+    why="A rulebook has one title and one law, and extends one other rulebook. A rule has one "
+    "`require`, `cite`, `says` and `when`, and any number of `unless` clauses and examples. Join "
+    "two requirements by `and`, or put them into two rules.",
     bad="rulebook example\nsignal p, q\nhard rule r { require always p require always q }\n",
     good="rulebook example\nsignal p, q\nhard rule r { require always (p and q) }\n",
 )
 
 NOT_A_RULEBOOK = Code(
     "R0117",
-    title="a file is no rulebook",
-    why="The file begins with neither `rulebook` nor `vocabulary`, comments aside, so it is "
-    "probably another file than was meant. Nothing of it is shown, as it might be a secret.",
+    title="a file is not a rulebook",
+    why="Apart from comments, the file begins with neither `rulebook` nor `vocabulary`, so it is "
+    "probably not the intended file. Its content is not shown, because it might be confidential.",
     bad="Dear all,\nplease find the rules attached.\n",
     good="rulebook attached\nsignal p\nhard rule r { require always p }\n",
 )
@@ -67,9 +67,9 @@ NOT_A_RULEBOOK = Code(
 CONFIRMED_AND_CHANGED = Code(
     "R0120",
     title="a confirmation changes the rule",
-    why="The words `confirm rule` say that an inherited rule is this rulebook's own law, too, and "
-    "by which provision. What the rule demands stays as it is inherited: it may have `cite`, "
-    "`source`, `certainty`, `says`, `topic` and examples, no other clause.",
+    why="The words `confirm rule` state that an inherited rule is also this rulebook's own law, "
+    "and by which provision. The requirement stays as inherited: a confirmation may have `cite`, "
+    "`source`, `certainty`, `says`, `topic` and examples, but no other clause.",
     bad="rulebook example\nextends vienna\n"
     'confirm rule near_side_passing {\n  cite "s. 1"\n  unless congested\n}\n',
     good='rulebook example\nextends vienna\nconfirm rule near_side_passing {\n  cite "s. 1"\n}\n',
@@ -132,9 +132,9 @@ _COMPILED, _HEAD = '"rulec compiled rulebook"', 1000
 
 UNBALANCED_BRACE = Code(
     "R0108",
-    title="a brace is missing or closes nothing",
-    why="The clauses of a rule, the states of an example and the items of a vocabulary stand "
-    "between `{` and `}`. The message names what was not begun or not ended.",
+    title="a brace is missing, or does not match",
+    why="The clauses of a rule, the states of an example and the items of a vocabulary are "
+    "enclosed in `{` and `}`. The message says which block was not opened or closed.",
     bad="rulebook example\nsignal p\nhard rule a { require always p\n"
     "hard rule b { require never p }\n",
     good="rulebook example\nsignal p\nhard rule a { require always p }\n"
@@ -143,9 +143,9 @@ UNBALANCED_BRACE = Code(
 
 OUTSIDE_BRACES = Code(
     "R0109",
-    title="something stands outside the braces that it belongs in",
-    why="A clause such as `cite` or `accept` belongs to a rule and stands between its braces; "
-    "behind the `}` of a vocabulary nothing can stand.",
+    title="something is outside the braces that it belongs in",
+    why="A clause such as `cite` or `accept` belongs inside the braces of a rule. Nothing can "
+    "follow the closing `}` of a vocabulary.",
     bad="rulebook example\nsignal p\nhard rule r { require always p }\naccept { p }\n",
     good="rulebook example\nsignal p\nhard rule r { require always p accept { p } }\n",
 )
