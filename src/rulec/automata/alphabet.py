@@ -1,6 +1,6 @@
-"""Letters of a rule: values of its reads, in mixed radix.
+"""The letters of a rule: combinations of values of what it reads, numbered in mixed radix.
 
-An enumeration has exactly one value, a number is on one side of each threshold.
+An enumeration has exactly one value; a number is on one side of each threshold.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ NOT, AND, OR = ltl.UnaryOperator.NOT, ltl.BinaryOperator.AND, ltl.BinaryOperator
 
 
 def propositions_of(formula: ltl.Formula) -> tuple[ltl.Proposition, ...]:
-    """Distinct atoms and comparisons of a formula, in order of first mention."""
+    """The distinct atoms and comparisons of a formula, in order of first mention."""
     return tuple(dict.fromkeys(ltl.atoms_of(formula)))
 
 
 def reads_of(formula: ltl.Formula, vocabulary: Vocabulary) -> tuple[Read | NumberRead, ...]:
-    """Reads of a formula, in order of first mention, one for each subject."""
+    """What a formula reads, in order of first mention: one read for each subject."""
     used: dict[object, list[ltl.Proposition]] = {}
     for proposition in propositions_of(formula):
         used.setdefault(ltl.subject_of(proposition), []).append(proposition)
@@ -47,10 +47,10 @@ def _read(together: Sequence[ltl.Proposition], vocabulary: Vocabulary) -> Read |
 
 
 def _sides(comparison: ltl.Comparison) -> tuple[Threshold | None, ...]:
-    """Thresholds that decide a comparison: below, then above its limit.
+    """The thresholds that decide a comparison: the lower one, then the upper one if there are two.
 
-    A count is a whole number, 0 or more: its thresholds are whole numbers above 0 that are passed
-    by themselves; None is a threshold that every count passes.
+    A count is a whole number of at least 0, so its thresholds are inclusive whole numbers above 0;
+    None stands for a threshold that every count passes.
     """
     limit = comparison.limit
     both: list[Threshold | None] = [Threshold(limit, inclusive) for inclusive in (True, False)]
@@ -67,8 +67,8 @@ def _sides(comparison: ltl.Comparison) -> tuple[Threshold | None, ...]:
 
 
 def _digits(comparison: ltl.Comparison, read: NumberRead) -> Sequence[int]:
-    """The digits of numbers for which the comparison holds."""
-    # A number has passed as many thresholds as its digit says.
+    """The digits of the numbers for which the comparison holds."""
+    # A number's digit is the number of thresholds that it passes.
     sides = _sides(comparison)
     passed = [0 if side is None else read.thresholds.index(side) + 1 for side in sides]
     match comparison.relation:
@@ -83,16 +83,16 @@ def _digits(comparison: ltl.Comparison, read: NumberRead) -> Sequence[int]:
 
 
 def count_letters(reads: Iterable[Read | NumberRead]) -> int:
-    """The number of letters that these reads make."""
+    """The number of letters that these reads form."""
     return prod(read.size for read in reads)
 
 
 def letters_with(
     reads: Sequence[Read | NumberRead], propositions: Iterable[ltl.Proposition]
 ) -> dict[ltl.Proposition, int]:
-    """For every proposition the bit set of letters that satisfy it.
+    """For each proposition, the bit set of the letters that satisfy it.
 
-    ``reads`` are what a formula of these propositions reads.
+    ``reads`` are those of a formula over these propositions.
     """
     everything = (1 << count_letters(reads)) - 1
     about: dict[object, tuple[Read | NumberRead, int]] = {}
@@ -124,10 +124,10 @@ def _digits_with(proposition: ltl.Proposition, read: Read | NumberRead) -> Seque
 def knowledge(
     reads: Iterable[Read | NumberRead], propositions: Sequence[ltl.Proposition]
 ) -> ltl.Formula:
-    """Formula that holds of these propositions in every state of every trace.
+    """A formula over these propositions that holds in every state of every trace.
 
-    Of an enumeration's values exactly one is true; of comparisons of one number those that it
-    passes.
+    Exactly one value of an enumeration is true; comparisons of the same number are true according
+    to the thresholds that it passes.
     """
     comparisons = [each for each in propositions if isinstance(each, ltl.Comparison)]
     axioms: list[ltl.Formula] = []
@@ -148,7 +148,7 @@ def _number_facts(read: NumberRead, comparisons: Sequence[ltl.Comparison]) -> It
     if any(comparison.relation in ("=", "!=") for comparison in comparisons):
         yield from _each_digit(read, comparisons)
         return
-    # Comparisons with one threshold form a chain: who passes a later one has passed the earlier.
+    # Comparisons with one threshold form a chain: passing a higher one implies passing the lower.
     passing: list[tuple[int, ltl.Formula]] = []
     for comparison in comparisons:
         (side,) = _sides(comparison)
@@ -188,7 +188,7 @@ def joined(operator: ltl.BinaryOperator, formulas: Sequence[ltl.Formula]) -> ltl
 
 
 def names_of(propositions: Iterable[ltl.Proposition]) -> dict[ltl.Proposition, str]:
-    """A name for each: its text, told apart from earlier ones."""
+    """A unique name for each proposition: its text, with a number added if that is taken."""
     names: dict[ltl.Proposition, str] = {}
     taken: set[str] = set()
     for proposition in dict.fromkeys(propositions):

@@ -1,4 +1,4 @@
-"""Groups of axioms that have to do with each other, in a rule's letters."""
+"""Groups of related axioms, as formulas over a rule's letters."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ from rulec.vocabulary import Vocabulary
 
 @dataclass(frozen=True, slots=True)
 class AxiomGroup:
-    """Instances of facts that have to do with each other.
+    """Instances of facts that are related to each other.
 
-    ``natural`` is what is known besides of all that they speak of, in theirs and a rule's words.
+    ``natural`` is what their types imply about the propositions of these facts and the rule's
+    propositions on the same subjects (``alphabet.knowledge``).
     """
 
     natural: ltl.Formula
@@ -24,7 +25,7 @@ class AxiomGroup:
 
     @property
     def known(self) -> ltl.Formula:
-        """All of it."""
+        """The conjunction of the group's knowledge."""
         return alphabet.joined(
             alphabet.AND, [self.natural, *(instance.formula for instance in self.instances)]
         )
@@ -35,7 +36,7 @@ def axiom_groups(
     instances: Iterable[AxiomInstance],
     vocabulary: Vocabulary,
 ) -> tuple[AxiomGroup, ...]:
-    """Independent groups of axioms, for a rule of these propositions."""
+    """The independent groups of axioms for a rule over these propositions."""
     every = tuple(propositions)
     groups = []
     for group in linked(instances):
@@ -50,7 +51,7 @@ def axiom_groups(
 
 
 def possible_letters(reads: Sequence[Read | NumberRead], known: ltl.Formula) -> int:
-    """Bit set of letters in which a formula without time operators holds."""
+    """The bit set of the letters in which a formula without temporal operators holds."""
     sets = alphabet.letters_with(reads, alphabet.propositions_of(known))
     return _letters_where(known, sets, everything=(1 << alphabet.count_letters(reads)) - 1)
 

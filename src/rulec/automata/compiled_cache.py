@@ -1,7 +1,7 @@
-"""Cache of compiled rulebooks, valid while all that they were compiled from is unchanged.
+"""Cache of compiled rulebooks, valid while everything that they were compiled from is unchanged.
 
-A file for each rulebook and step, in the folder of the cache of checks. Anything odd about one, and
-the rulebook is compiled anew. Machines for traces that are cut join the file once they are made.
+One file for each rulebook and step, in the folder of the cache of checks. If a file is unusable,
+the rulebook is compiled again. Machines for cut traces are added to the file once made.
 """
 
 from __future__ import annotations
@@ -34,19 +34,19 @@ if TYPE_CHECKING:
 _Part = TypeVar("_Part")
 
 MOST_FILES = 100
-"""So many are kept; those longest unused go first."""
+"""The greatest number of files kept; those unused for the longest time are removed first."""
 
 _ENDING = ".tables"
 _OWN = "own"
-"""The steps of the rules' own examples."""
+"""In place of a step: the steps of the rules' own examples."""
 
 
 @dataclass(frozen=True, slots=True)
 class CompiledQuestion:
-    """Key of a compilation: where its source is, and what is in it.
+    """The key of a compilation: where its source is, and what it contains.
 
-    ``file`` is how the names of the cache's files begin, ``stamp`` a digest of the source and of
-    rulec itself.
+    ``file`` is the common start of the paths of the cache's files, ``stamp`` a digest of the source
+    and of rulec itself.
     """
 
     source: str
@@ -59,7 +59,7 @@ class CompiledQuestion:
 def question_of(
     reference: str | Path, search_path: Sequence[str | Path], at: str
 ) -> CompiledQuestion | None:
-    """The key of a rulebook; None if there is no cache.
+    """The cache key of a rulebook; None if there is no cache.
 
     Raises RulecError as reading the rulebook does: R0703 for an unknown name, R0701.
     """
@@ -71,7 +71,7 @@ def question_of(
     compiler = os.environ.get(compiler_choice.VARIABLE, "")
     seen = sha256(f"{__version__}\0{program_digest()}\0{compiler}\0".encode())
     seen.update(read_bytes(Path(path)))
-    # Messages have the path as it was given, so the same file by another one is another key.
+    # Messages show the path as it was given, so the same file under another path has another key.
     parts = (path, at, *folders)
     here = "" if all(map(os.path.isabs, (path, *folders))) else str(Path.cwd())
     name = sha256("\0".join((here, *parts)).encode("utf-8", "surrogatepass")).hexdigest()[:40]
@@ -81,7 +81,7 @@ def question_of(
 def recalled(
     question: CompiledQuestion,
 ) -> tuple[CompiledRulebook, tuple[Diagnostic, ...]] | None:
-    """The rulebook with its warnings; None if it has to be compiled."""
+    """The cached rulebook with its warnings; None if it has to be compiled."""
     file = _File(question, _OWN)
     known = file.read()
     if known is None or not _is_valid(known, question) or known.rulebook is None:
@@ -97,7 +97,7 @@ def remembered(
     warnings: Sequence[Diagnostic],
     dependencies: Sequence[Dependency],
 ) -> CompiledRulebook:
-    """Cache a rulebook that has been compiled; it will cache what it leads to."""
+    """Cache a newly compiled rulebook; what is later compiled from it is cached, too."""
     day = "" if question.at or compiled.as_of else _today()
     text = Compilation(question.stamp, day, tuple(dependencies), tuple(warnings))
     file = _File(question, _OWN)
@@ -106,7 +106,7 @@ def remembered(
 
 
 def _today() -> str:
-    return date.today().isoformat()  # noqa: DTZ011 - the reader's own day
+    return date.today().isoformat()  # noqa: DTZ011 - today in the user's time zone
 
 
 def _is_valid(text: Compilation, question: CompiledQuestion) -> bool:
@@ -120,7 +120,7 @@ def _is_valid(text: Compilation, question: CompiledQuestion) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _File:
-    """A file of the cache; what is in ``given`` it does not repeat, and is read with."""
+    """A file of the cache. Objects in ``given`` are not stored in it and are needed to read it."""
 
     question: CompiledQuestion
     step: str
@@ -152,9 +152,9 @@ def _cached(compiled: CompiledRulebook, steps: CachedSteps, file: _File) -> Comp
 
 
 class CachedSteps:
-    """A ``Recompiler`` that asks the cache first, whose files share what the ``own`` rulebook has.
+    """A ``Recompiler`` that asks the cache first; its files share parts with the ``own`` rulebook.
 
-    That one is for the steps of the rules' own examples.
+    ``own`` is the rulebook for the steps of the rules' own examples.
     """
 
     def __init__(
@@ -186,7 +186,7 @@ class CachedSteps:
         return down, self._answer(f"{name}-up", lambda: self._compiler().rounded(step_s)[1])
 
     def judgeable_at(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
-        """The rulebook without rules that are too large; which are is asked anew each time."""
+        """The rulebook without rules too large for the step; which these are is not cached."""
         return self._compiler().judgeable_at(step_s)
 
     def _answer(self, step: str, compile_it: Callable[[], CompiledRulebook]) -> CompiledRulebook:
@@ -211,21 +211,21 @@ class CachedSteps:
         try:
             compiled = _sharing(compile_it(), self._own)
         except RulecError as error:
-            # Messages of the parser, 20 ms: it has been loaded where there is an error.
+            # Takes 20 ms to import with the parser, which an error has already loaded.
             from rulec.rulebook.elaborate.rule_messages import NOT_A_MULTIPLE
 
-            # Whether a machine gets too large, or Spot is there, is another question next time.
+            # Not cached: machines that are too large and a missing Spot, which may change.
             if all(problem.code == NOT_A_MULTIPLE.code for problem in error.diagnostics):
                 file.write(replace(text, problems=error.diagnostics), None)
             return error
-        # Its source may have been changed since it was recalled.
+        # The source may have changed since the rulebook was read from the cache.
         if compiled.sources == self._own.sources:
             file.write(text, compiled)
         return _cached(compiled, self, file)
 
     def _compiler(self) -> StepCompiler:
         if self._steps is None:
-            # The parser, 60 ms: only where the cache has no answer.
+            # The parser takes 60 ms to import: only where the cache has no answer.
             from rulec.automata.step_compilation import StepCompiler
             from rulec.rulebook.loader import read_rulebook
 
@@ -236,7 +236,7 @@ class CachedSteps:
 
 
 def _sharing(compiled: CompiledRulebook, own: CompiledRulebook) -> CompiledRulebook:
-    """A rulebook that has the very objects of its ``own`` steps' one where they are alike."""
+    """The rulebook, reusing the objects of ``own`` wherever they are equal."""
     known = {rule.name: rule for rule in own.rules}
     return replace(
         compiled,
@@ -265,16 +265,16 @@ def _name(step_s: Fraction) -> str:
 
 @dataclass(slots=True)
 class CachedPrefixes:
-    """A ``PrefixCompiler`` whose machines join the file of their rulebook."""
+    """A ``PrefixCompiler`` that adds its machines to the file of their rulebook."""
 
     _file: _File
     _stored: StoredPrefixes | None = None
 
     def __call__(self, rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
-        """The machines of the rulebook's rules. Raises RulecError R0403 if Spot is not there."""
+        """The machines of the rulebook's rules. Raises RulecError R0403 if Spot is missing."""
         if self._stored is not None:
             return self._stored(rulebook)
-        # The compiler, 30 ms: only where the cache has no machines.
+        # The compiler takes 30 ms to import: only where the cache has no machines.
         from rulec.automata.prefix_machines import prefix_machines
 
         machines = prefix_machines(rulebook)

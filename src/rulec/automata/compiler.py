@@ -1,7 +1,7 @@
-"""Compiler from a rulebook to monitors, by Spot or by decision diagrams in another process.
+"""Compiles a rulebook to monitors, with Spot or with decision diagrams, in another process.
 
 A formula's automaton can be doubly exponential in it. Spot then uses up memory or ends its process;
-so it runs beside this one, with bounds on processor time and memory.
+so it runs in a separate process, with limits on processor time and memory.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ from rulec.version import __version__
 
 CPU_LIMIT_S = 5
 
-# It finds what this process finds, and nothing in the working directory.
+# The worker finds the modules that this process finds, and nothing in the working directory.
 _REQUIRE_CONFINED = "RULEC_REQUIRE_CONFINED"
 _WORKER = """
 import sys
@@ -60,7 +60,7 @@ main(confined, choice)
 
 @dataclass(frozen=True, slots=True)
 class RuleFormula:
-    """Formula with bounds in steps of ``step_s`` s (None for any)."""
+    """A formula with bounds in steps of ``step_s`` s (None if any step fits)."""
 
     rule: Rule
     formula: Formula
@@ -69,9 +69,9 @@ class RuleFormula:
 
 @dataclass(frozen=True, slots=True)
 class RulebookFormulas:
-    """Formulas of a rulebook's rules for one step, and problems of others.
+    """The formulas of a rulebook's rules for one step, and the problems of rules without one.
 
-    ``step_s`` is None if each rule's step is that of its own examples.
+    ``step_s`` is None if each rule has the step of its own examples.
     """
 
     rules: tuple[RuleFormula, ...]
@@ -84,9 +84,9 @@ def lower(
 ) -> RulebookFormulas:
     """Translate every rule's bounds in seconds into steps.
 
-    ``step_s`` are the seconds between two states of the traces to be judged; None for the step of
-    each rule's own examples, and with ``any_step``, where there are none, for a step that fits. A
-    problem (R0407) is a bound that is not a multiple of the step.
+    ``step_s`` is the number of seconds between two states of the traces to be judged; None for the
+    step of each rule's own examples, and with ``any_step``, for a rule without examples, for a step
+    that fits. A bound that is not a multiple of the step is a problem (R0407).
     """
     formulas: list[RuleFormula] = []
     problems: list[Diagnostic] = []
@@ -121,12 +121,12 @@ def build_all(
 ) -> CompiledRulebook:
     """Build the automaton of every formula, in the order of the rules.
 
-    ``cpu_limit_s``: processor time that a rule's automaton may take, in whole seconds. A worker of
-    which ``more_will_come`` waits for the next call, for to start it takes a quarter second. Raises
-    RulecError with the formulas' problems; R0401 for each rule whose automaton is too large, R0402
-    for each whose automaton failed its check, R0403 for each that takes Spot, if that is not there,
-    R0409 for axioms that contradict each other, R0718 for the first rule for
-    which no ``time`` is left.
+    ``cpu_limit_s`` is the processor time that a rule's automaton may take, in whole seconds. With
+    ``more_will_come`` the worker stays alive for the next call, since starting one takes 0.25 s.
+    Raises RulecError with the formulas' problems; R0401 for each rule whose automaton is too large,
+    R0402 for each whose automaton failed its check, R0403 for each that needs Spot if Spot is
+    missing, R0409 for axioms that contradict each other, R0718 for the first rule for which no
+    ``time`` is left.
     """
     compiled: list[CompiledRule] = []
     problems = list(formulas.problems)
@@ -140,9 +140,9 @@ def build_all(
         else:
             problems.append(no_machine(lowered.rule, answer, cpu_limit_s, lowered.step_s))
             if isinstance(answer, Failed) and answer.why == "time":
-                break  # nor is any left for those behind it
+                break  # no time is left for later rules either
     if problems:
-        # Facts that contradict each other do so in every rule.
+        # Contradictory facts are reported for every rule.
         raise RulecError(dict.fromkeys(problems))
     return CompiledRulebook(
         **alike(Rulebook, rulebook),
@@ -161,7 +161,7 @@ def build_all(
 
 
 def job_of(rule: CompiledRule, rulebook: CompiledRulebook) -> Job:
-    """The job that a compiled rule has come from, without remarks."""
+    """The job that a compiled rule came from, without remarks."""
     formula = rule.formula if rule.step_s is None else in_steps(rule.formula, rule.step_s)
     facts = [Axiom(axiom.variables, axiom.formula) for axiom in rulebook.axioms]
     instances = axiom_instances(rule.variables, facts, rulebook.vocabulary)
@@ -178,14 +178,14 @@ def job_of(rule: CompiledRule, rulebook: CompiledRulebook) -> Job:
 
 @dataclass(slots=True)
 class CompilerTime:
-    """Processor time (s) that compilers have taken for a rulebook, and may take."""
+    """The processor time (s) that compilers have taken for a rulebook, and its limit."""
 
     most_s: float = field(default_factory=COMPILING.value)
     taken_s: float = 0.0
 
     @property
     def is_over(self) -> bool:
-        """Tell whether nothing is left."""
+        """Whether no time is left."""
         return self.taken_s > self.most_s
 
 
@@ -196,18 +196,18 @@ def answers_to(
     choice: str | None = None,
     time: CompilerTime | None = None,
 ) -> tuple[list[Done | Failed | None], str]:
-    """The worker's answers, None to a job that was its end; and Spot's version, empty without it.
+    """The worker's answers, None for a job that killed it; and Spot's version, empty without Spot.
 
-    What they take is added to the ``time``; when that is over, none is asked for.
+    The time that they take is added to ``time``; once that is over, no more jobs are sent.
 
     ``choice`` is the compiler, None for the one that the environment chooses. Raises RulecError
-    R0403 if Spot is asked for and not installed.
+    R0403 if Spot is requested but not installed.
     """
     if not HAS_PROCESSES:
         return [*answered_here(jobs)], ""
     if choice is None:
         choice = compiler_choice.choice()
-    # A command ends soon, and before that asks for another rulebook, step, or words that are cut.
+    # A command ends soon, and may first need another rulebook, step, or machines for cut words.
     more_will_come = more_will_come or is_keeping()
     time = time or CompilerTime()
     cache = MachineCache(choice)
@@ -215,7 +215,7 @@ def answers_to(
     missing = [job for job, answer in zip(jobs, known, strict=True) if answer is None]
     answers: list[Done | Failed | None] = []
     while len(answers) < len(missing) or spot is None:
-        # A worker lives until it is done or a job has killed it; the next one takes the rest.
+        # A worker lives until it is done or a job kills it; a new one takes the remaining jobs.
         with _worker(choice, more_will_come=more_will_come) as (process, spot):
             for job in missing[len(answers) :]:
                 if time.is_over:
@@ -234,14 +234,14 @@ def answers_to(
 
 _Started: TypeAlias = "tuple[subprocess.Popen[bytes], str]"
 _waiting: dict[tuple[object, ...], _Started] = {}
-"""Workers that wait for more, by the process that has started them and how; one for each."""
+"""Idle workers, kept for more jobs: by the process that started them and how; one for each."""
 
 
 @contextmanager
 def _worker(choice: str, *, more_will_come: bool = False) -> Iterator[_Started]:
     key = os.getpid(), _WORKER, os.environ.get(_REQUIRE_CONFINED), choice, *sys.path
     process, spot = _waiting.pop(key) if key in _waiting else _started(choice)
-    if process.poll() is not None:  # ended while it waited
+    if process.poll() is not None:  # it ended while idle
         _end(process)
         process, spot = _started(choice)
     is_fit = False
@@ -271,9 +271,9 @@ def _started(choice: str) -> _Started:
         [sys.executable, "-I", "-c", _WORKER, choice, *filter(None, sys.path)],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
-        # What a dying C++ library has to say is said better by the diagnostic.
+        # The diagnostic explains the failure better than the output of a dying C++ library.
         stderr=subprocess.DEVNULL,
-        # In a group of its own Ctrl-C does not reach it; it is ended below.
+        # In its own process group Ctrl-C does not reach it; it is ended below.
         start_new_session=True,
     )
     try:
@@ -293,7 +293,7 @@ def _started(choice: str) -> _Started:
 
 
 def _ask(process: subprocess.Popen[bytes], job: Job) -> tuple[Done | Failed | None, float]:
-    """The worker's answer, None if the job was the end of it, and what it took (s)."""
+    """The worker's answer, None if the job killed it, and the time that it took (s)."""
     assert process.stdin is not None
     assert process.stdout is not None
     try:

@@ -1,4 +1,4 @@
-"""Jobs of the compilers, one a rule, and their answers."""
+"""The compilers' jobs, one for each rule, and their answers."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from rulec.rulebook.rules.axiom_instances import AxiomInstance
 
 MOST_LETTERS = 1 << 16
 MOST_STEPS_AHEAD = 10_000
-"""An automaton has a state for each step of a bound, at least; no more can be built in time."""
+"""An automaton has at least one state per step of a bound; more steps cannot be built in time."""
 
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """One rule to translate, its bounds in steps.
+    """One rule to translate, with its bounds in steps.
 
-    ``groups`` are the facts that hold of its variables. ``cpu_s``: the processor time it may use,
+    ``groups`` are the axioms about its variables. ``cpu_s`` is the processor time that it may use,
     in whole seconds.
     """
 
@@ -36,7 +36,7 @@ class Job:
     most_letters: int = MOST_LETTERS
 
     def remarks_on(self, alive: str | None) -> tuple[str, ...]:
-        """What its automaton's text says; a finite word ends where ``alive`` gets false."""
+        """The remarks for the automaton's text; a finite word ends when ``alive`` is false."""
         if alive is None:
             return self.remarks
         return *self.remarks, f'finite words: "{alive}" is true as long as the word lasts'
@@ -52,12 +52,12 @@ class Done:
 
 @dataclass(frozen=True, slots=True)
 class Failed:
-    """Reason for no monitor.
+    """The reason why there is no monitor.
 
-    ``letters``, ``steps``, ``sets`` (of acceptance) or ``memory``: there would be too many, or too
-    much. ``check``: it was wrong. ``facts``: those of ``contradiction`` cannot hold together.
-    ``reach``: it takes Spot. ``time``: those before it took all that a rulebook has. ``bug`` is
-    anything that nobody thought of, with the traceback.
+    ``letters``, ``steps``, ``sets`` (of acceptance) or ``memory``: too many or too much is needed.
+    ``check``: the result was wrong. ``facts``: those in ``contradiction`` cannot hold together.
+    ``reach``: Spot is needed. ``time``: earlier rules used up the rulebook's time. ``bug``: any
+    unforeseen error, with its traceback.
     """
 
     why: Literal["letters", "steps", "sets", "memory", "check", "facts", "reach", "time", "bug"]
@@ -67,11 +67,11 @@ class Failed:
 
 @dataclass(frozen=True, slots=True)
 class Translated:
-    """A rule's automaton over its letters, and as a text in HOA.
+    """A rule's automaton over its letters, and as HOA text.
 
-    ``possible`` are the letters that facts leave, as bits, None for all of them. ``is_checked``:
-    the automaton has been compared with the formula. Where that takes long ``compare`` does so, as
-    far as it gets; it raises CheckError.
+    ``possible`` is the bit set of the letters that facts allow, None for all. ``is_checked``: the
+    automaton has been compared with the formula. If that would take long, ``compare`` does it as
+    far as its time allows, and raises CheckError.
     """
 
     automaton: DeterministicAutomaton
@@ -82,15 +82,15 @@ class Translated:
 
 
 class CheckError(Exception):
-    """An automaton does not have its formula's language."""
+    """An automaton does not have the language of its formula."""
 
 
 class BeyondReachError(Exception):
-    """A formula that a compiler has no way to translate."""
+    """A formula that a compiler cannot translate."""
 
 
 class AcceptanceError(Exception):
-    """An automaton takes more acceptance sets than a compiler has."""
+    """An automaton needs more acceptance sets than a compiler supports."""
 
 
 Translator: TypeAlias = Callable[[Job], Translated]
@@ -99,9 +99,9 @@ Translator: TypeAlias = Callable[[Job], Translated]
 
 @dataclass(frozen=True, slots=True)
 class Compiler:
-    """A compiler: its ``version``, and what it is asked.
+    """A compiler: its ``version`` and its functions.
 
-    ``contradicts`` tells of a formula without temporal operators whether it holds in no state.
+    ``contradicts`` returns whether a formula without temporal operators holds in no state.
     """
 
     version: str

@@ -66,9 +66,9 @@ _GET_SPOT = (
 def no_machine(
     rule: Rule, failed: Failed | None, cpu_limit_s: int, step_s: Fraction | None = None
 ) -> Diagnostic:
-    """R0401 to R0403, or R0409; None if Spot's process ended. RuntimeError for bugs.
+    """The diagnostic (R0401 to R0403, R0409) for a failure; None: Spot's process died (R0401).
 
-    ``step_s`` is the step that its bounds were counted in.
+    ``step_s`` is the step in which the rule's bounds were counted. Raises RuntimeError for a bug.
     """
     why = f"it takes more than {cpu_limit_s} s or 2 GiB to build"
     match failed:
@@ -100,11 +100,11 @@ def no_machine(
             why = "it takes more acceptance sets than Spot has"
         case Failed("steps"):
             why = "one of its bounds has more than 10,000 steps"
-    # Seconds or steps, it is the number of them that makes it large.
+    # Whether a bound is given in seconds or steps, the number of its steps makes it large.
     has_bounds = any(operation.bound is not None for operation in operations_of(rule.formula))
     more = "; each bound takes as many states as it has steps" if has_bounds else ""
     if has_bounds and step_s is not None:
-        # Who has a recording, and the law of a country, can change its step and not the law.
+        # A user can resample a recording to longer steps, but cannot change the law.
         why += f" for steps of {number_in_words(step_s)} s"
         more += ", and longer steps are fewer: of a recording every fifth state may do"
     return AUTOMATON_TOO_LARGE.at(

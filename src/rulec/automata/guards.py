@@ -1,9 +1,9 @@
-"""Guards of a monitor's edges: sets of letters as few cubes.
+"""Guards of a monitor's edges: sets of letters, covered by few cubes.
 
-A machine's letters are many; those that lead one way are covered by few cubes. A cube allows some
-digits of every read and is all letters whose digits it allows: the two-level minimisation of
-multiple-valued logic, as in Rudell, Sangiovanni-Vincentelli, "Multiple-valued minimization for PLA
-optimization" (1987), greedily.
+A machine has many letters; those that lead from one state to another are covered by few cubes. A
+cube allows some digits of each read and contains all letters with allowed digits. This is
+two-level minimisation of multiple-valued logic, as in Rudell, Sangiovanni-Vincentelli,
+"Multiple-valued minimization for PLA optimization" (1987), done greedily.
 """
 
 from __future__ import annotations
@@ -18,16 +18,15 @@ from rulec.diagnostics import SourceLocation
 from rulec.resource_limits import CUBES
 
 Cube = tuple[frozenset[int], ...]
-"""For each of a machine's reads the digits that are allowed."""
+"""The allowed digits of each of a machine's reads."""
 
 
 @dataclass(frozen=True, slots=True)
 class GuardedEdge:
-    """Guarded edge of a monitor, with one verdict for ending traces.
+    """A guarded edge of a monitor, with one verdict on traces that end with it.
 
-    They are the letters of ``cubes`` together, but for those that no state can have. Of the edges
-    that leave a state one may be ``otherwise``: the one that is described best as what the others
-    are not.
+    Its letters are the union of ``cubes``, apart from letters that no state can have. At most one
+    edge leaving a state is ``otherwise``: the one best described as "none of the others".
     """
 
     source: int
@@ -40,10 +39,10 @@ class GuardedEdge:
 def edges(
     machine: MealyMonitor, whose: str = "", place: SourceLocation | None = None
 ) -> tuple[GuardedEdge, ...]:
-    """Guarded edges of a monitor by source state, except from sinks.
+    """The guarded edges of a monitor by source state, except from sinks.
 
-    Raises RulecError R0718, which names ``whose`` they are and its place, for an edge of more cubes
-    than the limit `cubes`: those of a parity, for one, are half of all letters.
+    Raises RulecError R0718, naming ``whose`` monitor it is and its place, for an edge with more
+    cubes than the limit `cubes`; a parity, for example, needs as many as half of all letters.
     """
     cover = _Covers(machine, whose, place)
     guarded_edges: list[GuardedEdge] = []
@@ -63,7 +62,7 @@ def edges(
 
 
 def literals(cubes: Sequence[Cube], sizes: Sequence[int]) -> int:
-    """The number of reads that the cubes restrict, together."""
+    """The total number of reads that the cubes restrict."""
     return sum(
         len(allowed) < size for cube in cubes for allowed, size in zip(cube, sizes, strict=True)
     )
@@ -80,7 +79,7 @@ def _with_otherwise(leaving: Sequence[GuardedEdge], sizes: Sequence[int]) -> Ite
 class _Covers:
     """Bit sets of a monitor's letters, and small covers of them.
 
-    ``of_class`` are the letters of each class; no matter whether those of ``_free`` are covered.
+    ``of_class`` has the letters of each class; letters in ``_free`` may be covered or not.
     """
 
     def __init__(self, machine: MealyMonitor, whose: str, place: SourceLocation | None) -> None:
@@ -96,7 +95,7 @@ class _Covers:
             stride *= size
         rows = [bytearray(total // 8 + 1) for _ in [*machine.successors[0], IMPOSSIBLE]]
         for letter, symbol in enumerate(machine.letters):
-            rows[symbol][letter // 8] |= 1 << letter % 8  # those of IMPOSSIBLE, -1, are the last
+            rows[symbol][letter // 8] |= 1 << letter % 8  # IMPOSSIBLE is -1: the last row
         *self.of_class, self._free = [int.from_bytes(row, "little") for row in rows]
         self._known: dict[int, tuple[Cube, ...]] = {}
         places = list(range(len(self.sizes)))
@@ -104,7 +103,7 @@ class _Covers:
         self._orders = [*turns, *(turn[::-1] for turn in turns)]
 
     def cubes(self, onset: int) -> tuple[Cube, ...]:
-        """Irredundant cubes that cover ``onset``, and impossible letters at most."""
+        """Irredundant cubes that cover ``onset``, and no other letters than impossible ones."""
         if onset not in self._known:
             chosen: dict[Cube, int] = {}
             remaining = onset
@@ -122,9 +121,9 @@ class _Covers:
         return self._known[onset]
 
     def _lonely(self, onset: int) -> int:
-        """Those of some letters that no other of them differs from in one read alone.
+        """The letters of ``onset`` that no allowed letter differs from in one read only.
 
-        Each takes a cube of its own; in a parity all do.
+        Each needs a cube of its own; in a parity all letters do.
         """
         stride, cover, lonely = 1, onset | self._free, onset
         for size, members in zip(self.sizes, self._digits, strict=True):
@@ -153,7 +152,7 @@ class _Covers:
         return reduce(or_, (self._digits[place][digit] for digit in cube[place]))
 
     def _prime(self, letter: int, onset: int, order: Sequence[int]) -> Cube:
-        """Largest cube in ``onset`` around a letter, widened in ``order``."""
+        """The largest cube around a letter within ``onset``, widened read by read in ``order``."""
         cube: list[frozenset[int]] = []
         for size in self.sizes:
             letter, digit = divmod(letter, size)

@@ -10,16 +10,16 @@ from rulec.logic.formula import Term
 from rulec.value_display import short_repr
 
 IMPOSSIBLE = -1
-"""The class of letters that no state can have, because facts of the vocabulary exclude it."""
+"""The class of letters that no state can have, because the vocabulary's facts exclude them."""
 
 
 @dataclass(frozen=True, slots=True)
 class Read:
-    """Enumeration or signal that a rule reads in every state.
+    """An enumeration or signal that a rule reads in every state.
 
-    ``name`` is the declaration, ``variables`` the rule's variables that it is asked about.
-    ``values`` are the enumeration's values that the rule tells apart, none for a signal.
-    ``others`` says that the enumeration has further values, which the rule treats alike.
+    ``name`` is the declaration's name, ``variables`` are the rule's variables used as arguments.
+    ``values`` are the enumeration's values that the rule distinguishes (none for a signal);
+    ``others`` is true if the enumeration has further values, which the rule treats alike.
     """
 
     name: str
@@ -33,7 +33,7 @@ class Read:
         return len(self.values) + self.others if self.values else 2
 
     def digit(self, value: bool | float | str) -> int:
-        """Digit of a value: 0 or 1, or its index, others last."""
+        """The digit of a value: 0 or 1 for a signal, else its index; all other values come last."""
         if not self.values:
             return int(bool(value))
         return self.values.index(str(value)) if value in self.values else len(self.values)
@@ -41,9 +41,9 @@ class Read:
 
 @dataclass(frozen=True, slots=True)
 class Threshold:
-    """Limit that splits the values of a number into two sides.
+    """A limit that splits the values of a number into two sides.
 
-    Passed by numbers above ``limit``; if ``inclusive``, by the limit itself, too.
+    Numbers above ``limit`` pass it; so does the limit itself if ``inclusive``.
     """
 
     limit: Fraction
@@ -52,10 +52,10 @@ class Threshold:
 
 @dataclass(frozen=True, slots=True)
 class NumberRead:
-    """Linear combination of numbers that a rule reads in every state.
+    """A linear combination of numbers that a rule reads in every state.
 
-    ``terms`` are those of ``Comparison``. The digit of a number is how many of the ``thresholds``
-    it passes; they are in ascending order (where limits are equal, the inclusive one first).
+    ``terms`` are as in ``Comparison``. A number's digit is the number of ``thresholds`` that it
+    passes; they are in ascending order (the inclusive one first where limits are equal).
     """
 
     terms: tuple[tuple[Fraction, Term], ...]
@@ -78,16 +78,16 @@ class NumberRead:
 class MealyMonitor:
     """A deterministic machine that judges a finite word.
 
-    The verdict is that of its rulebook's semantics: on the word with its last letter repeated for
-    ever (stutter), or on the word as it is (finite).
+    The verdict follows its rulebook's semantics: on the word with its last letter repeated for ever
+    (stutter), or on the word as it is (finite).
 
     A letter is a number in mixed radix: the digit of ``reads[0]`` counts ones, that of ``reads[1]``
-    counts ``reads[0].size``, and so on. ``letters[letter]`` is its class; letters of one class do
-    the same everywhere; ``IMPOSSIBLE`` are those that axioms exclude. ``successors[state][class]``
-    is the next state; ``outputs[state][class]`` is the verdict on a word that ends with such a
-    letter read in that state. Runs start in state 0. From state ``rejecting_sink`` no word is
-    accepted, from state ``accepting_sink`` every word is; None where there is no such state. The
-    machine is minimal.
+    counts ``reads[0].size``, and so on. ``letters[letter]`` is its class; letters of one class
+    behave the same in every state; ``IMPOSSIBLE`` marks those that axioms exclude.
+    ``successors[state][class]`` is the next state; ``outputs[state][class]`` is the verdict on a
+    word that ends with such a letter read in that state. Runs start in state 0. From state
+    ``rejecting_sink`` no word is accepted, from ``accepting_sink`` every word is; None if there is
+    no such state. The machine is minimal.
     """
 
     __repr__ = short_repr
@@ -103,7 +103,7 @@ class MealyMonitor:
 def sink_of(
     successors: Sequence[Sequence[int]], outputs: Sequence[Sequence[bool]], *, verdict: bool
 ) -> int | None:
-    """Sink of a minimal machine with constant ``verdict``; None if absent."""
+    """The sink of a minimal machine with this constant ``verdict``; None if there is none."""
     for state, row in enumerate(successors):
         if set(row) == {state} and all(value is verdict for value in outputs[state]):
             return state
@@ -111,11 +111,11 @@ def sink_of(
 
 
 def stutter_invariant(machine: MealyMonitor) -> bool:
-    """Tell whether repeated letters never change a verdict (Lamport's stuttering).
+    """Whether repeating a letter never changes a verdict (Lamport's stuttering).
 
-    A letter read once more must change neither the verdict, if the word ends with it, nor what
-    becomes of any word that goes on. In a minimal machine no two states have the same future, so
-    that is seen in the table.
+    Reading a letter once more must change neither the verdict on a word that ends there nor the
+    future of any longer word. In a minimal machine no two states have the same future, so the table
+    shows whether this holds.
     """
     successors, outputs = machine.successors, machine.outputs
     return all(

@@ -1,8 +1,8 @@
-"""Machines with outcomes as outputs, and runs of them on unknown letters.
+"""Machines with outcomes as outputs, and their runs on unknown letters.
 
-A word of sets of letters stands for every word that has one of each set. The machine then steps on
-sets of states (the subset construction, made as it is met). Of a set only the states that are least
-and greatest in what they can still come to need be kept: what lies between them stays between them.
+A word of sets of letters stands for every word with one letter of each set. The machine then steps
+on sets of states (the subset construction, built lazily). Only those states of a set need to be
+kept whose possible outcomes are the least or the greatest: the others stay between them.
 """
 
 from __future__ import annotations
@@ -16,22 +16,22 @@ from rulec.automata.mealy_monitor import IMPOSSIBLE, MealyMonitor, NumberRead, R
 from rulec.value_display import short_repr
 
 KEPT, PENDING, VIOLATED = range(3)
-"""Outcomes, best first: pending is neither kept if the word ends here, nor lost."""
+"""Outcomes, best first; pending: not kept if the word ends here, but not lost for good either."""
 
 Outcome: TypeAlias = Literal[0, 1, 2]
 
 MOST_COMPARED = 1 << 10
-"""States of larger machines are not compared; sets of them are kept whole."""
+"""Larger machines' states are not compared; sets of them are kept whole."""
 
 
 @dataclass(frozen=True, eq=False)
 class OutcomeMachine:
     """A complete deterministic machine from letter classes to outcomes.
 
-    ``reads`` and ``letters`` are as a ``MealyMonitor``'s; ``outputs[state][class]`` is the outcome
-    of a word that ends with such a letter. A run begins in any of ``starts``: several where what
-    was before the word is not known. ``order`` is ``above``, where it is known already: a row of
-    bits for each state, in whole bytes, the lowest first.
+    ``reads`` and ``letters`` are as in ``MealyMonitor``; ``outputs[state][class]`` is the outcome
+    of a word that ends with such a letter. A run begins in any of ``starts``; there are several if
+    what preceded the word is unknown. ``order`` is ``above`` if already known: for each state a row
+    of bits in whole bytes, lowest bit first.
     """
 
     __repr__ = short_repr
@@ -59,7 +59,7 @@ class OutcomeMachine:
         return self._never_left(KEPT)
 
     def _never_left(self, outcome: int) -> frozenset[int]:
-        """The states from which every word comes to this."""
+        """The states from which every word has this outcome."""
         outputs, successors = self.outputs, self.successors
         never_left = {state for state, row in enumerate(outputs) if row.count(outcome) == len(row)}
         before: dict[int, list[int]] = {}
@@ -74,7 +74,7 @@ class OutcomeMachine:
 
     @cached_property
     def above(self) -> tuple[int, ...]:
-        """For each state those, as bits, from which no word comes to less."""
+        """For each state, the bit set of states from which no word has a lower outcome."""
         if self.order is None:
             return self._found_order
         width = (len(self.successors) + 7) // 8
@@ -92,28 +92,28 @@ class OutcomeMachine:
             try:
                 return _order(self.successors, self.outputs)
             except ModuleNotFoundError:
-                # Without NumPy, in a browser, sets are kept whole, which comes to the same.
+                # Without NumPy (in a browser), sets are kept whole, with the same results.
                 pass
         return tuple([1 << state for state in range(size)])
 
     @cached_property
     def below(self) -> tuple[int, ...]:
-        """For each state those, as bits, from which no word comes to more."""
-        # The columns of rows of bits: as text, whose first digit is the last state's.
+        """For each state, the bit set of states from which no word has a higher outcome."""
+        # Transposes the bit matrix as text; each row's first digit is that of the last state.
         size = len(self.above)
         digits = "".join([f"{above:0{size}b}" for above in reversed(self.above)])
         return tuple([int(digits[place::size], 2) for place in reversed(range(size))])
 
     def least(self, states: int) -> int:
-        """The least of these states, all as bits; of equivalent ones the first."""
+        """The least of these states as a bit set; of equivalent ones only the first."""
         return _foremost(states, self.below, self.above)
 
     def greatest(self, states: int) -> int:
-        """The greatest of these states, all as bits; of equivalent ones the first."""
+        """The greatest of these states as a bit set; of equivalent ones only the first."""
         return _foremost(states, self.above, self.below)
 
     def extremes(self, states: Iterable[int]) -> frozenset[int]:
-        """The least and the greatest of these states; of equivalent ones the first."""
+        """The least and the greatest of these states; of equivalent ones only the first."""
         members = frozenset(states)
         if len(members) < 3:
             return members
@@ -137,7 +137,7 @@ class OutcomeMachine:
 
 @lru_cache(maxsize=1 << 14)
 def bits_of(mask: int) -> tuple[int, ...]:
-    """The places of the bits that are set, ascending."""
+    """The positions of the set bits, ascending."""
     places = []
     while mask:
         lowest = mask & -mask
@@ -149,8 +149,8 @@ def bits_of(mask: int) -> tuple[int, ...]:
 def _order(
     successors: Sequence[Sequence[int]], outputs: Sequence[Sequence[int]]
 ) -> tuple[int, ...]:
-    """For each state those, as bits, from which no word comes to less."""
-    # NumPy, a tenth of a second, which a browser does not have.
+    """For each state, the bit set of states from which no word has a lower outcome."""
+    # NumPy takes 0.1 s to import, and a browser does not have it.
     import numpy as np
 
     size = len(successors)
@@ -162,7 +162,7 @@ def _order(
     while True:
         before = order.sum()
         for target in targets:
-            # Two takes are several times as fast as one index of two arrays.
+            # Two calls of take are several times as fast as one index of two arrays.
             order &= order.take(target, axis=0).take(target, axis=1)
         if order.sum() == before:
             rows = np.packbits(order, axis=1, bitorder="little")
@@ -170,9 +170,9 @@ def _order(
 
 
 def _foremost(states: int, beyond: Sequence[int], before: Sequence[int]) -> int:
-    """Those of some states that no other of them is beyond, as bits; of equivalent ones the first.
+    """The states that no other of them is strictly beyond, as bits; of equivalent ones the first.
 
-    ``beyond`` and ``before`` are, for each state, itself and those that are.
+    ``beyond`` and ``before``: for each state, the bit sets of itself and of those beyond or before.
     """
     left = states
     if not states & (states - 1):
@@ -185,7 +185,7 @@ def _foremost(states: int, beyond: Sequence[int], before: Sequence[int]) -> int:
 
 
 def of_complete_words(machine: MealyMonitor) -> OutcomeMachine:
-    """The machine as it judges words that are over: kept or violated."""
+    """The machine for complete words: outcomes are kept or violated."""
     outputs = [[KEPT if kept else VIOLATED for kept in row] for row in machine.outputs]
     return OutcomeMachine(
         machine.reads, machine.letters, machine.successors, outputs, frozenset({0})
@@ -193,7 +193,7 @@ def of_complete_words(machine: MealyMonitor) -> OutcomeMachine:
 
 
 def of_running_words(machine: MealyMonitor) -> OutcomeMachine:
-    """The machine as it judges words that may go on: violated is what is lost for good."""
+    """The machine for words that may go on: violated only if lost for good."""
     lost = machine.rejecting_sink
     outputs = [
         [
@@ -210,10 +210,10 @@ def of_running_words(machine: MealyMonitor) -> OutcomeMachine:
 def of_prefixes(
     machine: MealyMonitor, finite: MealyMonitor, starts: Iterable[tuple[int, int]] = ((0, 0),)
 ) -> OutcomeMachine:
-    """The machine that judges words that go on unseen, of one rule's two readings.
+    """The machine for words that continue unobserved, from the two machines of one rule.
 
-    Violated: no continuation is kept by ``machine``. Kept: ``finite``, which judges words as they
-    are, keeps the word. Pending: neither. ``starts`` are pairs of states of the two.
+    Violated: ``machine`` accepts no continuation. Kept: ``finite``, which judges words as they are,
+    accepts the word. Pending: neither. ``starts`` are pairs of states of the two machines.
     """
     pairs = dict.fromkeys(zip(machine.letters, finite.letters, strict=True))
     classes = {pair: place for place, pair in enumerate(x for x in pairs if IMPOSSIBLE not in x)}
@@ -244,7 +244,7 @@ def of_prefixes(
 
 @dataclass(frozen=True, slots=True)
 class OutcomeRange:
-    """The best and the worst outcome of words, and the set of states that they lead to."""
+    """The best and the worst outcome of words, and the number of the set of states reached."""
 
     states: int
     best: int
@@ -252,7 +252,7 @@ class OutcomeRange:
 
 
 class SetMonitor:
-    """Runs of an outcome machine on sets of letter classes, which are given as bit sets."""
+    """Runs of an outcome machine on sets of letter classes, given as bit sets."""
 
     def __init__(self, machine: OutcomeMachine) -> None:
         self.machine = machine
@@ -262,11 +262,11 @@ class SetMonitor:
         self.start = self.number(*machine.starts)
 
     def states(self, number: int) -> frozenset[int]:
-        """The members of a set of states."""
+        """The members of a set of states, by its number."""
         return self._sets[number]
 
     def step(self, number: int, classes: int) -> OutcomeRange:
-        """Take a step from a set of states on any of these classes, one at least."""
+        """Take a step from a set of states on any of these classes (at least one)."""
         key = number, classes
         known = self._steps.get(key)
         if known is None:
@@ -282,7 +282,7 @@ class SetMonitor:
     def run(self, word: Sequence[int]) -> tuple[int, int, int | None]:
         """The best and the worst outcome of a non-empty word of sets of classes.
 
-        Third is the index of the letter with which every completion was lost, if any.
+        The third item is the index of the letter after which every completion was lost, or None.
         """
         here, lost = self.start, self.machine.lost
         step = OutcomeRange(here, KEPT, KEPT)
@@ -295,7 +295,7 @@ class SetMonitor:
         return step.best, step.worst, None
 
     def run_stretches(self, stretches: Iterable[tuple[int, int]]) -> tuple[int, int, int | None]:
-        """``run`` of a word that is given by sets of classes, each for so many letters."""
+        """``run`` of a word given as pairs of a set of classes and its number of repetitions."""
         here, lost, start = self.start, self.machine.lost, 0
         step = OutcomeRange(here, KEPT, KEPT)
         for classes, length in stretches:
@@ -305,7 +305,7 @@ class SetMonitor:
                 if step.best == VIOLATED and lost.issuperset(self._sets[here]):
                     return VIOLATED, VIOLATED, index
                 if here == before:
-                    break  # the same again, however often
+                    break  # a fixed point: more repetitions change nothing
             start += length
         return step.best, step.worst, None
 

@@ -1,11 +1,11 @@
-"""Machines of rules for words of which neither the past nor the rest has been seen.
+"""Machines of rules for words whose past and continuation are unobserved.
 
-A recording begins and stops because the recorder did. What an operator of the past looks for before
-the first letter is unknown: it may have been anything. So a rule with such operators is compiled as
+A recording begins and stops because the recorder did. What past operators look for before the
+first letter is unknown. So a rule with past operators is compiled as
 ``not begun weak until (begun and formula)``, where ``begun`` is true from the first letter on; a
-run may start in whatever state the letters before it lead to. A sequence may be under way, too: a
-rule of what ego alone always or never does has been kept until then, and goes on. Those about
-others begin where these are there: in some past that there might be, ego passed them on a crossing.
+run may start in any state that earlier letters can lead to. A sequence may be under way, too: a
+rule on what ego alone always or never does has been kept so far and continues. Rules about other
+objects begin when these appear: otherwise, in some possible past, ego passed them on a crossing.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from rulec.logic.bounds import PAST, operations_of
 from rulec.logic.semantics import Semantics
 
 _BEGUN = ltl.Atom("word has begun")
-"""No name of a rulebook has a space in it."""
+"""No name in a rulebook contains a space."""
 
 _KNOWN: dict[tuple[object, ...], OutcomeMachine | None] = {}
 _MOST_KNOWN = 1 << 10
 
 
 def prefix_machines(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
-    """The machine of each rule for prefixes, by the rule's name; None where it gets too large.
+    """The machine of each rule for prefixes, by the rule's name; None if it gets too large.
 
-    They are compiled on first use. Raises RulecError R0403 if Spot is asked for and not installed.
+    They are compiled on first use. Raises RulecError R0403 if Spot is requested but not installed.
     """
     keys = {rule.name: _key(rule, rulebook) for rule in rulebook.rules}
     missing = [rule for rule in rulebook.rules if keys[rule.name] not in _KNOWN]
@@ -53,10 +53,10 @@ def prefix_machines(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine |
 
 
 def _answers(jobs: Sequence[Job], *, is_spots: bool) -> list[Done | Failed | None]:
-    """The machines, by decision diagrams where nobody asks for another compiler.
+    """The answers, from decision diagrams unless the environment chooses another compiler.
 
-    Spot takes twice as long for words that end, and of some rules ten times; the tables are the
-    same. What diagrams have no way for is Spot's, if that has made the rulebook.
+    Spot takes twice as long for words that end, and ten times for some rules; the tables are the
+    same. Formulas that diagrams cannot translate go to Spot if it compiled the rulebook.
     """
     if not jobs:
         return []
@@ -76,7 +76,7 @@ def _key(rule: CompiledRule, rulebook: CompiledRulebook) -> tuple[object, ...]:
 
 
 def _goes_on(formula: ltl.Formula, variables: Sequence[object]) -> bool:
-    """Whether a rule was kept before a word that is cut, a sequence perhaps under way."""
+    """Whether a rule, kept before a cut word began, may have a sequence under way there."""
     always = ltl.UnaryOperator.ALWAYS, ltl.UnaryOperator.NEVER
     if not isinstance(formula, ltl.Unary) or formula.operator not in always or variables:
         return False
@@ -89,9 +89,10 @@ def _looks_back(rule: CompiledRule) -> bool:
 
 
 def _jobs(rule: CompiledRule, rulebook: CompiledRulebook) -> Iterator[Job]:
-    """What continuations decide, and what the word alone does.
+    """The jobs for the rule's machine on continuations and its machine on the word alone.
 
-    The first is the rule's own machine if it does not look back; both are one if words end.
+    The first is omitted if the rule does not look back (its own machine serves); the second, if
+    the rulebook has finite semantics, since both would be the same.
     """
     job = job_of(rule, rulebook)
     wanted: list[Semantics] = [] if rulebook.semantics == "finite" else ["finite"]
@@ -102,7 +103,7 @@ def _jobs(rule: CompiledRule, rulebook: CompiledRulebook) -> Iterator[Job]:
         formula = ltl.Binary(ltl.BinaryOperator.WEAK_UNTIL, before, begun)
         job = replace(job, formula=formula, reads=(*job.reads, Read(_BEGUN.name, ())))
     for semantics in wanted:
-        # The signal that the word has begun comes on top of what a rule may read.
+        # The signal that the word has begun is added to what a rule may read.
         yield replace(job, semantics=semantics, most_letters=2 * MOST_LETTERS)
 
 

@@ -1,7 +1,7 @@
-"""Certificates: rules that were compiled twice, by Spot and without it, to one table.
+"""Certificates: rules that Spot and rulec's own compiler compile to the same table.
 
-Both compilers make the minimal machine, its states and classes of letters numbered alike, so the
-tables have to be the same, number for number.
+Both compilers make the minimal machine with the same numbering of states and letter classes, so
+the tables must be equal number for number.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 
 
 def certified(rulebook: CompiledRulebook) -> CompiledRulebook:
-    """The rulebook with certificates of the rules that rulec's own compiler gives the same table.
+    """The rulebook with certificates for the rules that rulec's own compiler gives the same table.
 
-    Those that it cannot compile have none; nor has a rulebook that Spot did not compile. One that
-    was read from a file keeps what it has. Raises RulecError R0417 if the tables differ.
+    Rules that it cannot compile get none, nor does a rulebook that Spot did not compile. A rulebook
+    read from a file keeps its certificates. Raises RulecError R0417 if the tables differ.
     """
     if not rulebook.spot:
         return rulebook

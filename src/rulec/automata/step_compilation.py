@@ -26,14 +26,14 @@ if TYPE_CHECKING:
     from rulec.automata.outcome_machine import OutcomeMachine
 
 MOST_STEPS = 100
-"""Answers for so many steps are kept. Machines stay: the limit ``steps`` is on those made."""
+"""Results are kept for this many steps. Machines are all kept: the limit ``steps`` bounds them."""
 
 
 class StepCompiler:
-    """Compiler of a rulebook: call it with a step (s).
+    """The compiler of a rulebook: call it with a step (s).
 
-    A bound in seconds is so many steps, so a rule that has one needs a machine for each step; one
-    that has none is compiled once. Pickled, it is the rulebook alone.
+    The number of steps in a bound in seconds depends on the step, so a rule with such bounds needs
+    a machine for each step; a rule without is compiled once. Pickling keeps only the rulebook.
     """
 
     def __init__(self, rulebook: Rulebook, time: CompilerTime | None = None) -> None:
@@ -70,14 +70,14 @@ class StepCompiler:
     def rounded(self, step_s: Fraction) -> tuple[CompiledRulebook, CompiledRulebook]:
         """The rulebook with bounds rounded down to multiples of a step (s), and rounded up.
 
-        Its formulas are in steps. Where all bounds fit, both are the same. Raises RulecError as
+        Its formulas are in steps. If all bounds fit, both are the same. Raises RulecError as
         ``build_automata``.
         """
         down, up = (self._rounded(step_s, rounding) for rounding in (floor, ceil))
         return down, up
 
     def _rounded(self, step_s: Fraction, rounding: Rounding) -> CompiledRulebook:
-        # Steps that hardly differ, such as those of a clock that is not steady, round alike.
+        # Steps that hardly differ, such as those of an unsteady clock, give the same formulas.
         formulas = tuple([in_steps(rule.formula, step_s, rounding) for rule in self.rulebook.rules])
         if formulas not in self._roundings:
             _check_steps(len(self._roundings), self.rulebook)
@@ -89,9 +89,9 @@ class StepCompiler:
         return self._roundings[formulas](step_s)
 
     def judgeable_at(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
-        """The rulebook for a step (s), or rounded to it, without rules that are too large for it.
+        """The rulebook for a step (s), or rounded to it, without rules too large for that step.
 
-        Raises RulecError as ``rounded`` for anything else.
+        Raises RulecError as ``rounded`` for any other problem.
         """
         if step_s not in self._judgeable:
             self._judgeable[step_s] = self._without_too_large(step_s)
@@ -110,14 +110,14 @@ class StepCompiler:
             why = f"its automaton is too large for steps of {number_in_words(step_s)} s"
             left_out = [TooLargeRule(rule.name, rule.strength, why) for rule in rules]
             smaller = StepCompiler(replace(self.rulebook, rules=kept), self._time)
-            # Rounded up others may be too large than rounded down
+            # With bounds rounded up, other rules may be too large than with bounds rounded down.
             return tuple(
                 replace(book, too_large=(*left_out, *book.too_large))
                 for book in smaller.judgeable_at(step_s)
             )
 
     def at_own_steps(self, rules: Sequence[Rule] | None = None) -> CompiledRulebook:
-        """Compile rules for their examples' steps, all by default. Raises RulecError."""
+        """Compile rules (all by default) for the steps of their own examples. Raises RulecError."""
         return self._compiled(self.rulebook.rules if rules is None else rules, None)
 
     def built(self, formulas: RulebookFormulas) -> CompiledRulebook:
@@ -130,7 +130,7 @@ class StepCompiler:
             if missing and self._header is not None:
                 _check_steps(self._built, self.rulebook)
                 self._built += 1
-            # Whoever has met a second step will meet more.
+            # A caller that needs a second step will probably need more.
             more_will_come = self._header is not None
             lacking = replace(formulas, rules=missing)
             built = build_all(
@@ -154,14 +154,14 @@ def _fitted(compiler: StepCompiler, step_s: Fraction) -> tuple[CompiledRulebook,
 
 
 def _prefixes(rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
-    # With NumPy, a tenth of a second: only for traces that are cut.
+    # Takes 0.1 s to import with NumPy, and is needed only for cut traces.
     from rulec.automata.prefix_machines import prefix_machines
 
     return prefix_machines(rulebook)
 
 
 def _check_steps(before: int, rulebook: Rulebook) -> None:
-    """Raise RulecError R0718 if one more step is too many."""
+    """Raise RulecError R0718 if one more step exceeds the limit."""
     places = (rule.span.place for rule in rulebook.rules if rule.span and has_seconds(rule.formula))
     STEPS.within(before + 1, next(places, None), f"rulebook `{rulebook.name}`")
 
@@ -169,8 +169,8 @@ def _check_steps(before: int, rulebook: Rulebook) -> None:
 def build_automata(formulas: RulebookFormulas, steps: StepCompiler) -> CompiledRulebook:
     """Build the automaton of every formula.
 
-    For formulas of one step that was asked for, the result is for that step alone; else it fits
-    itself to any step that it meets. Raises RulecError as ``build_all``.
+    For formulas of one requested step the result is for that step only; otherwise it recompiles
+    itself for any step that it meets. Raises RulecError as ``build_all``.
     """
     compiled = steps.built(formulas)
     return compiled if formulas.step_s is None else replace(compiled, recompile=None)

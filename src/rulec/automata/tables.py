@@ -1,8 +1,8 @@
 """From a deterministic automaton to the smallest table.
 
-Repeating the last letter for ever turns acceptance into a table: looping on a letter from a state
-runs into one cycle, whose colours decide. So does repeating for ever that the word has ended.
-Letters with equal columns are merged, then states that no word tells apart.
+Repeating the last letter for ever turns acceptance into a table: repeating a letter from a state
+leads into one cycle, whose colours decide. For words that end, the end is repeated for ever
+instead. Letters with equal columns are merged, then states that no word distinguishes.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Output = TypeVar("Output")
 
 @dataclass(frozen=True, slots=True)
 class TableEdge:
-    """Edge of an automaton; ``letters`` and ``colours`` are bit sets."""
+    """An edge of an automaton; ``letters`` and ``colours`` are bit sets."""
 
     letters: int
     target: int
@@ -32,9 +32,9 @@ class TableEdge:
 class DeterministicAutomaton:
     """A complete deterministic automaton over letters, starting in state ``initial``.
 
-    ``accepts`` tells from the colours seen for ever whether a run is accepting. ``after_the_end``
-    is for words that end: target and colours of the edge from each state that is taken from then
-    on; None if a word's last letter goes on for ever.
+    ``accepts`` maps the bit set of colours seen infinitely often to whether a run is accepting.
+    ``after_the_end`` is for words that end: for each state the target and colours of the edge that
+    is taken after the end; None if the last letter of a word is repeated for ever.
     """
 
     edges: tuple[tuple[TableEdge, ...], ...]
@@ -50,9 +50,9 @@ def build_machine(
 ) -> MealyMonitor:
     """The minimal machine of the automaton over the letters of ``reads``.
 
-    ``possible`` are the letters, one at least, that states can have, as bits; None for all of them.
-    It does not depend on which of the language's automata it is given, down to its numbers: classes
-    are numbered by their smallest letter, states in breadth-first order.
+    ``possible`` is the bit set of the letters (at least one) that states can have; None for all.
+    The result, including its numbering, is the same for every automaton of the same language:
+    classes are numbered by their smallest letter, states in breadth-first order.
     """
     n_letters = count_letters(reads)
     met = (1 << n_letters) - 1 if possible is None else possible
@@ -76,7 +76,7 @@ def build_machine(
 
 
 def _bits(members: int) -> Iterator[int]:
-    """The places of a set's bits; to take them off one by one is quadratic in large sets."""
+    """The positions of the set bits; removing them one by one would be quadratic for large sets."""
     digits = f"{members:b}"[::-1]
     place = digits.find("1")
     while place >= 0:
@@ -85,7 +85,7 @@ def _bits(members: int) -> Iterator[int]:
 
 
 def _letter_classes(automaton: DeterministicAutomaton, met: int) -> list[int]:
-    """Coarsest partition of letters that every edge respects, as bit sets."""
+    """The coarsest partition of the letters that every edge respects, as bit sets."""
     classes = [met]
     for letters in {edge.letters for edges in automaton.edges for edge in edges}:
         refined = []
@@ -120,7 +120,7 @@ def _tables(
 def _loop_verdicts(
     step: Sequence[tuple[int, int]], automaton: DeterministicAutomaton
 ) -> list[bool]:
-    """For each state, whether reading one letter for ever, ``step``, accepts."""
+    """For each state, whether repeating one letter for ever (``step``) is accepted."""
     verdicts: dict[int, bool] = {}
     for first in range(len(step)):
         path: dict[int, int] = {}
@@ -140,7 +140,7 @@ def minimise(
 ) -> tuple[list[list[int]], list[Sequence[Output]]]:
     """Merge equivalent states; number the rest in breadth-first order from ``initial``.
 
-    Moore's partition refinement, with the outputs (verdicts) as what tells apart.
+    Moore's partition refinement; states with different outputs (verdicts) are different.
     """
     blocks = _number(map(tuple, outputs))
     columns = list(zip(*successors, strict=True))

@@ -1,4 +1,4 @@
-"""Numbers as decimals, and the thresholds that they pass."""
+"""Numbers as exact decimals, and the thresholds that they pass."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from rulec.trace import Value
 from rulec.vocabulary.written_numbers import WrittenNumber
 
 EXACT_IN_FLOATS = 1 << 53
-"""Whole numbers up to this size are floats, too, and their decimals are themselves."""
+"""Whole numbers up to this size are exact as floats, and equal their own decimals."""
 
 
 def exact(value: Fraction | float) -> Fraction:
-    """Exact value of a decimal: 0.1 is a tenth, not a float."""
+    """The exact value of a number as written: 0.1 is one tenth, not the float nearest to it."""
     if type(value) is WrittenNumber:
         return value.exact
     return _decimal(value) if isinstance(value, float) else Fraction(value)
@@ -30,8 +30,8 @@ def exact(value: Fraction | float) -> Fraction:
 def exact_step(step_s: Fraction | float) -> Fraction:
     """The exact step (s) that a number stands for.
 
-    Frame rates have steps that no decimal is: one that rounds a whole number of frames a second, or
-    a thousand of them in 1001 s as video has, to five digits or more means that.
+    Steps of frame rates often have no finite decimal. A float with five or more digits that rounds
+    the step of a whole number of frames per 1 s, or per 1.001 s as in video, stands for that step.
     """
     step = exact(step_s)
     digits = str(step_s).partition("e")[0].replace(".", "").lstrip("0")
@@ -47,21 +47,21 @@ def exact_step(step_s: Fraction | float) -> Fraction:
 
 @lru_cache(maxsize=1 << 14)
 def _decimal(value: float) -> Fraction:
-    # A subclass, such as numpy's, may have its own idea of repr.
+    # A subclass, such as NumPy's, may have a different repr.
     return Fraction(float.__repr__(value))
 
 
 def floor_of(threshold: Threshold) -> float:
-    """Smallest float whose decimal passes a threshold; infinity if none does.
+    """The smallest float whose decimal passes a threshold; infinity if none does.
 
-    Decimals of floats are in the order of the floats, so these and no others are at least it.
+    Decimals of floats are ordered as the floats are, so exactly the floats from this one on pass.
     """
     try:
         result = float(threshold.limit)
     except OverflowError:
         return inf if threshold.limit > 0 else -inf
-    # The nearest float. The decimals of the others are nearest to those, so they are beyond the
-    # limit on their side of it; that of this one may be on either.
+    # This float is nearest to the limit. Every other float's decimal is nearest to that float, so
+    # it lies on that float's side of the limit; this one's decimal may lie on either side.
     number = _decimal(result)
     passes = number >= threshold.limit if threshold.inclusive else number > threshold.limit
     return result if passes else nextafter(result, inf)
@@ -71,9 +71,9 @@ def floor_of(threshold: Threshold) -> float:
 def bound_in_floats(
     proposition: Proposition,
 ) -> tuple[QuantityTerm, Callable[[float], bool]] | None:
-    """The quantity that a comparison is about, and what floats stand in its relation; else None.
+    """The quantity in a comparison and a test of its floats; None if it has no such form.
 
-    It is exact: floats stand for their decimals, as in ``floor_of``.
+    The test is exact: floats stand for their decimals, as in ``floor_of``.
     """
     match proposition:
         case Comparison(((1, QuantityTerm() as term),), relation, limit):
@@ -86,10 +86,10 @@ def bound_in_floats(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ThresholdScale:
-    """A number that a rule reads, made ready for many states.
+    """A number that a rule reads, prepared for evaluation in many states.
 
-    ``variables`` and ``names`` are those that it depends on. ``quantity`` is the quantity that it
-    is, None if it is a count or a sum. ``floors`` are ``floor_of`` each of the thresholds.
+    ``variables`` and ``names`` are those that it depends on. ``quantity`` is set if the number is a
+    single quantity, None for a count or a sum. ``floors`` are the ``floor_of`` all thresholds.
     """
 
     read: NumberRead
@@ -99,7 +99,7 @@ class ThresholdScale:
     floors: tuple[float, ...]
 
     def digit(self, value: Value) -> int:
-        """The digit of the quantity's value."""
+        """The digit of a value of the quantity."""
         assert not isinstance(value, str), "check_state has refused it"
         if type(value) is WrittenNumber:
             return self.read.digit(value.exact)

@@ -1,4 +1,4 @@
-"""Semantic checks of a compiled rulebook's file: all that running relies on."""
+"""Semantic checks of a compiled rulebook's file: everything that running it relies on."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabula
 
 
 def rulebook_of(read: schema.BundleFile) -> CompiledRulebook:
-    """Compiled rulebook of a sound file; ValueError for any other."""
+    """The compiled rulebook of a sound file; raises ValueError for any other."""
     _check_visible(read)
     kind_of = {entry: kind for kind, entry in schema.ENTRY_OF.items()}
     vocabulary = Vocabulary(
@@ -50,7 +50,7 @@ def rulebook_of(read: schema.BundleFile) -> CompiledRulebook:
     )
     _check_vocabulary(vocabulary)
     for name in (read.name, *[rule.name for rule in read.rules]):
-        # They become names of files.
+        # Names become file names.
         plain = name and not name.startswith(".") and not set(name) & set("/\\\0")
         _require(bool(plain), f"{name!a} is not a name")
     rulebook = CompiledRulebook(
@@ -73,7 +73,7 @@ def rulebook_of(read: schema.BundleFile) -> CompiledRulebook:
 
 
 def _check_visible(read: schema.BundleFile) -> None:
-    """Whatever is a name is printed as it is, so nothing in it may move a terminal's cursor."""
+    """Names are printed as they are, so none may contain terminal control characters."""
     vocabulary = read.vocabulary
     declared = vocabulary.declarations
     enumerations = [item for item in declared if isinstance(item, schema.EnumerationEntry)]
@@ -96,7 +96,7 @@ def _check_names(rulebook: CompiledRulebook) -> None:
 
 
 def _with_steps(rulebook: CompiledRulebook, read: schema.BundleFile) -> CompiledRulebook:
-    """The rulebook for a file's steps; each of its rules is for one of them, or for all."""
+    """The rulebook for a file's steps; each of its rules is for one of the steps or for all."""
     steps = [number_from_data(step) for step in read.steps or ()]
     _require(len(set(steps)) == len(steps) > 0, "its steps are none, or one is there twice")
     pairs = list(zip(rulebook.rules, read.rules, strict=True))
@@ -114,13 +114,13 @@ def _with_steps(rulebook: CompiledRulebook, read: schema.BundleFile) -> Compiled
 
 
 def _timeless(rule: CompiledRule) -> CompiledRule:
-    """A rule without what depends on the step."""
+    """A rule without the parts that depend on the step."""
     nothing = monitors.MealyMonitor((), (), (), (), rejecting_sink=None, accepting_sink=None)
     return replace(rule, machine=nothing, hoa="", step_s=None)
 
 
 def _prefixes(read: schema.BundleFile) -> StoredPrefixes | None:
-    """The machines for cut traces, checked; None in a file that has none."""
+    """The machines for cut traces, checked; None if the file has none."""
     lacking = [rule.cut is UNSET for rule in read.rules]
     if any(lacking):
         _require(all(lacking), "it has machines for traces that are cut for some rules alone")
@@ -140,7 +140,7 @@ def _cut_tables(rule: schema.BundleRule) -> CutTables | None:
 
 
 def _priorities(read: schema.BundleFile) -> frozenset[tuple[str, str]]:
-    """They are a pre-order of the levels."""
+    """The priorities, checked to be a pre-order of the levels."""
     _require(len(set(read.levels)) == len(read.levels), "two levels have the same name")
     pairs = frozenset(read.priorities)
     _require(len(pairs) == len(read.priorities), "a priority is said twice")
@@ -192,7 +192,7 @@ def _check_parts(
     vocabulary: Vocabulary,
     of: str,
 ) -> None:
-    """Check the variables and the formula ``of`` something."""
+    """Check the variables and the formula of a rule or axiom; ``of`` is its name in errors."""
     names = {variable.name for variable in compiled.variables}
     _require(len(names) == len(compiled.variables), f"{of} names a variable twice")
     for variable in compiled.variables:
@@ -205,7 +205,7 @@ def _check_parts(
 def _check_formula(
     formula: ltl.Formula, vocabulary: Vocabulary, variables: Set[str], of: str, *, counted: bool
 ) -> None:
-    """Check a formula; ``counted`` says that it is a count's body."""
+    """Check a formula; ``counted`` means that it is the body of a count."""
     waiting = [formula]
     while waiting:
         match waiting.pop():

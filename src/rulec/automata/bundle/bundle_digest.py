@@ -1,8 +1,8 @@
 """The digest of a compiled rulebook's file: its second line, over all bytes from the third on.
 
-A digest of the bytes, not of what they say: whoever wants to know whether a file is as it was
-written needs neither rulec nor JSON, but ``tail -n +3 FILE | sha256sum``. It tells damage, not
-forgery, for who changes a file on purpose can change its digest too.
+The digest covers the bytes, not their meaning, so checking whether a file is unchanged needs
+neither rulec nor JSON: ``tail -n +3 FILE | sha256sum``. It detects damage, not forgery: a person
+who changes a file on purpose can change its digest, too.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _DIGITS = 64
 
 
 def with_digest(text: str) -> str:
-    """The text of a file, an indented JSON object, with a digest as its first field."""
+    """The text of a file, an indented JSON object, with a digest added as its first field."""
     rest = text.removeprefix("{\n").encode()
     return b"".join((_BEFORE, _digest(rest), _AFTER, rest)).decode()
 
@@ -30,12 +30,12 @@ def _digest(rest: bytes | memoryview) -> bytes:
 
 
 def has_digest(data: bytes) -> bool:
-    """Tell whether a file begins as one with a digest does."""
+    """Whether a file begins like one with a digest."""
     return data.startswith(_BEFORE)
 
 
 def check_digest(data: bytes, file: str) -> None:
-    """Refuse (R0410) a file with a digest that is not as it was written."""
+    """Raise R0410 if a file with a digest has been changed since it was written."""
     end = len(_BEFORE) + _DIGITS
     stated, rest = data[len(_BEFORE) : end], memoryview(data)[end + len(_AFTER) :]
     digest = _digest(rest)
@@ -49,12 +49,12 @@ def check_digest(data: bytes, file: str) -> None:
 
 
 def changed(file: str, message: str) -> RulecError:
-    """R0410, with the command that makes the file anew."""
+    """R0410, with the command that writes the file again."""
     return CHANGED_BUNDLE.error(SourceLocation(file, 2), message, help=_way_out(file))
 
 
 def without_digest(file: str, version: int, steps: Iterable[str]) -> RulecError:
-    """R0411 for a file of an earlier version, with the command that makes it anew."""
+    """R0411 for a file of an earlier version, with the command that writes it again."""
     return NO_DIGEST.error(
         SourceLocation(file),
         f"this compiled rulebook is of version {version}, which has no digest, so nothing tells "
@@ -65,7 +65,7 @@ def without_digest(file: str, version: int, steps: Iterable[str]) -> RulecError:
 
 def _way_out(file: str, steps: Iterable[str] = ()) -> str:
     path = Path(file)
-    # Which rulebook it was a damaged file does not say for sure, and its own name may be another.
+    # A damaged file does not say reliably which rulebook it was, and its own name may differ.
     words = ["rulec", "compile", "RULEBOOK", *(word for step in steps for word in ("--step", step))]
     command = shlex.join([*words, "-o", str(path.parent)])
     return f"make it anew from its source, a name or a path: `{command}`"

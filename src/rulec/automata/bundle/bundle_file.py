@@ -1,4 +1,4 @@
-"""The compiled rulebook as a file: JSON, described in docs/compiled.md."""
+"""The compiled rulebook as a JSON file, described in docs/compiled.md."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ from rulec.rulebook.rulebook_model import Rule, Rulebook, RuleParts, Variable
 
 
 def to_json(rulebook: CompiledRulebook) -> str:
-    """Text of a compiled rulebook's file, one row of numbers per line."""
+    """The text of a compiled rulebook's file, one row of numbers per line."""
     data = msgspec.to_builtins(entry_of(rulebook))
     del data["sha256"]
     text = msgspec.json.format(msgspec.json.encode(data), indent=1).decode()
@@ -50,10 +50,9 @@ def to_json(rulebook: CompiledRulebook) -> str:
 
 
 def entry_of(rulebook: CompiledRulebook) -> schema.BundleFile:
-    """A compiled rulebook as its file has it.
+    """The content of a compiled rulebook's file.
 
-    Machines for cut traces are in it if the rulebook has them stored, and if it is for several
-    steps.
+    Machines for cut traces are included if the rulebook has them stored or is for several steps.
     """
     if isinstance(rulebook.recompile, StoredSteps):
         return _entry_of_steps(rulebook.recompile)
@@ -93,7 +92,7 @@ def _entry_of_steps(stored_steps: StoredSteps) -> schema.BundleFile:
 
 
 _STRING_OR_ROW = re.compile(r'"(?:[^"\\]|\\.)*"|\[\s[^\[\]{}"]*\]')
-"""A string, or a list of neither lists, objects nor strings, over several lines."""
+"""A string, or a list without lists, objects or strings that spans several lines."""
 
 
 def _on_one_line(match_: re.Match[str]) -> str:
@@ -106,7 +105,7 @@ def _axiom(axiom: CompiledAxiom) -> schema.AxiomEntry:
         _variables(axiom.variables),
         formula_text(axiom.formula),
         to_data(axiom.formula),
-        # Where it is written on this machine is no business of others.
+        # Its path on this machine does not concern other users.
         file="" if place is None else Path(place.file).name,
         line=None if place is None else place.line,
     )
@@ -145,7 +144,7 @@ def _rule(
 def _cut(tables: CutTables | None) -> schema.CutMachineEntry | None:
     if tables is None:
         return None
-    # Outcomes are 0, 1 and 2.
+    # Outcomes are 0, 1 and 2, as the schema requires.
     outputs: Any = tables.outputs
     return schema.CutMachineEntry(tables.letters, tables.successors, outputs, tables.starts)
 
@@ -166,16 +165,16 @@ def _read(read: Read | NumberRead) -> schema.ReadEntry | schema.NumberReadEntry:
 
 
 def read_to_data(read: Read | NumberRead) -> dict[str, Any]:
-    """The object of a read in the file."""
+    """The JSON object for a read."""
     data: dict[str, Any] = msgspec.to_builtins(_read(read))
     return data
 
 
 def from_json(data: bytes, file: str) -> CompiledRulebook:
-    """Read a compiled rulebook, checking everything that running relies on.
+    """Read a compiled rulebook and check everything that running it relies on.
 
-    Raises RulecError R0404 if it is not a compiled rulebook, of a version that this rulec does not
-    read, or damaged; R0410 if it is not as it was written, R0411 if nothing tells that.
+    Raises RulecError R0404 if the file is damaged, not a compiled rulebook, or of a version that
+    this rulec cannot read; R0410 if it has been changed, R0411 if it has no digest to check that.
     """
     if has_digest(data):
         check_digest(data, file)
@@ -203,7 +202,7 @@ def from_json(data: bytes, file: str) -> CompiledRulebook:
 
 
 def refusal(data: bytes, file: str, why: str) -> RulecError:
-    """The error with which a file is refused; if only others refuse it, R0404 with their reason."""
+    """The error for a refused file: that of ``from_json``, else R0404 with the reason ``why``."""
     try:
         from_json(data, file)
     except RulecError as error:
@@ -240,11 +239,11 @@ def read_signed(path: Path) -> bytes:
 def write_compiled(rulebook: CompiledRulebook, folder: Path) -> list[Path]:
     """Write ``RULE.hoa`` for every rule and ``RULEBOOK.json`` to a folder.
 
-    If it is for several steps, rules with bounds in seconds have a file for each, such as
-    ``RULE-0.5s.hoa``. ``RULEBOOK.json`` has machines for traces that are cut, if they can be
-    compiled. All files are written before the first appears, so that they fit together. Returns the
-    files, the compiled rulebook last. Raises RulecError R0702, and R0403 if such machines take Spot
-    and it is not installed.
+    For several steps, rules with bounds in seconds have one file per step, such as
+    ``RULE-0.5s.hoa``. ``RULEBOOK.json`` contains machines for cut traces if they can be compiled.
+    All files are written completely before the first one appears, so that they are consistent.
+    Returns the files, the compiled rulebook last. Raises RulecError R0702, and R0403 if such
+    machines need Spot and it is not installed.
     """
     several = rulebook.recompile if isinstance(rulebook.recompile, StoredSteps) else None
     if several is None:
@@ -261,14 +260,14 @@ def write_compiled(rulebook: CompiledRulebook, folder: Path) -> list[Path]:
 
 
 def _with_sources(hoa: str, rulebook: CompiledRulebook) -> str:
-    """The automaton with what it was made from, as comments below its first line."""
+    """The automaton with its sources as comments below its first line."""
     first, rest = hoa.split("\n", 1)
     sources = [f"/* sha256 {file.sha256} {_spelt(file.name)} */" for file in rulebook.sources]
     return "\n".join([first, *sources, rest])
 
 
 def _spelt(name: str) -> str:
-    """A file's name that ends no comment, and no line."""
+    """A file name without characters that could end a comment or a line."""
     return "".join(sign if sign.isalnum() or sign in "._-" else "_" for sign in name)
 
 

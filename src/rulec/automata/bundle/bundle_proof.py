@@ -19,11 +19,11 @@ _HEAD_BYTES = 1024
 
 
 def compiled_files(references: Sequence[str]) -> list[str]:
-    """The compiled rulebooks that are meant by paths, folders and patterns, each once.
+    """The compiled rulebooks given by paths, folders and patterns, each once.
 
-    A folder stands for those in and below it, by name; hidden folders, links and other files are
-    passed over. Where no file is called so, ``*``, ``?`` and ``[…]`` are wild, and ``**`` is any
-    number of folders. Raises RulecError R0733 for a folder or a pattern without one.
+    A folder stands for the files in and below it, by name; hidden folders, links and other files
+    are skipped. If no file has the given name, ``*``, ``?`` and ``[…]`` are wildcards, and ``**``
+    is any number of folders. Raises RulecError R0733 for a folder or pattern that yields no file.
     """
     paths: dict[str, None] = {}
     for reference in references:
@@ -65,9 +65,9 @@ def _is_compiled(path: Path) -> bool:
 
 
 def proofs_of_file(path: Path) -> list[RuleProof]:
-    """What has been found of each rule of a file; see docs/compiled.md.
+    """The proof result for each rule of a file; see docs/compiled.md.
 
-    Raises RulecError: R0701; as ``from_json`` for a file that is none; as ``check_signed``.
+    Raises RulecError: R0701; as ``from_json`` for an invalid file; as ``check_signed``.
     """
     data = read_signed(path)
     try:

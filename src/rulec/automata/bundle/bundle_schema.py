@@ -1,4 +1,4 @@
-"""Fields of a compiled rulebook's file, version 6 (see docs/compiled.md)."""
+"""The fields of a compiled rulebook's file, version 6 (see docs/compiled.md)."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from rulec.vocabulary import Declaration, Enumeration, Quantity, Signal
 FORMAT = "rulec compiled rulebook"
 VERSION = 6
 WITHOUT_DIGEST = range(3, VERSION)
-"""Versions of files that rulec once wrote, and which do not say whether they are as written."""
+"""Versions that earlier releases wrote without a digest, so that changes to them go unnoticed."""
 
 
 class _Strict(msgspec.Struct, forbid_unknown_fields=True):
-    """An object of the file: it has these fields and no others."""
+    """An object of the file that has exactly these fields."""
 
 
 class SourceEntry(_Strict):
@@ -33,7 +33,7 @@ class SourceEntry(_Strict):
 
 
 class EnumerationEntry(_Strict, tag="enumeration", tag_field="kind"):
-    """A declaration: one of several values."""
+    """A declaration of an enumeration: one of several values."""
 
     name: str
     parameters: tuple[str, ...]
@@ -44,7 +44,7 @@ class EnumerationEntry(_Strict, tag="enumeration", tag_field="kind"):
 
 
 class SignalEntry(_Strict, tag="signal", tag_field="kind"):
-    """A declaration: a Boolean."""
+    """A declaration of a signal: a Boolean."""
 
     name: str
     parameters: tuple[str, ...]
@@ -54,7 +54,7 @@ class SignalEntry(_Strict, tag="signal", tag_field="kind"):
 
 
 class QuantityEntry(_Strict, tag="quantity", tag_field="kind"):
-    """A declaration: a number with a unit."""
+    """A declaration of a quantity: a number with a unit."""
 
     name: str
     parameters: tuple[str, ...]
@@ -89,7 +89,7 @@ class ReadEntry(_Strict, tag="state", tag_field="kind"):
 
 
 class ThresholdEntry(_Strict):
-    """A place on the number line; the limit is a fraction."""
+    """A threshold on the number line; the limit is a fraction."""
 
     limit: str
     inclusive: bool
@@ -108,7 +108,7 @@ _WRITTEN_AS = {
     "rejecting_sink": "dead",
     "accepting_sink": "safe",
 }
-"""Fields of a Mealy monitor by the names that the format gives them."""
+"""The names in the file format of fields of a Mealy monitor."""
 
 
 class MachineEntry(_Strict, rename=_WRITTEN_AS):
@@ -123,7 +123,7 @@ class MachineEntry(_Strict, rename=_WRITTEN_AS):
 
 
 class CutMachineEntry(_Strict, rename={"successors": "following", "outputs": "outcomes"}):
-    """The machine of a rule for traces that are cut, with the reads of its Mealy monitor.
+    """The machine of a rule for cut traces; its reads are those of the rule's Mealy monitor.
 
     ``outcomes`` are 0 (kept), 1 (pending) and 2 (violated); a run begins in any of the ``starts``.
     """
@@ -143,10 +143,10 @@ class PartsEntry(_Strict, omit_defaults=True):
 
 
 class BundleRule(_Strict, omit_defaults=True):
-    """One rule; ``cut`` is null if that machine would be too large, and left out if none was made.
+    """One rule; ``cut`` is null if that machine would be too large, and missing if none was made.
 
-    Without ``parts`` it is nothing but what it requires. ``certificate`` is the digest of a table
-    that two compilers have come to.
+    Without ``parts`` the rule consists of its formula alone. ``certificate`` is the digest of the
+    table if two compilers agree on it.
     """
 
     name: str
@@ -171,7 +171,7 @@ class BundleRule(_Strict, omit_defaults=True):
 
 
 class AxiomEntry(_Strict):
-    """An axiom, and where it is written: file and line, from 1."""
+    """An axiom, and where it is written: file name and line (from 1)."""
 
     variables: list[tuple[str, str]]
     formula: str
@@ -181,7 +181,7 @@ class AxiomEntry(_Strict):
 
 
 class BundleHeader(msgspec.Struct):
-    """Fields that tell a compiled rulebook's format and version."""
+    """The fields that identify a compiled rulebook's format and version."""
 
     format: Literal["rulec compiled rulebook"]
     version: int
@@ -191,9 +191,9 @@ class BundleHeader(msgspec.Struct):
 class BundleFile(_Strict, kw_only=True):
     """The whole file.
 
-    Its first line is ``{``, its second ``sha256``: that of all bytes from the third line on, in
-    hexadecimal digits (``bundle_digest``). If it is for several ``steps``, a rule with bounds in
-    seconds is there once for each.
+    Its first line is ``{``; its second is ``sha256``, the digest of all bytes from the third line
+    on, in hexadecimal (``bundle_digest``). If it is for several ``steps``, a rule with bounds in
+    seconds appears once for each.
     """
 
     sha256: str = ""

@@ -1,4 +1,4 @@
-"""A compiled rulebook: all that running needs, and where it came from."""
+"""A compiled rulebook: everything that running it needs, and where it came from."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 class CompiledRule:
     """A rule with its machine; ``hoa`` is its automaton in HOA v1.
 
-    ``step_s`` is the step of the traces that the machine can judge; None if it can judge any,
-    because the formula has no bounds in seconds. ``trigger`` is what has to hold for the rule to
-    ask for anything, None where its form names nothing (``logic.opportunities``); ``parts`` are
-    what it is read off, None if that is the formula. ``certificate`` is the digest of the table if
-    two compilers have come to it.
+    ``step_s`` is the step of the traces that the machine can judge; None for any step, because the
+    formula has no bounds in seconds. ``trigger`` is the condition under which the rule demands
+    anything, None if the formula's form does not show one (``logic.opportunities``); it is derived
+    from ``parts``, or from the formula if those are None. ``certificate`` is the digest of the
+    table if two compilers made the same one.
     """
 
     __repr__ = short_repr
@@ -67,7 +67,7 @@ class CompiledAxiom:
 
 
 class TooLargeRule(NamedTuple):
-    """A rule whose automaton would be too large for the step of some traces, and why it is."""
+    """A rule whose automaton would be too large for the step of some traces, and the reason."""
 
     name: str
     strength: model.Strength
@@ -88,11 +88,11 @@ class Recompiler(Protocol):
 
 
 PrefixCompiler: TypeAlias = "Callable[[CompiledRulebook], Mapping[str, OutcomeMachine | None]]"
-"""What compiles each rule for prefixes, by name; None where that gets too large."""
+"""A function that compiles each rule for prefixes, by name; None where a machine is too large."""
 
 
 class Prepared(dict[object, Any]):
-    """What has been made of a rulebook's rules to run them; it is made anew for a copy."""
+    """Data that engines prepare from a rulebook's rules; a copy of the rulebook starts empty."""
 
     def __reduce__(self) -> tuple[type[Prepared], tuple[()]]:
         return Prepared, ()
@@ -103,10 +103,10 @@ class CompiledRulebook(Rows):
     """Compiled rules of a rulebook, with the vocabulary of their traces.
 
     ``rulec`` and ``spot`` are the versions that compiled it. ``source`` is the rulebook that it was
-    compiled from, None if it was read from a compiled file. With ``recompile`` it fits itself to
-    the step of the traces that it meets; None if it was read, or compiled for one step.
-    ``prefixes`` gives the machines for traces that are cut, ``prepared`` what engines keep.
-    ``too_large`` are rules that are left out for the step of recorded traces.
+    compiled from, None if it was read from a compiled file. ``recompile`` compiles it for other
+    steps; None if it was read from a file, or compiled for one step. ``prefixes`` provides the
+    machines for cut traces; ``prepared`` holds data of the engines. ``too_large`` are the rules
+    that were left out for the step of recorded traces.
     """
 
     __repr__ = short_repr
@@ -134,17 +134,17 @@ class CompiledRulebook(Rows):
     prepared: Prepared = field(init=False, default_factory=Prepared, compare=False, repr=False)
 
     def place_of(self, name: str) -> SourceLocation | None:
-        """Where a rule is written; None if it was read from a compiled file."""
+        """Where a rule is written; None if the rulebook was read from a compiled file."""
         rules = () if self.source is None else self.source.rules
         return next((at(rule.span) for rule in rules if rule.name == name), None)
 
     def at_step(self, step_s: Fraction | float) -> CompiledRulebook:
         """These rules for traces whose states are ``step_s`` seconds apart.
 
-        A float means the decimal that is written. Rules without bounds in seconds are the same for
-        any step; each step is compiled once. Raises RulecError R0507 if the rules are for another
-        step and cannot be compiled again, R0407 for a bound that is no multiple of the step, else
-        as ``compile_rulebook``.
+        A float stands for its decimal. Rules without bounds in seconds are the same for any step;
+        each step is compiled once. Raises RulecError R0507 if the rules are for another step and
+        cannot be recompiled, R0407 for a bound that is no multiple of the step, else as
+        ``compile_rulebook``.
         """
         finite("step_s", expected("step_s", "Fraction | float", step_s))
         step = exact_step(step_s)
@@ -165,22 +165,23 @@ class CompiledRulebook(Rows):
         return replace(compiled, rules=tuple(r for r in compiled.rules if r.name in kept))
 
     def at_one_step(self) -> CompiledRulebook:
-        """These rules for one step: where they have several, the longest that divides all.
+        """These rules for one step: if they have several, the longest that divides all of them.
 
-        An heir's own rules may have another one than those that it inherits. Raises as ``at_step``.
+        The own rules of an overlay may have another step than those it inherits. Raises as
+        ``at_step``.
         """
         steps = [rule.step_s for rule in self.rules if rule.step_s is not None]
         return self.at_step(longest_divisor(steps)) if steps else self
 
     def fitted_to(self, step_s: Fraction | float) -> CompiledRulebook:
-        """Rulebook recompiled for a step (s) if possible, else this one unchanged."""
+        """The rulebook recompiled for a step (s) if possible, else this one unchanged."""
         return self if self.recompile is None else self.at_step(step_s)
 
     def rounded_to(self, step_s: Fraction | float) -> tuple[CompiledRulebook, ...]:
         """The rulebook recompiled for a step (s), if possible.
 
-        With bounds that are no multiples of it there are two: these rounded down, and rounded up.
-        Raises RulecError as ``at_step``, but for R0407.
+        If bounds are no multiples of the step, two rulebooks: one rounded down, one rounded up.
+        Raises RulecError as ``at_step``, except R0407.
         """
         try:
             return (self.fitted_to(step_s),)
@@ -198,7 +199,7 @@ class CompiledRulebook(Rows):
                 raise
             books = self.recompile.judgeable_at(exact_step(step_s))
             if len(books[0].rules) + len(books[0].too_large) == len(self.rules):
-                return books  # With what engines have prepared of them
+                return books  # keeps the data that engines have prepared
             kept = {rule.name for rule in self.rules}
             return tuple(
                 replace(
@@ -210,12 +211,12 @@ class CompiledRulebook(Rows):
             )
 
     def rows(self) -> list[dict[str, Any]]:
-        """One row a rule."""
+        """One row per rule."""
         return model.rule_rows(self.rules)
 
 
 def is_too_large(error: RulecError) -> bool:
-    """True if all that is wrong are rules whose automata would be too large."""
+    """Whether the only problems are rules whose automata would be too large."""
     return all(problem.code == AUTOMATON_TOO_LARGE.code for problem in error.diagnostics)
 
 
@@ -236,18 +237,18 @@ _ALIKE = {
         "inherited_from",
     ),
 }
-"""Fields that both have alike, and their compiled forms, and the entries of these in the file."""
+"""Fields with equal names in both models, their compiled forms, and their entries in the file."""
 
 
 def alike(kind: type[model.Rulebook | model.Rule], source: object) -> dict[str, Any]:
-    """Fields that a rulebook's or rule's other forms have alike."""
+    """The fields that the other forms of a rulebook or rule have in common with it."""
     return {name: getattr(source, name) for name in _ALIKE[kind]}
 
 
 def check_step(
     rule: CompiledRule, step_s: Fraction, subject: str = "this", place: SourceLocation | None = None
 ) -> None:
-    """Refuse (R0507) another step than a rule's; ``subject`` has it."""
+    """Raise R0507 if the step differs from the rule's; ``subject`` is what has that step."""
     if rule.step_s is None or rule.step_s == step_s:
         return
     step = number_in_words(step_s)

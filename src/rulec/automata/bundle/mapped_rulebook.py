@@ -1,7 +1,7 @@
 """Serialisation of cached compiled rulebooks: JSON with rows of integers beside it.
 
-A file is made of parts, each behind those that it is made of, and equal ones are there once: rules
-share most of what they speak of. Nothing is checked but that the file is as this rulec wrote it.
+A file is a list of parts, each after the parts that it consists of; equal parts are stored once,
+since rules share most of them. Nothing is checked except that this rulec wrote the file.
 """
 
 from __future__ import annotations
@@ -26,10 +26,11 @@ from rulec.vocabulary import Enumeration, ObjectType, Quantity, Signal, Vocabula
 
 @dataclass(frozen=True, slots=True)
 class Compilation:
-    """What a file says: what it depends on, what there was to be said, and the rulebook.
+    """The content of a file: its dependencies, the diagnostics, and the rulebook.
 
-    ``stamp`` is a digest of what it was compiled from and by. ``day`` is the one whose law it is,
-    if nothing else says that; empty if something does. ``problems`` say why there is no rulebook.
+    ``stamp`` is a digest of the source and of the compiler. ``day`` is the day whose law applies,
+    if it is today by default; empty if the source or the user sets it. ``problems`` explain why
+    there is no rulebook.
     """
 
     stamp: str
@@ -42,14 +43,14 @@ class Compilation:
 
 @dataclass(frozen=True, slots=True)
 class _Kind:
-    """How what is of one kind is taken apart, and made of its parts again."""
+    """How objects of one kind are split into parts, and rebuilt from them."""
 
     parts: Callable[[Any], Iterable[object]]
     make: Callable[..., object]
 
 
 def _of_fields(cls: type, without: Sequence[str] = ()) -> _Kind:
-    """The kind of a dataclass; fields that are left out come last, and have defaults."""
+    """The kind of a dataclass; fields ``without`` are left out, come last and have defaults."""
     names = [field.name for field in fields(cls) if field.init and field.name not in without]
     if len(names) == 1:
         return _Kind(lambda item: (getattr(item, names[0]),), cls)
@@ -57,7 +58,7 @@ def _of_fields(cls: type, without: Sequence[str] = ()) -> _Kind:
 
 
 def _rulebook(*parts: Any) -> CompiledRulebook:
-    """A rulebook of what is kept of it, with the machines for cut traces last."""
+    """A rulebook from its stored parts, with the machines for cut traces as the last one."""
     return replace(CompiledRulebook(*parts[:-1]), prefixes=parts[-1])
 
 
@@ -92,12 +93,12 @@ _MAKE = [kind.make for kind in _KINDS.values()]
 
 
 def written(known: Compilation, given: Sequence[object] = ()) -> bytes:
-    """The file of a compilation. Whoever reads it is ``given`` the same objects."""
+    """The file of a compilation. It must be read with equal ``given`` objects."""
     return _Writer(given).file(known)
 
 
 def compilation_in(tables: MappedTables, given: Sequence[object] = ()) -> Compilation:
-    """The compilation of a file. Raises ValueError, TypeError or LookupError if there is none."""
+    """The compilation in a file. Raises ValueError, TypeError or LookupError if there is none."""
     text = json.loads(tables.text)
     made = [*given, *[_value(value, tables) for value in text["values"]]]
     numbers, part, place = tables.row(tuple(text["parts"])), made.__getitem__, 0
@@ -121,13 +122,13 @@ def _value(value: Any, tables: MappedTables) -> object:
 
 
 class _Writer:
-    """Parts that have been placed: values, which come first, and what is made of them."""
+    """The parts placed so far: plain values, which come first, and objects built from parts."""
 
     def __init__(self, given: Sequence[object]) -> None:
         self._n_given = len(given)
         self._given = {id(part): number for number, part in enumerate(given)}
         self._tables = TableWriter()
-        # A value's number is below 0 until it is known how many there are.
+        # Values have negative numbers until their total count is known.
         self._values: dict[tuple[type, object], int] = {}
         self._parts: dict[tuple[int, ...], int] = {}
 
@@ -155,7 +156,7 @@ class _Writer:
             return self._value(type(item), item)
         if isinstance(item, tuple) and (rows := self._rows(item)) is not None:
             return self._value(tuple, rows)
-        cls = type(item) if type(item) in _KINDS else dict  # a view of one, else
+        cls = type(item) if type(item) in _KINDS else dict  # else a view of a dict
         part = (_NUMBERS[cls], *map(self._number, _KINDS[cls].parts(item)))
         return self._parts.setdefault(part, self._n_given + len(self._parts))
 
@@ -163,7 +164,7 @@ class _Writer:
         return self._values.setdefault((cls, value), ~len(self._values))
 
     def _rows(self, item: tuple[Any, ...]) -> tuple[object, ...] | None:
-        """Where the integers of a tuple are, or those of its rows, which may be truth values."""
+        """The place of a tuple's integers, or of rows of integers or Booleans; None if neither."""
         if not item:
             return None
         if all(type(entry) is int for entry in item):

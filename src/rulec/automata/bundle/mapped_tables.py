@@ -1,8 +1,8 @@
-"""A file of a text and rows of integers beside it, mapped into memory instead of decoded.
+"""A file of a text and rows of integers, mapped into memory instead of decoded.
 
-The file begins with a head: what it is, the SHA-256 of the rest, the length of the text.
-Then come the text and the rows, each as integers of the least width that holds all of its own, in
-the byte order of the machine that wrote it. A file of another order has another head.
+The file begins with a header: its kind, the SHA-256 of the rest, the length of the text. The text
+follows, then the rows, each with integers of the smallest width that fits, in the byte order of the
+machine that wrote it. A file in another byte order has another header.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ Width: TypeAlias = Literal["B", "b", "h", "i", "q"]
 _WIDTHS: tuple[Width, ...] = get_args(Width)
 
 RowPlace: TypeAlias = tuple[Width, int, int]
-"""Where a row is: type code, first byte after the text, number of integers."""
+"""The place of a row: type code, first byte after the text, number of integers."""
 
 
 @dataclass(slots=True)
 class TableWriter:
-    """Rows that have been placed one after the other; equal ones have one place."""
+    """Rows placed one after the other; equal rows share one place."""
 
     _bytes: bytearray = field(default_factory=bytearray)
     _known: dict[tuple[Width, bytes], RowPlace] = field(default_factory=dict)
@@ -54,7 +54,7 @@ class TableWriter:
         return self._known[code, data]
 
     def place_rows(self, rows: Iterable[Iterable[int]]) -> RowPlace:
-        """Place rows, one behind the other."""
+        """Place rows, one after the other."""
         return self.place(chain.from_iterable(rows))
 
     def file(self, text: bytes) -> bytes:
@@ -79,7 +79,7 @@ def _holds(code: Width, number: int) -> bool:
 class MappedTables:
     """A file's text, and its rows by their places.
 
-    ``data`` is all of it. Raises ValueError if it is no such file, or damaged.
+    ``data`` is the whole file. Raises ValueError if it is not such a file, or damaged.
     """
 
     def __init__(self, data: bytes | mmap) -> None:
@@ -96,13 +96,13 @@ class MappedTables:
         self._known: dict[RowPlace, tuple[int, ...]] = {}
 
     def row(self, place: RowPlace) -> tuple[int, ...]:
-        """The integers at a place; the same object each time. ValueError if it is none."""
+        """The integers at a place; the same object each time. ValueError for an invalid place."""
         if place not in self._known:
             self._known[place] = tuple(self.view(place).tolist())
         return self._known[place]
 
     def rows(self, place: RowPlace, width: int) -> tuple[tuple[int, ...], ...]:
-        """Rows of a width, of which a place has several. ValueError if they do not fit."""
+        """The rows at a place, all of this width. Raises ValueError if they do not fit."""
         return _of_width(self.row(place), width)
 
     def truths(self, place: RowPlace, width: int) -> tuple[tuple[bool, ...], ...]:
@@ -110,7 +110,7 @@ class MappedTables:
         return _of_width(tuple(map(bool, self.row(place))), width)
 
     def view(self, place: RowPlace) -> memoryview[int]:
-        """The integers at a place, where they are. ValueError if it is none."""
+        """The integers at a place, without a copy. Raises ValueError for an invalid place."""
         code, first, count = place
         if first < 0 or count < 0:
             raise ValueError("a row has no place")
@@ -127,7 +127,7 @@ def _of_width(row: Sequence[_Entry], width: int) -> tuple[tuple[_Entry, ...], ..
 
 
 def mapped(path: Path) -> MappedTables:
-    """Map a file of this user's. Raises OSError, or ValueError if it is damaged or not theirs."""
+    """Map a file of this user. Raises OSError, or ValueError if it is damaged or not the user's."""
     with path.open("rb") as stream:
         if not is_own(os.fstat(stream.fileno())):
             raise ValueError("somebody else may have written it")

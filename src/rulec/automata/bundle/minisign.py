@@ -1,8 +1,9 @@
-"""Signatures in minisign's format: Ed25519 over a BLAKE2b digest, in a file beside what is signed.
+"""Signatures in minisign's format: Ed25519 over a BLAKE2b digest, in a file beside the signed one.
 
-The format is minisign's own (https://jedisct1.github.io/minisign/): of both files the second line
-is Base64 of two letters, a key's number and the key or the signature; a second signature is over
-the first one and the comment that is trusted. Only signatures of a digest (``ED``) are taken.
+The format is described at https://jedisct1.github.io/minisign/: the second line of a key file or
+signature file is Base64 of two letters, a key number, and the key or the signature. A second
+signature covers the first one and the trusted comment. Only signatures of a digest (``ED``) are
+accepted.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ _TRUSTED = "trusted comment: "
 
 
 class SignatureFormatError(ValueError):
-    """A text that is no public key or no signature of minisign's."""
+    """A text that is not a public key or not a signature of minisign."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +30,7 @@ class PublicKey:
 
 @dataclass(frozen=True, slots=True)
 class DetachedSignature:
-    """A signature (64 bytes) by the key of a number, and that of it and its comment together."""
+    """A signature (64 bytes), the number of its key, and the signature over it and its comment."""
 
     number: bytes
     signature: bytes
@@ -38,7 +39,7 @@ class DetachedSignature:
 
 
 def public_key(text: str) -> PublicKey:
-    """The key of a file, or of its second line alone. Raises SignatureFormatError."""
+    """The public key in a file's text, or in its second line alone. Raises SignatureFormatError."""
     lines = text.split()
     if not lines:
         raise SignatureFormatError("it is empty")
@@ -49,7 +50,7 @@ def public_key(text: str) -> PublicKey:
 
 
 def detached_signature(text: str) -> DetachedSignature:
-    """The signature of a file. Raises SignatureFormatError."""
+    """The signature in a file's text. Raises SignatureFormatError."""
     lines = text.splitlines()
     if len(lines) != 4 or not lines[2].startswith(_TRUSTED):
         raise SignatureFormatError("it has not the four lines of a signature")
@@ -77,8 +78,8 @@ def _decoded(line: str) -> bytes:
 
 
 def has_signed(key: PublicKey, signature: DetachedSignature, data: bytes) -> bool:
-    """Tell whether a key has signed some data. Raises ImportError without ``cryptography``."""
-    # Native code of 20 MB that is installed on request: only where a signature is asked for.
+    """Whether a key has signed some data. Raises ImportError without ``cryptography``."""
+    # Native code of 20 MB, installed on request: imported only if a signature is required.
     from cryptography.exceptions import InvalidSignature
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PublicKey
 

@@ -1,6 +1,6 @@
-"""Compiled rulebooks that have to be signed, if somebody says so.
+"""The requirement, if the user sets it, that compiled rulebooks are signed.
 
-The key is an environment variable's, so that processes that are started meanwhile ask for it, too.
+The key is in an environment variable, so that child processes require it, too.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
     from rulec.automata.bundle.minisign import PublicKey
 
 VARIABLE = "RULEC_REQUIRE_SIGNED"
-"""The path of a public key, or the key itself; unset or empty if nothing has to be signed."""
+"""The path of a public key, or the key itself; unset or empty if no signature is required."""
 
 _LARGEST = 10_000
 
 
 @contextmanager
 def in_force(key: str) -> Iterator[None]:
-    """Let all compiled rulebooks that are read in a block have to be signed by a key.
+    """Within a block, require that all compiled rulebooks that are read are signed by a key.
 
-    Raises RulecError R0413 if it is none.
+    Raises RulecError R0413 if it is not a valid key.
     """
     _key(key)
     with variable_set(VARIABLE, key):
@@ -37,13 +37,13 @@ def in_force(key: str) -> Iterator[None]:
 
 
 def check_signed(path: Path, data: bytes) -> None:
-    """Refuse a file that is not signed by the key that is required, if one is.
+    """Refuse a file that is not signed by the required key, if there is one.
 
-    Raises RulecError R0412, R0413 for a key that is none, R0414 without ``cryptography``.
+    Raises RulecError R0412, R0413 for an invalid key, R0414 without ``cryptography``.
     """
     if not (required := os.environ.get(VARIABLE)):
         return
-    # Keys and signatures, 1 ms: only where they are asked for.
+    # Takes 1 ms to import: only where a signature is required.
     from rulec.automata.bundle.minisign import detached_signature, has_signed
 
     key = _key(required)
@@ -68,7 +68,7 @@ def check_signed(path: Path, data: bytes) -> None:
 
 
 def refuse_source(reference: str | Path) -> None:
-    """Refuse (R0412) a rulebook that is not compiled where a signature is required."""
+    """Raise R0412 for a rulebook that is not compiled if a signature is required."""
     if os.environ.get(VARIABLE):
         raise _not_signed(Path(reference), "only compiled rulebooks are signed, and this is none")
 

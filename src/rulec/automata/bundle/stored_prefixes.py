@@ -1,4 +1,4 @@
-"""Machines for traces that are cut, as a compiled rulebook's file has them."""
+"""Machines for cut traces, as stored in a compiled rulebook's file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CutTables:
-    """The tables of a rule's machine for traces that are cut, as ``OutcomeMachine`` has them."""
+    """The tables of a rule's machine for cut traces, as in ``OutcomeMachine``."""
 
     letters: tuple[int, ...]
     successors: tuple[tuple[int, ...], ...]
@@ -28,17 +28,18 @@ _MOST_MADE = 1 << 10
 
 @dataclass(frozen=True, slots=True)
 class StoredPrefixes:
-    """A ``PrefixCompiler`` of machines that have been stored, by the rule's name.
+    """A ``PrefixCompiler`` of stored machines, by the rule's name.
 
-    ``orders`` are those of their states, as far as they have been stored, too.
+    ``orders`` are the orders of their states (``OutcomeMachine.order``), where these are stored,
+    too.
     """
 
     entries: Mapping[str, CutTables | None]
     orders: Mapping[str, bytes] = field(default_factory=dict)
 
     def __call__(self, rulebook: CompiledRulebook) -> Mapping[str, OutcomeMachine | None]:
-        """The machines of the rulebook's rules; None where one would have got too large."""
-        # numpy, a tenth of a second, is loaded only where a trace is cut.
+        """The machines of the rulebook's rules; None for each that would have been too large."""
+        # NumPy takes 0.1 s to import: only if a trace is cut.
         from rulec.automata.outcome_machine import OutcomeMachine
 
         machines: dict[str, OutcomeMachine | None] = {}
@@ -46,7 +47,7 @@ class StoredPrefixes:
             entry = self.entries.get(rule.name)
             machines[rule.name] = None
             if entry is not None:
-                # Rules that read different things may have the same tables.
+                # Rules that read different signals may have the same tables.
                 key = id(entry), id(rule.machine)
                 known = _MADE.get(key)
                 if known is None or known[0] is not entry or known[1] is not rule.machine:
@@ -66,9 +67,9 @@ class StoredPrefixes:
 
 
 def stored(rulebook: CompiledRulebook) -> StoredPrefixes | None:
-    """What a file can store; None if nobody can compile machines for cut traces.
+    """The machines that a file can store; None if no compiler for cut traces is available.
 
-    Raises RulecError R0403 if that takes Spot, and it is not installed.
+    Raises RulecError R0403 if that needs Spot, and it is not installed.
     """
     if rulebook.prefixes is None or isinstance(rulebook.prefixes, StoredPrefixes):
         return rulebook.prefixes

@@ -1,4 +1,4 @@
-"""A compiled rulebook for several steps, none of which takes a compiler."""
+"""A compiled rulebook for several steps, none of which needs a compiler."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rulec.logic.printing import number_in_words
 
 @dataclass(frozen=True, slots=True)
 class StoredSteps:
-    """A ``Recompiler`` that knows some steps; ``books`` are the rulebook for each of them."""
+    """A ``Recompiler`` for some stored steps; ``books`` has the rulebook for each of them."""
 
     steps: tuple[Fraction, ...]
     books: tuple[CompiledRulebook, ...]
@@ -33,18 +33,18 @@ class StoredSteps:
         )
 
     def rounded(self, step_s: Fraction) -> tuple[CompiledRulebook, CompiledRulebook]:
-        """Bounds are not rounded for a step that is not known. Raises RulecError R0507."""
+        """As for a stored step, without rounding. Raises RulecError R0507 for any other step."""
         return self(step_s), self(step_s)
 
     def judgeable_at(self, step_s: Fraction) -> tuple[CompiledRulebook, ...]:
-        """The rulebook for one of the steps, whose rules all have automata. Raises RulecError."""
+        """The rulebook for one of the steps, whose rules all have automata. Raises R0507."""
         return (self(step_s),)
 
 
 def for_steps(books: Sequence[CompiledRulebook], steps: Sequence[Fraction]) -> CompiledRulebook:
-    """The rulebook for several steps, of which ``books`` has one each; its rules are the first's.
+    """The rulebook for several steps: ``books`` has one for each; the first provides its own rules.
 
-    Steps that are the same are one.
+    Duplicate steps count once.
     """
     own = dict(zip(steps, [replace(book, recompile=None) for book in books], strict=True))
     if len(own) == 1:

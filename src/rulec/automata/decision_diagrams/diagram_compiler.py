@@ -1,4 +1,4 @@
-"""The compiler without Spot, as the worker asks it."""
+"""The compiler without Spot, as the worker uses it."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Binary decision diagrams over letters and obligations, of the library ``dd`` (Bryant, 1986).
+"""Binary decision diagrams (Bryant, 1986) over letters and obligations, with the library ``dd``.
 
-A function is an integer of ``dd.bdd``: 1 is true, -1 is false, a negation is the negative number.
-So equal functions are equal integers, on every machine.
+A function is an integer of ``dd.bdd``: 1 is true, -1 is false, and negation changes the sign. So
+equal functions are equal integers, on every machine.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from rulec.logic.fold import Algebra, fold
 
 @contextmanager
 def _without_graphs() -> Iterator[None]:
-    """``dd`` can draw its diagrams as graphs of NetworkX, which takes 0.4 s to load.
+    """Keep ``dd`` from importing NetworkX (0.4 s), which it needs only to draw diagrams.
 
-    Without it nothing else of ``dd`` changes.
+    Nothing else in ``dd`` changes without it.
     """
     if "networkx" in sys.modules:
         yield
@@ -38,17 +38,17 @@ TRUE, FALSE = 1, -1
 
 
 class _Functions(BDD):
-    """Diagrams that are dropped as a whole: ``dd`` looks through them again for forgotten ones."""
+    """Diagrams that are dropped as a whole: skips the search of ``dd`` for leaked references."""
 
     def __del__(self) -> None:
         pass
 
 
 class Diagrams:
-    """Functions of variables, which are ordered as they are declared."""
+    """Boolean functions of variables, which are ordered as they are declared."""
 
     def __init__(self) -> None:
-        # Its types say less than what it does.
+        # The type hints of ``dd`` are incomplete.
         self._functions: Any = _Functions()  # type: ignore[abstract]
         self._supports: dict[int, frozenset[str]] = {1: frozenset()}
         self._letters: dict[ltl.Proposition, str] = {}
@@ -58,17 +58,17 @@ class Diagrams:
         self._functions.add_var(name)
 
     def variable(self, name: str) -> int:
-        """The function that is true where a variable is."""
+        """The function that is true where the variable is true."""
         return int(self._functions.var(name))
 
     def declare_letters(self, names: Mapping[ltl.Proposition, str]) -> None:
-        """New variables for propositions, by their names."""
+        """Declare a new variable for each proposition, with the given name."""
         for proposition, name in names.items():
             self.declare(name)
             self._letters[proposition] = name
 
     def of_letter(self, proposition: ltl.Proposition) -> int:
-        """The function that is true where a proposition is."""
+        """The function that is true where a proposition is true."""
         return self.variable(self._letters[proposition])
 
     def ite(self, test: int, yes: int, no: int) -> int:
@@ -88,9 +88,9 @@ class Diagrams:
         return self.ite(left, right, -right)
 
     def parts(self, function: int) -> tuple[str, int, int]:
-        """The first variable of a function, and what is left where it is false, and where true.
+        """The top variable of a non-constant function, and its cofactors for false and for true.
 
-        The function is no constant.
+        The function must not be constant.
         """
         level, low, high = self._functions.succ(function)
         name = self._functions.var_at_level(level)
@@ -107,16 +107,16 @@ class Diagrams:
         return known
 
     def given(self, function: int, values: Mapping[str, bool]) -> int:
-        """The function where some variables have these values."""
+        """The function with some variables fixed to these values."""
         met = {name: values[name] for name in self.variables(function) & values.keys()}
         return int(self._functions.let(met, function)) if met else function
 
     def for_some(self, function: int, names: Iterable[str]) -> int:
-        """The function that is true where some values of these variables make it so."""
+        """The function with these variables quantified existentially."""
         return int(self._functions.exist(set(names), function))
 
     def copied(self, function: int, to: Diagrams) -> int:
-        """The function of the variables of the same names in other diagrams."""
+        """The same function, over the variables of the same names, in other diagrams."""
         if abs(function) == 1:
             return function
         name, low, high = self.parts(function)
@@ -127,7 +127,7 @@ class Diagrams:
         return fold(formula, self.algebra())
 
     def algebra(self) -> Algebra[int]:
-        """What propositions and the connectives mean."""
+        """The interpretation of propositions and connectives as functions."""
         return Algebra(
             proposition=self.of_letter,
             constant=lambda value: TRUE if value else FALSE,
@@ -138,7 +138,7 @@ class Diagrams:
         )
 
     def cubes(self, function: int) -> Iterator[dict[str, bool]]:
-        """Disjoint conjunctions of literals that make up a function."""
+        """Disjoint conjunctions of literals whose disjunction is the function."""
         if function == FALSE:
             return
         if function == TRUE:
@@ -150,9 +150,9 @@ class Diagrams:
                 yield {name: value, **cube}
 
     def bits(self, function: int, sets: Mapping[str, int], known: dict[int, int]) -> int:
-        """A function of letters as a bit set of them; ``sets`` are where variables are true.
+        """The bit set of letters for which a function is true; ``sets`` has that of each variable.
 
-        ``known`` keeps what has been found, and has that of ``TRUE``: all letters.
+        ``known`` caches results and must contain the set for ``TRUE``: all letters.
         """
         bits = known.get(abs(function))
         if bits is None:

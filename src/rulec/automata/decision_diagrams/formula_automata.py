@@ -1,4 +1,4 @@
-"""Automata of formulas: progression for what prefixes decide, breakpoints for what recurs."""
+"""Automata of formulas: progression if prefixes decide, breakpoints for recurring conditions."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ _CONNECTIVES = {
 
 
 class FormulaAutomata:
-    """Automata of formulas without operators of the past, over the letters of some diagrams.
+    """Automata of formulas without past operators, over the letters of some diagrams.
 
-    ``ends`` if words are finite.
+    ``ends``: words are finite.
     """
 
     def __init__(self, diagrams: Diagrams, *, ends: bool) -> None:
@@ -73,12 +73,12 @@ class FormulaAutomata:
         states, rows = explored(first, step)
         if not self._ends:
             return SymbolicAutomaton(tuple(rows))
-        # There is no empty word.
+        # The empty word does not exist.
         ends_well = [state is not None and untils.ends_well(state) for state in states]
         return SymbolicAutomaton(tuple(rows), tuple(ends_well))
 
     def _recurring(self, formula: ltl.Formula) -> SymbolicAutomaton:
-        """The automaton of what holds at every instant, or at one, and is decided by prefixes."""
+        """The automaton of an always, never or eventually whose operand is decided by prefixes."""
         match formula:
             case ltl.Unary(operator, operand) if range_of(formula) == Range(0, None):
                 if operator is _NEVER:
@@ -103,7 +103,7 @@ class FormulaAutomata:
         diagrams = self._diagrams
 
         def step(state: tuple[int, int]) -> Iterable[tuple[tuple[int, int], int, int]]:
-            # What has been asked up to the last breakpoint, and what since then.
+            # The obligations from before the last breakpoint, and those since then.
             earlier = untils.split(untils.progressed(state[0]))
             since = untils.split(diagrams.both(untils.progressed(state[1]), function))
             edges: dict[tuple[tuple[int, int], int], int] = {}
@@ -126,7 +126,7 @@ class FormulaAutomata:
 
 
 def _without_negations(formula: ltl.Formula, polarity: bool) -> ltl.Formula:
-    """What is negated an even number of times (``polarity``), or an odd number."""
+    """Strip negations: the formula if ``polarity`` comes out true, else the constant true."""
     while isinstance(formula, ltl.Unary) and formula.operator is _NOT:
         formula, polarity = formula.operand, not polarity
     return formula if polarity else ltl.Constant(True)

@@ -10,7 +10,7 @@ from rulec.automata.decision_diagrams.rule_automaton import RuleAutomaton
 def in_hoa(automaton: RuleAutomaton, name: str, remarks: Sequence[str]) -> str:
     """The automaton's text; ``remarks`` become comments.
 
-    A finite word is one after which a further proposition is false.
+    A finite word is encoded by an extra proposition that is false from its end on.
     """
     states = automaton.automaton
     alive = [] if automaton.alive is None else [automaton.alive]
@@ -74,7 +74,7 @@ def _line(
 
 
 def _acceptance(n_marks: int, accepted: Sequence[bool]) -> str:
-    """The condition under which the recurring marks, as bits, are ``accepted``."""
+    """The acceptance condition for which sets of recurring marks (as bits) are ``accepted``."""
     if all(accepted):
         return "t"
     if n_marks == 1:

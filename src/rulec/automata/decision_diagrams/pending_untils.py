@@ -1,7 +1,7 @@
-"""Formulas as functions of a letter and of what the rest of the word has to do.
+"""Formulas as functions of the current letter and of the obligations for the rest of the word.
 
-What the rest has to do are untils, one variable for each: a release is a negated until. A state of
-a formula's progression (Bacchus, Kabanza, "Using temporal logic to control search in a forward
+The obligations are untils, one variable for each; a release is a negated until. A state of a
+formula's progression (Bacchus, Kabanza, "Using temporal logic to control search in a forward
 chaining planner", 1996) is a function of these variables alone.
 """
 
@@ -16,7 +16,7 @@ from rulec.logic.fold import Algebra, fold, temporal_operation
 
 
 class _Until(NamedTuple):
-    """Until of two functions, with what is left of its range."""
+    """An until of two functions, with what remains of its range."""
 
     left: int
     right: int
@@ -26,8 +26,8 @@ class _Until(NamedTuple):
 class PendingUntils:
     """The untils that formulas leave for the rest of a word, as variables of diagrams.
 
-    Operands of untils are functions, so what means the same is one until. The variables come after
-    those of letters.
+    Operands of untils are functions, so equivalent untils are one. Their variables are ordered
+    after those of letters.
     """
 
     def __init__(self, diagrams: Diagrams) -> None:
@@ -41,9 +41,9 @@ class PendingUntils:
         self._known: dict[ltl.Formula, int] = {}
 
     def function_of(self, formula: ltl.Formula) -> int:
-        """What a formula asks of a letter and of the rest of the word.
+        """What a formula demands of the current letter and of the rest of the word.
 
-        It has no operator of the past, and its bounds are in steps.
+        It has no past operator, and its bounds are in steps.
         """
         given = self._diagrams.algebra()
         algebra: Algebra[int] = Algebra(
@@ -64,7 +64,7 @@ class PendingUntils:
         return fold(formula, algebra, self._known)
 
     def progressed(self, state: int) -> int:
-        """What a state asks of the next letter and of the rest after it."""
+        """What a state demands of the next letter and of the rest after it."""
         known = self._progressed.get(abs(state))
         if known is None:
             name, low, high = self._diagrams.parts(abs(state))
@@ -95,16 +95,16 @@ class PendingUntils:
         return known[function]
 
     def ends_well(self, state: int) -> bool:
-        """Tell whether a word may end with a state: no until is fulfilled any more."""
+        """Whether a word may end in a state, where no pending until can be fulfilled."""
         while abs(state) != 1:
             _, state, _ = self._diagrams.parts(state)
         return state == TRUE
 
     def signs(self, function: int) -> frozenset[int]:
-        """How untils without end take part in a function and in all that it leads to.
+        """The polarities of unbounded untils in a function and in everything that it leads to.
 
-        1 if one is demanded, -1 if one is forbidden. A function in which none is demanded is one of
-        safety, one in which none is forbidden is one of co-safety.
+        1 if an until is demanded, -1 if one is forbidden. Without a demanded one the function is a
+        safety property, without a forbidden one a co-safety property.
         """
         signs: set[int] = set()
         waiting = [(function, 1)]
@@ -128,7 +128,7 @@ class PendingUntils:
         if high is not None and high < low:
             return FALSE
         if high is not None and 0 < low < high and left == TRUE:
-            # Instant by instant, so that ranges that overlap are seen to ask for the same.
+            # Split into single instants, so that overlapping ranges share their obligations.
             needs = FALSE
             for distance in range(low, high + 1):
                 needs = diagrams.either(needs, self._until(left, right, Range(distance, distance)))
@@ -158,7 +158,7 @@ class PendingUntils:
     def _variable(self, until: _Until) -> int:
         if until not in self._names:
             left, right, (low, high) = until
-            # Of one family the shortest come first.
+            # Within a family of untils, shorter ones come first.
             shorter = range(high) if low == 0 and high is not None else ()
             for each in [*(_Until(left, right, Range(0, last)) for last in shorter), until]:
                 if each not in self._names:
@@ -179,9 +179,9 @@ class PendingUntils:
         return self._unfolded[name]
 
     def _reduced(self, state: int) -> int:
-        """A state that is the same, given that an until of a family implies the longer ones.
+        """An equivalent state, given that an until of a family implies the longer ones.
 
-        A variable is left out if it makes no difference beside its next one.
+        A variable is dropped if, given its next one, it makes no difference.
         """
         known = self._smallest.get(abs(state))
         if known is None:
@@ -198,9 +198,9 @@ class PendingUntils:
         return known if state > 0 else -known
 
     def _implied(self, state: int, name: str, value: bool) -> int:
-        """What is left of a state if an until has this value.
+        """What remains of a state if an until has this value.
 
-        If it is true longer ones are, too; if it is false shorter ones are, too.
+        If it is true, longer ones are, too; if it is false, shorter ones are, too.
         """
         until = self._untils[name]
         family = self._families.get((until.left, until.right), {})

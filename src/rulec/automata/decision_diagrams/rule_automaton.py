@@ -1,4 +1,4 @@
-"""The way from a rule's formula to its deterministic automaton, without Spot."""
+"""From a rule's formula to its deterministic automaton, without Spot."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ from rulec.logic.semantics import Semantics
 class RuleAutomaton:
     """A formula's automaton over the letters of its ``diagrams``.
 
-    ``names`` are those of its propositions, ``possible`` the letters that facts leave, as a
-    function. ``alive`` is a name for what is true as long as a finite word lasts, None if words go
-    on for ever.
+    ``names`` maps its propositions to names; ``possible`` is the function of the letters that facts
+    allow. ``alive`` is the name of the proposition that is true while a finite word lasts, None if
+    words are infinite.
     """
 
     automaton: SymbolicAutomaton
@@ -46,7 +46,7 @@ class RuleAutomaton:
 
 
 def contradicts(known: ltl.Formula) -> bool:
-    """Tell whether a formula without temporal operators holds in no state."""
+    """Whether a formula without temporal operators holds in no state."""
     diagrams = Diagrams()
     diagrams.declare_letters(names_of(propositions_of(known)))
     return diagrams.of_state(known) == FALSE
@@ -58,10 +58,10 @@ def automaton_of(
     semantics: Semantics,
     facts: Sequence[ltl.Formula],
 ) -> RuleAutomaton:
-    """Automaton of ``formula``, with bounds in steps, over its possible letters.
+    """The automaton of ``formula``, with bounds in steps, over its possible letters.
 
-    Its language is that of the formula, with ``knowledge(reads)`` and all ``facts`` holding at
-    every instant; the facts may speak of other propositions, too. Raises BeyondReachError.
+    Its language is the formula's, with ``knowledge(reads)`` and all ``facts`` true at every
+    instant; the facts may contain other propositions, too. Raises BeyondReachError.
     """
     past = eliminate_past(formula)
     if past.memories:
@@ -96,7 +96,7 @@ def automaton_of(
 
 
 def _always(letters: int, *, ends: bool) -> SymbolicAutomaton:
-    """The automaton of words of these letters alone; a finite one has one letter at least."""
+    """The automaton of words with these letters only; a finite word has at least one letter."""
     if ends:
         rows = [{(1, 0): letters, (2, 0): -letters}] * 2
         return SymbolicAutomaton((*rows, {(2, 0): TRUE}), (False, True, False))
@@ -106,7 +106,7 @@ def _always(letters: int, *, ends: bool) -> SymbolicAutomaton:
 def over_letters(
     source: RuleAutomaton, reads: Sequence[Read | NumberRead]
 ) -> tuple[DeterministicAutomaton, int]:
-    """The automaton with sets of the letters of ``reads``, as bits, and the possible ones."""
+    """The automaton over bit sets of the letters of ``reads``, and the set of possible letters."""
     sets = {
         source.names[atom]: letters for atom, letters in letters_with(reads, source.names).items()
     }
@@ -126,7 +126,7 @@ def over_letters(
     possible = source.diagrams.bits(source.possible, sets, bits)
     if automaton.ends_well is None:
         return DeterministicAutomaton(tuple(rows), 0, automaton.accepts), possible
-    # Once a word has ended it stays in one of two more states.
+    # After its end, a word stays in one of two additional states.
     size = len(rows)
     rows += [(TableEdge(everything, size + well, 0),) for well in (False, True)]
     after = [*automaton.ends_well, False, True]

@@ -1,4 +1,4 @@
-"""Deterministic automata whose edges carry functions of letters, and how they are put together."""
+"""Deterministic automata whose edges carry functions of letters, and operations on them."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from rulec.automata.decision_diagrams.diagrams import FALSE, TRUE, Diagrams
 from rulec.logic.past_registers import Register
 
 Edges: TypeAlias = Mapping[tuple[int, int], int]
-"""The letters, as a function, by where they lead, and by the marks of that edge, as bits."""
+"""The letters of each edge, as a function, by its target and its marks (as bits)."""
 
 MOST_MARKS = 8
-"""Their combinations are gone through one by one."""
+"""All combinations of marks are enumerated."""
 
 State = TypeVar("State")
 
@@ -25,9 +25,10 @@ Connective: TypeAlias = Callable[[bool, bool], bool]
 class SymbolicAutomaton:
     """A complete deterministic automaton that begins in state 0.
 
-    On infinite words ``accepts`` tells from the marks that recur whether a run is accepting. It is
-    weak if there is one mark, and no circle has edges with it and without. On finite words, which
-    have no marks, ``ends_well`` tells of each state whether a word may end there; else it is None.
+    On infinite words ``accepts`` maps the recurring marks (as bits) to whether a run is accepting.
+    The automaton is weak if there is one mark, and no cycle has edges both with and without it. On
+    finite words, which have no marks, ``ends_well`` says for each state whether a word may end
+    there; on infinite words it is None.
     """
 
     edges: tuple[Edges, ...]
@@ -40,10 +41,10 @@ class SymbolicAutomaton:
 def explored(
     first: State, step: Callable[[State], Iterable[tuple[State, int, int]]]
 ) -> tuple[list[State], list[dict[tuple[int, int], int]]]:
-    """All states that are reached, and the edges of each.
+    """All reachable states, and the edges of each.
 
-    ``step`` gives of a state where it leads, with which marks, and on which letters; no two of a
-    state overlap.
+    ``step`` yields a state's edges as target, marks and letters; the letters of two edges are
+    disjoint.
     """
     states = [first]
     numbers = {first: 0}
@@ -60,7 +61,7 @@ def explored(
 
 
 def negated(automaton: SymbolicAutomaton) -> SymbolicAutomaton:
-    """The automaton of all other words."""
+    """The automaton of the complement language."""
     if automaton.ends_well is not None:
         return replace(automaton, ends_well=tuple([not well for well in automaton.ends_well]))
     if automaton.is_weak:
@@ -79,7 +80,7 @@ def joined(
     connective: Connective,
     diagrams: Diagrams,
 ) -> SymbolicAutomaton:
-    """The automaton of words about which the verdicts of two, joined so, are true.
+    """The automaton of the words whose verdicts by both automata satisfy ``connective``.
 
     Raises BeyondReachError for more than ``MOST_MARKS``.
     """
@@ -123,9 +124,9 @@ def joined(
 
 
 def merged(automaton: SymbolicAutomaton, diagrams: Diagrams) -> SymbolicAutomaton:
-    """The automaton with states merged that no word tells apart by its marks or its end."""
+    """The automaton with states merged that no word distinguishes by its marks or its end."""
     blocks = _blocks(automaton, diagrams)
-    # Numbered by first appearance, so the first state's is 0.
+    # Numbered by first appearance, so the first state gets 0.
     numbers = {block: number for number, block in enumerate(dict.fromkeys(blocks))}
     if len(numbers) == len(blocks):
         return automaton
@@ -140,12 +141,12 @@ def merged(automaton: SymbolicAutomaton, diagrams: Diagrams) -> SymbolicAutomato
 
 
 def _blocks(automaton: SymbolicAutomaton, diagrams: Diagrams) -> list[int]:
-    """Of each state a number, the same for those that no word tells apart.
+    """For each state a block number, equal for states that no word distinguishes.
 
-    Of what a block is split into the largest part keeps its number, and only who leads to a state
-    with a new one is looked at again: each state about as often as the logarithm of their count
-    (Hopcroft, *An n log n algorithm for minimizing states in a finite automaton*, 1971). A count
-    of steps, all of whose states differ in how far they are, would take its square otherwise.
+    When a block is split, the largest part keeps its number, and only predecessors of renumbered
+    states are examined again: each state about log n times (Hopcroft, *An n log n algorithm for
+    minimizing states in a finite automaton*, 1971). Otherwise a chain of counted steps, whose
+    states all differ, would take quadratic time.
     """
     size = len(automaton.edges)
     blocks = [0] * size if automaton.ends_well is None else list(map(int, automaton.ends_well))
@@ -163,7 +164,7 @@ def _blocks(automaton: SymbolicAutomaton, diagrams: Diagrams) -> list[int]:
             parts_of.setdefault(blocks[state], {}).setdefault(key, set()).add(state)
         changed: list[int] = []
         for block, by_key in parts_of.items():
-            # None of the others leads where numbers are new, so they are alike as they were.
+            # The other members lead to no renumbered state, so they stay equivalent.
             parts = sorted(by_key.values(), key=len)
             if len(parts[-1]) > len(members[block]) - sum(map(len, parts)):
                 others = members[block].difference(*parts)
@@ -189,11 +190,11 @@ def _regrouped(row: Edges, blocks: Sequence[int], diagrams: Diagrams) -> dict[tu
 def with_registers(
     automaton: SymbolicAutomaton, registers: Sequence[Register], diagrams: Diagrams
 ) -> SymbolicAutomaton:
-    """The automaton beside registers of the past, whose atoms are no variables any more.
+    """The product of the automaton and registers of the past; the registers' atoms disappear.
 
-    A state is one of the automaton and one of each register. These and a letter decide what the
-    registers say, by that the automaton's edge, and the registers' next states. In a state that is
-    never left the past makes no difference.
+    A state combines a state of the automaton and one of each register. These and a letter determine
+    the registers' values, by them the automaton's edge, and the registers' next states. In a state
+    that is never left the past makes no difference.
     """
     nothing = tuple([register.at_first for register in registers])
     never_left = [
@@ -207,7 +208,7 @@ def with_registers(
     known: dict[tuple[int, ...], list[tuple[int, dict[str, bool], tuple[int, ...]]]] = {}
 
     def moves(values: tuple[int, ...]) -> list[tuple[int, dict[str, bool], tuple[int, ...]]]:
-        """Steps of the registers: letters, what the registers say, and their next states."""
+        """Steps of the registers: letters, the registers' values, and their next states."""
         if values not in known:
             steps: list[tuple[int, dict[str, bool], tuple[int, ...]]] = [(TRUE, {}, ())]
             for value, name, (register, left, right) in zip(values, names, operands, strict=True):

@@ -1,4 +1,4 @@
-"""Automata compared with the formulas that they came from."""
+"""Comparison of automata with the formulas that they came from."""
 
 from __future__ import annotations
 
@@ -23,12 +23,13 @@ def check(
     memories: Sequence[Memory] = (),
     cpu_s: float | None = None,
 ) -> None:
-    """Check that an automaton accepts the formula's language and nothing else.
+    """Check that an automaton accepts exactly the formula's language.
 
-    ``formula`` may speak of ``memories``, the automaton must not. Every word has one way to choose
-    them as they are defined: it is inside if so completed ``formula`` holds for it, else outside.
-    With ``cpu_s``, each direction may take so much processor time and is left out if it takes more.
-    Raises CheckError if they differ, or if the automaton is not deterministic and complete.
+    ``formula`` may contain ``memories``, the automaton must not. Each word determines the values of
+    the memories by their definitions; it belongs to the language if ``formula`` holds with these
+    values. With ``cpu_s``, each direction may take that much processor time and is skipped if it
+    takes more. Raises CheckError if the languages differ, or if the automaton is not deterministic
+    and complete.
     """
     fresh = {spot_formulas.formula_of(memory.atom).ap_name() for memory in memories}
     if (
@@ -57,12 +58,12 @@ def check(
 
 
 def tried(question: Callable[[], object], cpu_s: float) -> bool | None:
-    """Answer of a question; None beyond the limits on time or memory.
+    """The answer to a question; None if it exceeds the limits on time or memory.
 
-    It is asked in a copy of this process, for Spot cannot be stopped.
+    It is computed in a forked process, since Spot cannot be interrupted.
     """
     with warnings.catch_warnings():
-        # Other threads, which Python 3.12 warns of, have no part in what the copy does.
+        # Python 3.12 warns about other threads, but the forked process does not use them.
         warnings.simplefilter("ignore", DeprecationWarning)
         child = os.fork()
     if child == 0:

@@ -1,7 +1,7 @@
-"""Obligations of a formula on a word, and their progress by letters.
+"""The obligations of a formula on a word, and their progression by letters.
 
-A formula is a Boolean function of its letter's propositions and of obligations for the rest of the
-word, each an until or a release with what is left of its range.
+A formula is a Boolean function of the current letter's propositions and of obligations for the rest
+of the word: each is an until or a release with what remains of its range.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _FALSE, _TRUE = ltl.Constant(False), ltl.Constant(True)
 
 
 class _Obligation(NamedTuple):
-    """Pending until (``strong``) or release, with the rest of its range."""
+    """A pending until (``strong``) or release, with the rest of its range."""
 
     strong: bool
     left: ltl.Formula
@@ -37,12 +37,13 @@ class _Obligation(NamedTuple):
 
 
 _Signed: TypeAlias = Callable[[bool], Any]
-"""A formula, for True, or its negation, for False, as a BDD: a negation goes down to obligations,
-so that no BDD has a negated one."""
+"""Maps True to a formula's BDD and False to its negation's; negation is pushed down to obligations,
+so that no BDD contains a negated obligation.
+"""
 
 
 def _joined(both: bool, left: _Signed, right: _Signed) -> _Signed:
-    """Conjunction (``both``) or disjunction, negated by De Morgan's laws."""
+    """A conjunction (``both``) or disjunction, negated by De Morgan's laws."""
 
     def signed(polarity: bool) -> Any:
         first, second = left(polarity), right(polarity)
@@ -56,14 +57,14 @@ def _equivalence(left: _Signed, right: _Signed) -> _Signed:
 
 
 class Obligations:
-    """Obligations of a formula without past operators, as variables of BDDs.
+    """The obligations of a formula without past operators, as variables of BDDs.
 
-    ``propositions``, a graph without states, has a variable for each: those of letters, by their
-    ``names``, come before those of obligations. ``first`` is what the formula asks of a letter and
-    of the rest of the word, ``unfolded`` what each obligation asks, by its variable, and ``known``
-    what obligations imply of each other.
-    ``is_safety``: no word is rejected but by one of its prefixes; ``is_cosafety``: none is accepted
-    but by one. Judged by the formula's operators, so that it may be one although neither is true.
+    ``propositions`` is a graph without states that has a variable for each: those of letters, by
+    their ``names``, come before those of obligations. ``first`` is what the formula demands of a
+    letter and of the rest of the word, ``unfolded`` what each obligation demands, by its variable,
+    and ``known`` the implications between obligations. ``is_safety``: every rejected word has a
+    prefix that decides this; ``is_cosafety``: every accepted word has one. Both are judged by the
+    formula's operators, so each may be false although the property holds.
     """
 
     def __init__(self, formula: ltl.Formula, spot_formulas: SpotFormulas) -> None:
@@ -85,7 +86,7 @@ class Obligations:
         self.known = self._implications()
 
     def _all(self) -> Iterator[_Obligation]:
-        """All obligations: unfolding one of them may bring up more."""
+        """All obligations; unfolding one of them may add more."""
         done = 0
         while done < len(self._variables):
             pending = list(self._variables)[done:]
@@ -99,7 +100,7 @@ class Obligations:
         return self._variables[_obligation]
 
     def _now(self, formula: ltl.Formula, polarity: bool) -> Any:
-        # Not kept: that would be a reference circle, and BDDs would outlive their use.
+        # Not cached: that would be a reference cycle, and BDDs would outlive their use.
         algebra: Algebra[_Signed] = Algebra(
             proposition=self._proposition,
             constant=lambda value: (
@@ -156,7 +157,7 @@ class Obligations:
         if high is not None and high < low:
             return buddy.bddfalse if strong else buddy.bddtrue
         if high is not None and 0 < low < high and left == (_TRUE if strong else _FALSE):
-            # Instant by instant, so that ranges that overlap are seen to ask for the same.
+            # Split into single instants, so that overlapping ranges share their obligations.
             demand = buddy.bddfalse if strong else buddy.bddtrue
             for distance in range(low, high + 1):
                 there = self._unfolded(_obligation._replace(span=Range(distance, distance)))
@@ -172,7 +173,7 @@ class Obligations:
         return now & (self._now(left, True) | later)
 
     def _implications(self) -> Any:
-        """Implications between obligations: a shorter until implies a longer one."""
+        """The implications between obligations: a shorter until implies a longer one."""
         families: dict[tuple[bool, ltl.Formula, ltl.Formula], list[tuple[float, Any]]] = {}
         for obligation, variable in self._variables.items():
             if obligation.span.low == 0:
@@ -186,14 +187,14 @@ class Obligations:
         return known
 
     def ends_well(self, state: Any) -> bool:
-        """Tell whether a word may end with its pending untils unfulfilled."""
+        """Whether a word may end in a state, with its pending untils unfulfilled."""
         for obligation, variable in self._variables.items():
             state = buddy.bdd_restrict(state, -variable if obligation.strong else variable)
         return bool(state == buddy.bddtrue)
 
 
 def _weak_until(left: ltl.Formula, right: ltl.Formula, span: Range) -> ltl.Formula:
-    """A bounded ``weak until`` by other operators and the unbounded one."""
+    """A bounded ``weak until``, expressed by other operators and the unbounded one."""
 
     def steps(first: int, last: int) -> ltl.Bound:
         return ltl.Bound(Fraction(first), Fraction(last), "steps")

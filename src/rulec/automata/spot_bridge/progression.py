@@ -1,8 +1,8 @@
 """Deterministic automata of bounded formulas, by formula progression.
 
-A state says what the rest of the word must do (formula progression, Bacchus and Kabanza, "Using
-temporal logic to control search in a forward chaining planner", 1996). States that say the same are
-one. With bounds it matters that a shorter until implies a longer one: of all the pending
+A state represents what the rest of the word must satisfy (formula progression, Bacchus and Kabanza,
+"Using temporal logic to control search in a forward chaining planner", 1996). Equivalent states are
+merged. With bounds it matters that a shorter until implies a longer one: of all the pending
 `eventually[<= 100 steps] p` only the most urgent one counts.
 """
 
@@ -20,10 +20,10 @@ from rulec.logic.formula import Formula
 
 
 class Progression:
-    """The automaton of a formula without operators of the past.
+    """The automaton of a formula without past operators.
 
-    ``is_decided``: on infinite words, too, every rejected word, or every accepted one, is so by one
-    of its prefixes: it is a safety or a co-safety formula, judged by its operators.
+    ``is_decided``: on infinite words, too, a prefix decides every rejected word, or every accepted
+    one: the formula is a safety or co-safety formula, judged by its operators.
     """
 
     def __init__(self, formula: Formula, spot_formulas: SpotFormulas) -> None:
@@ -40,12 +40,12 @@ class Progression:
             low = self._replaced(buddy.bdd_low(state))
             unfolded = self._of.unfolded[buddy.bdd_var(state)]
             result = state, buddy.bdd_ite(unfolded, high, low)
-            # The first keeps its number from being given to another.
+            # Holding the first BDD keeps its number from being reused.
             self._composed[state.id()] = result
         return result[1]
 
     def _split(self, left: Any, known: dict[int, Any]) -> dict[int, tuple[Any, Any]]:
-        """By target: (letters, target). Letters' variables are above those of obligations."""
+        """For each target: (letters, target). Letters' variables are above those of obligations."""
         if left == buddy.bddtrue or left == buddy.bddfalse:
             return {left.id(): (buddy.bddtrue, left)}
         variable = buddy.bdd_var(left)
@@ -63,7 +63,7 @@ class Progression:
         return result
 
     def _table(self) -> tuple[list[Any], list[list[tuple[Any, int]]]]:
-        """The obligations of each state, and the edges from it: letters, target.
+        """The obligations of each state, and its edges as (letters, target).
 
         State 0 is the one before the word; nothing leads back to it.
         """
@@ -72,7 +72,7 @@ class Progression:
         table = []
         for state in states:
             left = self._of.first if state is None else self._replaced(state)
-            # What the implications make the same becomes the same.
+            # Under the known implications, equivalent states become equal.
             left = buddy.bdd_constrain(left, self._of.known)
             edges = []
             for letters, target in self._split(left, {}).values():
@@ -84,11 +84,11 @@ class Progression:
         return states, table
 
     def infinite(self) -> Any:
-        """Deterministic, complete, weak Büchi automaton of a decided formula."""
+        """The deterministic, complete, weak Büchi automaton of a decided formula."""
         states, table = self._table()
         automaton = self._empty(len(states))
         for number, (state, edges) in enumerate(zip(states, table, strict=True)):
-            # Buddy can't compare with None.
+            # Buddy cannot compare a BDD with None.
             marked = state is not None and (
                 state != buddy.bddfalse if self._of.is_safety else state == buddy.bddtrue
             )
@@ -97,9 +97,9 @@ class Progression:
         return automaton
 
     def finite(self, alive: str) -> Any:
-        """Automaton of a formula on finite words, infinite ones where ``alive`` ends.
+        """The automaton of a formula on finite words: infinite words where ``alive`` becomes false.
 
-        What comes after a word's end does not matter, but ``alive`` does not come back.
+        What comes after a word's end does not matter, except that ``alive`` stays false.
         """
         states, table = self._table()
         lost, ended = len(states), len(states) + 1

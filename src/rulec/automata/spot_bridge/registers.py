@@ -19,12 +19,12 @@ _Values = tuple[int, ...]
 def with_registers(
     automaton: Any, registers: Sequence[Register], spot_formulas: SpotFormulas
 ) -> Any:
-    """The automaton beside the registers, whose atoms are no propositions any more.
+    """The product of the automaton and the registers; the registers' atoms disappear.
 
-    A state is one of the automaton and one of each register. These and a letter decide what the
-    registers say, by that the automaton's edge, and the registers' next states: so it stays
-    deterministic and complete. Once a finite word is over the registers are back at their start; so
-    they are in a state that is never left, where the past makes no difference.
+    A state combines a state of the automaton and one of each register. These and a letter determine
+    the registers' values, by them the automaton's edge, and the registers' next states, so the
+    product stays deterministic and complete. After the end of a finite word, and in a state that is
+    never left, the past makes no difference, so the registers are reset.
     """
     operands = _Operands(automaton, registers, spot_formulas)
     propositions = automaton.get_dict()
@@ -65,13 +65,13 @@ def with_registers(
 
 
 def _is_never_left(automaton: Any, state: int) -> bool:
-    """Tell whether a state has one edge, to itself, which all letters take."""
+    """Whether a state has only one edge, a loop for all letters."""
     edges = list(automaton.out(state))
     return len(edges) == 1 and edges[0].dst == state and edges[0].cond == buddy.bddtrue
 
 
 class _Operands:
-    """The function of registers from letters to their values."""
+    """The registers' values as a function of letters."""
 
     def __init__(
         self, automaton: Any, registers: Sequence[Register], spot_formulas: SpotFormulas

@@ -20,8 +20,7 @@ VERSION: str = spot.version()
 def in_hoa(automaton: Any, name: str, remarks: Sequence[str]) -> str:
     """The automaton in the Hanoi Omega-Automata format, version 1.
 
-    ``remarks`` become comments: the format has headers of one's own too, but not every tool that
-    reads it skips those.
+    ``remarks`` become comments: the format also has custom headers, but not every tool skips those.
     """
     ordered = _ordered(automaton)
     ordered.set_name(name)
@@ -31,7 +30,7 @@ def in_hoa(automaton: Any, name: str, remarks: Sequence[str]) -> str:
 
 
 def _ordered(automaton: Any) -> Any:
-    """Automaton with propositions sorted by name and states in breadth-first order.
+    """The automaton with propositions sorted by name and states in breadth-first order.
 
     Spot's own order depends on what it has translated before; a rule's file should not.
     """
@@ -69,7 +68,7 @@ def _without_comment_signs(text: str) -> str:
 
 
 def explore(translation: Translation, reads: Sequence[Read | NumberRead]) -> DeterministicAutomaton:
-    """Automaton with the letters of ``reads``; colours and letters as bits."""
+    """The automaton over the letters of ``reads``; colours and letters are bit sets."""
     automaton = translation.automaton
     sets = {
         translation.names[atom]: letters

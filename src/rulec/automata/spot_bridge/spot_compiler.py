@@ -1,4 +1,4 @@
-"""Spot as a compiler, as the worker asks it."""
+"""Spot as a compiler, as the worker uses it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rulec.automata.spot_bridge.translation import translate
 from rulec.logic.formula import Constant, Formula
 
 _NO_SETS = "Too many acceptance sets"
-"""So begins what Spot says of an automaton that takes more of them than it was built for, 32."""
+"""The start of Spot's error for an automaton with more than the 32 sets that it was built for."""
 
 
 def _translated(job: Job) -> Translated:

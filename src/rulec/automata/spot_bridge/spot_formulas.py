@@ -1,4 +1,4 @@
-"""Formulas of LTL as formulas of Spot (Duret-Lutz and others, Spot 2.x)."""
+"""LTL formulas as formulas of Spot (Duret-Lutz and others, Spot 2.x)."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from rulec.logic.formula import Constant, Formula, Proposition, Unary
 
 F = spot.formula
 _STRONG_NEXT = F("X[!]p").kind()
-"""Spot's `X` is weak where a word may end, and there is no constructor for the strong one."""
+"""Spot's `X` is weak where a word may end, and the strong one has no constructor."""
 
 
 class SpotFormulas:
-    """Translator of past-free formulas to Spot's, each part once.
+    """Translator of past-free formulas to Spot's formulas; each subformula is translated once.
 
-    Automata are made of them over one dictionary of propositions.
+    All automata made of them share one dictionary of propositions.
 
-    ``names`` are those of its propositions; ``alive`` that of the proposition which is true as long
-    as a finite word lasts, None where words go on for ever.
+    ``names`` maps propositions to names; ``alive`` is the name of the proposition that is true
+    while a finite word lasts, None if words are infinite.
     """
 
     def __init__(self, names: Mapping[Proposition, str], alive: str | None) -> None:
         self.names = names
         self.alive = alive
         self.dictionary = spot.make_bdd_dict()
-        # They are the first variables: so what a letter is can be asked before all else.
+        # Propositions become the first variables, so letters are tested before obligations.
         self._keeper = spot.make_twa_graph(self.dictionary)
         for name in sorted({*names.values(), *([] if alive is None else [alive])}):
             self._keeper.register_ap(name)
@@ -43,17 +43,17 @@ class SpotFormulas:
         return spot.translate(language, *shape, dict=self.dictionary)
 
     def formula_of(self, formula: Formula) -> Any:
-        """The formula; where words are finite, in Spot's LTLf."""
+        """Spot's formula; in LTLf if words are finite."""
         return fold(formula, self._algebra(), self._known)
 
     def language(self, formulas: Iterable[Any]) -> Any:
-        """Conjunction of Spot's formulas, as one LTL formula."""
+        """The conjunction of Spot's formulas, as one LTL formula."""
         together = F.And(list(formulas))
         return together if self.alive is None else spot.from_ltlf(together, self.alive)
 
     def _algebra(self) -> Algebra[Any]:
-        # Kept, it would be a reference circle: what is Spot's must go as soon as it is done with,
-        # for the numbers that Spot gives to formulas decide in which order edges come.
+        # Not cached: a reference cycle would keep Spot's objects alive, and the numbers that Spot
+        # gives to formulas determine the order of edges.
         return Algebra(
             proposition=lambda proposition: F.ap(self.names[proposition]),
             constant=lambda value: F.tt() if value else F.ff(),
@@ -111,10 +111,10 @@ class SpotFormulas:
 
 
 def projected(known: Formula, propositions: Sequence[Proposition]) -> Formula:
-    """Exact projection of ``known``, without temporal operators, onto these propositions.
+    """The exact projection of ``known``, without temporal operators, onto these propositions.
 
-    It holds for their values if ``known`` does for some values of all others. False if ``known``
-    cannot hold, true if it says nothing of them.
+    It holds for values of these if ``known`` does for some values of all others. False if ``known``
+    cannot hold, true if it implies nothing about them.
     """
     every = propositions_of(known)
     names = names_of([*propositions, *every])

@@ -1,4 +1,4 @@
-"""The way from a formula to its deterministic automaton."""
+"""From a formula to its deterministic automaton."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _SHAPE = ("parity", "det", "complete")
 _NOT, _AND, _OR = ltl.UnaryOperator.NOT, ltl.BinaryOperator.AND, ltl.BinaryOperator.OR
 
 _SMALL = 6
-"""Bounds of so many steps together leave a formula that Spot can translate without its bounds."""
+"""The greatest total of bounds in steps for which Spot can translate a formula as a whole."""
 
 _CHECK_CPU_S = 0.1
 _TRY_CPU_S = 0.4
@@ -32,12 +32,12 @@ _TRY_CPU_S = 0.4
 
 @dataclass(frozen=True, slots=True)
 class Translation:
-    """A formula's automaton, a ``twa_graph``: deterministic and complete, with parity acceptance.
+    """A formula's automaton, a ``twa_graph``: deterministic, complete, with parity acceptance.
 
-    ``names`` are those of its propositions. ``alive`` is None if it reads infinite words, else the
-    proposition that is true as long as a finite word lasts. ``is_checked``: Spot has compared it
-    with the formula both ways. With long bounds it takes ``compare`` to ask Spot, which may find no
-    answer in time.
+    ``names`` maps propositions to names. ``alive`` is None if it reads infinite words, else the
+    proposition that is true while a finite word lasts. ``is_checked``: Spot has compared it with
+    the formula in both directions. With long bounds ``compare`` does so, and may find no answer in
+    time.
     """
 
     automaton: Any
@@ -53,11 +53,11 @@ def translate(
     semantics: Semantics = "stutter",
     axioms: Sequence[ltl.Formula] = (),
 ) -> Translation:
-    """Automaton of ``formula``, with bounds in steps, over its possible letters.
+    """The automaton of ``formula``, with bounds in steps, over its possible letters.
 
-    Its language is that of the formula, with ``knowledge(reads)`` and ``axioms`` holding at every
-    instant, its propositions are the formula's; the axioms speak of no others. Raises CheckError
-    where Spot, or rulec, got it wrong.
+    Its language is the formula's, with ``knowledge(reads)`` and ``axioms`` true at every instant;
+    it has the formula's propositions, and the axioms must contain no others. Raises CheckError if
+    Spot or rulec made a mistake.
     """
     propositions = propositions_of(formula)
     past = eliminate_past(formula)
@@ -93,16 +93,16 @@ def translate(
 
 
 def _shaped(automaton: Any) -> Any:
-    """An automaton of the language, smaller if possible, with parity acceptance."""
+    """An automaton of the same language, smaller if possible, with parity acceptance."""
     if spot.is_deterministic(automaton) and spot.is_weak_automaton(automaton):
         automaton = spot.minimize_wdba(automaton)
     return spot.postprocess(automaton, *_SHAPE)
 
 
 def _guessed(formula: ltl.Formula, memories: Sequence[Memory], spot_formulas: SpotFormulas) -> Any:
-    """Automaton of a formula, its future-dependent memories projected away.
+    """The automaton of a formula whose memories depend on the future.
 
-    What they are is guessed and projected away, which takes a determinisation.
+    The values of the memories are guessed and projected away, which needs a determinisation.
     """
     defined = [spot_formulas.formula_of(definition(memory)) for memory in memories]
     guessing = spot_formulas.translate(
@@ -115,7 +115,7 @@ def _guessed(formula: ltl.Formula, memories: Sequence[Memory], spot_formulas: Sp
 
 
 def _combined(formula: ltl.Formula, polarity: bool, spot_formulas: SpotFormulas) -> Any:
-    """Automaton of a formula or its negation; bounded ones by parts."""
+    """The automaton of a formula or its negation; bounded ones are translated in parts."""
     if total_bound(formula) == 0:
         return spot_formulas.translate(_language(formula, polarity, spot_formulas), *_SHAPE)
     match formula:
@@ -145,7 +145,7 @@ def _combined(formula: ltl.Formula, polarity: bool, spot_formulas: SpotFormulas)
 def _by_progression(
     formula: ltl.Formula, polarity: bool, spot_formulas: SpotFormulas
 ) -> Any | None:
-    """Automaton by formula progression; None if prefixes decide nothing."""
+    """The automaton by formula progression; None if prefixes do not decide the formula."""
     progression = Progression(formula if polarity else ltl.Unary(_NOT, formula), spot_formulas)
     if spot_formulas.alive is not None:
         return _shaped(progression.finite(spot_formulas.alive))
@@ -160,10 +160,10 @@ def _language(formula: ltl.Formula, polarity: bool, spot_formulas: SpotFormulas)
 
 
 def _by_trial(language: Any, spot_formulas: SpotFormulas) -> Any:
-    """Automaton of a language by the first way that is quick enough.
+    """The automaton of a language by the first method that is quick enough.
 
-    Its bounds are nested nexts to Spot; of an automaton and its complement's one is often far
-    smaller, as long as it need not be deterministic.
+    Spot sees bounds as nested nexts. Of the non-deterministic automata of the language and of its
+    complement, one is often far smaller.
     """
 
     def plain() -> Any:

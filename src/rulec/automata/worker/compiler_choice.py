@@ -1,6 +1,6 @@
-"""Choice between the two compilers: Spot if installed, else decision diagrams.
+"""The choice between the two compilers: Spot if installed, else decision diagrams.
 
-It is an environment variable's, so that processes that are started meanwhile compile alike.
+It is an environment variable, so that child processes compile alike.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ SPOT, DIAGRAMS = "spot", "diagrams"
 
 
 def choice() -> str:
-    """The compiler that is asked for; empty for the usual one. Raises RulecError R0416."""
+    """The requested compiler; empty for the default. Raises RulecError R0416."""
     name = os.environ.get(VARIABLE, "")
     if name not in ("", SPOT, DIAGRAMS):
         raise NO_COMPILER.error(

@@ -1,6 +1,6 @@
-"""Worker process of the compilers: jobs on standard input, tables on standard output.
+"""The compilers' worker process: jobs on standard input, tables on standard output.
 
-It may use bounded time and memory only, and may die of either; the caller sees that it did.
+It has limits on time and memory and may die of either; the caller notices.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ MEMORY_LIMIT_BYTES = 2 << 30
 
 
 def main(confined: Confinement, choice: str) -> None:
-    """Answer jobs until standard input ends, by the compiler that is chosen."""
+    """Answer jobs with the chosen compiler until standard input ends."""
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    # Not every system that is not Linux has such a limit.
+    # Not every system other than Linux has this limit.
     with suppress(OSError, ValueError):
         _limit(resource.RLIMIT_AS, MEMORY_LIMIT_BYTES)
     answers = sys.stdout.buffer

@@ -1,8 +1,8 @@
-"""Confines the process that it is called in: it can write no file, open no connection, run nothing.
+"""Confines the calling process: it can write no file, open no connection and run no program.
 
-Spot is native code that reads formulas of strangers; it needs its memory, and a pipe either way.
-Files and signals are kept from it by Landlock (Linux from 5.13; its rules are in the kernel's
-``include/uapi/linux/landlock.h``), connections and programs by seccomp. Reading stays possible:
+Spot is native code that reads formulas from strangers; it needs only its memory and two pipes.
+Landlock (Linux from 5.13; its rules are in the kernel's ``include/uapi/linux/landlock.h``) blocks
+files and signals, seccomp blocks connections and programs. Reading files stays possible, because
 Python's modules and Spot's libraries have to be loaded.
 """
 
@@ -18,11 +18,11 @@ _CREATE_RULESET, _RESTRICT_SELF = 444, 446
 _VERSION_OF_LANDLOCK = 1
 
 _RIGHTS = ((5, 1 << 15), (3, 1 << 14), (2, 1 << 13))
-"""Landlock's version -> the right on files that came with it."""
+"""Landlock's version and the right on files that it added."""
 _FIRST_RIGHTS = ((1 << 13) - 1) & ~(1 << 2 | 1 << 3)
-"""All of version 1 but to read files and folders."""
+"""All rights of version 1 except reading files and folders."""
 _TCP, _SCOPES = 0b11, 0b11
-"""To bind and to connect (from version 4); abstract sockets and signals (from version 6)."""
+"""Binding and connecting (from version 4); abstract sockets and signals (from version 6)."""
 
 _ARCHITECTURES = {"x86_64": 0xC000003E, "aarch64": 0xC00000B7}
 _SECCOMP = {"x86_64": 317, "aarch64": 277}
@@ -32,29 +32,29 @@ _DENIED = {
     "aarch64": (221, 281, 198, 199, 203, 117, 271, 425),
 }
 _FOREIGN_CALLS = 0x40000000
-"""From here on numbers are of x86-64's second way of calling."""
+"""Numbers from here on belong to x86-64's second calling convention (x32)."""
 _LOAD, _JUMP_IF_EQUAL, _JUMP_IF_AT_LEAST, _RETURN = 0x20, 0x15, 0x35, 0x06
 _NUMBER, _ARCHITECTURE = 0, 4
 _ALLOWED, _REFUSED = 0x7FFF0000, 0x00050001
-"""What a filter says: to go on, or that it is not permitted (EPERM)."""
+"""Results of a filter: allow, or fail with EPERM."""
 _FILTER, _ALL_THREADS = 1, 1
 
 
 class Confinement(NamedTuple):
-    """What a process is kept from: to write, make or remove files; to connect, or run programs."""
+    """Whether a process is kept from changing files, and from connecting and running programs."""
 
     files: bool
     connections: bool
 
 
 def confine() -> Confinement:
-    """Confine this process for good, as far as the kernel can, and say how far that is.
+    """Confine this process permanently as far as the kernel can; return what is confined.
 
-    It has to be called before there are other threads: Landlock holds for the one that asks.
+    Must be called before other threads exist: Landlock applies to the calling thread.
     """
     if sys.platform != "linux":
         return Confinement(files=False, connections=False)
-    # Only the worker needs it, not who reads what it is kept from.
+    # Imported only by the worker, not by callers that read ``Confinement``.
     import ctypes
 
     system = ctypes.CDLL(None)
@@ -81,14 +81,14 @@ def _without_files(system: Any) -> bool:
 
 
 def _without_connections(system: Any) -> bool:
-    # As above
+    # As above.
     import ctypes
 
     machine = os.uname().machine
     if machine not in _DENIED or sys.maxsize < 2**32:
         return False
     denied = _DENIED[machine]
-    # Each line: what is done, how many lines are left out if so and if not, and the operand.
+    # Each line: operation, lines to skip if true and if false, operand.
     lines = [
         (_LOAD, 0, 0, _ARCHITECTURE),
         (_JUMP_IF_EQUAL, 0, len(denied) + 3, _ARCHITECTURES[machine]),
@@ -99,7 +99,7 @@ def _without_connections(system: Any) -> bool:
         (_RETURN, 0, 0, _REFUSED),
     ]
     code = b"".join(struct.pack("=HBBI", *line) for line in lines)
-    held = ctypes.create_string_buffer(code, len(code))  # until the call has ended
+    held = ctypes.create_string_buffer(code, len(code))  # kept alive until the call ends
     program = struct.pack("@HP", len(lines), ctypes.addressof(held))
     answer = system.syscall(_SECCOMP[machine], _FILTER, _ALL_THREADS, program)
     return bool(answer == 0)

@@ -1,4 +1,4 @@
-"""The answer to a job: a machine that has been compared with its formula, or why there is none."""
+"""The answer to a job: a machine that was compared with its formula, or why there is none."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from rulec.validation.unprovable import UnprovableError
 
 
 def answer_to(job: Job, compiler: Compiler) -> Done | Failed:
-    """The machine of a job, or why there is none."""
+    """The machine of a job, or the reason why there is none."""
     if count_letters(job.reads) > job.most_letters:
         return Failed("letters")
     if _farthest_step(job.formula) > MOST_STEPS_AHEAD:
@@ -58,7 +58,7 @@ def answer_to(job: Job, compiler: Compiler) -> Done | Failed:
 
 
 def _farthest_step(formula: Formula) -> Fraction:
-    """The last step that a bound of a formula in steps names."""
+    """The greatest step number in any bound of a formula in steps."""
     bounds = [operation.bound for operation in operations_of(formula)]
     ends = [bound.high or bound.low for bound in bounds if bound is not None]
     return max(ends, default=Fraction(0))
@@ -75,11 +75,11 @@ def _contradiction(group: AxiomGroup, compiler: Compiler) -> tuple[AxiomInstance
 
 
 def _is_right(machine: MealyMonitor, job: Job, translated: Translated) -> bool:
-    """Tell whether a machine judges words as its job's formula does.
+    """Whether a machine judges words as its job's formula does.
 
-    It is proved, for all words. Where that takes too long, the compiler compares its automaton with
-    the formula as far as it can; and unless that was all, the machine is tried on random words.
-    Raises CheckError as ``found.compare``.
+    This is proved for all words. If the proof takes too long, the compiler compares its automaton
+    with the formula as far as it can; unless that is complete, the machine is tested on random
+    words. Raises CheckError as ``found.compare``.
     """
     try:
         _prove(machine, job)
@@ -97,7 +97,7 @@ def _is_right(machine: MealyMonitor, job: Job, translated: Translated) -> bool:
 
 def _prove(machine: MealyMonitor, job: Job) -> None:
     """Raise UnprovableError unless a machine judges all words as its formula does."""
-    # By what an atom says: one limit may be written in two units.
+    # Looked up by an atom's meaning: the same limit may be written in two units.
     true_in: dict[Formula, int] = {}
     true_in.update(letters_with(machine.reads, propositions_of(job.formula)).items())
     prove_words(

@@ -1,8 +1,8 @@
-"""Cache of what a compiler's process has answered, by the whole of what it was asked.
+"""Cache of the answers of a compiler's process, with the whole job as the key.
 
-The key is the job, formula, facts and remarks included, and the compiler; so a rule of which
-nothing has changed is not compiled again, by whatever command and in whatever rulebook. Only
-machines are kept, all of which have been proved. Those of shipped rulebooks ship with them.
+The key is the job, with formula, facts and remarks, and the compiler; so an unchanged rule is not
+compiled again, whatever the command and rulebook. Only machines are kept, all of them proved. Those
+of shipped rulebooks are shipped, too.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from rulec.cache.kept_bytes import KeptBytes
 from rulec.cache.shipped_bytes import ShippedBytes, shipped, shipped_key
 
 MOST_MACHINES = 6000
-"""So many are kept; those longest unused go first. A large rulebook has 200 for a step."""
+"""The greatest number kept; the longest unused go first. A large rulebook has 200 for one step."""
 
 
 SHIPPED = "machine"
@@ -33,11 +33,11 @@ MAKERS = (
     *(f"automata/{name}.py" for name in ("alphabet", "compiler_jobs")),
     *(f"automata/{name}.py" for name in ("guards", "mealy_monitor", "tables", "thresholds")),
 )
-"""The kind of what ships, and the code that it comes from."""
+"""The kind of the shipped entries, and the code that determines them."""
 
 
 class KeptMachine(msgspec.Struct, array_like=True):
-    """A machine and its automaton, as text; of a job, which has its reads; and Spot's version."""
+    """A job's machine without its reads, its automaton as text, and Spot's version."""
 
     spot: str
     letters: tuple[int, ...]
@@ -49,12 +49,12 @@ class KeptMachine(msgspec.Struct, array_like=True):
 
 
 class MachineCache:
-    """The machines of jobs that a compiler is given, as far as they are known."""
+    """The known machines for jobs of one compiler."""
 
     def __init__(self, choice: str) -> None:
         self._kept = KeptBytes("machine", MOST_MACHINES)
         self._compiler = f"{choice} {_installed()}" if self._kept.can_be else None
-        # Who chooses a compiler gets what it makes, and who has no Spot what the other one makes.
+        # Not used if the environment chooses a compiler, or if the default, Spot, is missing.
         is_usual = not compiler_choice.choice() and (choice or find_spec(compiler_choice.SPOT))
         self._shipped = (
             shipped(SHIPPED, MAKERS) if knows_shipped() and is_usual else ShippedBytes({})
@@ -62,7 +62,7 @@ class MachineCache:
         self._choice = choice
 
     def recalled(self, jobs: Sequence[Job]) -> tuple[list[Done | None], str | None]:
-        """The answer to each job, None where it is not known; and Spot's version, None likewise."""
+        """The answer to each job, and Spot's version; each None if unknown."""
         answers: list[Done | None] = []
         spot = None
         for job in jobs:
@@ -76,7 +76,7 @@ class MachineCache:
         if data is None and self._compiler is not None:
             data = self._kept.recall(self._key(job))
         if data is not None:
-            with suppress(ValueError):  # what msgspec says is one
+            with suppress(ValueError):  # the base class of msgspec's errors
                 return msgspec.msgpack.decode(data, type=KeptMachine)
         return None
 
@@ -91,23 +91,23 @@ class MachineCache:
         self._kept.keep(contents)
 
     def _key(self, job: Job) -> str:
-        # What is shown of a job is all of it but for places in files.
+        # The repr of a job shows everything except places in files.
         return self._kept.key(str(self._compiler), repr(job))
 
 
 def machine_key(choice: str, job: Job) -> bytes:
-    """Under which the answer to a job ships; an empty choice is the usual one, Spot."""
+    """The key of a shipped answer to a job; an empty choice means the default, Spot."""
     return shipped_key(choice or compiler_choice.SPOT, repr(job))
 
 
 def as_bytes(answer: Done, spot: str, *, with_text: bool = True) -> bytes:
-    """A machine as it is kept, with the version of Spot that made it, and its automaton as text."""
+    """A machine in the cache's format, with the version of Spot that made it and the HOA text."""
     kept = _kept(answer, spot)
     return msgspec.msgpack.encode(kept if with_text else msgspec.structs.replace(kept, hoa=""))
 
 
 def _installed() -> str:
-    """Which Spot there is; another release is another file, or of another time."""
+    """Identifies the installed Spot; another release has another path, time or size."""
     spec = find_spec(compiler_choice.SPOT)
     if spec is None or spec.origin is None:
         return ""

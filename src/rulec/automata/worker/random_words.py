@@ -1,4 +1,4 @@
-"""Monitors compared with the semantics on pseudo-random words."""
+"""Comparison of monitors with the semantics on pseudo-random words."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from rulec.logic.semantics import Letter, Semantics, holds, truth_values
 
 MOST_WORDS, FEWEST_WORDS = 300, 40
 _EFFORT = 200_000
-"""About so many values are evaluated altogether, if that is possible with the fewest words."""
+"""The approximate number of values evaluated in all, unless the fewest words need more."""
 
 
 def agrees(machine: MealyMonitor, formula: Formula, semantics: Semantics) -> bool:
-    """Compare a monitor with the semantics on pseudo-random possible words.
+    """Whether a monitor agrees with the semantics on pseudo-random possible words.
 
-    Some letters stay about as long as one of the formula's bounds, which is where a bound matters.
+    Some letters are repeated about as often as a bound of the formula, where bounds matter.
     """
     chance = random.Random(0)
     possible = [n for n, symbol in enumerate(machine.letters) if symbol != IMPOSSIBLE]
@@ -44,7 +44,7 @@ def agrees(machine: MealyMonitor, formula: Formula, semantics: Semantics) -> boo
 def _outlined(
     formula: Formula, letters: Mapping[int, Letter]
 ) -> tuple[Formula, Mapping[int, Letter]]:
-    """The formula with an atom for each part that looks at the present alone, and its letters.
+    """The formula with each part about the present state replaced by an atom, and its letters.
 
     Such a part is evaluated once for all letters, not in every word.
     """
@@ -65,14 +65,14 @@ def _outlined(
 
 
 def _bounds(formula: Formula) -> list[int]:
-    """Bounds of a formula in steps, and the numbers next to them."""
+    """The bounds of a formula in steps, and the numbers next to them."""
     ranges = {range_of(operation) for operation in operations_of(formula)}
     numbers = {number for limits in ranges for number in limits if number is not None}
     return sorted({near for number in numbers for near in range(number - 1, number + 3)} - {-1, 0})
 
 
 def _word(chance: random.Random, letters: list[int], bounds: list[int]) -> Iterator[int]:
-    # Between a few letters more happens twice than between all of them.
+    # With only a few letters, repetitions are more likely than with all of them.
     some = [letters[chance.randrange(len(letters))] for _ in range(chance.randint(1, 4))]
     for _ in range(chance.randint(1, 8)):
         number = chance.choice(some)

@@ -1,6 +1,6 @@
 """Messages from a compiler's process: its abilities, then answers to jobs.
 
-Where there are no processes, as in a browser, the answers are given in this one.
+Without processes, as in a browser, this process computes the answers.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from rulec.automata.worker.confinement import Confinement
 from rulec.automata.worker.job_answers import answer_to
 
 HAS_PROCESSES = sys.platform != "emscripten"
-"""A browser has none; whoever runs Python there can end the whole of it, and does."""
+"""A browser has no processes; a page that runs Python can end its worker instead."""
 
 _MOST_REMEMBERED = 1 << 10
 
 
 @dataclass(frozen=True, slots=True)
 class WorkerGreeting:
-    """First message of a worker: Spot's version, or None and a ``problem`` if it cannot work.
+    """The first message of a worker: Spot's version, or None and a ``problem`` if it cannot work.
 
     The version is empty if it works without Spot. ``confined``: what the worker is kept from.
     """
@@ -35,20 +35,20 @@ class WorkerGreeting:
 
 
 def chosen(choice: str) -> Compiler:
-    """The compiler of a choice, empty for the usual one.
+    """The compiler for a choice; an empty choice is the default.
 
-    Raises ImportError if it has to be Spot, and that is not there.
+    Raises ImportError if Spot is required and missing.
     """
     if choice != compiler_choice.DIAGRAMS:
         try:
-            # Spot is loaded in the worker alone.
+            # Spot is loaded only in the worker.
             from rulec.automata import spot_bridge
 
             return spot_bridge.COMPILER
         except ImportError:
             if choice == compiler_choice.SPOT:
                 raise
-    # The library may come with NetworkX: only where Spot does not translate.
+    # The library may come with NetworkX, so it is loaded only where Spot is not used.
     from rulec.automata.decision_diagrams import diagram_compiler
 
     sys.setrecursionlimit(MOST_STEPS_AHEAD)
@@ -66,9 +66,9 @@ def answered(job: Job, compiler: Compiler) -> Done | Failed:
 
 
 def answered_here(jobs: Iterable[Job]) -> list[Done | Failed]:
-    """Answers of decision diagrams in this process, without bounds on time or memory.
+    """Answers of decision diagrams in this process, without limits on time or memory.
 
-    Who edits a rulebook asks for all of its rules again and again, so they are remembered.
+    An editor asks for all rules of a rulebook again and again, so answers are remembered.
     """
     return [_remembered(job) for job in jobs]
 
