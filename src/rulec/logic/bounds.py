@@ -1,4 +1,4 @@
-"""Bounds of temporal operators: seconds as steps, and ranges of instants."""
+"""Bounds of temporal operators: seconds converted to steps, and ranges of instants."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PAST: frozenset[ltl.UnaryOperator | ltl.BinaryOperator] = frozenset(
         ltl.BinaryOperator.SINCE,
     )
 )
-"""The operators that look back."""
+"""The operators that refer to the past."""
 
 BOOLEAN: frozenset[ltl.UnaryOperator | ltl.BinaryOperator] = frozenset(
     (
@@ -32,7 +32,7 @@ BOOLEAN: frozenset[ltl.UnaryOperator | ltl.BinaryOperator] = frozenset(
         ltl.BinaryOperator.XOR,
     )
 )
-"""The operators that look at the present alone."""
+"""The operators that refer to the present only."""
 
 DISTANCE: frozenset[ltl.UnaryOperator | ltl.BinaryOperator] = frozenset(
     (
@@ -42,13 +42,13 @@ DISTANCE: frozenset[ltl.UnaryOperator | ltl.BinaryOperator] = frozenset(
         ltl.UnaryOperator.WEAK_PREVIOUSLY,
     )
 )
-"""The operators that look at a single instant: without a bound, at the one beside this."""
+"""The operators that refer to a single instant: without a bound, to the adjacent one."""
 
 
 class NotAMultipleError(ValueError):
     """A bound in seconds, ``offending``, falls between two instants of a trace.
 
-    ``span`` is where it is written.
+    ``span`` is its place in the source.
     """
 
     def __init__(self, offending: Fraction, step_s: Fraction, span: Span | None) -> None:
@@ -59,9 +59,9 @@ class NotAMultipleError(ValueError):
 
 
 class Range(NamedTuple):
-    """The instants ``low`` to ``high`` steps away, both included.
+    """The instants from ``low`` to ``high`` steps away, both included.
 
-    ``high`` is None where there is no end. A range may be empty.
+    ``high`` is None if the range is unbounded. A range may be empty.
     """
 
     low: int
@@ -71,8 +71,8 @@ class Range(NamedTuple):
 def range_of(formula: ltl.Unary | ltl.Binary) -> Range:
     """The range of the formula's operator.
 
-    That of ``then`` is the range of its ``until``: the first phase lasts one instant or more.
-    ValueError for a bound in seconds, or in parts of a step.
+    For ``then`` it is the range of its ``until``: the first phase lasts at least one instant.
+    Raises ValueError for a bound in seconds, or in fractions of a step.
     """
     bound, operator = formula.bound, formula.operator
     least = int(operator is ltl.BinaryOperator.THEN)
@@ -91,7 +91,7 @@ def _whole(steps: Fraction) -> int:
 
 
 def has_seconds(formula: ltl.Formula) -> bool:
-    """True if the formula has a bound in seconds.
+    """Whether the formula has a bound in seconds.
 
     If not, the step of a trace makes no difference.
     """
@@ -100,7 +100,7 @@ def has_seconds(formula: ltl.Formula) -> bool:
 
 
 def fitting_step(formula: ltl.Formula, step_s: Fraction) -> Fraction:
-    """The longest divisor (s) of a step and all bounds in seconds."""
+    """The longest time (s) that divides a step and all bounds in seconds."""
     bounds = [operation.bound for operation in operations_of(formula)]
     seconds = [bound for bound in bounds if bound is not None and bound.unit == "s"]
     ends = [end for bound in seconds for end in (bound.low, bound.high) if end is not None]
@@ -108,7 +108,7 @@ def fitting_step(formula: ltl.Formula, step_s: Fraction) -> Fraction:
 
 
 def longest_divisor(times: Iterable[Fraction]) -> Fraction:
-    """The longest time of which all of these, one or more, are multiples."""
+    """The longest time of which all these times (at least one) are multiples."""
     listed = list(times)
     whole = lcm(*(time.denominator for time in listed))
     return Fraction(gcd(*(int(time * whole) for time in listed)), whole)
@@ -117,7 +117,7 @@ def longest_divisor(times: Iterable[Fraction]) -> Fraction:
 def operations_of(formula: ltl.Formula) -> Iterator[ltl.Unary | ltl.Binary]:
     """The operations in a formula, each before its operands.
 
-    Those in bodies of counts are left out.
+    Operations in the bodies of counts are left out.
     """
     waiting = [formula]
     while waiting:
@@ -131,7 +131,7 @@ def operations_of(formula: ltl.Formula) -> Iterator[ltl.Unary | ltl.Binary]:
 
 
 Rounding = Callable[[Fraction], int]
-"""How to make a whole number of steps of a bound: ``math.floor`` or ``math.ceil``."""
+"""How a bound becomes a whole number of steps: ``math.floor`` or ``math.ceil``."""
 
 
 def in_steps(
@@ -139,12 +139,12 @@ def in_steps(
 ) -> ltl.Formula:
     """The formula with bounds in steps of ``step_s`` seconds, rounded if there is a ``rounding``.
 
-    It no longer says where its bounds are written.
+    The new bounds have no ``span``.
 
     Raises:
-        NotAMultipleError: for the first bound, from left to right, that is no multiple of the step,
-            if there is no rounding.
-        ValueError: if the step is not above 0.
+        NotAMultipleError: without rounding, for the first bound (from left to right) that is no
+            multiple of the step.
+        ValueError: if the step is not positive.
     """
     if step_s <= 0:
         raise ValueError("a step lasts more than 0 s")
@@ -177,9 +177,9 @@ def _steps(
 
 
 def total_bound(formula: ltl.Formula) -> int:
-    """The sum of all bounds of the formula in steps, each as far as it looks.
+    """The sum of all bounds of a formula in steps: their upper ends, or lower ones if unbounded.
 
-    ValueError for a bound in seconds.
+    Raises ValueError for a bound in seconds.
     """
     bounded = (operation for operation in operations_of(formula) if operation.bound is not None)
     return sum(low if high is None else high for low, high in map(range_of, bounded))

@@ -1,8 +1,9 @@
 """Causes: the parts and instants that decide a formula's value.
 
-As long as atoms keep their values where they decide, the formula keeps its own, whatever else
-changes. What decides is enough, not all there is: of two false operands of `and` the first one does
-(cf. Beer, Ben-David, Chockler, Orni, Trefler, "Explaining counterexamples using causality", 2009).
+As long as the atoms keep their values where they decide, the formula keeps its value, whatever else
+changes. The causes found are sufficient but not complete: of two false operands of `and` only the
+first is a cause (cf. Beer, Ben-David, Chockler, Orni, Trefler, "Explaining counterexamples using
+causality", 2009).
 """
 
 from __future__ import annotations
@@ -27,30 +28,30 @@ def instants_among(
 ) -> dict[Formula, list[bool]]:
     """The instants at which a formula and its parts decide its value at the first instant.
 
-    They are found from the ``extended_values`` on a word of so many letters. Where what always or
-    never must be fails at several instants the first of them decides, if there is one the first
-    not before ``since``.
+    They are found from the ``extended_values`` on a word of ``n_letters``. If an ``always`` or
+    ``never`` fails at several instants, the first one decides; with ``since``, the first one not
+    before that instant, if there is one.
     """
     length, last = len(known[formula]), n_letters - 1
     onward, backward = _Columns(known), _Columns(known, turned=True)
-    # A part begins to decide where its mark is above 0, and ceases to where it is below.
+    # Differences: a part begins to decide where its mark is above 0, and stops where it is below.
     marks = {part: [0] * (length + 1) for part in known}
     marks[formula][:2] = [1, -1]
     of_operand: dict[int, list[int]] = {}
     result = {}
-    for part in reversed(list(known)):  # all that it is an operand of has been before it
+    for part in reversed(list(known)):  # operands come after their operations
         if not any(marks[part]):
             result[part] = [False] * n_letters
             continue
         decides = [begun > 0 for begun in accumulate(marks[part][:length])]
-        # What comes after the word's end is its last letter again.
+        # Instants beyond the word's end repeat its last letter.
         result[part] = [*decides[:last], any(decides[last:])]
         if not isinstance(part, Unary | Binary):
             continue
         looks_back = part.operator in PAST
         for instant in compress(range(length), decides):
             if looks_back:
-                # The past ends with the first instant.
+                # The past ends at the first instant.
                 mirrored = _reasons(part, length - 1 - instant, backward, ends=True)
                 reasons = [(cause, length - 1 - b, length - 1 - a) for cause, a, b in mirrored]
             else:
@@ -67,7 +68,7 @@ def instants_among(
 
 
 class _Column:
-    """A part's values, and the next instant with either value, which is looked for when asked."""
+    """A part's values, and for each instant the next one with a value, computed on demand."""
 
     def __init__(self, values: Sequence[bool]) -> None:
         self.values = values
@@ -92,9 +93,9 @@ class _Column:
 
 
 class _Columns:
-    """The columns of parts whose values are known, perhaps turned around; made once asked for.
+    """The columns of parts with known values, optionally reversed; made when first needed.
 
-    Parts are looked up as the objects that they are: a formula's hash is that of all its parts.
+    Parts are looked up by identity, since a formula's hash depends on all its parts.
     """
 
     def __init__(self, known: Mapping[Formula, Sequence[bool]], *, turned: bool = False) -> None:
@@ -115,7 +116,7 @@ _ALONE = {
     BinaryOperator.OR: (True, True),
     BinaryOperator.IMPLIES: (False, True),
 }
-"""For each operand the value with which it decides alone."""
+"""For each operand, the value with which it decides alone."""
 
 _FAILING = frozenset(
     (
@@ -127,8 +128,9 @@ _FAILING = frozenset(
         BinaryOperator.STRONG_RELEASE,
     )
 )
-"""These say that no instant is found at which operands fail; the others, that one is or is not at
-which they hold."""
+"""These assert that no instant is found at which the operands fail; the others assert that an
+instant is found, or is not found, at which they hold.
+"""
 
 _INVARIANT = (UnaryOperator.ALWAYS, UnaryOperator.NEVER)
 
@@ -136,7 +138,7 @@ _WEAK = frozenset((BinaryOperator.WEAK_UNTIL, BinaryOperator.STRONG_RELEASE))
 
 
 def _not_before(since: int, reason: _Reason, columns: _Columns) -> _Reason:
-    """The reason why something fails to hold always, or never, at an instant from ``since`` on."""
+    """The reason for a failed ``always`` or ``never``, moved to the first failure since ``since``."""
     operand, first, last = reason
     column = columns[operand]
     later = column.next(column.values[first], max(first, since))
@@ -174,14 +176,14 @@ def _of_search(
 ) -> Iterator[_Reason]:
     """The reasons for the value of a search for ``right``.
 
-    It is for an instant within the range, with ``left`` at all those before it.
+    The search is for an instant within the range, with ``left`` at all instants before it.
     """
     sought = part.operator not in _FAILING
     weak = part.operator in _WEAK
     low, high = range_of(part)
     last = len(columns[right].values) - 1
     start, end = instant + low, last if high is None else min(instant + high, last)
-    # Beyond the last instant everything is as it is there, which is then on the way, too.
+    # Beyond the last instant all values stay; the last instant itself must then satisfy ``left``.
     beyond = start > last and not ends and (high is None or low <= high)
     start = last if beyond else start
     result = columns[right].next(sought, start)

@@ -1,6 +1,6 @@
-"""Formulas as plain data for JSON; numbers as fractions in text.
+"""Formulas as plain data for JSON, with numbers as text of fractions.
 
-Such a text is ``"5/18"``.
+For example, ``"5/18"``.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from rulec.logic.bounds import BOOLEAN, DISTANCE
 from rulec.resource_limits import MOST_DIGITS
 
 DEEPEST = 250
-"""No rulebook nests deeper, so nothing that reads formulas has to."""
+"""The greatest nesting depth of formulas that are read; no rulebook nests deeper."""
 
 _OPERATORS: dict[str, ltl.UnaryOperator | ltl.BinaryOperator] = {
     operator.value: operator
@@ -25,11 +25,11 @@ _RELATIONS = {relation: relation for relation in get_args(ltl.Relation)}
 
 
 def to_data(formula: ltl.Formula) -> Any:
-    """A formula as data: constants, lists for operations, objects otherwise.
+    """A formula as data: Booleans for constants, lists for operations, objects otherwise.
 
     A list begins with its operator.
 
-    The bound of an operator, if it has one, comes last in its list.
+    The bound of an operator, if it has one, is the last item of its list.
     """
     match formula:
         case ltl.Atom(name, arguments, value):
@@ -48,7 +48,7 @@ def to_data(formula: ltl.Formula) -> Any:
 
 
 def terms_to_data(terms: tuple[tuple[Fraction, ltl.Term], ...]) -> list[list[Any]]:
-    """The terms of a comparison: pairs of a coefficient and a term."""
+    """The terms of a comparison as pairs of a coefficient and a term."""
     return [[str(coefficient), _term(term)] for coefficient, term in terms]
 
 
@@ -68,7 +68,7 @@ def _bound(bound: ltl.Bound | None) -> list[dict[str, str | None]]:
 
 
 def from_data(data: Any, depth: int = 0) -> ltl.Formula:
-    """The formula that ``to_data`` made this of. ValueError if there is none."""
+    """The formula that ``to_data`` converted to this data. Raises ValueError if there is none."""
     if depth > DEEPEST:
         raise ValueError("a formula is nested too deep")
     match data:
@@ -120,11 +120,11 @@ def _read_bound(operator: ltl.UnaryOperator | ltl.BinaryOperator, data: Any) -> 
 
 
 def terms_from_data(data: Any, depth: int = 0) -> tuple[tuple[Fraction, ltl.Term], ...]:
-    """The terms that ``terms_to_data`` made this of. ValueError if there are none."""
+    """The terms that ``terms_to_data`` converted to this data. ValueError if there are none."""
     if not isinstance(data, list):
         raise ValueError("the terms of a comparison are no list")
     read = []
-    for term in data:  # no comprehension: each level of nesting takes three frames, no more
+    for term in data:  # no comprehension, which would add a frame to each level of nesting
         read.append(_read_term(term, depth))  # noqa: PERF401
     return tuple(read)
 
@@ -152,7 +152,7 @@ def _names(data: Any) -> tuple[str, ...]:
 
 
 def number_from_data(data: Any) -> Fraction:
-    """The fraction that a text spells. Raises ValueError if it spells none."""
+    """The fraction that a text represents. Raises ValueError if it is not in lowest terms."""
     if isinstance(data, str) and len(data) <= MOST_DIGITS and _FRACTION.fullmatch(data):
         number = Fraction(data)
         if str(number) == data:

@@ -1,10 +1,10 @@
-"""One interpretation of the operators, over any algebra: the catamorphism of formulas.
+"""One interpretation of the operators over any algebra: the catamorphism of formulas.
 
-An algebra says what propositions, constants and a few operators mean in its values: sets of letters
-as bits, Kleene's truth values, BDDs, Spot's formulas, columns. The derived operators follow by the
-laws of Boolean algebra and the dualities of temporal logic (Manna, Pnueli, "The temporal logic of
-reactive and concurrent systems", 1992). ``semantics`` does without this module: it is the
-reference.
+An algebra defines the meaning of propositions, constants and a few operators in its values: sets of
+letters as bits, Kleene's truth values, BDDs, Spot's formulas, columns. The derived operators follow
+by the laws of Boolean algebra and the dualities of temporal logic (Manna, Pnueli, "The temporal
+logic of reactive and concurrent systems", 1992). ``semantics`` does not use this module, since it
+is the reference.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ Join: TypeAlias = Callable[[Value, Value], Value]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Algebra(Generic[Value]):
-    """The meaning of formulas, an operator at a time.
+    """The meaning of formulas, defined operator by operator.
 
-    Without ``implication`` and ``difference`` (xor) they follow from the others. Without
-    ``identity`` no formula may ask whether two variables name one object, without ``operation``,
-    which is given the operation and the fold of its operands, none may have a temporal operator.
+    ``implication`` and ``difference`` (xor) are derived from the others if missing. Without
+    ``identity`` a formula must not contain ``Same``; without ``operation``, which receives the
+    operation and the fold of its operands, it must not contain a temporal operator.
     """
 
     proposition: Callable[[ltl.Proposition], Value]
@@ -53,8 +53,8 @@ def fold(
 ) -> Value:
     """The formula's value in an algebra.
 
-    Operands come before what they are operands of, from left to right. ``known`` keeps the values
-    of all parts: each is worked out once.
+    Operands are evaluated before their operations, from left to right. ``known`` caches the values
+    of all parts, so that each is computed once.
 
     Raises:
         ValueError: for an identity, if the algebra has none.
@@ -125,7 +125,7 @@ def _joined(
 def bit_sets(sets: Mapping[ltl.Proposition, int], everything: int) -> Algebra[int]:
     """The algebra of sets as bits of integers.
 
-    ``sets`` has one for each proposition, and ``everything`` is the set of all.
+    ``sets`` has one for each proposition, and ``everything`` is the set of all elements.
     """
     return Algebra(
         proposition=sets.__getitem__,
@@ -139,7 +139,7 @@ def bit_sets(sets: Mapping[ltl.Proposition, int], everything: int) -> Algebra[in
 
 
 WordJoin: TypeAlias = Callable[[Value | None, Value, Range], Value]
-"""Of the left operand, which is None where it is a constant, the right one, and the range."""
+"""A function of the left operand (None for a constant), the right operand, and the range."""
 
 
 def temporal_operation(
@@ -152,10 +152,10 @@ def temporal_operation(
 ) -> Callable[[ltl.Unary | ltl.Binary, Callable[[ltl.Formula], Value]], Value]:
     """The temporal operators of the future, derived from four of them.
 
-    They are the operation of an algebra of words without a past.
+    For the ``operation`` of an algebra of words without a past.
 
-    Until without a left operand is ``eventually``, release without one is ``always``. Bounds are
-    in steps. The operation raises ValueError for an operator of the past.
+    ``until`` without a left operand means ``eventually``, ``release`` without one means ``always``.
+    Bounds are in steps. The operation raises ValueError for a past operator.
     """
 
     def operation(
@@ -183,7 +183,7 @@ def temporal_operation(
 
 
 def fold_constants(formula: ltl.Formula) -> ltl.Formula:
-    """An equivalent formula in which ``and``, ``or``, ``implies``, ``not`` join no constants."""
+    """An equivalent formula whose ``and``, ``or``, ``implies``, ``not`` have no constant operands."""
     return fold(formula, _FOLDED)
 
 
@@ -196,7 +196,7 @@ def _negation(operand: ltl.Formula) -> ltl.Formula:
 def _neutral_left_out(
     operator: ltl.BinaryOperator, neutral: bool, left: ltl.Formula, right: ltl.Formula
 ) -> ltl.Formula:
-    """The conjunction or disjunction, which its neutral constant does not change."""
+    """The conjunction or disjunction, simplified if an operand is a constant."""
     for operand, other in ((left, right), (right, left)):
         if isinstance(operand, ltl.Constant):
             return other if operand.value == neutral else operand

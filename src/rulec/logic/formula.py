@@ -1,4 +1,4 @@
-"""Formulas: small frozen nodes, and the operators as two enumerations."""
+"""Formulas as small frozen nodes, and their operators as two enumerations."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rulec.diagnostics import Span
 
 
 class UnaryOperator(Enum):
-    """Value: the operator in words, as a rulebook spells it."""
+    """A unary operator; its value is its spelling in a rulebook."""
 
     NOT = "not"
     ALWAYS = "always"
@@ -27,7 +27,7 @@ class UnaryOperator(Enum):
 
 
 class BinaryOperator(Enum):
-    """Value: the operator in words, as a rulebook spells it."""
+    """A binary operator; its value is its spelling in a rulebook."""
 
     AND = "and"
     OR = "or"
@@ -61,7 +61,7 @@ class Atom:
 
 @dataclass(frozen=True, slots=True)
 class QuantityTerm:
-    """A number in every state: ``name(arguments)``. It is in the unit of its declaration."""
+    """A number in every state, ``name(arguments)``, in the unit of its declaration."""
 
     name: str
     arguments: tuple[str, ...] = ()
@@ -71,9 +71,8 @@ class QuantityTerm:
 class Count:
     """The number of present objects of ``type`` that satisfy ``body``.
 
-    The objects of the moment are those present in the state; ``variable`` stands for each of them
-    in turn, also for those that other variables name. ``body`` speaks of one state alone: it has no
-    temporal operator.
+    ``variable`` stands for each object present in the state in turn, including objects that other
+    variables stand for. ``body`` refers to one state only: it has no temporal operator.
     """
 
     variable: str
@@ -90,10 +89,10 @@ Relation = Literal["<", "<=", "=", "!=", ">=", ">"]
 class Comparison:
     """``sum of coefficient * term`` stands in ``relation`` to ``limit``.
 
-    The terms are distinct, sorted by their text, no coefficient is 0 and the first one is 1; so
-    comparisons of the same numbers have the same ``terms``. A quantity counts in the unit of its
-    declaration; units have been converted into the coefficients and the limit, exactly. ``text`` is
-    how a rulebook would say it, with units; it does not take part in comparison.
+    The terms are distinct and sorted by their text, no coefficient is 0 and the first one is 1, so
+    comparisons of the same numbers have the same ``terms``. A quantity is in the unit of its
+    declaration; other units have been converted exactly into the coefficients and the limit.
+    ``text`` is the spelling in a rulebook, with units; equality ignores it.
     """
 
     terms: tuple[tuple[Fraction, Term], ...]
@@ -107,7 +106,7 @@ class Comparison:
 
 @dataclass(frozen=True, slots=True)
 class Same:
-    """Equality of two variables' objects, only in a ``Count``'s body."""
+    """Equality of two variables' objects, only in the body of a ``Count``."""
 
     left: str
     right: str
@@ -127,10 +126,10 @@ class Constant:
 class Bound:
     """The bound of a temporal operator: ``low`` to ``high``, both inclusive.
 
-    It counts ahead or back, as the operator looks.
+    It counts forward or backward, depending on the operator.
 
-    In seconds or in steps of the trace; ``high`` is None where there is no end. For ``next`` and
-    ``previously`` both are the distance. ``span`` is where it is written.
+    The unit is seconds or steps of the trace; ``high`` is None if there is no upper end. For
+    ``next`` and ``previously`` both are the distance. ``span`` is its place in the source.
     """
 
     low: Fraction
@@ -140,7 +139,7 @@ class Bound:
 
 
 class _Hashed:
-    """A formula with parts, which remembers its hash: formulas are keys again and again."""
+    """A formula with parts that caches its hash, since formulas are often used as keys."""
 
     __slots__ = ("_number",)
     _number: int
@@ -178,12 +177,12 @@ class Binary(_Hashed):
 Formula = Atom | Comparison | Same | Constant | Unary | Binary
 
 Proposition = Atom | Comparison
-"""What is true or false of one state, and has no parts that a rule's automaton knows of."""
+"""A formula that is true or false in one state; automata do not look into its parts."""
 
 
 def atoms_of(formula: Formula) -> Iterator[Proposition]:
     """The formula's atoms and comparisons from left to right, with repetitions."""
-    # Asked of every formula again and again: a generator in a generator takes thrice as long.
+    # Called very often: nested generators would take three times as long.
     waiting = [formula]
     while waiting:
         part = waiting.pop()
@@ -196,7 +195,7 @@ def atoms_of(formula: Formula) -> Iterator[Proposition]:
 
 
 def subject_of(proposition: Proposition) -> object:
-    """The thing whose value makes a proposition true or false."""
+    """What a proposition is about: the terms of a comparison, or an atom's name and arguments."""
     if isinstance(proposition, Comparison):
         return proposition.terms
     return proposition.name, proposition.arguments

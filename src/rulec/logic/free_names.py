@@ -12,7 +12,7 @@ from rulec.logic.linear_comparison import comparison
 
 
 def variables_of(part: ltl.Formula | ltl.Term) -> Iterator[str]:
-    """The free variables from left to right, with repetitions."""
+    """The free variables, from left to right, with repetitions."""
     match part:
         case ltl.Atom(_, arguments) | ltl.QuantityTerm(_, arguments):
             yield from arguments
@@ -33,7 +33,7 @@ def variables_of(part: ltl.Formula | ltl.Term) -> Iterator[str]:
 
 
 def names_in(part: ltl.Formula | ltl.Term) -> Iterator[str]:
-    """The declarations that are read, from left to right, with repetitions."""
+    """The names of the declarations that are read, from left to right, with repetitions."""
     match part:
         case ltl.Atom(name) | ltl.QuantityTerm(name):
             yield name
@@ -53,12 +53,12 @@ def names_in(part: ltl.Formula | ltl.Term) -> Iterator[str]:
 
 @lru_cache(maxsize=1 << 14)
 def names_of(formula: ltl.Formula) -> frozenset[str]:
-    """The declarations that are read; remembered, since each rule is asked with each fact."""
+    """The names of the declarations read; cached, since each rule is matched with each fact."""
     return frozenset(names_in(formula))
 
 
 def reads_in(formula: ltl.Formula) -> Iterator[ltl.Atom | ltl.Term]:
-    """The atoms and what comparisons add up, from left to right, with repetitions."""
+    """The atoms and the terms of comparisons, from left to right, with repetitions."""
     for proposition in ltl.atoms_of(formula):
         if isinstance(proposition, ltl.Atom):
             yield proposition
@@ -69,15 +69,15 @@ def reads_in(formula: ltl.Formula) -> Iterator[ltl.Atom | ltl.Term]:
 def rename_variables(formula: ltl.Formula, names: Mapping[str, str]) -> ltl.Formula:
     """Rename all free variables of a formula at once.
 
-    Those not in ``names`` stay.
+    Variables that are not in ``names`` stay.
 
-    Different variables keep different names, and no count inside has a new name for its variable.
+    The new names must be distinct, and none may be the variable of a count inside the formula.
     """
     match formula:
         case ltl.Atom():
             return replace(formula, arguments=_renamed(formula.arguments, names))
         case ltl.Comparison(terms, relation, limit, text):
-            # Other names may come in another order.
+            # The new names may change the order of the terms.
             return comparison(
                 {_renamed_term(term, names): factor for factor, term in terms},
                 relation,
@@ -117,10 +117,10 @@ def required_inputs(
 ) -> Iterator[ltl.Atom | ltl.QuantityTerm]:
     """Every atom and quantity that a formula reads, with repetitions.
 
-    Those of every object that may count are included.
+    Those of every object that a count may include are part of this.
 
-    ``objects`` maps those that are there to their types; ``fits`` tells whether the first of two
-    types is the second or one below it.
+    ``objects`` maps the present objects to their types; ``fits`` returns whether its first type is
+    its second type or a subtype.
     """
     return _inputs(formula, objects, fits, {})
 
@@ -131,12 +131,12 @@ def _inputs(
     fits: Callable[[str, str], bool],
     names: Mapping[str, str],
 ) -> Iterator[ltl.Atom | ltl.QuantityTerm]:
-    """The inputs of a formula in which variables stand for these names."""
+    """The inputs of a formula whose variables stand for the objects in ``names``."""
     for read in reads_in(formula):
         if not isinstance(read, ltl.Count):
             yield replace(read, arguments=_renamed(read.arguments, names)) if names else read
             continue
         for name, kind in objects.items():
             if fits(kind, read.type):
-                # What is asked of the object that stands in the count's place.
+                # The inputs of the body, for this object.
                 yield from _inputs(read.body, objects, fits, {**names, read.variable: name})

@@ -1,7 +1,8 @@
-"""Formulas of one partly known state by Kleene's strong three-valued logic.
+"""Formulas of one partly known state, in Kleene's strong three-valued logic.
 
-What can be told without it is told (`x = v or gap(x, v) < 5 m` holds for v itself, whatever its gap
-to itself may be); nothing else is (Kleene, "Introduction to metamathematics", 1952).
+A value that does not depend on the unknown parts is determined (`x = v or gap(x, v) < 5 m` holds
+for v itself, whatever its gap to itself is); every other value is unknown (Kleene, "Introduction to
+metamathematics", 1952).
 """
 
 from __future__ import annotations
@@ -18,15 +19,15 @@ from rulec.logic.linear_comparison import stands, surely_stands
 from rulec.vocabulary import Vocabulary
 
 _MOST = 1 << 12
-"""Formulas whose evaluators are kept."""
+"""The number of formulas whose evaluators are cached."""
 
 ObjectBinding: TypeAlias = Mapping[str, str]
-"""Variable -> the object that it stands for."""
+"""Maps a variable to the object that it stands for."""
 
 
 @dataclass(frozen=True, slots=True)
 class Unknown:
-    """An unknown value that decides: its declaration's name and its objects."""
+    """An unknown value on which the result depends: its declaration's name and its objects."""
 
     name: str
     objects: tuple[str, ...]
@@ -34,22 +35,22 @@ class Unknown:
 
 @dataclass(frozen=True, slots=True)
 class Between(Unknown):
-    """A number that is unknown but for its bounds, which are included."""
+    """An unknown number with known bounds, which are included."""
 
     low: Fraction
     high: Fraction
 
 
 class PartialState(Protocol):
-    """A state of which some values may be missing."""
+    """A state in which some values may be unknown."""
 
     @property
     def objects(self) -> Mapping[str, str]:
-        """The objects that are there, with their types."""
+        """The present objects, with their types."""
 
     @property
     def vocabulary(self) -> Vocabulary:
-        """The declarations of what can be said of them."""
+        """The declarations that values can be asked for."""
 
     def value(self, name: str, items: tuple[str, ...]) -> bool | float | str | Unknown:
         """The value of a signal or an enumeration."""
@@ -64,7 +65,7 @@ Evaluator: TypeAlias = Callable[[ObjectBinding, PartialState], bool | Unknown]
 def weighted_sum(
     terms: Sequence[tuple[Fraction, ltl.Term]], binding: ObjectBinding, state: PartialState
 ) -> Fraction | Unknown:
-    """The sum of coefficient times term: exact, or its bounds if those of all terms are known."""
+    """The sum of coefficient times term: exact, bounded if all unknown terms are, or unknown."""
     return _summed((factor, number_of(term, binding, state)) for factor, term in terms)
 
 
@@ -86,7 +87,7 @@ def _summed(numbers: Iterable[tuple[Fraction, Fraction | Unknown]]) -> Fraction 
 
 
 def number_of(term: ltl.Term, binding: ObjectBinding, state: PartialState) -> Fraction | Unknown:
-    """A quantity's value, or the number of objects that count."""
+    """The value of a quantity, or the number of counted objects."""
     match term:
         case ltl.QuantityTerm(name, arguments):
             return state.number(name, tuple([binding[variable] for variable in arguments]))
@@ -98,7 +99,7 @@ def number_of(term: ltl.Term, binding: ObjectBinding, state: PartialState) -> Fr
 def objects_counted(
     count: ltl.Count, binding: ObjectBinding, state: PartialState
 ) -> tuple[str, ...] | Unknown:
-    """The objects that count."""
+    """The objects that satisfy the body of a count."""
     alias, evaluate = alias_of(count.variable, count.body), evaluator_of(count.body)
     return _counted(count, alias, evaluate, binding, state)
 
@@ -130,7 +131,7 @@ def _counted(
 
 
 def alias_of(variable: str, formula: ltl.Formula) -> str | None:
-    """Another variable for the same object wherever the formula holds, or None."""
+    """Another variable that stands for the same object wherever the formula holds, or None."""
     match formula:
         case ltl.Same(left, right) if variable in (left, right) and left != right:
             return right if left == variable else left
@@ -140,7 +141,7 @@ def alias_of(variable: str, formula: ltl.Formula) -> str | None:
 
 
 def holds(formula: ltl.Formula, binding: ObjectBinding, state: PartialState) -> bool | Unknown:
-    """The value of a formula in a state, perhaps ``Unknown``.
+    """The value of a formula in a state, possibly ``Unknown``.
 
     Raises TypeError if it has a temporal operator.
     """
@@ -151,7 +152,7 @@ def holds(formula: ltl.Formula, binding: ObjectBinding, state: PartialState) -> 
 def evaluator_of(formula: ltl.Formula) -> Evaluator:
     """The formula as a function of binding and state.
 
-    It is cached because it is asked of every object in every state.
+    Cached, since it is evaluated for every object in every state.
     """
     return fold(formula, _KLEENE)
 
@@ -203,7 +204,7 @@ def _comparison(comparison: ltl.Comparison) -> Evaluator:
 
 
 def _reader_of(term: ltl.Term) -> Callable[[ObjectBinding, PartialState], Fraction | Unknown]:
-    """``number_of`` one term, for which all is prepared that it always needs."""
+    """``number_of`` for one term, with everything prepared that does not depend on the state."""
     if isinstance(term, ltl.QuantityTerm):
         return partial(number_of, term)
     alias, evaluate = alias_of(term.variable, term.body), evaluator_of(term.body)
@@ -216,7 +217,7 @@ def _reader_of(term: ltl.Term) -> Callable[[ObjectBinding, PartialState], Fracti
 
 
 def _settled(left: Evaluator, right: Evaluator, *, by: bool) -> Evaluator:
-    """Conjunction settled by a false operand, or disjunction by a true."""
+    """A conjunction, which a false operand settles, or a disjunction, which a true one settles."""
 
     def evaluate(binding: ObjectBinding, state: PartialState) -> bool | Unknown:
         first = left(binding, state)

@@ -1,4 +1,4 @@
-"""The normal form of linear comparisons, with equal terms for equal numbers."""
+"""The normal form of linear comparisons: equal numbers have equal terms."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ MIRRORED: Mapping[Relation, Relation] = {
 def comparison(
     coefficients: Mapping[Term, Fraction], relation: Relation, limit: Fraction, text: str
 ) -> Comparison | Constant:
-    """``sum of coefficient * term`` stands in ``relation`` to ``limit``.
+    """``sum of coefficient * term`` stands in ``relation`` to ``limit``, in normal form.
 
-    True or false if there is nothing to sum. No coefficient is 0.
+    A constant if there are no terms. No coefficient may be 0.
     """
     terms = sorted(coefficients.items(), key=lambda pair: term_text(pair[0]))
     if not terms:
@@ -45,14 +45,14 @@ _RELATIONS: dict[Relation, Callable[[Fraction, Fraction], bool]] = dict(
 
 
 def stands(number: Fraction, relation: Relation, limit: Fraction) -> bool:
-    """True if a number stands in a relation to a limit."""
+    """Whether a number stands in a relation to a limit."""
     return _RELATIONS[relation](number, limit)
 
 
 def surely_stands(
     low: Fraction, high: Fraction, relation: Relation, limit: Fraction
 ) -> bool | None:
-    """Whether all numbers between two stand in a relation to a limit; None if some do."""
+    """Whether all numbers from ``low`` to ``high`` stand in a relation; None if only some do."""
     within = low <= limit <= high
     if relation in ("=", "!=") and within:
         return relation == "=" if low == high else None

@@ -1,10 +1,10 @@
 """Opportunities to violate a rule: its trigger, and where it is breached.
 
-A rule asks for something where its trigger holds: the left side of an implication, the first phase
-of a sequence, all that a prohibition names but for the last. So an exposure can be counted, as
-traffic psychology does (Chapman, "The concept of exposure", 1973): an opportunity is one stretch of
-states in which the trigger holds. The trigger is read off the formula's form, docs/rates.md has the
-forms.
+A rule demands something where its trigger holds: the left side of an implication, the first phase
+of a sequence, all parts of a prohibited conjunction but the last. So exposure can be counted as in
+traffic psychology (Chapman, "The concept of exposure", 1973): an opportunity is one stretch of
+states in which the trigger holds. The trigger is derived from the formula's form; docs/rates.md
+lists the forms.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ _TRUE = Constant(True)
 _GUARDING = (UnaryOperator.ALWAYS, UnaryOperator.NEVER)
 
 BEGINNING: Formula = Unary(UnaryOperator.WEAK_PREVIOUSLY, Constant(False))
-"""What holds in the first state alone."""
+"""A formula that holds in the first state only."""
 
 
 def breach_of(formula: Formula) -> Formula:
-    """What holds in a state if the formula is violated there.
+    """A formula that holds in a state if the formula is violated there.
 
-    A word violates the formula if this holds in one of its states, and only then. What guards no
-    stretch of time is violated in the first state.
+    A word violates the formula if and only if this holds in one of its states. A formula that is
+    not of the form ``always`` or ``never`` is violated in the first state.
     """
     return fold_constants(_breach(formula) or _at_first(_negated(formula)))
 
@@ -44,11 +44,11 @@ def breach_of(formula: Formula) -> Formula:
 def trigger_of(
     required: Formula, *, apart: Sequence[Formula] = (), initially: Sequence[Formula] = ()
 ) -> Formula | None:
-    """What has to hold in a state for a rule to be breached there; None where nothing is named.
+    """The condition for a breach in a state; None if the formula's form does not show one.
 
-    ``required`` is the rule's formula without its exceptions. ``apart`` are those that hold of a
-    single state, negated, and ``initially`` those of the first state, which a sequence, whose
-    exceptions are about what comes later, leaves out.
+    ``required`` is the rule's formula without its exceptions. ``apart`` are the negated exceptions
+    about a single state; they count only if ``guards_one_state(required)``, since a sequence's
+    exceptions are about later states. ``initially`` are those about the first state.
     """
     trigger = _trigger(required)
     parts = [] if trigger is None else [trigger]
@@ -64,9 +64,9 @@ def trigger_of_parts(
     exceptions: Iterable[tuple[Formula, bool]] = (),
     condition: Formula | None = None,
 ) -> Formula | None:
-    """``trigger_of`` a rule of these parts: its exceptions, those of the first state marked so.
+    """``trigger_of`` a rule with these parts; an exception is paired with whether it is initial.
 
-    The exceptions of a sequence are about what comes after its first phase, so they are left out.
+    The exceptions of a sequence are about states after its first phase, so they are left out.
     """
     apart: list[Formula] = []
     initially: list[Formula] = []
@@ -79,7 +79,7 @@ def trigger_of_parts(
 
 
 def guards_one_state(formula: Formula) -> bool:
-    """Whether a rule is of the form ``always p`` or ``never p``, p being no sequence."""
+    """Whether a rule has the form ``always p`` or ``never p`` where p is not a sequence."""
     match formula:
         case Unary(UnaryOperator.ALWAYS):
             return True
@@ -89,12 +89,12 @@ def guards_one_state(formula: Formula) -> bool:
 
 
 def conjuncts(formula: Formula) -> Iterator[Formula]:
-    """The parts of a conjunction from left to right, however they are grouped."""
+    """The parts of a conjunction from left to right, however they are nested."""
     yield from _operands(formula, BinaryOperator.AND)
 
 
 def looks_elsewhere(formula: Formula) -> bool:
-    """Whether a formula speaks of other states than the present one."""
+    """Whether a formula refers to other states than the present one."""
     return any(operation.operator not in BOOLEAN for operation in operations_of(formula))
 
 
@@ -125,7 +125,7 @@ def _breach_at_all(formula: Formula) -> Formula:
 
 
 def _within(formula: Formula, bound: Bound | None) -> Formula:
-    """The formula as far as the bound of what guards it reaches."""
+    """The formula within the bound of the ``always`` or ``never`` around it."""
     return formula if bound is None else _all([formula, _reached(bound)])
 
 
@@ -134,7 +134,7 @@ def _reached(bound: Bound) -> Formula:
 
 
 def _without_lead(formula: Formula) -> Formula:
-    """A sequence without a first phase that is anything; it has begun before, then."""
+    """A sequence without leading phases of ``true``, which only require earlier states."""
     match formula:
         case Binary(BinaryOperator.THEN, Constant(True), rest, None):
             later = Unary(UnaryOperator.PREVIOUSLY, _TRUE)
@@ -167,7 +167,7 @@ def _bounded(trigger: Formula | None, bound: Bound | None) -> Formula | None:
 
 
 def _condition(formula: Formula) -> Formula | None:
-    """The condition under which a formula that always holds asks for anything."""
+    """The condition under which a formula that must always hold demands something."""
     match formula:
         case Binary(BinaryOperator.IMPLIES, left, right):
             return _all([left, _condition(right) or _TRUE])
@@ -185,7 +185,7 @@ def _condition(formula: Formula) -> Formula | None:
 
 
 def _beginning(formula: Formula) -> Formula | None:
-    """What what never happens begins with, or all that it takes but for the last."""
+    """The trigger of a ``never``: a sequence's first phase, a conjunction without its last part."""
     match formula:
         case Binary(BinaryOperator.THEN, left, right):
             return left if left != _TRUE else _beginning(right) or right
@@ -208,7 +208,7 @@ def _at_first(formula: Formula) -> Formula:
 
 
 def _at_first_once(formula: Formula) -> Formula:
-    """What held in the first state."""
+    """A formula that held in the first state."""
     return Unary(UnaryOperator.ONCE, _at_first(formula))
 
 

@@ -1,11 +1,11 @@
-"""The past as registers: propositions that replace operators of the past.
+"""The past as registers: propositions that replace past operators.
 
-Every operator of the past is a case of ``left since[low..high] right``. Where no operator of the
-future has a say in its operands, the word up to an instant decides it: a register, small and
-deterministic, holds what will be needed (cf. Havelund, Roşu, "Synthesizing monitors for safety
-properties", 2002). Elsewhere it is said by its expansion laws (Lichtenstein, Pnueli, Zuck, "The
-glory of the past", 1985), which need to know a formula's value one instant ago: a memory. What is
-left speaks of the present and the future alone.
+Every past operator is a case of ``left since[low..high] right``. If its operands contain no future
+operator, the word up to an instant determines its value: a register, small and deterministic, holds
+what will be needed (cf. Havelund, Roşu, "Synthesizing monitors for safety properties", 2002).
+Otherwise it is expressed by its expansion laws (Lichtenstein, Pnueli, Zuck, "The glory of the
+past", 1985), which need a formula's value one instant ago: a memory. The remaining formula refers
+to the present and the future only.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ NOT, AND, OR = ltl.UnaryOperator.NOT, ltl.BinaryOperator.AND, ltl.BinaryOperator
 
 @dataclass(frozen=True, slots=True)
 class Register:
-    """The proposition ``atom``: does ``left since[low..high] right`` hold now?
+    """The proposition ``atom``: whether ``left since[low..high] right`` holds now.
 
-    ``left`` and ``right`` speak of the present alone, and of earlier registers. Its state is the
-    set of instants at which it holds if ``left`` does from now on and ``right`` does not: bit k of
-    an integer stands for k instants after the last letter, bit 0 for that letter. An integer below
-    0 has bits without end.
+    ``left`` and ``right`` refer to the present and to earlier registers only. The state is the set
+    of instants at which the proposition holds if from now on ``left`` holds and ``right`` does not:
+    bit k of an integer stands for k instants after the last letter, bit 0 for that letter. A
+    negative integer has infinitely many bits set.
     """
 
     atom: ltl.Atom
@@ -50,12 +50,12 @@ class Register:
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """The proposition ``atom`` that ``formula`` held an instant ago.
+    """The proposition ``atom``: whether ``formula`` held one instant ago.
 
     It is false at the first instant.
 
-    ``formula`` has no operator of the past; it may speak of registers and memories, of this one
-    too. The future has a say in it.
+    ``formula`` has no past operator, but may contain registers and memories, including this one.
+    Its value depends on the future.
     """
 
     atom: ltl.Atom
@@ -64,10 +64,11 @@ class Memory:
 
 @dataclass(frozen=True, slots=True)
 class WithoutPast:
-    """A formula without past operators, and its fresh atoms' meanings.
+    """A formula without past operators, and the meaning of its fresh atoms.
 
-    For any word there is one way to choose these atoms' values such that each does what it is said
-    to; with them ``present`` holds at the first instant if the original formula does.
+    For any word there is exactly one choice of values for these atoms that satisfies their
+    definitions; with it, ``present`` holds at the first instant if and only if the original formula
+    does.
     """
 
     present: ltl.Formula
@@ -76,16 +77,16 @@ class WithoutPast:
 
 
 def eliminate_past(formula: ltl.Formula, *, registers: bool = True) -> WithoutPast:
-    """Eliminate operators of the past from a formula, without ``registers`` by memories alone.
+    """Eliminate past operators from a formula; without ``registers``, by memories only.
 
-    Its bounds are in steps. Raises ValueError if not.
+    Its bounds must be in steps; else raises ValueError.
     """
     result = _PastParts(registers)
     present = _present(formula, result)
     fresh: list[Register | Memory] = [*result.registers.values(), *result.memories.values()]
     needed: list[Register | Memory] = []
     spoken_of = set(ltl.atoms_of(present))
-    # None of them speaks of a later one.
+    # Each refers only to earlier ones.
     for register in sorted(fresh, key=lambda proxy: result.order[proxy.atom], reverse=True):
         if register.atom in spoken_of:
             needed.insert(0, register)
@@ -105,7 +106,7 @@ def eliminate_past(formula: ltl.Formula, *, registers: bool = True) -> WithoutPa
 def definition(memory: Memory) -> ltl.Formula:
     """The defining formula of a memory.
 
-    It is false at the first instant, then what the formula was an instant before.
+    The memory is false at the first instant, then the formula's value at the previous instant.
     """
     first = ltl.Unary(NOT, memory.atom)
     then = ltl.Unary(ltl.UnaryOperator.WEAK_NEXT, memory.atom)
@@ -128,13 +129,13 @@ class _PastParts:
     order: dict[ltl.Formula, int] = field(default_factory=dict)
 
     def fresh(self, kind: str) -> ltl.Atom:
-        # No atom of a rulebook has a space there.
+        # Atoms of a rulebook contain no space.
         atom = ltl.Atom(f"{kind} {len(self.order)}")
         self.order[atom] = len(self.order)
         return atom
 
     def is_settled(self, formula: ltl.Formula) -> bool:
-        """True if a register may rest on it: the word up to an instant decides the formula."""
+        """Whether the word up to an instant determines the formula, so a register can use it."""
         if not self.with_registers:
             return False
         unsettled = {memory.atom for memory in self.memories.values()}
@@ -167,9 +168,9 @@ def _since(left: ltl.Formula, right: ltl.Formula, span: Range, past: _PastParts)
 
 
 def _unfolded(left: ltl.Formula, right: ltl.Formula, span: Range, past: _PastParts) -> ltl.Formula:
-    """``left since right`` in terms of the present and one instant ago.
+    """``left since right`` in terms of the present and the previous instant.
 
-    From the shortest range to the wanted one, each says by the one before what was one instant ago.
+    Built from the shortest range to the requested one; each uses the memory of the one before.
     """
     key = (left, right, span)
     known = past.sinces.get(key)

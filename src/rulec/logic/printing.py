@@ -1,4 +1,4 @@
-"""Formulas as text, in the words of a rulebook."""
+"""Formulas as text, in a rulebook's notation."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from rulec.logic import formula as ltl
 from rulec.logic.bounds import DISTANCE
 
 _LOOSEST_FIRST = ("iff", "implies", "then", "xor", "or", "and")
-"""As in the grammar; the others bind tighter, all alike."""
+"""As in the grammar; all other operators bind tighter, with equal precedence."""
 
 _BINDING = dict.fromkeys(ltl.BinaryOperator, len(_LOOSEST_FIRST))
 _BINDING |= {ltl.BinaryOperator(word): at for at, word in enumerate(_LOOSEST_FIRST)}
@@ -27,7 +27,8 @@ def formula_text(formula: ltl.Formula) -> str:
             word = _operator(operator, bound)
             return f"{word} {f'({inner})' if isinstance(operand, ltl.Binary) else inner}"
         case ltl.Binary(operator, left, right, bound):
-            # Printed as it is read: chains of `and` and `or` to the left, phases to the right.
+            # Nested as the parser nests it: chains of `and` and `or` to the left, phases to the
+            # right.
             to_the_left = operator in (ltl.BinaryOperator.AND, ltl.BinaryOperator.OR)
             first = _side(operator, left, chain=to_the_left)
             second = _side(operator, right, chain=operator is ltl.BinaryOperator.THEN)
@@ -64,7 +65,7 @@ def time_in_words(amount: Fraction, unit: str) -> str:
 
 
 def number_in_words(number: Fraction) -> str:
-    """A number as a decimal, or else a fraction: ``0.5``, ``5/18``. The decimal may be long."""
+    """A number as a decimal (which may be long), or else a fraction: ``0.5``, ``5/18``."""
     rest = number.denominator
     places = 0
     for prime in (2, 5):
@@ -83,7 +84,7 @@ def number_in_words(number: Fraction) -> str:
 
 
 def term_text(term: ltl.Term) -> str:
-    """``gap(v)``, ``count v: vehicle (behind(v))``: the text that terms are sorted by."""
+    """``gap(v)``, ``count v: vehicle (behind(v))``: the text by which terms are sorted."""
     match term:
         case ltl.QuantityTerm(name, arguments):
             return f"{name}({', '.join(arguments)})" if arguments else name

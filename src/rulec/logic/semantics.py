@@ -1,10 +1,10 @@
-"""The meaning of a formula on a word, straight from the definitions.
+"""The meaning of a formula on a word, directly from the definitions.
 
-Definitions: Esterle, Aravantinos, Knoll (2019), section IV-A, with the standard until, as the
-paper's own tables I and II have it. A finite word stands for the infinite one that repeats its last
-letter for ever (the paper's reading, ``stutter``) or for itself alone (``finite``: De Giacomo,
-Vardi, "Linear temporal logic and linear dynamic logic on finite traces", 2013). The past begins
-with the word: operators of the past look back from an instant to the first one, as in Lichtenstein,
+The definitions are those of Esterle, Aravantinos, Knoll (2019), section IV-A, with the standard
+until, as in that paper's tables I and II. A finite word stands for the infinite one that repeats
+its last letter for ever (the paper's reading, ``stutter``) or for itself alone (``finite``: De
+Giacomo, Vardi, "Linear temporal logic and linear dynamic logic on finite traces", 2013). The past
+begins with the word: past operators look back from an instant to the first one, as in Lichtenstein,
 Pnueli, Zuck, "The glory of the past" (1985). Bounds count instants, as in Koymans, "Specifying
 real-time properties with metric temporal logic" (1990), on a clock that ticks with the trace.
 """
@@ -19,16 +19,16 @@ from rulec.logic import formula as ltl
 from rulec.logic.bounds import PAST, Range, range_of
 
 Semantics = Literal["stutter", "finite"]
-"""How a word ends: its last letter goes on for ever, or nothing comes after it."""
+"""How a word ends: its last letter is repeated for ever, or nothing follows it."""
 
 Letter = Set[ltl.Proposition]
 """The atoms and comparisons that are true at one instant; all others are false."""
 
 
 def holds(formula: ltl.Formula, word: Sequence[Letter], semantics: Semantics = "stutter") -> bool:
-    """True if ``formula`` holds for ``word`` at its first instant.
+    """Whether ``formula`` holds for ``word`` at its first instant.
 
-    Its bounds are in steps. ValueError for an empty word, or for a bound in seconds.
+    Its bounds are in steps. Raises ValueError for an empty word or a bound in seconds.
     """
     return truth_values(formula, word, semantics)[0]
 
@@ -47,9 +47,9 @@ def truth_values(
 def extended_values(
     formula: ltl.Formula, word: Sequence[Letter], semantics: Semantics
 ) -> dict[ltl.Formula, list[bool]]:
-    """Truth values of all parts, extended beyond the word until they settle.
+    """The truth values of all parts, extended beyond the word until they settle.
 
-    Operands come before what they are operands of.
+    Operands come before their operations.
     """
     return dict(_extended(formula, _spelled(word), len(word), semantics).values())
 
@@ -60,7 +60,7 @@ def extended_by_columns(
     n_letters: int,
     semantics: Semantics,
 ) -> dict[ltl.Formula, list[bool]]:
-    """As ``extended_values``, of a word told by whether each proposition is true at each instant.
+    """As ``extended_values``, for a word given as each proposition's truth value at each instant.
 
     Raises ValueError as ``holds`` does.
     """
@@ -68,7 +68,7 @@ def extended_by_columns(
 
 
 _Truths = Callable[[ltl.Proposition], Sequence[bool]]
-"""Whether a proposition is true at each of a word's instants."""
+"""A proposition's truth value at each of a word's instants."""
 
 
 def _spelled(word: Sequence[Letter]) -> _Truths:
@@ -82,12 +82,12 @@ def _spelled(word: Sequence[Letter]) -> _Truths:
 
 
 _Parts = dict[int, tuple[ltl.Formula, list[bool]]]
-"""Parts and their values by identity: to hash a formula takes longer than to evaluate it."""
+"""Parts and their values by identity: hashing a formula takes longer than evaluating it."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Word:
-    """A word, perhaps with its last letter again while values settle."""
+    """A word, with its last letter repeated ``n_settling`` times while values settle."""
 
     truths: _Truths
     n_letters: int
@@ -108,11 +108,11 @@ def _extended(
 
 
 def steps_to_settle(formula: ltl.Formula) -> int:
-    """The longest time until values settle under a repeated last letter.
+    """An upper bound on the steps until values settle under a repeated last letter.
 
-    Only the past carries a change on to later instants: where its operands are the same for ever
-    from some instant on, it is so as soon as its range looks back at such instants alone, or, if
-    that has no end, once they are in reach. The future is the same for ever where its operands are.
+    Only past operators delay changes: once their operands are constant from some instant on, their
+    value is constant as soon as their range covers only such instants or, if the range is
+    unbounded, as soon as it reaches them. Future operators are constant where their operands are.
     """
     match formula:
         case ltl.Unary(operator, operand):
@@ -130,9 +130,9 @@ def _carried(span: Range) -> int:
 
 
 def _evaluate(formula: ltl.Formula, word: _Word, parts: _Parts) -> list[bool]:
-    """Truth values on a word that ends, or repeats its last letter.
+    """The truth values of a formula on a word that ends or repeats its last letter.
 
-    In the second case it goes on like its last instant for ever.
+    In the second case the values at the last instant are repeated for ever.
     """
     if id(formula) in parts:
         return parts[id(formula)][1]
@@ -213,7 +213,7 @@ def _weak_until(left: list[bool], right: list[bool], span: Range, ends: bool) ->
 def _until(left: list[bool], right: list[bool], span: Range, ends: bool) -> list[bool]:
     """The values of until: ``right`` within range, ``left`` before it.
 
-    ``left`` holds at all instants from here on before that one.
+    ``left`` holds at all instants from the present one until before that of ``right``.
     """
     if not span.low and span.high is None:
         return _until_at_all(left, right)
@@ -240,7 +240,7 @@ def _until(left: list[bool], right: list[bool], span: Range, ends: bool) -> list
 
 
 def _until_at_all(left: Sequence[bool], right: Sequence[bool]) -> list[bool]:
-    """The values of until, be it now or ever: they follow from those of the next instant."""
+    """The values of unbounded until, computed backward: each follows from the next instant's."""
     values, after = [], False
     for a, b in zip(reversed(left), reversed(right), strict=True):
         after = b or (a and after)
@@ -252,7 +252,7 @@ def _until_at_all(left: Sequence[bool], right: Sequence[bool]) -> list[bool]:
 def _since(left: list[bool], right: list[bool], span: Range) -> list[bool]:
     """The values of since: ``right`` within range back, ``left`` after it.
 
-    ``left`` holds at all instants after that one up to here.
+    ``left`` holds at all instants after that of ``right`` up to the present one.
     """
     values = []
     latest: list[int | None] = []

@@ -1,4 +1,4 @@
-"""Facts of a state as clauses: ``the gap is 19.8 m``."""
+"""Facts of a state as clauses, such as ``the gap is 19.8 m``."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ def facts_in_words(
     phrases: Mapping[str, str],
     language: Language = ENGLISH,
 ) -> str:
-    """Facts, joined; nothing if none of their words has a phrase.
+    """Facts joined to one text; empty if no phrase is known for any of them.
 
-    Each is what it is about, such as ``gap(2)``, its value, and how the value is written, which
-    only numbers need.
+    Each fact is a subject such as ``gap(2)``, its value, and the value's text, used for numbers
+    only.
     """
     clauses = []
     has_phrase = False
@@ -34,7 +34,7 @@ def facts_in_words(
         name, _, rest = about.partition("(")
         items = tuple(rest.removesuffix(")").split(", ")) if rest else ()
         item = vocabulary.declarations.get(name)
-        # The name of an object may hold what stands between two of them.
+        # An object's name may contain the separator of arguments.
         if item is None or len(items) != len(item.parameters):
             continue
         if isinstance(item, Quantity):

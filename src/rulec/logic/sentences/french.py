@@ -1,4 +1,4 @@
-"""French. Phrases are main clauses, so that they stand behind a colon."""
+"""French. Phrases are main clauses, so that they can follow a colon."""
 
 from __future__ import annotations
 

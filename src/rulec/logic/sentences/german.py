@@ -1,4 +1,4 @@
-"""German. Phrases are main clauses, so that they stand behind a colon."""
+"""German. Phrases are main clauses, so that they can follow a colon."""
 
 from __future__ import annotations
 

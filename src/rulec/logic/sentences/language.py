@@ -1,4 +1,4 @@
-"""The words and patterns that the sentences of a language are made of."""
+"""The words and patterns that the sentences of a language are built from."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from rulec.logic.printing import number_in_words
 LanguageCode: TypeAlias = Literal["en", "de", "fr"]
 
 LANGUAGES: tuple[LanguageCode, ...] = get_args(LanguageCode)
-"""The languages of sentences and documents, by the codes of ISO 639."""
+"""The languages of sentences and documents, by their ISO 639 codes."""
 
 Pair: TypeAlias = tuple[str, str]
-"""What is said where something holds, and where it does not."""
+"""The text where something holds, and the text where it does not."""
 
 _MOST_PLACES = 12
-"""A number with more decimal places is written as a fraction."""
+"""Numbers with more decimal places are written as fractions."""
 
 _DECIMAL_POINT = re.compile(r"(?<=\d)\.(?=\d)")
 
 
 @dataclass(frozen=True, slots=True)
 class TypeWords:
-    """How sentences speak of the objects of a type.
+    """The words for objects of a type.
 
-    ``every`` one, every ``other`` one, ``one``, ``none``; ``noun`` and ``plural`` after a number.
+    ``every`` one, every ``other`` one, ``one``, ``none``; ``noun`` and ``plural`` follow a number.
     """
 
     every: str
@@ -42,7 +42,7 @@ class TypeWords:
 
 @dataclass(frozen=True, slots=True)
 class SpanWords:
-    """How long something is: at least, at most, between two, exactly."""
+    """Patterns of durations: at least, at most, between two, exactly."""
 
     at_least: str
     at_most: str
@@ -52,10 +52,10 @@ class SpanWords:
 
 @dataclass(frozen=True, slots=True)
 class AdverbWords:
-    """Words before what holds at other times.
+    """Adverbs for a condition at other times.
 
-    ``inside`` where these are seen from a time that was named before, ``outside`` where from the
-    start of the trace, ``bounded`` with a span.
+    ``inside`` relative to a time named before, ``outside`` relative to the start of the trace,
+    ``bounded`` with a time span.
     """
 
     inside: str
@@ -65,9 +65,9 @@ class AdverbWords:
 
 @dataclass(frozen=True, slots=True)
 class BinaryWords:
-    """Patterns of an operator of time with a left and a right side.
+    """Patterns of a temporal operator with a left and a right side.
 
-    ``endless`` where its bound has no end.
+    ``endless`` is for a bound without an upper end.
     """
 
     plain: str
@@ -77,10 +77,10 @@ class BinaryWords:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Language:
-    """The words and patterns of a language; ``{}`` is what stands in its place.
+    """The words and patterns of a language; ``{}`` is a placeholder.
 
-    After a lead that ends with one of ``no_pause_after``, and before what begins with one of
-    ``runs_on``, there is no comma.
+    There is no comma after a lead that ends with one of ``no_pause_after``, nor before a clause
+    that begins with one of ``runs_on``.
     """
 
     code: LanguageCode
@@ -88,7 +88,7 @@ class Language:
     decimal_mark: Literal[".", ","] = "."
     quoted: str
     inner_joints: re.Pattern[str]
-    """What a phrase has that cannot stand in a list of clauses without quotation marks."""
+    """Matches phrases that need quotation marks within a list of clauses."""
     no_pause_after: tuple[str, ...]
     runs_on: tuple[str, ...]
     and_: str
@@ -156,13 +156,13 @@ class Language:
         return self.decimals(number_in_words(value) if short else str(value))
 
     def decimals(self, text: str) -> str:
-        """A text whose numbers have this language's decimal mark."""
+        """A text with this language's decimal mark in its numbers."""
         if self.decimal_mark == ".":
             return text
         return _DECIMAL_POINT.sub(self.decimal_mark, text)
 
     def type_of(self, name: str, noun: str) -> TypeWords:
-        """How to speak of a type, which is called by its ``noun`` if the language has no word."""
+        """The words for a type, built from its ``noun`` if the language has none of its own."""
         known = self.types.get(name)
         if known is not None:
             return known

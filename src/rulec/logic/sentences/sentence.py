@@ -1,8 +1,8 @@
-"""A formula as a plain sentence of some language that has one reading only.
+"""A formula as an unambiguous sentence of plain language.
 
-What can be said in a line without doubt is: what scopes over the rest of a line stands at its head,
-and only simple clauses stand between commas. Whatever is nested deeper becomes a list with labels,
-as in contracts. Different formulas get different sentences.
+A line contains only what is unambiguous: an adverb that applies to the rest of a line stands at its
+head, and only simple clauses are joined by commas. Anything nested deeper becomes a list with
+labels, as in contracts. Different formulas get different sentences.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ MOST_IN_A_LINE = 3
 
 
 class Shape(IntEnum):
-    """The complexity of a phrase, from a word to a list."""
+    """The complexity of a phrase, from a clause to a list."""
 
     CLAUSE = 0
-    """One atom or comparison, or its denial."""
+    """One atom or comparison, or its negation."""
     SCOPED = 1
-    """Adverbs before one clause: they reach to the end."""
+    """Adverbs before one clause, which apply to the rest of the line."""
     JOINED = 2
     """Clauses joined by one ``and`` or ``or``."""
     REACHING = 3
     """Adverbs before joined clauses."""
     LINE = 4
-    """Anything else that is one line."""
+    """Any other single line."""
     LIST = 5
 
 
@@ -40,8 +40,8 @@ class Shape(IntEnum):
 class Phrase:
     """A line, and the list that it introduces, if any.
 
-    In ``text`` the character ``label(n)`` stands for the label of the n-th of ``items``. ``joint``
-    is the word before the last item, or before the last of the clauses that are joined.
+    In ``text`` the character ``label(n)`` is a placeholder for the label of the n-th of ``items``.
+    ``joint`` is the word before the last item, or before the last joined clause.
     """
 
     text: str
@@ -52,7 +52,7 @@ class Phrase:
 
 
 def label(index: int) -> str:
-    """The placeholder of the label of a phrase's item ``index``, from 0."""
+    """The placeholder for the label of a phrase's item ``index`` (from 0)."""
     return chr(0xE000 + index)
 
 
@@ -65,10 +65,10 @@ def sentence(
     """A rule's formula as a sentence, without its full stop.
 
     Args:
-        formula: what the rule requires.
+        formula: the rule's requirement.
         variables: the rule's variables, each with its type.
-        related: can an object be of both types? If so the variables stand for different ones.
-        language: the one that is spoken.
+        related: whether an object can be of both types; such variables stand for different objects.
+        language: the language of the sentence.
     """
     body = phrase(formula, language, inside=False)
     if not variables:
@@ -86,7 +86,7 @@ def exemption(formula: ltl.Formula, scope: str, language: Language = ENGLISH) ->
 
 
 def condition(formula: ltl.Formula, language: Language = ENGLISH, *, guards: bool) -> Phrase:
-    """The condition of a rule as a phrase. ``guards``: it guards a stretch of the trace."""
+    """The condition of a rule as a phrase. ``guards``: it applies throughout, not just initially."""
     when = language.stretches["throughout" if guards else "initially"]
     lead = language.counts_only.format(when)
     return _after(lead, phrase(formula, language, inside=True), language)
@@ -105,7 +105,7 @@ def _for_every(variables: Sequence[tuple[str, str]], related: Related, language:
 
 
 def phrase(formula: ltl.Formula, language: Language = ENGLISH, *, inside: bool) -> Phrase:
-    """A formula as a phrase. ``inside``: it speaks of another time than the start of the trace."""
+    """A formula as a phrase. ``inside``: it refers to another time than the start of the trace."""
     match formula:
         case ltl.Unary(ltl.UnaryOperator.NOT, operand):
             denied = None if _counts(operand) else _clause(operand, language, holds=False)
@@ -163,11 +163,11 @@ def _clause(formula: ltl.Formula, language: Language, *, holds: bool) -> str | N
 def _after(lead: str, scope: Phrase, language: Language, *, denies: bool = False) -> Phrase:
     """A phrase after words at the head of a line.
 
-    The words reach to the line's end, or over the list that they introduce.
+    The words apply to the rest of the line, or to the whole list that it introduces.
     """
     if scope.shape is Shape.JOINED and denies:
         return Phrase(f"{lead} {_together(scope, language)}", Shape.REACHING)
-    # A pause is made where more than a clause follows, unless there is one or the lead forbids it.
+    # A comma is needed if more than a clause follows, unless one is there or the lead forbids it.
     runs_on = scope.shape is Shape.CLAUSE or scope.text.startswith(language.runs_on)
     pause = "" if runs_on or lead.endswith(language.no_pause_after) else ","
     shape = Shape.REACHING if scope.shape is Shape.JOINED else max(scope.shape, Shape.SCOPED)
@@ -175,7 +175,7 @@ def _after(lead: str, scope: Phrase, language: Language, *, denies: bool = False
 
 
 def _together(joined: Phrase, language: Language) -> str:
-    """Joined clauses behind a denial, worded as one whole."""
+    """Joined clauses after a negation, worded as one whole."""
     if joined.joint == language.or_:
         return language.either.format(joined.text)
     whole = language.both if joined.n_clauses == 2 else language.all_
@@ -183,7 +183,7 @@ def _together(joined: Phrase, language: Language) -> str:
 
 
 def _between(pattern: str, formula: ltl.Binary, language: Language, *, inside: bool) -> Phrase:
-    """Clauses in the places of a pattern, longer ones in a list."""
+    """Clauses inserted in a pattern; longer ones become a list."""
     first = phrase(formula.left, language, inside=inside)
     last = phrase(formula.right, language, inside=inside)
     if last.shape is Shape.JOINED and pattern.endswith("{}"):
@@ -213,7 +213,7 @@ def _condition(formula: ltl.Binary, language: Language, *, inside: bool) -> Phra
 
 
 def _chain(formula: ltl.Binary, language: Language, *, inside: bool) -> Phrase:
-    """``and`` and ``or``, which are read from the left."""
+    """``and`` and ``or``, which are left-associative."""
     operands: list[ltl.Formula] = []
     rest: ltl.Formula = formula
     while isinstance(rest, ltl.Binary) and rest.operator is formula.operator:
@@ -239,7 +239,7 @@ def _chain(formula: ltl.Binary, language: Language, *, inside: bool) -> Phrase:
 def _phases(formula: ltl.Binary, language: Language) -> Phrase:
     """The phases of ``then``, with bounds as their durations.
 
-    It is read from the right; a bound says how long the phase before it lasts.
+    It is right-associative; a bound is the duration of the phase before it.
     """
     phases: list[tuple[Phrase, str]] = []
     rest: ltl.Formula = formula

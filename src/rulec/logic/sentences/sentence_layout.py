@@ -1,6 +1,6 @@
 """A sentence laid out with its nested lists.
 
-They are labelled (a), (b), below them (i), (ii), below these (1), (2).
+The labels of the levels are (a), (b); (i), (ii); (1), (2).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _ROMAN = ((50, "l"), (40, "xl"), (10, "x"), (9, "ix"), (5, "v"), (4, "iv"), (1, 
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A line of a sentence, ``depth`` lists deep. The first one has no label."""
+    """A line of a sentence, nested ``depth`` lists deep. The first one has no label."""
 
     depth: int
     label: str
@@ -25,14 +25,14 @@ class Line:
 
 
 def lines(phrase: Phrase, language: Language = ENGLISH) -> list[Line]:
-    """The sentence from its capital letter to its full stop."""
+    """The sentence's lines, with an initial capital letter and a final full stop."""
     result = list(_lines(phrase, (0, ""), ".", language.semicolon))
     first = result[0]
     return [Line(0, "", f"{first.text[:1].upper()}{first.text[1:]}"), *result[1:]]
 
 
 def in_one_line(phrase: Phrase, language: Language = ENGLISH) -> str:
-    """The sentence as one line of text, labels included."""
+    """The sentence as one line of text, including labels."""
     return " ".join(f"{line.label} {line.text}".strip() for line in lines(phrase, language))
 
 

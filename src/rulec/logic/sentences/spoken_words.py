@@ -1,4 +1,4 @@
-"""Atoms and quantities that bring the phrases of their vocabulary into sentences."""
+"""Atoms and quantities that carry their vocabulary's phrases for use in sentences."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _FORMS = re.compile(r"\[([^\]|]*)\|([^\]]*)\]")
 
 @dataclass(frozen=True, slots=True)
 class SpokenAtom(ltl.Atom):
-    """An atom with the clauses that say that it holds, and that it does not."""
+    """An atom with the clauses for when it holds and when it does not."""
 
     affirmed: str = ""
     denied: str = ""
@@ -23,7 +23,7 @@ class SpokenAtom(ltl.Atom):
 
 @dataclass(frozen=True, slots=True)
 class SpokenQuantity(ltl.QuantityTerm):
-    """A quantity with the noun that it goes by."""
+    """A quantity with the noun that names it."""
 
     noun: str = ""
 
@@ -31,9 +31,9 @@ class SpokenQuantity(ltl.QuantityTerm):
 def spoken_formula(
     formula: ltl.Formula, phrases: Mapping[str, str], language: Language = ENGLISH
 ) -> ltl.Formula:
-    """The same formula, its atoms and quantities with their phrases, as far as there are any.
+    """The same formula, with phrases added to its atoms and quantities where there are any.
 
-    A phrase is such as ``ego [is|is not] behind {}``, that of a quantity a noun.
+    A phrase is, for example, ``ego [is|is not] behind {}``; for a quantity it is a noun.
     """
 
     def inside(operand: ltl.Formula) -> ltl.Formula:
@@ -55,7 +55,7 @@ def spoken_formula(
 
 
 def forms(phrase: str) -> tuple[str, str]:
-    """What a phrase says where the word holds, and where it does not."""
+    """The phrase's text where the word holds, and its text where it does not."""
     return _FORMS.sub(r"\1", phrase), _FORMS.sub(r"\2", phrase)
 
 
@@ -73,5 +73,5 @@ def spoken_term(term: ltl.Term, phrases: Mapping[str, str], language: Language) 
 def _with_objects(text: str, arguments: tuple[str, ...], language: Language) -> str:
     for argument in arguments:
         text = text.replace("{}", argument, 1)
-    # Where clauses are joined, one that has an `and` of its own would be read as two.
+    # Without quotation marks, a clause containing `and` would be read as two of the joined clauses.
     return language.quoted.format(text) if language.inner_joints.search(text) else text

@@ -1,4 +1,4 @@
-"""Atoms, comparisons, bounds and operators of time as phrases of plain language."""
+"""Atoms, comparisons, bounds and temporal operators as phrases of plain language."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def number_text(value: Fraction, language: Language = ENGLISH) -> str:
 
 
 def spoken(name: str) -> str:
-    """A name in spoken words: ``in_front_of`` becomes three, ``R_cw`` stays."""
+    """A name in spoken words: ``in_front_of`` becomes "in front of", ``R_cw`` stays."""
     several = re.fullmatch(r"[^\W\dA-Z_]+(_[^\W\dA-Z_]+)+", name)
     return name.replace("_", " ") if several else name
 
@@ -50,7 +50,7 @@ def of_objects(name: str, arguments: Sequence[str], language: Language = ENGLISH
 
 
 def atom_clause(atom: Atom, language: Language, *, holds: bool) -> str:
-    """A clause stating that the atom holds, or not."""
+    """A clause stating that the atom holds, or that it does not."""
     if isinstance(atom, SpokenAtom):
         return atom.affirmed if holds else atom.denied
     if atom.value is not None:
@@ -63,7 +63,7 @@ def atom_clause(atom: Atom, language: Language, *, holds: bool) -> str:
 
 
 def comparison_clause(comparison: Comparison, language: Language, *, holds: bool) -> str:
-    """A clause stating that the comparison holds, or not."""
+    """A clause stating that the comparison holds, or that it does not."""
     text = comparison_text(comparison)
     signs = _SIGN.findall(text)
     terms = [term for _, term in comparison.terms]
@@ -74,7 +74,7 @@ def comparison_clause(comparison: Comparison, language: Language, *, holds: bool
 
 
 def _aloud(text: str, terms: Sequence[Term], language: Language) -> str:
-    """Arithmetic with the quantities in it named in words."""
+    """An arithmetic text with its quantities named in words."""
     nouns = {
         term_text(term): (
             term.noun
@@ -85,14 +85,14 @@ def _aloud(text: str, terms: Sequence[Term], language: Language) -> str:
         if isinstance(term, QuantityTerm)
     }
     text = language.decimals(text)
-    if nouns:  # All at once: a noun may have another quantity's name in it.
+    if nouns:  # Replaced in one pass: a noun may contain another quantity's name.
         written = "|".join(re.escape(name) for name in sorted(nouns, key=len, reverse=True))
         text = re.sub(rf"(?<![\w.])(?:{written})(?![\w(])", lambda name: nouns[name[0]], text)
     return text.replace(" * ", f" {language.times} ")
 
 
 def single_count(comparison: Comparison) -> Count | None:
-    """The only count of a comparison with a number, or None."""
+    """The count, if the comparison compares a single count with a number, else None."""
     match comparison.terms:
         case ((coefficient, Count() as count),) if coefficient == 1:
             return count
@@ -102,7 +102,7 @@ def single_count(comparison: Comparison) -> Count | None:
 def counted(comparison: Comparison, count: Count, language: Language) -> str:
     """The head of a counting clause: ``there are at least 8 ...``.
 
-    In full ``there are at least 8 vehicles x for which``, to go on with the body.
+    In full ``there are at least 8 vehicles x for which``, to be followed by the body.
     """
     words = language.type_of(count.type, spoken(count.type))
     match comparison.relation, comparison.limit:
@@ -117,7 +117,7 @@ def counted(comparison: Comparison, count: Count, language: Language) -> str:
 
 
 def comparison_text(comparison: Comparison) -> str:
-    """The comparison's own text, or one made of its terms, without units."""
+    """The comparison's own text, or else one built from its terms, without units."""
     if comparison.text:
         return comparison.text
     return f"{terms_text(comparison.terms)} {comparison.relation} {number_text(comparison.limit)}"
@@ -171,9 +171,9 @@ _PAST = (
 def adverb(
     operator: UnaryOperator, bound: Bound | None, language: Language, *, inside: bool
 ) -> str:
-    """The words before what holds at another time, or at other times.
+    """The words before a condition at another time, or at other times.
 
-    ``inside``: they are not seen from the start of the trace, but from a time named before.
+    ``inside``: the time is relative to a time named before, not to the start of the trace.
     """
     words = language.adverbs[operator]
     if bound is None:
@@ -187,7 +187,7 @@ def adverb(
 def pattern_of(
     operator: BinaryOperator, bound: Bound | None, language: Language, *, inside: bool
 ) -> str:
-    """The pattern of a binary operator's phrase, with places for its left and its right side."""
+    """The pattern of a binary operator's phrase, with placeholders for its two sides."""
     words = language.binary[operator]
     places = {"left": "{}", "right": "{}"}
     if bound is None:
