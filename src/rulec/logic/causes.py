@@ -138,7 +138,7 @@ _WEAK = frozenset((BinaryOperator.WEAK_UNTIL, BinaryOperator.STRONG_RELEASE))
 
 
 def _not_before(since: int, reason: _Reason, columns: _Columns) -> _Reason:
-    """The reason for a failed ``always`` or ``never``, moved to the first failure since ``since``."""
+    """The reason for a failed ``always`` or ``never``: its first failure from ``since`` on."""
     operand, first, last = reason
     column = columns[operand]
     later = column.next(column.values[first], max(first, since))

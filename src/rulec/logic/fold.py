@@ -183,7 +183,7 @@ def temporal_operation(
 
 
 def fold_constants(formula: ltl.Formula) -> ltl.Formula:
-    """An equivalent formula whose ``and``, ``or``, ``implies``, ``not`` have no constant operands."""
+    """An equivalent formula without constant operands of ``and``, ``or``, ``implies``, ``not``."""
     return fold(formula, _FOLDED)
 
 

@@ -86,7 +86,7 @@ def exemption(formula: ltl.Formula, scope: str, language: Language = ENGLISH) ->
 
 
 def condition(formula: ltl.Formula, language: Language = ENGLISH, *, guards: bool) -> Phrase:
-    """The condition of a rule as a phrase. ``guards``: it applies throughout, not just initially."""
+    """The condition of a rule as a phrase. ``guards``: it applies throughout, else initially."""
     when = language.stretches["throughout" if guards else "initially"]
     lead = language.counts_only.format(when)
     return _after(lead, phrase(formula, language, inside=True), language)
