@@ -1,9 +1,9 @@
 """A shortest trace that one rule forbids and others allow.
 
-A rule forbids a trace if it is violated for some objects. If it is, it is by the trace of these
-objects alone, on the stretch on which they are there together; so traces of just the objects that a
-rule speaks of tell whether another rule forbids all that it does. The other rule is asked about
-these objects in all ways in which they fit its variables.
+A rule forbids a trace if it is violated for some objects. It is then also violated by the trace of
+these objects alone, during the states in which all of them are present; so traces with only the
+objects of one rule show whether another rule forbids everything that the first one does. The other
+rule is evaluated for all choices of these objects that fit its variables.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def counterexample(
 ) -> Trace | None:
     """A shortest trace that only this rule forbids, or None.
 
-    ``given`` is to hold in its states, besides what is known of any. Raises UndecidedError.
+    ``given`` must hold in its states, in addition to the known facts. Raises UndecidedError.
     """
     return Contest(forbidding, allowing, given).trace()
 
@@ -80,7 +80,7 @@ class Contest:
         return self._trace(self._alphabet, self._universe, self._given)
 
     def trace_as_usual(self, names: Set[str]) -> Trace | None:
-        """One in which these declarations have their defaults. Raises UndecidedError."""
+        """Such a trace in which these declarations have their defaults. Raises UndecidedError."""
         declared = self.forbidding.rulebook.vocabulary.declarations
         axioms = [said_as_usual(name, Itself(declared[name])) for name in sorted(names)]
         universe = replace(self._universe, axioms=(*self._universe.axioms, *axioms))
@@ -93,9 +93,9 @@ class Contest:
         return self._trace(alphabet, universe, given)
 
     def not_below_zero(self) -> Contest:
-        """The same, in states without numbers below zero that nothing asks for.
+        """The same contest, without negative numbers that no rule or default suggests.
 
-        Of a quantity whose default is one, or that a rule compares with one, nobody knows.
+        Quantities with a negative default, or that a rule compares with zero or less, stay free.
         """
         rules = [analyzed.rule for analyzed in (self.forbidding, *self._allowing)]
         declared = self._universe.vocabulary.declarations
@@ -126,10 +126,10 @@ class Contest:
         except ChangingConstantsError as changing:
             reads = [alphabet.read_of(name) for name in changing.names]
             axioms = [_said_of_constant(read, universe.vocabulary) for read in reads if read]
-            # What has one value already, and changes all the same, would be asked for ever
+            # A constant that already has one value and still changes would recur for ever.
             if None in reads or not set(given).isdisjoint(chain.from_iterable(axioms)):
                 raise
-        # A trace has one value of each: the shortest one with any.
+        # A trace has one value for each constant: take the shortest trace for any values.
         every = product(*axioms)
         traces = (counterexample(self.forbidding, self._allowing, (*given, *x)) for x in every)
         counterexamples = [trace for trace in traces if trace is not None]
@@ -138,7 +138,7 @@ class Contest:
     def _word(self, alphabet: JointAlphabet) -> tuple[JointLetter, ...] | None:
         letters = alphabet.candidates
         if alphabet.is_counting:
-            # Mostly no word is left even if all of the letters could be read.
+            # Usually no word is left even if all letters were possible.
             with suppress(UndecidedError):
                 if shortest_word(self._monitors, self._verdicts, letters) is None:
                     return None
@@ -146,7 +146,7 @@ class Contest:
 
 
 def _said_of_constant(read: Read, vocabulary: Vocabulary) -> list[Axiom]:
-    """Axioms that a constant has one value, for each that is told apart; the default first."""
+    """Axioms that a constant has one value, for each distinguished value; the default first."""
     each: list[ltl.Formula] = [ltl.Atom(read.name, (), value) for value in read.values]
     if not read.values:
         own = ltl.Atom(read.name)
@@ -159,10 +159,10 @@ def _said_of_constant(read: Read, vocabulary: Vocabulary) -> list[Axiom]:
     return [Axiom((), each[digit]) for digit in order]
 
 
-# What is known of an axiom is kept beside it, and many rules are asked about the same words.
+# Cached, since facts derived from an axiom are stored with it, and many rules use the same words.
 @lru_cache(maxsize=1024)
 def said_as_usual(name: str, declared: Itself[Declaration]) -> Axiom:
-    """That a declaration has its default, for all objects."""
+    """The axiom that a declaration has its default, for all objects."""
     variables = _variables_of(declared.item)
     arguments = tuple(variable.name for variable in variables)
     return Axiom(variables, _has_default(name, arguments, declared.item))
@@ -174,14 +174,14 @@ def _variables_of(declaration: Declaration) -> tuple[Variable, ...]:
 
 @lru_cache(maxsize=1024)
 def said_not_below_zero(name: str, declared: Itself[Declaration]) -> Axiom:
-    """That a quantity is not below zero, for all objects."""
+    """The axiom that a quantity is not negative, for all objects."""
     variables = _variables_of(declared.item)
     term = ltl.QuantityTerm(name, tuple(variable.name for variable in variables))
     return Axiom(variables, ltl.Comparison(((Fraction(1), term),), ">=", Fraction(0)))
 
 
 def _compared_with_no_more_than_zero(rules: Iterable[CompiledRule]) -> frozenset[str]:
-    """The quantities that rules compare by themselves with zero or less."""
+    """The quantities that rules compare, on their own, with zero or less."""
     return frozenset(
         name
         for rule in rules
@@ -207,7 +207,7 @@ def _has_default(name: str, arguments: tuple[str, ...], declaration: Declaration
 
 
 def common_step(rules: Iterable[AnalyzedRule]) -> Fraction:
-    """Step of traces for rules with one step, in seconds; 1 where none matters."""
+    """The step of traces for rules with one step, in seconds; 1 if no rule depends on the step."""
     return next((step for rule in rules if (step := rule.rule.step_s) is not None), Fraction(1))
 
 
@@ -231,7 +231,7 @@ def _universe(
 
 
 def declarations_read(rule: CompiledRule) -> frozenset[str]:
-    """The declarations that a rule reads."""
+    """The names of the declarations that a rule reads."""
     names: set[str] = set()
     for read in rule.machine.reads:
         if isinstance(read, NumberRead):
@@ -243,7 +243,7 @@ def declarations_read(rule: CompiledRule) -> frozenset[str]:
 
 @dataclass(frozen=True, slots=True)
 class SharedVocabulary:
-    """The joint vocabulary of two rulebooks, with what one lacks or means otherwise."""
+    """The joint vocabulary of two rulebooks; names that one lacks or defines differently."""
 
     vocabulary: Vocabulary
     not_shared: frozenset[str]
@@ -251,15 +251,15 @@ class SharedVocabulary:
 
 
 def shared_vocabulary(first: Vocabulary, second: Vocabulary) -> SharedVocabulary:
-    """The words of two vocabularies together.
+    """The joint vocabulary of two vocabularies.
 
-    Where defaults differ there is none, so that traces say the value; what one calls constant or
-    presumed and the other does not is neither. Raises UndecidedError.
+    A declaration has no default where the two differ, so that traces state the value; it is
+    constant or presumed only if it is so in both. Raises UndecidedError.
     """
     return _shared_vocabulary(Itself(first), Itself(second))
 
 
-# All rules of two rulebooks ask for the same one; what is known of its axioms is kept beside it.
+# Cached: all rules of two rulebooks share it, and facts derived from its axioms are stored with it.
 @lru_cache(maxsize=8)
 def _shared_vocabulary(own: Itself[Vocabulary], other: Itself[Vocabulary]) -> SharedVocabulary:
     first, second = own.item, other.item

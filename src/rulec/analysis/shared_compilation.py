@@ -1,4 +1,4 @@
-"""Compile the rules of several rulebooks, each law once."""
+"""Compiles the rules of several rulebooks, each distinct law once."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rulec.vocabulary import Vocabulary
 class AnalyzedRule:
     """A compiled rule with its rulebook and the axioms known there.
 
-    Those with the same ``law`` have rules that mean the same by their very words.
+    Rules with the same ``law`` are textually equivalent and mean the same.
     """
 
     rulebook: CompiledRulebook
@@ -30,7 +30,7 @@ class AnalyzedRule:
     law: int
 
     def violations(self, trace: Trace, vocabulary: Vocabulary) -> tuple[Violation, ...]:
-        """How a trace in the words of a vocabulary violates the rule."""
+        """The violations of the rule by a trace in the words of a vocabulary."""
         alone = replace(self.rulebook, vocabulary=vocabulary, rules=(self.rule,))
         return verify(trace, alone).violations
 
@@ -40,9 +40,10 @@ def compile_shared(
     rules: Sequence[Mapping[str, Rule]],
     tell: Callable[[float], object] = lambda _: None,
 ) -> list[dict[str, AnalyzedRule]]:
-    """For each rulebook its chosen rules by name, at the named steps; each law once.
+    """For each rulebook its chosen rules by name, at their own steps; each law is compiled once.
 
-    ``tell`` is told how many rulebooks are compiled. Raises RulecError if a rule cannot be.
+    ``tell`` is called with the number of rulebooks compiled so far. Raises RulecError if a rule
+    cannot be compiled.
     """
     machines: dict[object, CompiledRule] = {}
     laws: dict[object, int] = {}
@@ -78,7 +79,7 @@ _NOT_COMPILED = (
 
 
 def _key(rule: Rule, book: Rulebook) -> object:
-    """All that a rule's monitor depends on."""
+    """Everything that a rule's monitor depends on."""
     return (
         rule.formula,
         rule.variables,
@@ -90,7 +91,7 @@ def _key(rule: Rule, book: Rulebook) -> object:
 
 
 def at_one_step(rules: Iterable[Rule], step_s: Fraction | None) -> list[Rule]:
-    """The rules for one step of the trace: the given one, else one that divides all."""
+    """The rules for one step of the trace: the given one, else the longest that divides all."""
     listed = list(rules)
     steps = [rule.step_s for rule in listed if has_seconds(rule.formula)]
     if step_s is None and steps:

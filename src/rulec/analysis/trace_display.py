@@ -1,4 +1,4 @@
-"""Traces for reports: tables and literals of what rules read."""
+"""Traces for reports: tables and literals of the values that rules read."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rulec.witnesses.state_synthesis import subjects_of
 class SignalRow:
     """The values of one subject by column, with its title and unit.
 
-    ``unit`` is empty if it has none. ``is_default``: the value is the default in all of them.
+    ``unit`` is empty if there is none. ``is_default``: all values are the default.
     """
 
     title: str
@@ -32,14 +32,14 @@ class SignalRow:
 
 @dataclass(frozen=True, slots=True)
 class TraceTable:
-    """A table of a trace; columns have the first and the last of equal states in a row."""
+    """A table of a trace; a column is a run of equal states, given by its first and last state."""
 
     columns: tuple[tuple[int, int], ...]
     rows: tuple[SignalRow, ...]
 
 
 def trace_table(trace: Trace, names: Set[str], vocabulary: Vocabulary) -> TraceTable:
-    """The table of a trace's values for declarations and all its objects."""
+    """The table of a trace's values for these declarations and all its objects."""
     starts = [
         number
         for number, state in enumerate(trace.states)
@@ -59,9 +59,9 @@ def trace_table(trace: Trace, names: Set[str], vocabulary: Vocabulary) -> TraceT
 
 
 def trace_note(title: str, trace: Trace, rules: Sequence[AnalyzedRule]) -> tuple[str, ...]:
-    """The note on a trace, as a literal in the words of these rules.
+    """A note with the trace as a literal in the words of these rules.
 
-    ``{ behind(v); beside(v) and fog }``: what is not said has its default.
+    ``{ behind(v); beside(v) and fog }``: omitted words have their defaults.
     """
     names = frozenset(name for analyzed in rules for name in declarations_read(analyzed.rule))
     vocabulary = rules[0].rulebook.vocabulary

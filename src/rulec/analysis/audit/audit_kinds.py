@@ -1,4 +1,4 @@
-"""The kinds of findings of an audit, for quick completion in shells."""
+"""The kinds of findings of an audit; a module of its own so that shells complete them quickly."""
 
 from __future__ import annotations
 
@@ -25,4 +25,4 @@ KINDS: Final = {
     "law-changed": "the text of the law has changed where a rule rests on it",
     "unused": "a word that no rule speaks of",
 }
-"""Kind of finding -> what it means."""
+"""The kinds of findings and their meanings."""

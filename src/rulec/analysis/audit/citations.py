@@ -1,4 +1,4 @@
-"""Parser of citations: `§ 5(4) s. 2, 7a` cites two articles."""
+"""Parser of citations, such as `§ 5(4) s. 2, 7a`, which cites two articles."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from typing import Final, Literal, TypeAlias
 ReferenceKind: TypeAlias = Literal["article", "annex", "sign"]
 
 PartKind: TypeAlias = Literal["mark", "sentence", "item"]
-"""`(4)`; `s. 2`, counted; `no. 2`, `lit. c`, `II`, as they stand at the beginning of a line."""
+"""`(4)`; `s. 2`, which is counted; `no. 2`, `lit. c`, `II`, as written at the start of a line."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """A place in a law: an article, an annex or a traffic sign, and the part of it that is meant.
+    """A place in a law: an article, an annex or a traffic sign, and the cited part of it.
 
-    ``label`` is the word before it. A ``number`` such as `20-22` may also mean several.
+    ``label`` is the word before the number. A ``number`` such as `20-22` may be a range.
     """
 
     kind: ReferenceKind
@@ -29,7 +29,7 @@ class Reference:
         return f"{self.label}{self.number}{''.join(_shown(*part) for part in self.parts)}"
 
     def several(self) -> tuple[Reference, ...]:
-        """The articles of a range such as `20-22`; itself alone if it is none."""
+        """The articles of a range such as `20-22`; only this reference if it is not a range."""
         ends = re.fullmatch(r"(\d{1,6})-(\d{1,6})", self.number)
         if ends is None or not 0 < int(ends[2]) - int(ends[1]) <= _LONGEST_RANGE:
             return (self,)
@@ -39,7 +39,7 @@ class Reference:
 
 _LONGEST_RANGE: Final = 50
 _MOST_PARTS: Final = 30
-"""A larger number behind `no. 2` is an article."""
+"""A larger number after `no. 2` is an article."""
 _LABELS: Final[dict[ReferenceKind, str]] = {
     "article": r"§§?|[Aa]rt(?:ic(?:le|olo|ulo)|ikel|ículo)?s?\.?|[Rr](?:ule|egel)s?|rr?\."
     r"|[Rr]eg(?:ulation)?s?\.?|ss?\.|[Ss]ec(?:tion)?s?\.?",
@@ -74,10 +74,11 @@ def _shown(kind: PartKind, name: str) -> str:
 
 
 def references_in(cite: str) -> tuple[tuple[Reference, ...], tuple[str, ...]]:
-    """The places that a ``cite`` names, in order, and what of it names none.
+    """The places that a ``cite`` names, in order, and the parts of it that name none.
 
-    A number without a word before it is an article of the kind before; behind `s. 3`, `no. 2` or
-    `II` another of these: `§ 5(4) s. 3, 4` is two sentences, `§ 46(6), 47` two articles.
+    A number without a word before it is an article of the same kind as the one before; after `s.
+    3`, `no. 2` or `II` it is another sentence or item: `§ 5(4) s. 3, 4` cites two sentences, `§
+    46(6), 47` two articles.
     """
     references: list[Reference] = []
     unread: list[str] = []
@@ -108,7 +109,7 @@ def references_in(cite: str) -> tuple[tuple[Reference, ...], tuple[str, ...]]:
 
 
 def _further(text: str, references: list[Reference]) -> Reference | None:
-    """Another part of the article before: `(d)`, or a number behind `s. 3`."""
+    """Another part of the article before: `(d)`, or a number after `s. 3`."""
     if not references:
         return None
     before = references[-1]
@@ -142,7 +143,7 @@ def _parts(text: str, start: int) -> tuple[tuple[tuple[PartKind, str], ...], int
             parts.append(("item", match["item"] or match["roman"]))
             if match["letter"]:
                 parts.append(("item", match["letter"]))
-        # Of `s. 2-3` and `(1)-(4)` the first is looked at.
+        # Only the first of `s. 2-3` or `(1)-(4)` is used.
         if (more := _UP_TO.match(text, start)) is not None:
             start = more.end()
     if parts and (match := re.compile(r"\s+\d+\b").match(text, start)):
@@ -152,19 +153,19 @@ def _parts(text: str, start: int) -> tuple[tuple[tuple[PartKind, str], ...], int
 
 
 def article_listed(number: str) -> Reference | None:
-    """The place that an entry of `provisions` names, None if its text is a name of its own."""
+    """The place that an entry of `provisions` names; None if its text is a name of its own."""
     references, unread = references_in(number)
     return references[0] if len(references) == 1 and not unread else None
 
 
 def covers(listed: Reference, cited: Reference) -> bool:
-    """Tell whether a listed article, or the part of one, has a cited place in it."""
+    """Whether a listed article, or part of one, contains a cited place."""
     same = (listed.kind, listed.number) == (cited.kind, cited.number)
     return same and cited.parts[: len(listed.parts)] == listed.parts
 
 
 def each_reference(cite: str, known: frozenset[tuple[str, str]]) -> Iterator[Reference]:
-    """The places that a ``cite`` names; a range that is no article of a law, one by one."""
+    """The places that a ``cite`` names; a range that is not an article of the law is split up."""
     for reference in references_in(cite)[0]:
         if (reference.kind, reference.number) in known:
             yield reference

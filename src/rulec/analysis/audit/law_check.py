@@ -1,4 +1,4 @@
-"""A rulebook held against the text of its law, and against that text as it has become."""
+"""Check of a rulebook's citations against its law's text, and against the current text."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ CiteResult = Literal["found", "not-found", "unread", "law-changed"]
 
 @dataclass(frozen=True, slots=True)
 class CiteCheck:
-    """What was found of a place that a rule cites.
+    """The result of looking up a place that a rule cites.
 
-    ``unread`` is what names no article, such as a custom or another law; ``law-changed`` is a place
-    whose text is another one now, or is gone. ``note`` says more.
+    ``unread`` is text that names no article, such as a custom or another law; ``law-changed`` is a
+    place whose text has changed or is gone. ``note`` has details.
     """
 
     rule: str
@@ -33,10 +33,10 @@ class CiteCheck:
 def check_cites(
     rulebook: Rulebook, law: LawText, law_now: LawText | None = None
 ) -> tuple[CiteCheck, ...]:
-    """Look up what the rules that are the rulebook's own law cite, in the order of the rules.
+    """Look up the citations of the rules that are the rulebook's own law, in rule order.
 
-    With ``law_now``, places whose text is not the same there, white space aside, have changed.
-    Raises RulecError R0718 if all of them together are too much to look through.
+    With ``law_now``, places whose text there differs, apart from white space, have changed. Raises
+    RulecError R0718 if all of them together are too much text to search.
     """
     own = [rule for rule in rulebook.rules if not rule.inherited_from]
     texts = [law] if law_now is None else [law, law_now]
@@ -68,7 +68,7 @@ def _of_rule(rule: str, cite: str, law: LawText, law_now: LawText | None) -> Ite
 
 
 def _looked_for(cite: str, law: LawText) -> Iterator[Reference]:
-    """The places that a ``cite`` names; an annex before signs only says where these stand."""
+    """The places that a ``cite`` names; an annex that only locates the next sign is left out."""
     places = tuple(each_reference(cite, frozenset(law.articles)))
     for place, following in zip_longest(places, places[1:]):
         if place.kind != "annex" or following is None or following.kind != "sign":
@@ -76,11 +76,11 @@ def _looked_for(cite: str, law: LawText) -> Iterator[Reference]:
 
 
 _SHOWN = 60
-"""So many characters of a change are shown, from where the texts part."""
+"""The number of characters of a change that are shown, from where the texts differ."""
 
 
 def _difference(before: str, after: str) -> str:
-    """The beginning of what is different, from a word's beginning on."""
+    """The start of the difference between two texts, from the beginning of a word."""
     pairs = zip(before, after, strict=False)
     same = next((at for at, (old, new) in enumerate(pairs) if old != new), None)
     start = min(len(before), len(after)) if same is None else same

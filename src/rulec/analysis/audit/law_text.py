@@ -1,4 +1,4 @@
-"""The text of a law, plain or as Markdown, and the places of it that rules cite."""
+"""The text of a law, plain or as Markdown, and the places in it that rules cite."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ class LawText:
     articles: Mapping[tuple[str, str], str]
 
     def find(self, reference: Reference) -> str | None:
-        """The text of a place, white space aside; None where there is none.
+        """The text of a place with white space normalised; None if there is none.
 
-        A sign is looked for in the whole text, an article's paragraphs, items and sentences in
-        turn.
+        A sign is searched in the whole text, an article's paragraphs, items and sentences one
+        within the other.
         """
         if reference.kind == "sign":
             return self._sign(reference.number)
@@ -35,14 +35,14 @@ class LawText:
         return None if text is None else " ".join(text.split())
 
     def length_of(self, reference: Reference) -> int:
-        """How many characters are looked through for a place, for each of its parts anew."""
+        """The number of characters searched for a place; each part of it needs another pass."""
         if reference.kind == "sign":
             return sum(map(len, self.articles.values()))
         text = self.articles.get((reference.kind, reference.number), "")
         return len(text) * (1 + len(reference.parts))
 
     def missing(self, reference: Reference) -> str:
-        """Why a place is not found: the first part of it that is not there."""
+        """Why a place is not found: the first part of it that is missing."""
         if (reference.kind, reference.number) not in self.articles or reference.kind == "sign":
             return f"{self.name} has no {replace(reference, parts=())}"
         whole = replace(reference, parts=())
@@ -54,7 +54,7 @@ class LawText:
         return ""
 
     def _sign(self, number: str) -> str | None:
-        """What an entry on a sign says, up to the next sign's; or the part that mentions it."""
+        """The entry on a sign, up to the next sign; or the passage that mentions it."""
         mention = rf"(?:[Zz]eichen|[Ss]igns?)[ \t]*{re.escape(number)}(?![\w-]|\.\d)"
         for line in (rf"^[^\w\n]*{mention}", mention):
             for text in self.articles.values():
@@ -75,18 +75,18 @@ _LABELLED: Final = re.compile(
     r"[Ss]chedule\b)[^\n]{0,200})$",
     re.MULTILINE,
 )
-"""A line that begins as an article's heading does, in a text without marks for headings."""
+"""A line that begins like an article's heading, in a text without heading marks."""
 _NUMBERED: Final = re.compile(
     r"^[ \t*_]*(?P<head>[A-Z]?\d+[\d.:-]*[a-z]?[.:]?[ \t]+[A-ZÄÖÜ][^\n]{0,200})$", re.MULTILINE
 )
-"""The same where articles have only numbers."""
+"""The same for articles that have only numbers."""
 _CONTINUED: Final = re.compile(
     r"\s*(?:(?:Abs|Absatz|Nr|Nummer|Satz|Buchst)\b|and\b|und\b|or\b|oder\b|,|;|\()"
 )
 
 
 def _without_next_row(entry: str) -> str:
-    """An entry of a table without the number that the next row begins with, and marks of cells."""
+    """A table's entry without the number that begins the next row, and without cell marks."""
     text = entry.rstrip(_BETWEEN_CELLS)
     before = text.rstrip("0123456789")
     return before.rstrip(_BETWEEN_CELLS) if before[-1:] in [*_BETWEEN_CELLS] else text
@@ -100,7 +100,7 @@ def read_law_text(path: Path) -> LawText:
 
 
 def law_text(source: Source) -> LawText:
-    """The articles of a text by its headings. Raises RulecError R0714 if there are none."""
+    """The articles of a text, by its headings. Raises RulecError R0714 if there are none."""
     articles = dict(_articles(source.text))
     if not articles:
         raise NO_ARTICLES.error(
@@ -115,7 +115,7 @@ def _articles(text: str) -> Iterator[tuple[tuple[str, str], str]]:
     marked = [
         (match.start(), match.end(), _named(match["head"])) for match in _MARKDOWN.finditer(text)
     ]
-    # Every marked heading ends the article before it, also one that begins none.
+    # Every marked heading ends the article before it, even if it starts none.
     heads = marked if any(named for _, _, named in marked) else []
     heads = heads or _plain_heads(text, _LABELLED) or _plain_heads(text, _NUMBERED)
     seen: set[tuple[str, str]] = set()
@@ -127,7 +127,7 @@ def _articles(text: str) -> Iterator[tuple[tuple[str, str], str]]:
 
 
 _Head: TypeAlias = "tuple[int, int, tuple[str, str] | None]"
-"""Where a heading begins and ends, and the article that it names."""
+"""The start and end of a heading, and the article that it names."""
 
 
 def _plain_heads(text: str, shape: re.Pattern[str]) -> list[_Head]:
@@ -140,7 +140,7 @@ def _plain_heads(text: str, shape: re.Pattern[str]) -> list[_Head]:
 
 
 def _named(head: str) -> tuple[str, str] | None:
-    """The article or annex that a heading begins with."""
+    """The article or annex named at the start of a heading."""
     plain = head.strip().strip("*_ ")
     begins = re.match(
         r"\S*?[§.]?\s*[A-Z]{0,3}\.?\d+[a-z]?(?:[-.:]\d+[a-z]?)*|\w+\.?\s+[A-Z]?\d+[a-z]?", plain
@@ -169,14 +169,14 @@ def _part(text: str, kind: PartKind, name: str) -> str | None:
 
 
 def _like(name: str) -> str:
-    """The pattern of names of the same kind, at one of which the part ends."""
+    """The pattern of names of the same kind; the next one ends the part."""
     if name[0].isdigit():
         return r"\d+(?:[a-z]|-[a-z]+)?"
     return "[IVX]+" if name.isupper() else "[a-z]{1,2}"
 
 
 def _marker(kind: PartKind, name: str) -> re.Pattern[str]:
-    """`(4)` where a line begins; of an item `2.`, `2)`, `(2)` or `II.`."""
+    """The marker at the start of a line: `(4)`; for an item `2.`, `2)`, `(2)` or `II.`."""
     shape = rf"\((?:{name})\)" if kind == "mark" else rf"\(?(?:{name})(?:[.)°]|[ \t]*[-–—])"
     return re.compile(rf"^[ \t*_-]*{shape}", re.MULTILINE)
 
@@ -186,10 +186,10 @@ _SHORT: Final = re.compile(
     r"|^[ \t]*\d+[a-z]?)\Z",
     re.MULTILINE,
 )
-"""What a full stop that ends no sentence stands behind: `Nr.`, `z. B.`, the number of an item."""
+"""Text before a full stop that does not end a sentence: `Nr.`, `z. B.`, an item's number."""
 _LONGEST_SHORT: Final = 40
 _MOST_DIGITS: Final = 6
-"""No number of a sentence has more."""
+"""The most digits of a sentence's number."""
 _ONE_LETTER: Final = re.compile(r"\s+[A-Z]\.")
 _END: Final = re.compile(r"[.!?][)“\"»]?(?=\s+[A-ZÄÖÜÉÀ§(„“\"«]|\s*\Z)")
 

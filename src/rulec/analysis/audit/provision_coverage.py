@@ -18,8 +18,9 @@ ProvisionState = Literal["covered", "silent", "not machine-readable", "to do"]
 class ListedProvision:
     """An article of the rulebook's law, and the rules that cite it.
 
-    It is ``covered`` if a rule does that is the rulebook's own law; else ``state`` is what the
-    rulebook says of it, ``because`` why. ``certainty`` is that of its number and heading.
+    It is ``covered`` if a rule that is the rulebook's own law cites it; otherwise ``state`` is what
+    the rulebook declares, and ``because`` its reason. ``certainty`` is that of its number and
+    heading.
     """
 
     __repr__ = short_repr
@@ -57,7 +58,7 @@ def provisions_of(rulebook: Rulebook) -> tuple[ListedProvision, ...]:
 
 
 def unlisted(rulebook: Rulebook) -> Iterator[tuple[str, str]]:
-    """Rules and what they cite that no list has, if the rulebook lists articles at all."""
+    """Rules with citations that are missing from the rulebook's list of articles, if it has one."""
     listed = _listed(rulebook.provisions)
     articles = {reference.kind for _, reference in listed if reference is not None}
     for rule in _own(rulebook) if listed else ():
@@ -73,7 +74,7 @@ def _own(rulebook: Rulebook) -> list[Rule]:
 
 
 Listed = Sequence[tuple[str, Reference | None]]
-"""The articles as listed, with what their texts name; None for a name of its own."""
+"""The articles as listed, with the place that each text names; None for a name of its own."""
 
 
 def _listed(provisions: Sequence[Provision]) -> Listed:
@@ -94,13 +95,13 @@ def _cited(rule: Rule, listed: Listed) -> Iterator[str]:
 
 
 def _year(number: str) -> str:
-    """The year behind an article's number, as in `reg. 6 (1989)`; empty if there is none."""
+    """The year after an article's number, as in `reg. 6 (1989)`; empty if there is none."""
     match = re.search(r"\((?:19|20)\d\d\)$", number)
     return match[0] if match else ""
 
 
 def _covering(cited: Reference, listed: Listed) -> list[str]:
-    """The listed articles that a cited place is in, the closest first."""
+    """The listed articles that contain a cited place, the most specific first."""
     fitting = [
         (len(reference.parts), number)
         for number, reference in listed

@@ -1,7 +1,7 @@
-"""Audit a rulebook: sources and examples of its rules, gaps, and coverage.
+"""Audit of a rulebook: sources and examples of its rules, gaps, and coverage.
 
-Nothing of this is a mistake. It is what a lawyer or a safety engineer wants to know before they
-rely on a rulebook.
+The findings are not mistakes. They are what a lawyer or a safety engineer wants to know before
+relying on a rulebook.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class AuditFinding:
 
 @dataclass(frozen=True, slots=True)
 class CitedArticle:
-    """A provision as rules cite it, the book of the chain that does, and the rules."""
+    """A provision as rules cite it, the book in the chain that cites it, and the rules."""
 
     book: str
     cite: str
@@ -47,9 +47,9 @@ class CitedArticle:
 
 @dataclass(frozen=True, slots=True)
 class AuditCounts:
-    """Numbers of everything; rules are those in force.
+    """Counts of everything; rules are those in force.
 
-    ``confirmed`` are those that are the rulebook's own law; ``verified`` are of them.
+    ``confirmed`` are those that are the rulebook's own law; ``verified`` rules are among these.
     """
 
     rules: int = 0
@@ -71,8 +71,8 @@ class AuditCounts:
 class Audit(Rows):
     """All findings about a rulebook by the law of the day ``at``.
 
-    ``provisions`` are the articles that it lists; ``law_text`` names the file with its law's text
-    that its cites were looked for in, if there was one.
+    ``provisions`` are the articles that it lists; ``law_text`` is the name of the file with the
+    law's text in which citations were looked up, if any.
     """
 
     __repr__ = short_repr
@@ -89,13 +89,13 @@ class Audit(Rows):
     law_text: str = ""
 
     def rows(self) -> list[dict[str, Any]]:
-        """One row a finding."""
+        """One row per finding."""
         return [asdict(finding) for finding in self.findings]
 
 
 @dataclass(frozen=True, slots=True)
 class AuditChanges:
-    """The findings that came or went since an older audit."""
+    """The findings that appeared or vanished since an older audit."""
 
     appeared: tuple[AuditFinding, ...] = ()
     vanished: tuple[AuditFinding, ...] = ()
@@ -108,10 +108,10 @@ def audit(
     law: LawText | None = None,
     law_now: LawText | None = None,
 ) -> Audit:
-    """The audit of a rulebook, with what became of everything in its chain on the same day.
+    """The audit of a rulebook, with the lineage of its chain on the same day.
 
     ``failing`` are the examples that fail, if they were run: rule and label or number. ``law`` is
-    the text that cites are looked for in, ``law_now`` what it has become.
+    the text in which citations are looked up, ``law_now`` its current version.
     """
     provisions = provisions_of(rulebook)
     checks = () if law is None else check_cites(rulebook, law, law_now)
@@ -167,7 +167,7 @@ def audit(
 
 
 def audit_changes(now: Audit, before: Audit) -> AuditChanges:
-    """The findings that came or went between two audits, without notes."""
+    """The findings that appeared or vanished between two audits; notes are not compared."""
 
     def only_in(first: Audit, second: Audit) -> tuple[AuditFinding, ...]:
         known = {(finding.kind, finding.name) for finding in second.findings}
@@ -179,7 +179,7 @@ def audit_changes(now: Audit, before: Audit) -> AuditChanges:
 
 
 def compare_audits(audits: Sequence[Audit], older: Sequence[Audit]) -> dict[str, AuditChanges]:
-    """Rulebook -> changes since its own, or the only, older audit; without one all is new."""
+    """Rulebook -> changes since its older audit, or the only one given; without one all is new."""
     by_name = {saved.rulebook: saved for saved in older}
     only = older[0] if len(older) == 1 and len(audits) == 1 else None
     pairs = ((now, by_name.get(now.rulebook, only)) for now in audits)
@@ -190,14 +190,14 @@ def compare_audits(audits: Sequence[Audit], older: Sequence[Audit]) -> dict[str,
 
 
 def used_declarations(rulebook: Rulebook) -> frozenset[str]:
-    """The enumerations, signals and quantities of which some rule speaks."""
+    """The enumerations, signals and quantities that some rule reads."""
     return frozenset(name for rule in rulebook.rules for name in names_in(rule.formula))
 
 
 def articles_of(rules: Sequence[Rule], inherited: BookLineage) -> tuple[CitedArticle, ...]:
-    """The provisions that rules cite, those of the rulebook's own law before each base's.
+    """The provisions that rules cite, those of the rulebook's own law before those of each base.
 
-    Numbers in them are in the order of numbers.
+    Numbers within them are sorted numerically.
     """
     citing = {article.name: article.cited_by for article in inherited.rules}
     nearest = [article.name for article in reversed(inherited.books)]
@@ -213,9 +213,10 @@ def articles_of(rules: Sequence[Rule], inherited: BookLineage) -> tuple[CitedArt
 
 
 def _natural(text: str) -> list[tuple[bool, int, str]]:
-    """Something to sort by, in which 9 comes before 11."""
+    """A sort key with which 9 comes before 11."""
     parts = ((part, part.lstrip("0")) for part in re.findall(r"[0-9]+|[^0-9]+", text))
-    # Of numbers the longer one is larger, however many digits they have.
+    # Of two numbers the one with more digits is larger; compared as text, they may be of any
+    # length.
     return [
         (True, len(number), number) if "0" <= part[0] <= "9" else (False, 0, part)
         for part, number in parts

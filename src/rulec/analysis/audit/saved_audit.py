@@ -1,4 +1,4 @@
-"""Audits saved as JSON, to compare new ones with."""
+"""Audits saved as JSON, for comparison with new ones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Basis of each rule's verdicts on a source, before there are traces."""
+"""The basis of each rule's verdicts on a source, before there are traces."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from rulec.monitoring.uncertainty.untold_names import untold_names
 from rulec.value_display import Rows, short_repr
 
 Basis: TypeAlias = Literal["evidence", "presumption", "nothing"]
-"""What verdicts on a rule rest on: what is told, also on what is presumed, or there are none."""
+"""The basis of verdicts on a rule: provided values, also presumed ones, or no verdicts at all."""
 
 
 @dataclass(frozen=True, slots=True)
 class RuleBasis:
-    """What verdicts on a rule rest on.
+    """The basis of verdicts on a rule.
 
-    ``presumed`` are names that it reads and that hold by presumption, ``untold`` all others that
-    it reads and the source does not tell, ``lacking`` those of them for want of which it cannot be
-    judged.
+    ``presumed`` are the names that it reads and that get their value by presumption, ``untold`` all
+    others that it reads and the source does not provide, ``lacking`` those of them without which it
+    cannot be judged.
     """
 
     rule: str
@@ -37,7 +37,7 @@ class RuleBasis:
 
 @dataclass(frozen=True, slots=True)
 class SourceAudit(Rows):
-    """What a rulebook's rules rest on where ``source`` tells the names ``told``."""
+    """The basis of each rule of a rulebook if ``source`` provides the names ``told``."""
 
     __repr__ = short_repr
 
@@ -47,18 +47,18 @@ class SourceAudit(Rows):
     rules: tuple[RuleBasis, ...]
 
     def count(self, basis: Basis) -> int:
-        """The number of rules that rest on this."""
+        """The number of rules with this basis."""
         return Counter(rule.basis for rule in self.rules)[basis]
 
     def rows(self) -> list[dict[str, Any]]:
-        """One row a rule."""
+        """One row per rule."""
         return [asdict(rule) for rule in self.rules]
 
 
 def audit_source(rulebook: CompiledRulebook, source: str, told: frozenset[str]) -> SourceAudit:
-    """The basis of every rule on traces that are cut and say nothing but what is told.
+    """The basis of every rule on cut traces that contain only the provided values.
 
-    Raises RulecError R0403 if Spot, which machines for such traces take, is not installed.
+    Raises RulecError R0403 if Spot is needed for the machines of such traces and not installed.
     """
     compiler = rulebook.prefixes
     prefixes = {} if compiler is None else compiler(rulebook)

@@ -1,4 +1,4 @@
-"""Compare many rulebooks rule by rule: equal laws, and stricter ones."""
+"""Comparison of many rulebooks rule by rule: which have equal laws, and which are stricter."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ CONVERSE: Mapping[RuleRelation, RuleRelation] = {
 
 @dataclass(frozen=True, slots=True)
 class SharedRule:
-    """A rule as all rulebooks that have it say it.
+    """A rule in all rulebooks that have one of its name.
 
-    ``laws`` has for each rulebook that has the rule which law it is, ``rules`` the rule itself;
-    rulebooks of one law forbid the same traces. ``relations`` are between laws, both ways.
-    ``remarks`` are of rulebooks that say why they do not have it.
+    ``laws`` has the number of the law for each of these rulebooks, ``rules`` the rule itself;
+    rulebooks with the same law forbid the same traces. ``relations`` are between laws, in both
+    directions. ``remarks`` are by the rulebooks that explain why they do not have the rule.
     """
 
     name: str
@@ -42,7 +42,7 @@ class SharedRule:
     remarks: Mapping[str, Remark]
 
     def letter(self, book: str) -> str:
-        """The letter of a rulebook's law, ``A`` for the first one; empty without the rule."""
+        """The letter of a rulebook's law, ``A`` for the first one; empty if it lacks the rule."""
         law = self.laws.get(book)
         if law is None:
             return ""
@@ -50,7 +50,7 @@ class SharedRule:
         return ascii_uppercase[rest] + (str(turns) if turns else "")
 
     def relation(self, first: str, second: str) -> RuleRelation | None:
-        """The relation of two rulebooks' rules; None if one has no such rule."""
+        """The relation between two rulebooks' rules; None if one lacks the rule."""
         if first not in self.laws or second not in self.laws:
             return None
         return self.relations[self.laws[first], self.laws[second]]
@@ -58,20 +58,21 @@ class SharedRule:
 
 @dataclass(frozen=True, slots=True)
 class ComparisonMatrix:
-    """Rulebooks, and all their rules in order of first appearance."""
+    """Several rulebooks, and all their rules in order of first appearance."""
 
     books: tuple[Rulebook, ...]
     rules: tuple[SharedRule, ...]
 
     @property
     def shared(self) -> tuple[SharedRule, ...]:
-        """The rules that two or more of the rulebooks have."""
+        """The rules that at least two of the rulebooks have."""
         return tuple(rule for rule in self.rules if len(rule.laws) > 1)
 
     def counts(self, first: str, second: str) -> Counter[str]:
-        """The number of the first rulebook's rules by relation to the second's.
+        """The number of the first rulebook's rules by their relation to the second's.
 
-        ``only`` are those that the second lacks, ``silent`` those of them of which it says why.
+        ``only`` counts those that the second lacks, ``silent`` those among them for which it gives
+        a reason.
         """
         numbers: Counter[str] = Counter()
         for rule in self.rules:
@@ -85,12 +86,12 @@ class ComparisonMatrix:
 
     @property
     def is_complete(self) -> bool:
-        """True if every question has been answered."""
+        """Whether every question has been answered."""
         return all("undecided" not in rule.relations.values() for rule in self.rules)
 
     @property
     def is_uniform(self) -> bool:
-        """True if all rulebooks that have a rule have an equal one."""
+        """Whether every rule is equal in all rulebooks that have it."""
         return all(len(set(rule.laws.values())) == 1 for rule in self.rules)
 
 
@@ -100,10 +101,10 @@ def comparison_matrix(
     step_s: Fraction | None = None,
     tell: Callable[[float], object] = lambda _: None,
 ) -> ComparisonMatrix:
-    """Compare every two of the rulebooks, rule by rule.
+    """Compare each pair of the rulebooks, rule by rule.
 
-    The arguments are as for ``diff_rulebooks``; ``tell`` is told how much is done of ``steps``.
-    Raises RulecError, R0718 beyond the limit `comparisons`.
+    The arguments are as for ``diff_rulebooks``; ``tell`` is called with the progress out of
+    ``steps``. Raises RulecError, R0718 beyond the limit `comparisons`.
     """
     ours = [rules_matching(book, patterns) for book in books]
     having: dict[str, list[int]] = {}
@@ -130,7 +131,7 @@ def comparison_matrix(
             if remark.name == name and remark.kind != "softened"
         }
         versions = {books[number].name: ours[number][name] for number in numbers}
-        # What only one of them has is its own law, whatever it is.
+        # A rule that only one rulebook has forms its own law.
         laws = laws or dict.fromkeys(versions, 0)
         shared_rules.append(SharedRule(name, laws, versions, relations, remarks))
         tell(len(books) + len(shared_rules))
@@ -140,7 +141,7 @@ def comparison_matrix(
 def _refuse_too_many(
     ours: Sequence[Mapping[str, Rule]], having: Mapping[str, Sequence[int]]
 ) -> None:
-    """Raise RulecError R0718, at a rule that most have, for too many pairs to compare."""
+    """Raise RulecError R0718 if there are too many pairs, at the rule that most rulebooks have."""
     if having:
         name, numbers = max(having.items(), key=lambda item: len(item[1]))
         place = at(ours[numbers[0]][name].span)
@@ -149,7 +150,7 @@ def _refuse_too_many(
 
 
 def steps(books: Sequence[Rulebook], patterns: Sequence[str] = ()) -> int:
-    """The number of steps, at most."""
+    """The greatest number of progress steps."""
     return len(books) + len({name for book in books for name in rules_matching(book, patterns)})
 
 
@@ -178,5 +179,5 @@ def _classified(
 
 
 def pairs(books: Sequence[Rulebook]) -> list[tuple[str, str]]:
-    """Every two rulebooks, in both orders."""
+    """All pairs of rulebooks, in both orders."""
     return [(first.name, second.name) for first, second in permutations(books, 2)]

@@ -1,9 +1,9 @@
-"""Compare two rules by the traces that only one of them forbids.
+"""Comparison of two rules by the traces that only one of them forbids.
 
-A trace says of most things that they are as usual; what it says otherwise is its reason. A further
-trace shows another reason if it does without something that each of those before it needs, so it is
-looked for among the traces in which that is always as usual. Which things to do without is chosen
-as for hitting sets (Reiter 1987), few first, so that plain reasons come first.
+A trace gives most declarations their defaults; the other values are its reason. Another trace shows
+another reason if it avoids at least one non-default declaration of each earlier trace, so it is
+searched among the traces where those have their defaults. Which declarations to fix is chosen as
+for hitting sets (Reiter 1987), few first, so that simple reasons come first.
 """
 
 from __future__ import annotations
@@ -26,21 +26,21 @@ from rulec.witnesses.state_synthesis import subjects_of
 from rulec.witnesses.undecided import UndecidedError
 
 RuleRelation = Literal["equal", "stricter", "laxer", "incomparable", "undecided"]
-"""What the first rule is to the second one: stricter forbids all that the other does, and more."""
+"""The first rule's relation to the second; a stricter rule forbids all the other does, and more."""
 
 MOST_SEARCHES = 12
-"""No more searches for another reason are made."""
+"""The greatest number of searches for further reasons."""
 
 
 @dataclass(frozen=True, slots=True)
 class RuleComparison:
-    """The relation of two rules to each other.
+    """The relation between two rules.
 
     ``first_forbids`` are traces that the first rule forbids and the second one allows, a shortest
-    one first, then shortest ones for other reasons; ``second_forbids`` those the other way around.
-    Both are empty where there are none. ``on_common`` is how they stand for objects that both of
-    them speak of, given as ``common`` types, if one of them speaks of more. ``undecided`` says why
-    a question was left open.
+    one first, then shortest ones for other reasons; ``second_forbids`` are the reverse. Either is
+    empty if there are none. ``on_common`` is the relation restricted to the ``common`` types of
+    objects, if one rule applies to more objects than the other. ``undecided`` is the reason why a
+    question was left open.
     """
 
     __repr__ = short_repr
@@ -54,14 +54,14 @@ class RuleComparison:
 
 
 def rule_relation(first: AnalyzedRule, second: AnalyzedRule) -> RuleRelation:
-    """The relation of two rules alone: ``compare`` without further questions."""
+    """The relation between two rules only: ``compare`` without further questions."""
     return "equal" if first.law == second.law else _compare(first, second, 1).relation
 
 
 def compare(first: AnalyzedRule, second: AnalyzedRule, most: int = 1) -> RuleComparison:
-    """Compare two rules, compiled for one step if bounds are in seconds.
+    """Compare two rules, compiled for one step if they have bounds in seconds.
 
-    Either way ``most`` traces are looked for, each for a reason of its own.
+    In each direction up to ``most`` traces are searched, each for a different reason.
     """
     if first.law == second.law:
         return RuleComparison("equal")
@@ -89,7 +89,7 @@ def _compare(first: AnalyzedRule, second: AnalyzedRule, most: int) -> RuleCompar
 
 
 def _witnesses(contest: Contest, first: Trace, most: int) -> tuple[Trace, ...]:
-    """Diverse witnesses, with numbers below zero only where no others as short show any."""
+    """Diverse witnesses, with negative numbers only if no trace as short does without them."""
     traces = diverse_witnesses(contest, first, most)
     if any(map(_is_below_zero, traces)):
         with suppress(UndecidedError):
@@ -101,7 +101,7 @@ def _witnesses(contest: Contest, first: Trace, most: int) -> tuple[Trace, ...]:
 
 
 def _is_below_zero(trace: Trace) -> bool:
-    """True if some number in it is below zero."""
+    """Whether some number in the trace is negative."""
     values = (value for state in trace.states for value in state.values())
     each = chain.from_iterable(
         value.values() if isinstance(value, Mapping) else (value,) for value in values
@@ -110,7 +110,7 @@ def _is_below_zero(trace: Trace) -> bool:
 
 
 def relation_of(first_forbids: object, second_forbids: object) -> RuleRelation:
-    """The relation of two rules, from the traces that only one forbids, or None."""
+    """The relation of two rules, from a trace that only one of them forbids each, or None."""
     if first_forbids is None:
         return "equal" if second_forbids is None else "laxer"
     return "stricter" if second_forbids is None else "incomparable"
@@ -119,9 +119,9 @@ def relation_of(first_forbids: object, second_forbids: object) -> RuleRelation:
 def common_types(
     first: Sequence[Variable], second: Sequence[Variable], vocabulary: Vocabulary
 ) -> tuple[str, ...] | None:
-    """The object types of both rules, in order of the first's variables.
+    """The object types common to both rules, in the order of the first's variables.
 
-    None if the two speak of the same types, or share no objects at all.
+    None if both have the same types, or have no objects in common.
     """
     types = [variable.type for variable in first]
     second_types = [variable.type for variable in second]
@@ -138,7 +138,7 @@ def common_types(
 
 
 def _narrowed(analyzed: AnalyzedRule, common: tuple[str, ...]) -> AnalyzedRule:
-    """The rule for objects of these types alone."""
+    """The rule restricted to objects of these types."""
     is_subtype = analyzed.rulebook.vocabulary.is_subtype
     for order in permutations(common):
         pairs = list(zip(order, analyzed.rule.variables, strict=True))
@@ -149,9 +149,9 @@ def _narrowed(analyzed: AnalyzedRule, common: tuple[str, ...]) -> AnalyzedRule:
 
 
 def diverse_witnesses(contest: Contest, first: Trace, most: int) -> tuple[Trace, ...]:
-    """At ``most`` so many traces that only one rule forbids, each for another reason.
+    """Up to ``most`` traces that only one rule forbids, each for a different reason.
 
-    ``first`` is one of them, the first of the answer.
+    ``first`` is one of them and the first of the result.
     """
     vocabulary = contest.forbidding.rulebook.vocabulary
     traces = [first]
@@ -167,7 +167,7 @@ def diverse_witnesses(contest: Contest, first: Trace, most: int) -> tuple[Trace,
         if known is None:
             tried.add(defaulted)
             if any(names <= defaulted for names in hopeless):
-                continue  # there is no trace without less than that either
+                continue  # a smaller set was already impossible
             try:
                 trace = contest.trace_as_usual(defaulted)
             except UndecidedError:

@@ -1,4 +1,4 @@
-"""Compare two rulebooks rule by rule."""
+"""Comparison of two rulebooks rule by rule."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rulec.trace import Trace
 from rulec.value_display import Rows, short_repr
 
 ALIKE = Fraction(1, 2)
-"""The least share of words in common for a rule of another name to be offered."""
+"""The least share of common words for which a rule of another name is suggested."""
 
 MOST_ALIKE = 2
 
@@ -39,7 +39,7 @@ class RulePair:
 
     @property
     def name(self) -> str:
-        """The name that both go by, or both names."""
+        """The name of the rule in both rulebooks, or both names."""
         first, second = self.first.name, self.second.name
         return first if first == second else f"{first} = {second}"
 
@@ -50,7 +50,7 @@ class RulePair:
 
     @property
     def notes(self) -> tuple[tuple[str, str, str], ...]:
-        """Further differences: their subject, and the version of each rulebook."""
+        """Further differences: the field, and its value in each rulebook."""
         pairs = (
             (name, _noted(self.first, self.second, name), _noted(self.second, self.first, name))
             for name in ("strength", "level", "weight", "cite", "certainty")
@@ -59,7 +59,7 @@ class RulePair:
 
 
 def _noted(rule: Rule, other: Rule, name: str) -> str:
-    # A book's provision is not told again of one that builds upon it.
+    # The provision of a book is not repeated for a book that extends it.
     if name == "cite" and (rule.cite, rule.inherited_from) != (other.cite, other.book):
         return cited_law(rule.cite, rule.inherited_from) or "none"
     return str(getattr(rule, name)) or "none"
@@ -69,7 +69,8 @@ def _noted(rule: Rule, other: Rule, name: str) -> str:
 class OneSided:
     """A rule of only one rulebook, with the other's ``remark`` about it.
 
-    ``alike`` are rules of the other one alone that read most of the same words, the nearest first.
+    ``alike`` are rules that only the other one has and that read mostly the same words, nearest
+    first.
     """
 
     rule: Rule
@@ -103,7 +104,7 @@ class RulebookDiff(Rows):
 
     @property
     def is_none(self) -> bool:
-        """True if both rulebooks forbid the same, equally strictly."""
+        """Whether both rulebooks forbid the same traces with the same strength."""
         alike = all(
             pair.relation == "equal" and pair.first.strength == pair.second.strength
             for pair in self.pairs
@@ -112,7 +113,7 @@ class RulebookDiff(Rows):
 
     @property
     def is_complete(self) -> bool:
-        """True if every question has been answered."""
+        """Whether every question has been answered."""
         return not any(pair.comparison.undecided for pair in self.pairs)
 
     @property
@@ -123,7 +124,7 @@ class RulebookDiff(Rows):
             yield from pair.comparison.second_forbids
 
     def tables(self, pair: RulePair) -> Iterator[tuple[str, str, TraceTable]]:
-        """Both names and the table of each trace that one rule forbids, the other allows."""
+        """For each trace, the names of the forbidding and the allowing rulebook, and its table."""
         words = shared_vocabulary(self.first.vocabulary, self.second.vocabulary)
         names = declarations_read(pair.machines[0]) | declarations_read(pair.machines[1])
         books = self.first.name, self.second.name
@@ -135,7 +136,7 @@ class RulebookDiff(Rows):
                 yield forbids, allows, trace_table(trace, names, words.vocabulary)
 
     def rows(self) -> list[dict[str, Any]]:
-        """One row a rule: of both, and of one alone."""
+        """One row per rule, whether both rulebooks have it or only one."""
         both = [(pair.relation, pair.first, pair.second) for pair in self.pairs]
         first = [(f"only in {self.first.name}", only.rule, None) for only in self.only_first]
         second = [(f"only in {self.second.name}", None, only.rule) for only in self.only_second]
@@ -182,13 +183,13 @@ def diff_rulebooks(
 
     Args:
         first: a rulebook.
-        second: the one that it is compared to.
-        patterns: only rules whose name one of them matches, ``*`` and ``?`` being wild.
-        step_s: the step of the traces that rules with bounds in seconds are compared on; else one
-            that divides the steps of their examples.
-        tell: is told how many rules have been compared.
-        most: how many traces to look for, each for another reason, either way.
-        paired: rules of the first with rules of the second that have another name.
+        second: the rulebook to compare it with.
+        patterns: only rules whose name matches one of them, with wildcards ``*`` and ``?``.
+        step_s: the step of traces for comparing rules with bounds in seconds; by default one that
+            divides the steps of their examples.
+        tell: called with the number of rules compared so far.
+        most: the number of traces to search in each direction, each for a different reason.
+        paired: maps rules of the first to rules of the second that have another name.
 
     Raises RulecError if a rule cannot be compiled.
     """
@@ -228,7 +229,7 @@ def diff_rulebooks(
 
 
 def rules_matching(book: Rulebook, patterns: Sequence[str]) -> dict[str, Rule]:
-    """A rulebook's rules by name, only those matching given patterns."""
+    """A rulebook's rules by name, only those that match one of the patterns (if any)."""
     return {
         rule.name: rule
         for rule in book.rules
@@ -245,7 +246,7 @@ def _only(
 
 
 def _alike(rule: Rule, others: Mapping[str, set[str]]) -> tuple[str, ...]:
-    """The names of rules that share at least half of the words that one or the other reads."""
+    """The names of rules that share at least half of the words that either of the two reads."""
     words = set(names_in(rule.formula))
     shares = {}
     for name, theirs in others.items():

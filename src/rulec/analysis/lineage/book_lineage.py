@@ -1,7 +1,7 @@
-"""Trace a rulebook's items to the books that introduced or changed them.
+"""Traces a rulebook's items to the books that introduced or changed them.
 
-``rulebook.overlay`` says what a chain comes to; here is the way there. Both read the same trees,
-and this one expects that the overlay has found no mistake in them.
+``rulebook.overlay`` computes the result of a chain; this module computes how it came about. Both
+read the same trees, and this one assumes that the overlay found no mistakes in them.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _Given = tree.OptionItem | tree.ParamItem | tree.SetItem | tree.DefineItem
 def book_lineage_of(chain: Sequence[tree.File], at: str) -> rule_lineage.BookLineage:
     """The lineage of rules and provisions in a chain of sound rulebooks, most general first.
 
-    The day ``at`` (ISO) decides which value of a parameter counts.
+    The day ``at`` (ISO) decides which value of a parameter applies.
     """
     rules: dict[str, list[rule_lineage.LineageStep]] = {}
     provisions: dict[str, list[tuple[_Given, str]]] = {}
@@ -59,13 +59,13 @@ def book_lineage_of(chain: Sequence[tree.File], at: str) -> rule_lineage.BookLin
 def read_with_lineage(
     reference: str | Path, search_path: Sequence[str | Path] = (), at: str = ""
 ) -> tuple[Loaded, rule_lineage.BookLineage]:
-    """A rulebook, and where everything in it comes from. As for ``load_rulebook``."""
+    """A rulebook and its lineage. Arguments and errors as for ``load_rulebook``."""
     loaded = read_rulebook(reference, search_path, at)
     return loaded, book_lineage_of(loaded.books, loaded.rulebook.at)
 
 
 def book_header(file: tree.File) -> rule_lineage.BookHeader:
-    """The head of a rulebook: name, title, law, file and base."""
+    """The header of a rulebook: name, title, law, file and base."""
     return rule_lineage.BookHeader(
         file.name.text if file.name else "",
         title=file.title.text.value if file.title else "",
@@ -109,13 +109,13 @@ def _step(
 
 
 HARDNESS = "hard or soft"
-"""What the word before ``rule`` is called among the clauses."""
+"""The name, in lists of clauses, of the word before ``rule``."""
 
 _CLAUSES = (
     *("strength", "variables", "level", "weight", "cite", "says", "source", "certainty"),
     *("in_force", "topics", "require", "when", "unless", "examples"),
 )
-"""Fields of a rule's tree."""
+"""The fields of a rule's tree."""
 
 
 def _changed_clauses(before: tree.RuleItem, after: tree.RuleItem) -> tuple[str, ...]:
@@ -129,7 +129,7 @@ def _changed_clauses(before: tree.RuleItem, after: tree.RuleItem) -> tuple[str, 
 def _history(
     name: str, given: Sequence[tuple[_Given, str]], at: str
 ) -> rule_lineage.ConstantHistory:
-    """All that a chain, the most general book first, says of a provision."""
+    """All statements of a chain about a provision; the chain begins with the most general book."""
     dates: list[tree.InForce | None] = [getattr(item, "in_force", None) for item, _ in given]
     good = [index for index, own in enumerate(dates) if in_force(own, at)]
     settings = tuple(

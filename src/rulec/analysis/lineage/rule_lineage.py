@@ -1,4 +1,4 @@
-"""Histories of rules and constants in a chain of rulebooks, and who extends whom."""
+"""Histories of rules and constants in a chain of rulebooks, and the tree of extensions."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ class BookHeader:
 class LineageStep:
     """A change that one book made to a rule.
 
-    ``clauses`` are the kinds of clauses that an override or a softening has changed. ``rule`` is
-    what the rule was from then on, None where it is gone. It ``gives_law`` to the rule if that is
-    the book's own law from then on, by a provision that it cites. ``lost`` are the inherited
-    exceptions that it replaces by others, as they were written.
+    ``clauses`` are the kinds of clauses that an override or a softening changed. ``rule`` is the
+    rule after the change, None if it is gone. It ``gives_law`` if from then on the rule is the
+    book's own law, by a provision that it cites. ``lost`` are the inherited exceptions that it
+    replaces, as they were written.
     """
 
     book: str
@@ -66,12 +66,12 @@ class RuleHistory:
 
     @property
     def cited_by(self) -> str:
-        """The book whose law it is: that last declared or confirmed it, or gave its ``cite``."""
+        """The book whose law it is: the last that declared or confirmed it or set its ``cite``."""
         saying = [step for step in self.steps if step.gives_law]
         return saying[-1].book if saying else ""
 
     def before(self, book: str) -> tree.RuleItem | None:
-        """The rule that a book has inherited, or None."""
+        """The rule as a book inherited it, or None."""
         earlier = [step for step in self.steps if step.book != book]
         return earlier[-1].rule if earlier else None
 
@@ -80,7 +80,7 @@ class RuleHistory:
 class ConstantValue:
     """A value or meaning that a book gave a constant, as written.
 
-    It is ``current`` if it is the one that counts. ``note`` is the comment beside it.
+    ``current`` marks the one that applies. ``note`` is the comment beside it.
     """
 
     book: str
@@ -95,8 +95,8 @@ class ConstantValue:
 class ConstantHistory:
     """An option, parameter or definition with all its values in order.
 
-    ``head`` is how it is used: its name, with a definition's parameters. ``used``: some rule speaks
-    of it, or something does that a rule speaks of.
+    ``head`` is how it is written when used: its name, with a definition's parameters. ``used``:
+    some rule refers to it, directly or indirectly.
     """
 
     kind: ConstantKind
@@ -123,17 +123,17 @@ class BookLineage(Rows):
 
     @property
     def own_law(self) -> frozenset[str]:
-        """The books whose law is the last one's own: from the last that names a law on."""
+        """The books whose law is the last book's own: those from the last one that names a law."""
         named = [number for number, header in enumerate(self.books) if header.law]
         return frozenset(header.name for header in self.books[named[-1] if named else -1 :])
 
     def inherited_from(self, history: RuleHistory) -> str:
-        """The book whose law a rule is, if the last one has not confirmed it; else empty."""
+        """The book whose law a rule is, if the last book has not confirmed it; else empty."""
         own = history.rule is None or history.cited_by in self.own_law
         return "" if own else history.cited_by
 
     def rows(self) -> list[dict[str, Any]]:
-        """One row a rule."""
+        """One row per rule."""
         return [
             {"rule": rule.name, "books": [step.book for step in rule.steps]} for rule in self.rules
         ]
@@ -148,10 +148,10 @@ class ExtensionTree:
 
 
 def extension_forest(members: Iterable[BookHeader]) -> tuple[ExtensionTree, ...]:
-    """Every rulebook once, by name, below the one that it extends.
+    """Every rulebook once, below the one that it extends, sorted by name.
 
-    The roots extend none, or one that is not among them. Rulebooks that go round in a circle hang
-    below the first of them by name.
+    Roots extend no rulebook, or one that is not included. Rulebooks in a cycle are placed below the
+    first of them by name.
     """
     by_name = {header.name: header for header in sorted(members, key=lambda header: header.name)}
     placed: set[str] = set()

@@ -23,13 +23,13 @@ from rulec.rulebook.rules.antecedents import Antecedent
 from rulec.witnesses.undecided import UndecidedError
 
 Occurring = Mapping[str, Sequence[tuple[Antecedent, str]]]
-"""The antecedents of each rule, with the names of the rules that they occur."""
+"""The antecedents of each rule, with the names of the rules that state that they occur."""
 
 
 def conflict_questions(
     names: Sequence[str], sides: Mapping[str, AnalyzedRule], related: RelatedRules
 ) -> Iterator[Question]:
-    """What ``conflicts`` asks where there is none."""
+    """The questions that ``conflicts`` asks if it finds nothing."""
     chosen = frozenset(names)
     for pair in related.pairs():
         if chosen.issuperset(pair):
@@ -77,13 +77,13 @@ def conflicts(
 def _group(
     name: str, names: Set[str], sides: Mapping[str, AnalyzedRule], related: RelatedRules
 ) -> tuple[str, ...]:
-    """A rule with others that speak of the same, as long as all stay small together."""
+    """A rule and related rules whose product stays small."""
     premises = [sides[premise] for premise in related.of(name) if premise in names]
     return (name, *(rule.rule.name for rule in small_premises(sides[name], premises)))
 
 
 def _clash(group: Sequence[str], answers: RuleAnswers) -> Conflict | None:
-    """A conflict within a group of three or more; None if undecided."""
+    """A conflict within a group of three or more; None if there is none or it is undecided."""
     if len(group) < 3:
         return None
     try:
@@ -93,7 +93,7 @@ def _clash(group: Sequence[str], answers: RuleAnswers) -> Conflict | None:
 
 
 def _smallest(group: Sequence[str], answers: RuleAnswers) -> Sequence[str]:
-    """The group without those that its conflict does not need."""
+    """The group reduced to the rules that its conflict needs."""
     for name in group:
         fewer = [kept for kept in group if kept != name]
         if _clash(fewer, answers) is not None:
@@ -132,7 +132,7 @@ def contradiction_questions(
     occurring: Occurring,
     related: RelatedRules,
 ) -> Iterator[Question]:
-    """What ``contradictions`` asks where there is none."""
+    """The questions that ``contradictions`` asks if it finds nothing."""
     for name, other, _, occurs in _triggered(names, sides, occurring, related):
         yield Question("conflict", (name, other, occurs))
 
@@ -145,9 +145,9 @@ def contradictions(
     answers: RuleAnswers,
     related: RelatedRules,
 ) -> Iterator[Diagnostic]:
-    """Pairs of hard rules that can both be kept only where an antecedent of one never holds.
+    """Pairs of hard rules that can both be kept only if an antecedent of one never holds.
 
-    Of a pair the first antecedent counts.
+    Each pair is reported for the first such antecedent.
     """
     reported: set[frozenset[str]] = set()
     for name, other, antecedent, occurs in _triggered(names, sides, occurring, related):
@@ -176,7 +176,7 @@ def _triggered(
 ) -> Iterator[tuple[str, str, Antecedent, str]]:
     """Related rules about the same objects, with an antecedent of the first and its occurrence.
 
-    With more objects an antecedent would have to hold of all of them.
+    With more objects, an antecedent would have to hold for all of them.
     """
     chosen = frozenset(names)
     for name in names:
@@ -190,13 +190,13 @@ def _triggered(
 
 
 def _contradict(name: str, other: str, occurs: str, answers: RuleAnswers) -> bool:
-    """True if what occurs can be with either rule, but never with both; False if undecided."""
+    """Whether the occurrence is possible with either rule but not with both; False if undecided."""
     try:
         return (
             _never_kept((name, other, occurs), answers)
             and not _never_kept((name, occurs), answers)
             and not _never_kept((other, occurs), answers)
-            # Of rules in conflict anyway the finding above says more
+            # Rules in conflict are reported by ``conflicts`` in more detail
             and answers.conflict((name, other)) is None
         )
     except UndecidedError:
@@ -204,6 +204,6 @@ def _contradict(name: str, other: str, occurs: str, answers: RuleAnswers) -> boo
 
 
 def _never_kept(group: Sequence[str], answers: RuleAnswers) -> bool:
-    """True if rules, each of which can be kept, never can be together."""
+    """Whether rules, each of which can be kept, can never be kept together."""
     clash = answers.conflict(group)
     return clash is not None and clash.trace is None

@@ -1,4 +1,4 @@
-"""Rules that from some state on cannot hold together, only alone."""
+"""Search for states from which rules can be kept only alone, not together."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from rulec.witnesses.undecided import UndecidedError
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """A trace after which each rule could be kept, but not all; None if they never can."""
+    """A trace after which each rule could be kept, but not all; None if they never can be."""
 
     trace: Trace | None
 
@@ -34,8 +34,8 @@ Graph = Mapping[ProductState, Mapping[tuple[ProductState, frozenset[int]], Joint
 def conflict(analyzed_rules: Sequence[AnalyzedRule]) -> Conflict | None:
     """A shortest trace after which not all rules can be kept.
 
-    Its objects are as few as the rules can speak of, each of one for its variables. The rules are
-    of one rulebook. Raises UndecidedError where there is too much to search.
+    It has as few objects as possible, so that each rule applies to some. The rules are of one
+    rulebook. Raises UndecidedError if the search is too large.
     """
     vocabulary = analyzed_rules[0].rulebook.vocabulary
     objects = common_objects([rule.rule.variables for rule in analyzed_rules], vocabulary)
@@ -77,7 +77,7 @@ def conflict(analyzed_rules: Sequence[AnalyzedRule]) -> Conflict | None:
 def common_objects(
     heads: Sequence[Sequence[Variable]], vocabulary: Vocabulary
 ) -> Mapping[str, str]:
-    """The fewest objects that give every rule one to speak of."""
+    """The fewest objects such that each rule applies to some."""
     objects: dict[str, str] = {}
     for variables in heads:
         free = list(objects)
@@ -102,7 +102,7 @@ def _fits(kind: str, variable: Variable, vocabulary: Vocabulary) -> bool:
 def _explored(
     monitors: Sequence[MealyMonitor], owners: Sequence[int], letters: Sequence[JointLetter]
 ) -> Graph:
-    """The reachable joint states in breadth-first order; a rejecting sink ends it."""
+    """The reachable joint states in breadth-first order, up to rejecting sinks."""
     start: ProductState = (0,) * len(monitors)
     everyone = frozenset(owners)
     graph: dict[ProductState, dict[tuple[ProductState, frozenset[int]], JointLetter]] = {}
@@ -131,7 +131,7 @@ def _explored(
 
 
 def _hopeful(graph: Graph, everyone: frozenset[int]) -> frozenset[ProductState]:
-    """The states from which a word, not empty, satisfies every rule."""
+    """The states from which some non-empty word satisfies every rule."""
     before: dict[ProductState, list[ProductState]] = {}
     waiting = []
     for node, steps in graph.items():
@@ -151,9 +151,10 @@ def _hopeful(graph: Graph, everyone: frozenset[int]) -> frozenset[ProductState]:
 def _shortest(
     graph: Graph, rules: Sequence[tuple[Sequence[int], frozenset[ProductState]]]
 ) -> tuple[JointLetter, ...] | None:
-    """A shortest word, maybe empty, after which only some rules can be kept.
+    """A shortest word, possibly empty, after which only some of the rules can be kept.
 
-    Of each rule the places of its machines, and the states of these from which it can be kept.
+    ``rules`` has, for each rule, the places of its machines and their states from which it can be
+    kept.
     """
     everyone = frozenset(range(len(rules)))
     together = _hopeful(graph, everyone)

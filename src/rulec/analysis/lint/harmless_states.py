@@ -1,8 +1,8 @@
-"""States of the world in which rules are content, whatever was before.
+"""States of the world in which rules are satisfied, whatever happened before.
 
-Where there is one for several rules at once, they never conflict: from wherever each of them can
-still be kept, that state as the next and last one keeps them all. Most rules are content where
-everything has its default, so that most pairs need no search.
+If one such state exists for several rules, they never conflict: wherever each of them can still be
+kept, that state as the last one keeps them all. Most rules are satisfied if everything has its
+default, so most pairs need no search.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from rulec.witnesses.relevant_axioms import ground_axioms, hold_by_default
 def have_harmless_state(
     monitors: Sequence[MealyMonitor], functions: Sequence[LetterFunction], universe: ObjectUniverse
 ) -> bool:
-    """True if some state is harmless to all monitors, whose letters in it are the functions'.
+    """Whether some state is harmless to all monitors, whose letters the functions compute.
 
-    False says nothing: they may be kept together by states that depend on those before. Raises
+    False is inconclusive: states that depend on earlier ones may keep them together. Raises
     UndecidedError.
     """
     harmless = [harmless_classes(monitor) for monitor in monitors]
@@ -43,9 +43,9 @@ def have_harmless_state(
 
 
 def harmless_classes(machine: MealyMonitor) -> frozenset[int]:
-    """The letter classes that are accepted in every state from which a rule can be kept.
+    """The letter classes that are accepted in every state from which the rule can be kept.
 
-    And in those in which it is kept if the trace ends there.
+    These include the states reached by an accepted letter, where the trace may end.
     """
     kept = {
         target

@@ -1,6 +1,6 @@
-"""Questions about a rulebook's rules that do not depend on each other, and their answers.
+"""Independent questions about a rulebook's rules, and their answers.
 
-They take nearly all of the time; so they may be answered ahead, side by side in several processes.
+They take nearly all of the time, so they may be answered in advance, in several processes.
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ from rulec.witnesses.undecided import UndecidedError
 class Question(NamedTuple):
     """A question about rules, by their names.
 
-    ``kept``, ``violated``: can it be? ``implied``: by which of the others? ``conflict``: can they
-    not all be kept? ``compared``: with the rule of that name in the base of that number.
+    ``kept``, ``violated``: is that possible? ``implied``: by which of the others? ``conflict``: is
+    it impossible to keep them all? ``compared``: how does the rule relate to that of the same name
+    in the base of that number?
     """
 
     kind: Literal["kept", "violated", "implied", "conflict", "compared"]
@@ -31,7 +32,7 @@ class Question(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ComparedRules:
-    """The rules of a rulebook and of those that it extends, by name, to ask questions about."""
+    """The rules of a rulebook and of those that it extends, by name, that questions are about."""
 
     own: Mapping[str, AnalyzedRule]
     of_bases: Sequence[Mapping[str, AnalyzedRule]] = ()
@@ -40,11 +41,11 @@ class ComparedRules:
 Spread: TypeAlias = Callable[
     [Callable[[Question], Iterator[Any]], Sequence[Question]], Iterator[tuple[Question, Any]]
 ]
-"""Has a function answer each question, perhaps in other processes: each with its answer."""
+"""Calls a function for each question, possibly in other processes; yields question and answer."""
 
 
 def answers_to(rules: ComparedRules, question: Question) -> Iterator[object]:
-    """The answer to a question, which may be the reason why it is undecided."""
+    """The answer to a question; an undecided question yields its reason instead."""
     own = [rules.own[name] for name in question.names]
     try:
         match question.kind:
@@ -63,9 +64,9 @@ def answers_to(rules: ComparedRules, question: Question) -> Iterator[object]:
 
 
 class RuleAnswers:
-    """Answers to questions about rules; each raises UndecidedError.
+    """Answers to questions about rules; each method raises UndecidedError.
 
-    ``tell`` is told how many have been answered.
+    ``tell`` is called with the number of answers so far.
     """
 
     def __init__(
@@ -76,7 +77,7 @@ class RuleAnswers:
         self._known: dict[Question, object] = {}
 
     def ask_ahead(self, questions: Iterable[Question], spread: Spread) -> None:
-        """Have questions answered before they are asked."""
+        """Compute the answers to questions in advance."""
         each = list(dict.fromkeys(questions))
         answers = spread(partial(answers_to, self._rules), each)
         for question, answer in answers:
@@ -84,15 +85,15 @@ class RuleAnswers:
             self._tell(len(self._known))
 
     def can_be_kept(self, name: str) -> bool:
-        """True if some trace, with objects for the rule, keeps it."""
+        """Whether some trace, with objects for the rule, keeps it."""
         return bool(self._to(Question("kept", (name,))))
 
     def can_be_violated(self, name: str) -> bool:
-        """True if some trace violates the rule."""
+        """Whether some trace violates the rule."""
         return bool(self._to(Question("violated", (name,))))
 
     def implied_by(self, name: str, others: Sequence[str]) -> tuple[str, ...]:
-        """One or few of the others that forbid all that the rule forbids, if there are any."""
+        """One or a few of the others that together forbid all that the rule forbids, if any."""
         names: tuple[str, ...] = self._to(Question("implied", (name, *others)))
         return names
 
@@ -102,7 +103,7 @@ class RuleAnswers:
         return answer
 
     def compared(self, name: str, base: int) -> RuleComparison:
-        """The rule compared with that of a base, given by its number."""
+        """The comparison of the rule with that of a base, given by its number."""
         comparison: RuleComparison = self._to(Question("compared", (name,), base))
         return comparison
 

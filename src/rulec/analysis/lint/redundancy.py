@@ -1,4 +1,4 @@
-"""Decide violability, satisfiability and implication of rules."""
+"""Decides whether rules can be violated or kept, and whether others imply them."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from rulec.witnesses.undecided import UndecidedError
 
 MOST_PREMISES = 6
 MOST_JOINT_STATES = 5_000
-"""Others are taken together as long as their automata have no more states than these."""
+"""Premises are combined as long as the product of their automata has at most this many states."""
 
 
 def can_be_violated(analyzed: AnalyzedRule) -> bool:
-    """True if some trace violates the rule. Raises UndecidedError."""
+    """Whether some trace violates the rule. Raises UndecidedError."""
     return counterexample(analyzed, []) is not None
 
 
 def can_be_kept(analyzed: AnalyzedRule) -> bool:
-    """True if some trace, with objects for the rule, keeps it. Raises UndecidedError."""
+    """Whether some trace, with objects for the rule, keeps it. Raises UndecidedError."""
     objects = {variable.name: variable.type for variable in analyzed.rule.variables}
     universe = ObjectUniverse(objects, analyzed.rulebook.vocabulary, analyzed.axioms)
     bindings = universe.bindings(analyzed.rule.variables)
@@ -39,10 +39,10 @@ def can_be_kept(analyzed: AnalyzedRule) -> bool:
 
 
 def implied_by(analyzed: AnalyzedRule, others: Sequence[AnalyzedRule]) -> tuple[AnalyzedRule, ...]:
-    """One or few other rules that forbid all that a rule forbids, if there are any.
+    """One or a few other rules that together forbid all that a rule forbids, if any.
 
-    The others, which are related to it, are taken together as far as their automata stay small; so
-    more of them together may imply it without being found. Raises UndecidedError.
+    The others, all related to it, are combined only as far as their automata stay small, so an
+    implication by more of them may be missed. Raises UndecidedError.
     """
     forbidden = ForbiddenTraces(analyzed)
     for premise in others:
@@ -59,21 +59,21 @@ def implied_by(analyzed: AnalyzedRule, others: Sequence[AnalyzedRule]) -> tuple[
 
 
 class ForbiddenTraces:
-    """Traces that a rule forbids: most other rules allow one that was found for another of them.
+    """Traces that a rule forbids; most other rules allow a trace found for one of them.
 
-    So only what allows none of those found takes a search of its own.
+    So only rules that allow none of the found traces need a search of their own.
     """
 
     def __init__(self, analyzed: AnalyzedRule) -> None:
         self._analyzed = analyzed
         self._traces: list[Trace] = []
-        # Who allows which of those found: rules as they are, for names are not theirs alone.
+        # Whether a rule allows a trace; keyed by rule object, since names are not unique.
         self._allowed: dict[tuple[int, int], bool] = {}
         with suppress(UndecidedError):
             self._search([])
 
     def one_that_allow(self, others: Sequence[AnalyzedRule]) -> bool:
-        """True if all of the others allow some trace that the rule forbids.
+        """Whether all of the others allow some trace that the rule forbids.
 
         Raises UndecidedError.
         """
@@ -95,13 +95,13 @@ class ForbiddenTraces:
             try:
                 self._allowed[key] = not other.violations(self._traces[number], vocabulary)
             except RulecError:
-                # The trace has another step, or objects to be counted that a fact rules out.
+                # The trace has another step, or has objects that a fact with a count excludes.
                 self._allowed[key] = False
         return self._allowed[key]
 
 
 def small_premises(analyzed: AnalyzedRule, related: Sequence[AnalyzedRule]) -> list[AnalyzedRule]:
-    """The other rules whose automata stay small in product with the rule's."""
+    """The other rules whose automata have a small product with the rule's."""
     types = sorted(variable.type for variable in analyzed.rule.variables)
     chosen: list[AnalyzedRule] = []
     for premise in sorted(related, key=lambda rule: len(rule.rule.machine.successors)):

@@ -1,4 +1,4 @@
-"""Relevance filter: pairs of rules that share words, directly or by axioms."""
+"""Relevance filter: pairs of rules that share words, directly or through axioms."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from rulec.resource_limits import PAIRS
 class RelatedRules:
     """Rules of one rulebook that share an input or are connected by axioms.
 
-    What rules share is looked up, so rules that share nothing cost nothing together. ``names`` are
-    the rules in question, in the order in which findings are told.
+    Shared words are indexed, so unrelated pairs cost nothing. ``names`` are the rules in question,
+    in the order in which findings are reported.
 
-    Raises RulecError R0718 if more pairs than the limit `pairs` share something.
+    Raises RulecError R0718 if the number of related pairs exceeds the limit `pairs`.
     """
 
     def __init__(self, names: Sequence[str], rules: Mapping[str, AnalyzedRule], book: str) -> None:
@@ -35,7 +35,7 @@ class RelatedRules:
         PAIRS.within(sharing, first, f"rulebook `{book}`")
 
     def of(self, name: str) -> list[str]:
-        """The others that a rule is related to, in order."""
+        """The other rules that a rule is related to, in order."""
         related = {other for topic in self._topics[name] for other in self._about[topic]}
         return sorted(related - {name}, key=self._place.__getitem__)
 
@@ -48,7 +48,7 @@ class RelatedRules:
 
 
 def _topics(analyzed: AnalyzedRule) -> dict[str, str]:
-    """One word for all those that axioms connect."""
+    """Maps each word to one representative of the words that axioms connect it with."""
     topic_of: dict[str, str] = {}
     words_of: dict[str, list[str]] = {}
     for axiom in analyzed.axioms:

@@ -1,4 +1,4 @@
-"""Diagnostics, with traces, of vacuous, redundant, conflicting or weaker rules."""
+"""Diagnostics, with traces, of vacuous, redundant, conflicting or weakened rules."""
 
 from __future__ import annotations
 
@@ -44,9 +44,9 @@ def rulebook_findings(
     Args:
         book: the rulebook.
         bases: the rulebooks that it extends.
-        extends: where it says so.
-        tell: is told how many questions about rules have been answered.
-        spread: has questions answered ahead, such as in other processes.
+        extends: the place where it says so.
+        tell: called with the number of questions about rules answered so far.
+        spread: computes answers in advance, for example in other processes.
 
     Raises RulecError if a rule cannot be compiled.
     """
@@ -73,7 +73,7 @@ def rulebook_findings(
     for name, rule in by_name.items():
         idle = [*_idle(rule, occurring[name], answers)]
         diagnostics += [diagnostic for _, diagnostic in idle]
-        # Without an exception that never holds a rule means what it means with it.
+        # A rule keeps its meaning without an exception that never holds.
         if all(kind == "unless" for kind, _ in idle):
             alone = [*_alone(rule, answers)]
             diagnostics += alone
@@ -96,7 +96,7 @@ def rulebook_findings(
 
 
 def _at_one_step(rules: Sequence[Mapping[str, Rule]]) -> list[dict[str, Rule]]:
-    """Those of several rulebooks for one step: a rule keeps that of the book that it is from."""
+    """The rules of several rulebooks, for one common step; still by rulebook and name."""
     common = iter(at_one_step([rule for named in rules for rule in named.values()], None))
     return [dict(zip(named, common, strict=False)) for named in rules]
 
@@ -108,7 +108,7 @@ def _likely(
     of_bases: Sequence[Mapping[str, AnalyzedRule]],
     related: RelatedRules,
 ) -> Iterator[Question]:
-    """The questions that are asked where nothing is found: nearly all."""
+    """The questions that are asked if nothing is found, which is nearly all of them."""
     names = [name for own_ones in occurring.values() for _, name in own_ones]
     for name in (*names, *rules):
         yield Question("kept", (name,))
@@ -127,7 +127,7 @@ def _likely(
 def _others(
     name: str, left: Set[str], rules: Mapping[str, Rule], related: RelatedRules
 ) -> list[str]:
-    """Those that might make a rule needless."""
+    """The rules that might make a rule redundant."""
     return [
         kept
         for kept in related.of(name)
@@ -190,7 +190,7 @@ def _needless(
     answers: RuleAnswers,
     related: RelatedRules,
 ) -> Iterator[tuple[str, Diagnostic]]:
-    """Rules that can all be left out together without loss, by name."""
+    """Rules that can all be left out together without changing what is forbidden, by name."""
     left = set(names)
     diagnostics: list[tuple[str, Diagnostic]] = []
     for name in reversed(names):
@@ -226,7 +226,7 @@ def _implied(rule: Rule, premises: Sequence[Rule]) -> Diagnostic:
 
 
 def _to_drop(name: str, diagnostic: Diagnostic, extends: Span | None) -> Diagnostic:
-    """The finding about an inherited rule that adds nothing, which nobody can leave out there."""
+    """The finding for an inherited rule that adds nothing; it can only be dropped or overridden."""
     if diagnostic.code != finding_messages.ADDS_NOTHING.code:
         return _inherited(diagnostic, extends)
     way_out = (
@@ -237,7 +237,7 @@ def _to_drop(name: str, diagnostic: Diagnostic, extends: Span | None) -> Diagnos
 
 
 def _inherited(diagnostic: Diagnostic, extends: Span | None) -> Diagnostic:
-    """The finding about an inherited rule, at the line that inherits it."""
+    """The finding for an inherited rule, at the line that inherits it."""
     if extends is None or diagnostic.place is None:
         return diagnostic
     rule = Label(diagnostic.place, "the rule is inherited from here")
