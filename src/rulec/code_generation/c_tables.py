@@ -1,4 +1,4 @@
-"""The tables of a monitor as C: static and constant."""
+"""The tables of a monitor as static constants in C."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ typedef struct {
 
 
 def type_tables(layout: MonitorLayout) -> Iterator[str]:
-    """Which types fit which, and the seats of each."""
+    """Which types are subtypes of which, and the seats of each."""
     kinds, vocabulary = layout.fields.types, layout.fields.vocabulary
     yield "/* By type, and the type of an object; nobody fits none. */"
     yield "static const uint8_t rulec_fits[RULEC_TYPES][RULEC_TYPES + 1u] = {"
@@ -48,9 +48,9 @@ def type_tables(layout: MonitorLayout) -> Iterator[str]:
 
 
 def rule_tables(layout: MonitorLayout) -> Iterator[str]:
-    """All rules' cells and entries, and where each one's begin."""
+    """The cells and entries of all rules, and where each rule's begin."""
     rules, needed = layout.rules, layout.array_sizes
-    # Behind what is read there are as many as a place may be too far.
+    # Padding, so that even a wrong place reads within the array.
     behind = needed["NODES"] + needed["MOST_DIGIT"] + 1
     yield from _stretches("cells", rules, [rule.cells for rule in rules], behind)
     yield "/* The state reached times 4, and the verdict: by state and class of letters. */"

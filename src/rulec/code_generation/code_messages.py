@@ -23,7 +23,7 @@ NO_MONITOR_IN_C = Code(
 
 
 def too_large(excess: str, way_out: str = "") -> RulecError:
-    """The error (R0750) about what is too large, or not there."""
+    """The error (R0750) about a part that is too large or missing."""
     return NO_MONITOR_IN_C.error(
         None,
         f"there can be no monitor in C: {excess}",
@@ -32,7 +32,7 @@ def too_large(excess: str, way_out: str = "") -> RulecError:
 
 
 def no_engine_in_c(error: RulecError, place: SourceLocation | None) -> RulecError:
-    """The same of a trace that was to be judged in C."""
+    """The same error for a trace that was to be judged in C."""
     way_out = "judge it with `--engine python`"
     return RulecError(
         [replace(diagnostic, place=place, help=way_out) for diagnostic in error.diagnostics]
@@ -60,7 +60,7 @@ MONITOR_COMPILER_FAILED = Code(
 
 
 def no_compiler(command: str) -> RulecError:
-    """The error (R0751) about a C compiler that is not there."""
+    """The error (R0751) about a missing C compiler."""
     return NO_MONITOR_COMPILER.error(
         None,
         f"there is no C compiler: `{command}` is not found",
@@ -69,7 +69,7 @@ def no_compiler(command: str) -> RulecError:
 
 
 def unreadable_command(command: str, problem: str) -> RulecError:
-    """The error (R0751) about a ``CC`` that is no command."""
+    """The error (R0751) about a ``CC`` that is not a command."""
     return NO_MONITOR_COMPILER.error(
         None,
         f"the environment variable `CC` is no command: `{command}` ({problem})",
@@ -78,7 +78,7 @@ def unreadable_command(command: str, problem: str) -> RulecError:
 
 
 def no_rust_compiler() -> RulecError:
-    """The error (R0751) about ``rustc``, which is not there."""
+    """The error (R0751) about a missing ``rustc``."""
     return NO_MONITOR_COMPILER.error(
         None,
         "there is no Rust compiler: `rustc` is not found",
@@ -88,8 +88,8 @@ def no_rust_compiler() -> RulecError:
 
 
 def compiler_failed(command: str, output: str, status: int | None = None) -> RulecError:
-    """The error (R0752) about a compiler that has failed, with what it said, or its status."""
-    # A message has one line.
+    """The error (R0752) about a failed compiler, with its output or its status."""
+    # A message is a single line.
     first = "; ".join(line.strip() for line in output.strip().splitlines()[:5] if line.strip())
     if not first:
         ended = "ended" if status is None else f"ended with status {status}"
@@ -116,7 +116,7 @@ MONITOR_DIFFERS = Code(
 
 
 def differs(differences: Sequence[str]) -> RulecError:
-    """The error (R0753) about what differs."""
+    """The error (R0753) about the differences found."""
     return MONITOR_DIFFERS.error(
         None,
         f"the monitor in C is not what its tables say: {'; '.join(differences[:3])}",

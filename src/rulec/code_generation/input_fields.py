@@ -14,10 +14,10 @@ from rulec.logic.free_names import names_in
 from rulec.vocabulary import Declaration, Enumeration, Vocabulary
 
 NOBODY_KNOWN = "object"
-"""The type of a vocabulary that has none."""
+"""The type used for a vocabulary without types."""
 
 TYPE, RULE = " type", " rule"
-"""What no enumeration is called."""
+"""Keys that cannot be names of enumerations."""
 
 _OWN = """
     SATISFIED HOLDS_SO_FAR PENDING VIOLATED OK NULL BAD_TYPE TWICE TOO_MANY EXCLUDED_BY_FACTS
@@ -26,10 +26,10 @@ _OWN = """
     KNOWN FROM_TO MOST NO PERHAPS YES NOBODY EMPTY SEVERAL LEAF EXCLUDED EXACTLY WITHIN LOST DOUBTED
 """
 _OWN_CONSTANTS = frozenset(_OWN.split())
-"""What a monitor defines itself, whatever its rulebook says."""
+"""The constants that a monitor defines itself, independent of its rulebook."""
 
 MOST_VALUES = 254
-"""Of an enumeration; 255 is unknown."""
+"""The most values of an enumeration; 255 means unknown."""
 
 
 @dataclass(frozen=True)
@@ -42,18 +42,18 @@ class InputFields:
 
     @cached_property
     def types(self) -> tuple[str, ...]:
-        """All types of objects; there is one at least."""
+        """All types of objects; at least one."""
         return tuple(self.vocabulary.types) or (NOBODY_KNOWN,)
 
     @cached_property
     def identifiers(self) -> dict[str, str]:
-        """The field of each name."""
+        """The field for each name."""
         identifiers = Identifiers()
         return {item.name: identifiers.of(item.name) for item in self.read}
 
     @cached_property
     def constants(self) -> dict[tuple[str, str], str]:
-        """The constants of types, of rules, and of values by the name of their enumeration."""
+        """The constants for types, for rules, and for values (by the name of their enumeration)."""
         identifiers = Identifiers(_OWN_CONSTANTS)
         names_of = {}
         for kind, names in ((TYPE, self.types), (RULE, self.rules)):
@@ -65,7 +65,7 @@ class InputFields:
         return names_of
 
     def about(self, n_objects: int) -> Iterable[Declaration]:
-        """The names about so many objects; 2 stands for more, too."""
+        """The names about this number of objects; 2 means two or more."""
         return (item for item in self.read if min(len(item.parameters), 2) == n_objects)
 
     def values_of(self, name: str) -> tuple[str, ...]:
@@ -75,7 +75,7 @@ class InputFields:
         return declaration.values
 
     def expression(self, name: str, places: Sequence[str]) -> str:
-        """What an input says of the objects at these places."""
+        """The expression for the input's value for the objects at these places."""
         field = self.identifiers[name]
         if not places:
             return f"in->{field}"

@@ -1,9 +1,9 @@
-"""Letter classes as decisions: a diagram of reads, in cells of an array.
+"""Letter classes as a decision diagram over reads, in cells of an array.
 
 A reduced ordered decision diagram with a node for each read that still matters (R. E. Bryant,
-"Graph-based algorithms for Boolean function manipulation", 1986; of several values: A. Srinivasan
-et al., "Algorithms for discrete function manipulation", 1990). What a table of 61,440 letters says
-takes a hundred cells, and only the reads on the way to an answer are looked at.
+"Graph-based algorithms for Boolean function manipulation", 1986; for several values: A. Srinivasan
+et al., "Algorithms for discrete function manipulation", 1990). A table of 61,440 letters becomes
+about a hundred cells, and only the reads on one path are evaluated.
 """
 
 from __future__ import annotations
@@ -17,31 +17,31 @@ from numpy.typing import NDArray
 from rulec.automata.mealy_monitor import IMPOSSIBLE
 
 LEAF = 0x8000
-"""A cell from here on is a class, or ``EXCLUDED``."""
+"""Cells from this value on are a class, or ``EXCLUDED``."""
 
 EXCLUDED = 0xFFFF
 """The cell of letters that facts exclude."""
 
 Cells = list[int]
-"""The first says where the diagram begins: at a node, or at a leaf.
+"""The first cell is the start of the diagram: a node, or a leaf.
 
-A node is a cell with the place of its read, and a cell for each digit: the node where to go on,
+A node is a cell with the place of its read, followed by a cell for each digit: the next node,
 always further on in the array, or a leaf.
 """
 
 
 MOST_CELLS = 2000
-"""Of 16 bits: less than 4 kB a rule."""
+"""Of 16 bits each: less than 4 kB per rule."""
 
 
 def letter_cells(
     letters: Sequence[int], sizes: Sequence[int], of_nobody: Collection[int] = ()
 ) -> Cells:
-    """The diagram of letters in mixed radix, the first read counting ones.
+    """The diagram of letters in mixed radix, whose first read counts ones.
 
-    ``sizes`` are the numbers of digits of each read. Reads that are ``of_nobody`` are asked first,
-    once for all objects, unless that takes more than ``MOST_CELLS``. Of two orders of the reads the
-    one that takes fewer cells is chosen.
+    ``sizes`` are the numbers of digits of each read. Reads that are ``of_nobody`` (of no object)
+    come first, so that they are evaluated once for all objects, unless that takes more than
+    ``MOST_CELLS``. Of two orders of the reads the one with fewer cells is chosen.
     """
     table = np.array(letters, dtype=np.int64).reshape(tuple(reversed(sizes))).transpose()
     order = list(range(len(sizes)))
@@ -54,10 +54,10 @@ def letter_cells(
 
 
 def _cells(table: NDArray[np.int64], order: Sequence[int]) -> Cells:
-    """The diagram that asks reads in this order."""
+    """The diagram that tests reads in this order."""
     sizes = [table.shape[read] for read in order]
     flat = table.transpose(order).ravel()
-    # Leaves are below 0, nodes their numbers, of which lower levels have the lower ones.
+    # Leaves are negative; nodes are numbered, lower levels first.
     below: NDArray[Any] = -(flat + 2)
     nodes: list[tuple[int, list[int]]] = []
     for read, size in reversed(list(zip(order, sizes, strict=True))):

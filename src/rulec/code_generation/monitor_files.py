@@ -1,4 +1,4 @@
-"""The files of a monitor: headers for C and C++, source, what builds them; or a crate of Rust."""
+"""The files of a monitor: C and C++ headers, C source and build files; or a Rust crate."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from rulec.file_sets import write_together
 from rulec.files import make_folder
 
 Language: TypeAlias = Literal["c", "rust", "ros2"]
-"""What is written: C for C and C++, a crate of Rust, a package for ROS 2 around the C."""
+"""The language of the files: C (and C++), a Rust crate, or a ROS 2 package around the C."""
 
 _MAKE = """\
 # A library of the monitor; it takes a compiler for C99 and nothing else.
@@ -48,7 +48,7 @@ set_target_properties({name} PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON C_E
 
 
 def monitor_texts(layout: MonitorLayout) -> dict[str, str]:
-    """The files' names and what is in them."""
+    """The names and contents of the files."""
     name = prefix_of(layout.rulebook.name)
     return {
         f"{name}.h": c_header(layout),
@@ -67,17 +67,17 @@ def write_monitor(
     prove: bool = False,
     language: Language = "c",
 ) -> list[Path]:
-    """Write a monitor to a folder, all files of each folder or none; the paths.
+    """Write a monitor to a folder, all files of each folder or none; returns the paths.
 
-    ``bounds`` are how many objects there may be at a time, by type. If it is to ``prove`` there is
-    a report, too. Raises RulecError R0702, R0750, and to prove R0751 to R0753.
+    ``bounds`` are the most objects present at a time, by type. With ``prove`` there is a report,
+    too. Raises RulecError R0702, R0750, and with ``prove`` R0751 to R0753.
     """
     code = RustReadingCode if language == "rust" else ReadingCode
     layout = monitor_layout(rulebook, bounds, code)
     written = {"c": monitor_texts, "rust": crate_texts, "ros2": ros2_texts}
     texts = written[language](layout)
     if prove:
-        # numpy, and all that judges
+        # These import NumPy and everything needed for judging.
         from rulec.code_generation.compiled_c.c_library import CLibrary
         from rulec.code_generation.compiled_c.rust_library import RustLibrary
         from rulec.code_generation.proof.monitor_proof import proof_report

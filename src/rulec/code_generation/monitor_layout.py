@@ -1,7 +1,7 @@
 """Memory layout of a generated monitor: seats, reads, cells, entries, instances.
 
-A rule has an instance for each choice of seats that its variables may stand for. Objects of a type
-sit on the seats of the nearest type above it for which there are any.
+A rule has an instance for each choice of seats for its variables. Objects of a type sit on the
+seats of the nearest supertype (or the type itself) that has a bound.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from rulec.monitoring.online.four_valued import WORST_FIRST, four_valued
 from rulec.vocabulary import Vocabulary
 
 USUAL_SEATS = 16
-"""For objects of each type that is below no other one."""
+"""For objects of each type that has no supertype."""
 
 MOST_SEATS = 4096
 MOST_VARIABLES = 6
@@ -31,19 +31,19 @@ MOST_INSTANCES = (1 << 16) - 1
 MOST_READS = 1 << 12
 
 WORLD, OWN, TOGETHER = 0, 1, 7
-"""Where digits are: of no object; of the first variable's, the next ones following; of several."""
+"""Sources of digits: no object; the first variable's object (others follow); several objects."""
 
 VERDICTS = WORST_FIRST[::-1]
-"""Their numbers in C, the best being 0."""
+"""The verdicts in the order of their numbers in C; 0 is the best."""
 
 
 @dataclass(frozen=True)
 class RuleLayout:
     """A rule's part of all arrays.
 
-    ``seats`` are for each variable the first and the one behind the last that its objects may have.
-    ``reads`` say of each read where its digits are: the source and the place there. ``together``
-    are the places of reads of several objects.
+    ``seats`` are, for each variable, the first seat that its objects may have and the one after the
+    last. ``reads`` are the source and the place of each read's digits. ``together`` are the places
+    of reads about several objects.
     """
 
     rule: CompiledRule
@@ -55,12 +55,12 @@ class RuleLayout:
 
     @property
     def n_instances(self) -> int:
-        """How many choices of seats there are."""
+        """The number of choices of seats."""
         return prod(end - first for first, end in self.seats)
 
     @property
     def n_words(self) -> int:
-        """How many words of 32 bits the sets of states of all instances take."""
+        """The number of 32-bit words for the sets of states of all instances."""
         return self.n_instances * (len(self.rule.machine.successors) // 32 + 1)
 
     @property
@@ -73,11 +73,12 @@ class RuleLayout:
 
 @dataclass(frozen=True, eq=False)
 class MonitorLayout:
-    """A monitor, but for its text.
+    """A monitor, without its text.
 
-    ``seats`` are by type the first and the one behind the last for its objects. ``digits`` are
-    expressions for the reads of no object, of one (at the place ``one``) and of several (at places
-    ``who``), ``sizes`` how many digits each of them has. ``definitions`` are what they take.
+    ``seats`` are, by type, the first seat for its objects and the one after the last. ``digits``
+    are expressions for the reads about no object, about one (at the place ``one``) and about
+    several (at the places ``who``); ``sizes`` are their numbers of digits. ``definitions`` are what
+    the expressions use.
     """
 
     rulebook: CompiledRulebook
@@ -95,7 +96,7 @@ class MonitorLayout:
 
     @property
     def array_sizes(self) -> dict[str, int]:
-        """The sizes of arrays, by what code calls them; none of them is empty."""
+        """The sizes of arrays, by their names in the code; no array is empty."""
         rules = self.rules
         machines = [own.rule.machine for own in rules]
         most_reads = max(map(len, self.sizes))
@@ -121,7 +122,7 @@ class MonitorLayout:
 
     @property
     def n_variables(self) -> int:
-        """The most variables that a rule has, at least 1."""
+        """The most variables of any rule, at least 1."""
         return max(1, *[len(own.seats) for own in self.rules])
 
 
@@ -132,8 +133,8 @@ def monitor_layout(
 ) -> MonitorLayout:
     """The layout for a rulebook, at one step.
 
-    ``bounds`` are how many objects there may be at a time, by type; ``code`` writes what reads
-    digits. Raises RulecError R0750.
+    ``bounds`` are the most objects present at a time, by type; ``code`` generates the expressions
+    that read digits. Raises RulecError R0750.
     """
     rulebook = rulebook.at_one_step()
     if not rulebook.rules:
@@ -160,7 +161,7 @@ def monitor_layout(
 
 
 def _seats(fields: InputFields, bounds: Mapping[str, int]) -> dict[str, tuple[int, int]]:
-    """The seats for objects of each type, as those of its nearest bound."""
+    """The seats for objects of each type: those of the nearest type with a bound."""
     vocabulary = fields.vocabulary
     kinds = fields.types
     unknown = [kind for kind in bounds if kind not in kinds]
@@ -176,7 +177,7 @@ def _seats(fields: InputFields, bounds: Mapping[str, int]) -> dict[str, tuple[in
     bounds = usual | dict(bounds)
     seats: dict[str, tuple[int, int]] = {}
     end = 0
-    # A type's seats are followed by those of types below it, so that each has a stretch.
+    # A type's seats are followed by those of its subtypes, so that each has one range.
     for kind in sorted(
         kinds, key=lambda kind: [kinds.index(above) for above in _above(kind, fields)]
     ):
@@ -201,7 +202,7 @@ def _above(kind: str, fields: InputFields) -> list[str]:
 
 
 class _Placing:
-    """Places given to reads as rules need them: ``places`` by source, expression to size."""
+    """Assigns places to reads as rules need them: ``places`` by source, expression to size."""
 
     def __init__(
         self, code: ReadingCode, fields: InputFields, seats: Mapping[str, tuple[int, int]]
@@ -265,7 +266,7 @@ class _Placing:
         return source, list(known).index(expression)
 
     def _seats_of(self, kind: str) -> tuple[int, int]:
-        """The seats that objects of a type may have, and perhaps others."""
+        """A range that contains the seats of all objects of a type, and perhaps others."""
         vocabulary = self._fields.vocabulary
         stretches = [
             self._seats[own] for own in vocabulary.types if vocabulary.is_subtype(own, kind)

@@ -1,7 +1,7 @@
-"""Code of C that reads letters' digits from an input, where values may be unknown.
+"""C code that reads the digits of letters from an input, where values may be unknown.
 
-What it calls is in ``c_texts/readings.c``. Digits are a range: the least and the greatest that a
-read may have (see there).
+The functions that it calls are in ``c_texts/readings.c``. Digits are ranges: the least and the
+greatest digit that a read may have (see there).
 """
 
 from __future__ import annotations
@@ -23,23 +23,23 @@ from rulec.logic.free_names import variables_of
 from rulec.logic.kleene import alias_of
 
 NAME = "\0"
-"""The place of a name in what is defined."""
+"""The placeholder for the name in a definition."""
 
 Places = Mapping[str, str]
-"""Variables, and the expressions of their objects' places in the input."""
+"""Maps variables to expressions for the places of their objects in the input."""
 
 MOST_DIGITS = 255
 """A digit and its range have 16 bits."""
 
 _FAR = 2.0**60
-"""Beyond all numbers that count as known."""
+"""Greater than all numbers that count as known."""
 
 _LARGEST_FACTOR = 1 << 20
 _LARGEST_LIMIT = 1 << 59
 
 
 class ReadingCode:
-    """Expressions for reads, and the ``definitions`` that they need, in the order of the file."""
+    """Generates expressions for reads, and the ``definitions`` that they need, in file order."""
 
     def __init__(self, fields: InputFields) -> None:
         self._fields = fields
@@ -47,15 +47,15 @@ class ReadingCode:
         self.definitions: list[str] = []
 
     def place_of(self, variable: int) -> str:
-        """Expression for the place of who stands for a rule's variable, of several."""
+        """The expression for the place of a rule variable's object, in reads about several."""
         return f"who[{self._whole(variable)}]"
 
     def digits(self, read: Read | NumberRead, places: Places) -> str:
-        """Expression for the digits of a read. Raises RulecError R0750 if they are too many."""
+        """The expression for a read's digits. Raises RulecError R0750 if there are too many."""
         if read.size > MOST_DIGITS:
             raise too_large(f"{read.size} values of one read are told apart, at most {MOST_DIGITS}")
         if read.size == 1:
-            return self._whole(0)  # as of a count that is at least 0: there is nothing to tell
+            return self._whole(0)  # for example a count that is at least 0
         if isinstance(read, Read):
             return self._digits_of_value(read, places)
         match read.terms:
@@ -112,7 +112,7 @@ class ReadingCode:
         return self._call("among", self.digits(reads[0], places), self._whole(mask))
 
     def _count(self, count: ltl.Count, places: Places) -> str:
-        """Expression for how many objects count."""
+        """The expression for the number of counted objects."""
         free = list(dict.fromkeys(variables_of(count)))
         inner = {variable: f"who{number}" for number, variable in enumerate(free)}
         alias = alias_of(count.variable, count.body)
@@ -131,7 +131,7 @@ class ReadingCode:
             case ((1, ltl.QuantityTerm() as first), (-1, ltl.QuantityTerm() as second)) if all(
                 limit == 0 for limit, _ in flags
             ):
-                # Which of two decimals is the greater their doubles say, too.
+                # Doubles are ordered as their decimals are.
                 sides = sum(1 if inclusive else 2 for _, inclusive in flags)
                 pair = [self._value(term.name, term.arguments, inner) for term in (first, second)]
                 lines = self._returning(self._call("order", *pair, self._whole(sides)))
@@ -172,18 +172,18 @@ class ReadingCode:
         )
 
     def _function(self, kind: str, about: str, places: Places, lines: Sequence[str]) -> str:
-        """A call of a function with these lines, its parameters with the places that they are."""
+        """A call of a function with this body; ``places`` maps its parameters to arguments."""
         name = self._defined(about, self._function_pattern(kind, list(places), lines))
         return f"{name}({', '.join([self._input, *places.values()])})"
 
     def _defined(self, about: str, pattern: str) -> str:
-        """The name of what is defined by this; the same has been defined once."""
+        """The name of a definition; equal definitions are made once."""
         if pattern not in self._named:
             name = self._named[pattern] = self._name(about, len(self._named))
             self.definitions.append(pattern.replace(NAME, name))
         return self._named[pattern]
 
-    # What differs from language to language
+    # Parts that differ between languages
 
     _input = "in"
 

@@ -1,4 +1,4 @@
-"""A package for ROS 2 around the monitor in C: messages, node, launch file, and what builds them.
+"""A ROS 2 package around the monitor in C: messages, node, launch file, build files.
 
 Messages: ROS 2, "Interfaces", https://docs.ros.org/en/rolling/Concepts/Basic/About-Interfaces.html.
 """
@@ -18,7 +18,7 @@ from rulec.vocabulary import Declaration, Enumeration, Quantity
 _NODE = Path(__file__).parent / "ros2_texts" / "node.cpp"
 
 UNKNOWN_NUMBER = "1.0e300"
-"""Beyond 2^53, so that a message that says nothing says a number that is not known."""
+"""Beyond 2^53, so that a field left at this default is an unknown number."""
 
 _PACKAGE = """\
 <?xml version="1.0"?>
@@ -97,8 +97,8 @@ def ros2_texts(layout: MonitorLayout) -> dict[str, str]:
 
 
 def message_fields(layout: MonitorLayout) -> dict[str, str]:
-    """What messages call each name: lower case, no two underscores together."""
-    # Words of Python cannot be what its classes of messages call their fields.
+    """The message field for each name: lower case, no two underscores in a row."""
+    # Python's keywords cannot be field names of its message classes.
     taken = Identifiers(("header", "id", "type", "objects", *kwlist))
     return {item.name: taken.of(item.name.lower()) for item in layout.fields.read}
 

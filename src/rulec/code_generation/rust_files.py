@@ -1,4 +1,4 @@
-"""A monitor as a crate of Rust: without the standard library, unsafe code or dependencies."""
+"""A monitor as a Rust crate: without the standard library, unsafe code or dependencies."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def crate_texts(layout: MonitorLayout) -> dict[str, str]:
 
 
 def rust_source(layout: MonitorLayout) -> str:
-    """All of the crate's code."""
+    """The crate's complete code."""
     data = [*_constants(layout), "", *_input(layout), "", *_tables(layout), ""]
     defined = [*layout.definitions, ""] if layout.definitions else []
     reading = [*defined, *_reading_functions(layout)]
@@ -81,7 +81,7 @@ def rust_source(layout: MonitorLayout) -> str:
 
 
 def rust_harness(layout: MonitorLayout) -> str:
-    """What a proof compiles beside the crate."""
+    """The code that a proof compiles with the crate."""
     fields, name = layout.fields, prefix_of(layout.rulebook.name)
     own = [f"    {fields.identifiers[item.name]}: {_kind(item)}," for item in fields.about(0)]
     several = list(fields.about(2))

@@ -1,8 +1,8 @@
-"""Lines of Rust in rustfmt's form, as far as generated code goes.
+"""Formats lines of Rust as rustfmt does, as far as generated code needs it.
 
-A line as it is generated holds one item, field, arm, statement or expression, however long it is.
-The numbers are rustfmt's own: an argument list, an array or a structure stays on its line only up
-to a width of its own, and short values fill lines.
+A generated line holds one item, field, arm, statement or expression, however long it is. The
+numbers are rustfmt's: an argument list, an array or a structure stays on one line only up to a
+width of its own, and short values fill lines.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _CLOSERS = {"(": ")", "[": "]", "{": "}"}
 
 
 class _List(NamedTuple):
-    """Something in brackets: what stands before these, and the parts in between."""
+    """A bracketed list: the text before the bracket, and the parts."""
 
     name: str
     bracket: str
@@ -34,17 +34,17 @@ class _List(NamedTuple):
 
     @property
     def pad(self) -> str:
-        """What is between brackets and parts on one line."""
+        """The space between brackets and parts on one line."""
         return " " * (self.bracket == "{")
 
     def on_a_line(self, parts: Sequence[str]) -> str:
-        """All of it on one line."""
+        """The whole list on one line."""
         inner = f"{self.pad}{', '.join(parts)}{self.pad}" if parts else ""
         return f"{self.name}{self.bracket}{inner}{_CLOSERS[self.bracket]}"
 
 
 def formed(lines: Iterable[str]) -> Iterator[str]:
-    """Lines in rustfmt's form; comments and what only opens or closes something stay."""
+    """Lines in rustfmt's form; comments and lines that only open or close a block are unchanged."""
     for line in lines:
         text = line.lstrip(" ")
         indent = line[: len(line) - len(text)]
@@ -59,7 +59,7 @@ def formed(lines: Iterable[str]) -> Iterator[str]:
 
 
 def _signature(indent: str, text: str) -> Iterator[str]:
-    """The head of a function, its parameters on lines of their own if it is too long."""
+    """The head of a function, with its parameters on separate lines if it is too long."""
     match = re.fullmatch(r"((?:pub )?fn \w+)\((.*)\)( -> .*| \{)", text)
     if match is None or len(indent) + len(text) <= _LINE:
         yield f"{indent}{text}"
@@ -98,8 +98,8 @@ def _is_better_below(here: Sequence[str], below: Sequence[str]) -> bool:
 def _laid(expression: str, indent: str, room: int, *, states: bool = False) -> list[str]:
     """The lines of an expression, the first without its indentation.
 
-    ``room`` is what is left of the first line. As a statement (``states``) a choice has lines of
-    its own.
+    ``room`` is what is left of the first line. As a statement (``states``) an ``if`` always has
+    several lines.
     """
     if (choice := _CHOICE.fullmatch(expression)) is not None:
         if not states and len(expression) <= min(_WIDEST_CHOICE, room):
@@ -129,7 +129,7 @@ def _laid_list(listed: _List, indent: str, room: int) -> list[str]:
     content = ", ".join(parts)
     widest = min(_WIDEST[bracket], inner_room)
     if len(parts) == 1 and bracket == "(" and _is_call(parts[0]):
-        # What is called in a call alone takes up its brackets
+        # A call that is the only argument shares its lines with the outer brackets.
         first, *others = _laid(parts[0], indent, widest)
         if others or len(first) <= widest:
             *others, last = [f"{name}({first}", *others]
@@ -164,7 +164,7 @@ def _filled(parts: Sequence[str], indent: str) -> list[str]:
     lines = [indent]
     for number, part in enumerate(parts, 1):
         gap = " " * (lines[-1] != indent)
-        # A column stays free, but not where all is on one line
+        # One column is kept free for a comma, unless everything is on one line.
         widest = _LINE - (number < len(parts) or len(lines) > 1)
         if len(f"{lines[-1]}{gap}{part},") > widest:
             lines.append(indent)
@@ -174,7 +174,7 @@ def _filled(parts: Sequence[str], indent: str) -> list[str]:
 
 
 def _listed(expression: str) -> _List | None:
-    """A call, an array, a tuple or a structure's literal; None for all else."""
+    """A call, an array, a tuple or a structure's literal; None for anything else."""
     match = re.match(r"[&\w:#.]*( (?=\{))?", expression)
     start = match.end() if match else 0
     if start == len(expression) or expression[start] not in _CLOSERS:
@@ -191,7 +191,7 @@ def _closes_early(inner: str) -> bool:
 
 
 def _depths(text: str) -> list[int]:
-    """How many brackets are open behind each character; none within texts count."""
+    """The number of open brackets after each character; brackets within strings do not count."""
     depth, depths, quoted = 0, [], False
     for character in text:
         quoted ^= character == '"'
@@ -202,7 +202,7 @@ def _depths(text: str) -> list[int]:
 
 
 def _parts(text: str) -> list[str]:
-    """What stands between the commas that are in no further brackets."""
+    """The parts between commas that are outside of inner brackets."""
     cuts = [at for at, depth in enumerate(_depths(text)) if text[at] == "," and not depth]
     starts = [0, *(at + 1 for at in cuts)]
     parts = [text[a:b].strip(" ") for a, b in zip(starts, [*cuts, len(text)], strict=True)]

@@ -1,4 +1,4 @@
-"""Reading of digits in Rust; what it calls is in ``rust_texts/readings.rs``."""
+"""Reading of digits in Rust; the functions that it calls are in ``rust_texts/readings.rs``."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """A rulebook's texts in code of other languages: identifiers, comments, literals.
 
-A rulebook may be anybody's. Whatever its texts hold, they end no comment, splice no lines, form no
-trigraph and turn no writing round.
+A rulebook may come from anyone. Whatever its texts contain, they cannot end a comment, splice
+lines, form a trigraph or change the writing direction.
 """
 
 from __future__ import annotations
@@ -26,26 +26,25 @@ _KEYWORDS = """
     id objects n_objects Self NULL size_t ptrdiff_t max_align_t offsetof nullptr_t NAN INFINITY
 """
 _RESERVED = frozenset(_KEYWORDS.split())
-"""Keywords of C, C++ and Rust, macros of compilers that are no words of the standard, the monitor's
-own fields, and names of ``stddef.h``."""
+"""Keywords of C, C++ and Rust, non-standard macros, the monitor's fields, ``stddef.h`` names."""
 
 _OF_STDINT = re.compile(r"u?int(_least|_fast|ptr|max)?[0-9]*_t|[A-Z0-9_]+_(MIN|MAX|C)")
 """Names of ``stdint.h``."""
 
 _SHOWN = frozenset({"Lu", "Ll", "Lt", "Lm", "Lo", "Nd", "Nl", "No", "Pd", "Po", "Ps", "Pe", "Sc"})
-"""Categories of characters beyond ASCII that a comment may have as they are."""
+"""Categories of non-ASCII characters that a comment may contain unchanged."""
 
 _RIGHT_TO_LEFT = frozenset({"R", "AL", "AN"})
 
 
 class Identifiers:
-    """Identifiers for names, each another one than all before, and than those ``taken``."""
+    """Creates identifiers for names, each distinct from all earlier and all ``taken`` ones."""
 
     def __init__(self, taken: Iterable[str] = ()) -> None:
         self._taken = set(taken)
 
     def of(self, *parts: str, upper: bool = False) -> str:
-        """An identifier of C, C++ and Rust; the same parts again have another one."""
+        """An identifier valid in C, C++ and Rust; every call returns a new one."""
         text = _letters("_".join(part.strip() for part in parts))
         text = text.upper() if upper else text
         if text in _RESERVED or not text or _OF_STDINT.fullmatch(text):
@@ -61,12 +60,12 @@ class Identifiers:
 
 
 def prefix_of(name: str) -> str:
-    """What all of a monitor's identifiers begin with, in lower case."""
+    """The common prefix of all identifiers of a monitor, in lower case."""
     return Identifiers().of(name.lower())
 
 
 def _letters(text: str) -> str:
-    """A name in letters, digits and single underscores of ASCII, no two different ones alike."""
+    """A name in ASCII letters, digits and single underscores; characters are encoded distinctly."""
     mapped = "".join(
         character
         if character.isascii() and (character.isalnum() or character == "_")
@@ -75,12 +74,12 @@ def _letters(text: str) -> str:
         else "_"
         for character in text
     )
-    # Identifiers with two underscores belong to C++.
+    # Identifiers with double underscores are reserved in C++.
     return re.sub("_{2,}", "_", mapped).rstrip("_")
 
 
 def in_comment(text: str) -> str:
-    """A text on one line of a comment; characters that could do harm by their numbers."""
+    """A text for one line of a comment, with harmful characters replaced by their numbers."""
     shown = "".join(map(_shown, " ".join(text.split())))
     return re.sub(_HARMFUL, lambda match: _number(match[0]), shown)
 
@@ -101,19 +100,19 @@ def _number(sign: str) -> str:
 
 
 def c_string(text: str) -> str:
-    """A literal of C: its bytes in UTF-8, all but plain letters as three octal digits each."""
+    """A C literal: UTF-8 bytes, all but plain characters as three octal digits each."""
     plain = frozenset(b" !#$%&'()+,-.0123456789:;<=>@[]^_`{|}~")
     shown = "".join(
         chr(byte) if byte in plain or (byte < 128 and chr(byte).isalpha()) else f"\\{byte:03o}"
         for byte in text.encode("utf-8", "surrogatepass")
     )
     shown = re.sub("(?<=rulec)_|(?<=RULEC)_", r"\\137", shown)
-    # An escape is the last of its literal, or followed by another one (MISRA C:2012, 4.1).
+    # An escape must end its literal or be followed by another escape (MISRA C:2012, 4.1).
     return '"{}"'.format(re.sub(r"(\\[0-7]{3})(?=[^\\])", r'\1" "', shown))
 
 
 def rust_string(text: str) -> str:
-    """A literal of Rust: plain letters, else numbers of characters; U+FFFD for what is none."""
+    """A Rust literal: plain characters, else code points; U+FFFD for lone surrogates."""
     shown = "".join(
         character
         if character.isascii() and (character.isalnum() or character in " .,-_()")

@@ -1,4 +1,4 @@
-"""Traces judged by monitors in C, which the user's compiler compiles when they are first needed."""
+"""Judges traces with monitors in C, which the user's compiler compiles when first needed."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from rulec.trace import Trace
 from rulec.trace.trace_model import check_trace
 
 LOST = VERDICTS.index("violated") * 5
-"""Best and worst in one number, as C keeps them: the best, and the worst times 4."""
+"""The best and the worst verdict as one number, as in C: the best plus 4 times the worst."""
 
 REJECTED = VERDICTS.index("pending")
 
@@ -32,10 +32,10 @@ Bytes: TypeAlias = NDArray[np.uint8]
 
 
 class CEngine:
-    """Judges traces in C. What C leaves in a range, or cannot tell, Python judges.
+    """Judges traces in C. If C leaves the verdict open or cannot judge a trace, Python judges it.
 
-    Each verdict has its ``engine``, and ``judged`` counts the traces by it. Raises RulecError R0751
-    at once if there is no compiler.
+    Each verdict has its ``engine``, and ``judged`` counts the traces per engine. Raises RulecError
+    R0751 immediately if there is no compiler.
     """
 
     def __init__(self, rulebook: CompiledRulebook) -> None:
@@ -53,14 +53,14 @@ class CEngine:
             yield [item], [self.answer(item)]
 
     def answer(self, item: Trace | RulecError) -> Verdict | NotJudged:
-        """The answer for a trace, or for the error that kept it from being read."""
+        """The answer for a trace, or for the error that prevented it from being read."""
         if isinstance(item, RulecError):
             return NotJudged(None, item)
         try:
             verdict = self.verify(item)
         except RulecError as error:
             if error.diagnostics[0].code == MONITOR_COMPILER_FAILED.code:
-                raise  # not of this trace alone
+                raise  # concerns all traces
             return NotJudged(item.id, as_answer(error))
         self.judged[verdict.engine] += 1
         return verdict
@@ -73,7 +73,7 @@ class CEngine:
         """
         violations = None
         check_trace(trace)
-        # A bound that is no multiple of the step C would have no state for.
+        # C has no states for a bound that is not a multiple of the step.
         fits = len(self.rulebook.rounded_to(trace.step_s)) == 1
         if fits and trace.ends == "complete" and trace.told is None:
             rulebook, is_partial = rulebook_for_checked(trace, self.rulebook)
@@ -84,7 +84,7 @@ class CEngine:
         return Verdict(trace.id, tuple(violations), engine="c")
 
     def _violations(self, trace: Trace, rulebook: CompiledRulebook) -> list[Violation] | None:
-        """What a trace violates; None if C does not tell."""
+        """The violations of a trace; None if C does not determine them."""
         reader = letter_reader_of(trace, rulebook)
         check_counting_axioms(
             rulebook, len(trace.states), reader.view, "state {}".format, trace.place
@@ -110,7 +110,7 @@ class CEngine:
         return violations
 
     def _library(self, rulebook: CompiledRulebook, cast: Cast) -> CLibrary:
-        """The monitor with as many seats as there are objects, in powers of two."""
+        """The monitor with enough seats for the objects, rounded up to powers of two."""
         vocabulary = rulebook.vocabulary
         roots = [name for name, kind in vocabulary.types.items() if kind.parent is None]
         most = dict.fromkeys(roots, 1)
@@ -133,7 +133,7 @@ class CEngine:
 
 
 def _items(cast: Cast, number: int) -> Iterator[str]:
-    """Who is there in a state."""
+    """The objects that are present in a state."""
     always = 0, cast.n_states - 1
     for item in cast.objects:
         first, last = cast.present.get(item, always)
@@ -142,9 +142,9 @@ def _items(cast: Cast, number: int) -> Iterator[str]:
 
 
 class _Run:
-    """What C says after each state of a trace, of every rule for all seats.
+    """The verdicts of C after each state of a trace, for every rule and all seats.
 
-    It ``is_whole`` if all is known and all steps have been taken.
+    ``is_whole`` if all values are known and all steps were accepted.
     """
 
     def __init__(self, library: CLibrary, states: Sequence[Mapping[str, Any]], cast: Cast) -> None:
@@ -180,7 +180,7 @@ class _Run:
         self.is_whole = taken == n
 
     def verdicts(self, own: RuleLayout, binding: Binding) -> Bytes:
-        """The verdicts of a rule for some objects, as long as these are there."""
+        """The verdicts of a rule for some objects, while these are present."""
         number = 0
         for item, (first, end) in zip(binding.objects.values(), own.seats, strict=True):
             (seat,) = np.flatnonzero(self._seats[binding.first] == self._ids[item])

@@ -36,7 +36,7 @@ _HARNESS = Path(__file__).parent.parent / "c_texts" / "harness.c"
 
 
 def compiler() -> list[str]:
-    """The command of the C compiler: what ``CC`` says, or ``cc``. Raises RulecError R0751."""
+    """The command of the C compiler: ``CC``, or ``cc``. Raises RulecError R0751."""
     named = os.environ.get("CC", "")
     try:
         command = shlex.split(named) or ["cc"]
@@ -48,20 +48,20 @@ def compiler() -> list[str]:
 
 
 def run_compiler(command: list[str], folder: Path) -> str:
-    """Run a compiler in a folder; its command line. Raises RulecError R0752."""
+    """Run a compiler in a folder and return its command line. Raises RulecError R0752."""
     line = shlex.join(command)
     try:
         done = subprocess.run(command, cwd=folder, capture_output=True, timeout=300, check=False)
     except (OSError, subprocess.TimeoutExpired) as problem:
         raise compiler_failed(line, str(problem)) from None
     if done.returncode:
-        # Compilers speak the user's language, in the encoding of their own.
+        # Compilers write in the user's language and encoding.
         raise compiler_failed(line, done.stderr.decode(errors="replace"), done.returncode)
     return line
 
 
 def loaded(library: Path, command: str) -> ctypes.CDLL:
-    """A library that a command has written. Raises RulecError R0752 if it is none."""
+    """Load a library that a command has written. Raises RulecError R0752 if it is not loadable."""
     try:
         return ctypes.CDLL(str(library))
     except OSError as problem:
@@ -72,7 +72,7 @@ def loaded(library: Path, command: str) -> ctypes.CDLL:
 
 
 def first_line_of(command: list[str]) -> str:
-    """What a program says of itself; empty if it says nothing."""
+    """The first line of a program's output; empty if there is none."""
     try:
         done = subprocess.run(command, capture_output=True, timeout=60, check=False)
     except (OSError, subprocess.TimeoutExpired):
@@ -81,9 +81,9 @@ def first_line_of(command: list[str]) -> str:
 
 
 class CLibrary:
-    """A monitor's source, compiled with what a proof asks of it.
+    """A monitor's source, compiled together with the functions that a proof calls.
 
-    ``source`` is that of the layout, unless another one is given.
+    ``source`` defaults to that of the layout.
 
     Raises RulecError R0751 if there is no compiler, R0752 if it fails.
     """
@@ -121,12 +121,12 @@ class CLibrary:
     def input_of(
         self, state: State, objects: Mapping[str, str], ids: dict[str, int]
     ) -> ctypes.Structure:
-        """The input that says what a state says, or else the defaults; new objects get ``ids``."""
+        """The input with the values of a state, or else defaults; new objects get ``ids``."""
         return _input_of(self, state, objects, ids)
 
 
 def structures(layout: MonitorLayout) -> tuple[type[ctypes.Structure], type[ctypes.Structure]]:
-    """The structures of an object and of an input, as the header has them."""
+    """The structures of an object and of an input, as in the header."""
     fields = layout.fields
 
     own = [(fields.identifiers[item.name], _kind(item)) for item in fields.about(1)]
@@ -143,7 +143,7 @@ def structures(layout: MonitorLayout) -> tuple[type[ctypes.Structure], type[ctyp
 
 @dataclass(frozen=True, slots=True)
 class CAnswer:
-    """What a step of a monitor in C says: its ``status``, and the verdicts if that is 0."""
+    """The result of a step of a monitor in C: its ``status``, and verdicts if that is 0."""
 
     status: int
     verdict: RunningVerdict
@@ -153,19 +153,19 @@ class CAnswer:
 
 
 class CMonitor:
-    """A monitor in C that is stepped with states as Python's monitor is."""
+    """A monitor in C, stepped with states like Python's monitor."""
 
     def __init__(self, library: CLibrary) -> None:
         self._library = library
         self.state = ctypes.create_string_buffer(library.call("state_size")())
         n_rules = len(library.layout.rules)
-        # Two bytes for the rulebook and each rule, and two numbers of 32 bits.
+        # Two bytes for the rulebook and for each rule, then two 32-bit numbers.
         self.answer = ctypes.create_string_buffer(2 + 2 * n_rules + 16)
         self._ids: dict[str, int] = {}
         library.call("init")(self.state)
 
     def take(self, given: ctypes.Structure) -> int:
-        """Take the next state as C has it; the status."""
+        """Take the next state, given as C input; the status."""
         step = self._library.call("step")
         return int(step(self.state, ctypes.byref(given), self.answer))
 
@@ -175,9 +175,9 @@ class CMonitor:
         return self.last_answer(self.take(library.input_of(state, objects, self._ids)))
 
     def says(self, verdicts: bytes, n_violations: int | None = None) -> bool:
-        """Whether the last step has said these verdicts, and so many violations.
+        """Whether the last step returned these verdicts, and this number of violations.
 
-        They are the rulebook's and each rule's: its best, and its worst.
+        The verdicts are the rulebook's and then each rule's: the best, and the worst.
         """
         end = (len(verdicts) + 3) // 4 * 4
         answer = self.answer.raw[: end + 4]
@@ -185,7 +185,7 @@ class CMonitor:
         return answer.startswith(verdicts) and counted
 
     def last_answer(self, status: int) -> CAnswer:
-        """What the last step, which came to this status, has said."""
+        """The result of the last step, which had this status."""
         answer = self.answer.raw
         names = [own.rule.name for own in self._library.layout.rules]
         verdicts = [
@@ -200,7 +200,7 @@ class CMonitor:
 
 
 def is_all_known(layout: MonitorLayout, state: State, objects: Mapping[str, str]) -> bool:
-    """Whether a state says all that the rules read, or there is a default."""
+    """Whether a state or the defaults provide all values that the rules read."""
     vocabulary = layout.fields.vocabulary
     for item in layout.fields.read:
         if item.default is not None and type(item.default) not in UNKNOWN_TYPES:

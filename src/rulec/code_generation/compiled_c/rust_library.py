@@ -1,4 +1,4 @@
-"""A monitor in Rust, compiled as a library that is called as one in C is."""
+"""A monitor in Rust, compiled as a library with the same interface as one in C."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from rulec.code_generation.rust_files import rust_harness, rust_source
 
 
 class RustLibrary(CLibrary):
-    """A crate's source and what a proof asks of it, compiled by ``rustc``.
+    """A crate's source and the functions that a proof calls, compiled by ``rustc``.
 
-    Raises RulecError R0751 if that is not there, R0752 if it fails.
+    Raises RulecError R0751 if ``rustc`` is missing, R0752 if it fails.
     """
 
     language = "Rust"

@@ -1,4 +1,4 @@
-"""Drives judged by a compiled monitor and by Python's, which have to say the same."""
+"""Drives judged by a compiled monitor and by Python's, whose verdicts must agree."""
 
 from __future__ import annotations
 
@@ -23,10 +23,9 @@ MOST_PREPARED = 4096
 
 
 class BothMonitors:
-    """A compiled monitor beside Python's. If all ``is_known`` they have to say the same.
+    """A compiled monitor and Python's. If all values are known (``is_known``), they must agree.
 
-    Where sums of several numbers decide, or not all is known, what the compiled one says may be
-    wider.
+    If sums of several numbers decide, or values are unknown, the compiled verdicts may be wider.
     """
 
     def __init__(self, library: CLibrary, *, is_known: bool) -> None:
@@ -38,7 +37,7 @@ class BothMonitors:
         self._vague = {
             rule.name for rule in rules if not is_known and any(map(nests, rule.machine.reads))
         }
-        # Facts that count are not looked at in C.
+        # C does not check facts with counts.
         self._counting = any(counts(axiom.formula) for axiom in self._book.axioms)
         self._ids: dict[str, int] = {}
         self._inputs: dict[int, tuple[State, Any]] = {}
@@ -49,11 +48,11 @@ class BothMonitors:
         return (text for text, _ in self._steps(drive))
 
     def judge_word(self, word: TableDrive) -> Iterator[str]:
-        """The same, and that of its rule nothing better is said than the table does."""
+        """As ``judge``, and that no verdict on the word's rule is better than the table's."""
         name = word.rule.name
         follows = True
         for number, (text, answer) in enumerate(self._steps(word.drive)):
-            # A state that facts exclude together with others' defaults has not been taken.
+            # A state excluded by facts together with other objects' defaults was not taken.
             follows = follows and answer is not None
             expected = VERDICTS.index(word.verdicts[number])
             if (
@@ -67,7 +66,7 @@ class BothMonitors:
 
     def _steps(self, drive: Drive) -> Iterator[tuple[str, SoFar | None]]:
         ours, theirs = Monitor(self._book), CMonitor(self._library)
-        # Of the same verdicts there is one mapping as long as the same states come again.
+        # Equal verdicts share one mapping while the same states recur.
         packed: dict[int, tuple[Mapping[str, RunningVerdict], bytes]] = {}
         for number, (state, objects) in enumerate(drive):
             status = theirs.take(self._input(state, objects))
@@ -76,7 +75,8 @@ class BothMonitors:
             except RulecError as error:
                 by_facts = error.diagnostics[0].code == VIOLATED_AXIOM.code
                 if status != EXCLUDED_BY_FACTS:
-                    # Several facts together may exclude what is not known; C takes each by itself.
+                    # Several facts together may exclude unknown values; C checks each fact
+                    # separately.
                     missed = by_facts and self._known and not self._counting
                     yield (f"not excluded by facts: {state}" if missed else ""), None
                     return
@@ -97,7 +97,7 @@ class BothMonitors:
                 yield self._compared(our, theirs.last_answer(status), n_lost, str(state)), our
 
     def _input(self, state: State, objects: Mapping[str, str]) -> Any:
-        """The state as C has it, prepared once as long as it comes again and again."""
+        """The state as C input, prepared once while it recurs."""
         kept = self._inputs.get(id(state))
         if kept is None or kept[0] is not state:
             if len(self._inputs) >= MOST_PREPARED:
@@ -128,7 +128,7 @@ class BothMonitors:
 
 
 def is_no_narrower(wide: RunningVerdict, narrow: RunningVerdict) -> bool:
-    """Whether a verdict lies within another one, or is the same."""
+    """Whether a verdict range lies within another one, or equals it."""
     ranks: Sequence[int] = [
         VERDICTS.index(verdict)
         for verdict in (best_of(wide), best_of(narrow), worst_of(narrow), worst_of(wide))

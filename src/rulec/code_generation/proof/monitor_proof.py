@@ -1,9 +1,9 @@
-"""A monitor in C held against the tables that it was made of.
+"""Proof of a monitor in C against the tables that it was made from.
 
-Tables are gone through entirely: their numbers, the class of every letter of every rule, and the
-step from every state by every class, as a single one and as one of several that are possible.
-Readings are asked below, at and above each limit, and with what is unknown. Whole drives are held
-against the ``Monitor``, and against the tables.
+Tables are compared entirely: their numbers, the class of every letter of every rule, and the step
+from every state by every class, both as the only possible class and as one of several. Readings are
+tested below, at and above each limit, and with unknown values. Whole drives are compared with the
+``Monitor``, and with the tables.
 """
 
 from __future__ import annotations
@@ -33,14 +33,14 @@ from rulec.monitoring.online.four_valued import four_valued
 EXCLUDED_CLASS = 0x7FFF
 
 USUAL_STATES = 2000
-"""States of drives of each kind that a proof compares."""
+"""The number of states of drives of each kind that a proof compares."""
 
 _MOST_DIGITS = 1 << 12
 
 
 @dataclass(frozen=True, slots=True)
 class ProofPart:
-    """What has been compared, how often, and what differs, the first few."""
+    """What was compared, how often, and the first few differences."""
 
     subject: str
     n: int
@@ -48,7 +48,7 @@ class ProofPart:
 
 
 def proof_report(library: CLibrary, n_states: int = USUAL_STATES) -> str:
-    """What has been compared of a monitor, and how often, line by line.
+    """The report on what was compared for a monitor, and how often, line by line.
 
     Raises RulecError R0753 if something differs.
     """
@@ -67,7 +67,7 @@ def proof_report(library: CLibrary, n_states: int = USUAL_STATES) -> str:
 
 
 def proof_of(library: CLibrary, n_states: int) -> Iterator[ProofPart]:
-    """All parts of the proof of a monitor; the drives of each kind have so many states together."""
+    """All parts of the proof of a monitor; drives of each kind have ``n_states`` states in all."""
     yield _part("numbers stand in the compiled tables as they were laid out", _tables(library))
     yield _part("letters have the class that they have in the table", _letters(library))
     yield _part("steps lead from each state by each class where the table says", _steps(library))
@@ -89,7 +89,7 @@ def proof_of(library: CLibrary, n_states: int) -> Iterator[ProofPart]:
 
 
 def _part(subject: str, differences: Iterator[str]) -> ProofPart:
-    """Each thing compared is a text: empty, or how it differs."""
+    """The result of one part; each difference is a text that is empty if there is none."""
     n = 0
     different: list[str] = []
     for text in differences:
@@ -150,7 +150,7 @@ def _each(equal: Any, subject: str) -> Iterator[str]:
 
 
 def _numbers(own: RuleLayout) -> tuple[Any, list[int]]:
-    """The places of a rule's reads as the cells have them, and their sizes."""
+    """The places of a rule's reads as encoded in the cells, and their sizes."""
     reads = [source << 12 | place for source, place in own.reads]
     sizes = [read.size for read in own.rule.machine.reads]
     return (ctypes.c_uint32 * max(1, len(reads)))(*reads), sizes

@@ -1,4 +1,4 @@
-"""Inputs that tell readings apart: at limits, beside them, unknown."""
+"""Inputs that test readings: at limits, next to them, unknown."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from rulec.vocabulary.partial_values import UNKNOWN
 from rulec.vocabulary.vocabulary_model import fitting_objects
 
 SEVERAL = 60
-"""States that a read of several values is asked about."""
+"""The number of states for a read of several values."""
 
 PLAIN = (0.0, 0.125, 1.0, 2.5, 8.3, 10.0, 50.0, 130.0)
 
 
 @dataclass(frozen=True, slots=True)
 class ReadingProbe:
-    """A state, and the digits, as bits, that a rule's read has in it of the objects of a binding.
+    """A state, and the digits (as bits) that a rule's read has in it for the objects of a binding.
 
-    ``place`` is that of the digits in C. They are ``is_sharp`` unless rounding may decide.
+    ``place`` is that of the digits in C. ``is_sharp`` unless rounding may change the digits.
     """
 
     rule: str
@@ -87,7 +87,7 @@ def _probes_of(
 
 
 def _is_clear(read: NumberRead, total: Fraction) -> bool:
-    """Whether a sum is not so near to a limit that doubles may not tell."""
+    """Whether a sum is far enough from each limit for doubles to decide."""
     return not any(map(weighs, _counts(read))) and (
         len(read.terms) == 1
         or all(abs(total - side.limit) > Fraction(1, 10**6) for side in read.thresholds)
@@ -95,7 +95,7 @@ def _is_clear(read: NumberRead, total: Fraction) -> bool:
 
 
 def weighs(part: Read | NumberRead | ltl.Count) -> bool:
-    """Whether sums of several numbers decide, which are too near to a limit perhaps."""
+    """Whether sums of several numbers, possibly close to a limit, decide the part."""
     match part:
         case Read():
             return False
@@ -108,7 +108,7 @@ def weighs(part: Read | NumberRead | ltl.Count) -> bool:
 
 
 def nests(read: Read | NumberRead) -> bool:
-    """Whether a count is of what counts: of what is not known Python tells less than C does."""
+    """Whether a count contains a count: there Python leaves more open than C for unknown values."""
     return not isinstance(read, Read) and any(
         isinstance(atom, ltl.Comparison) and _counts(atom)
         for count in _counts(read)
@@ -135,7 +135,7 @@ def _states(
     layout: MonitorLayout,
     chance: Random,
 ) -> Iterator[State]:
-    """All states of a read of one value, some of another one."""
+    """All states for a read of one value, a sample for any other."""
     choices = {item.name: list(values_of(item, layout)) for item in declared}
     if isinstance(read, Read) or scale(read).quantity is not None:
         (item,) = declared
@@ -164,7 +164,7 @@ def _at_limits(
     layout: MonitorLayout,
     state: State,
 ) -> Iterator[State]:
-    """The state with the first number of a sum so that the sum is at a limit, or beside it."""
+    """The state with a sum's first number set so that the sum is at a limit, or next to it."""
     (factor, first), *others = read.terms
     if not isinstance(first, ltl.QuantityTerm) or not others:
         return
@@ -190,7 +190,7 @@ def _arguments(term: ltl.Term) -> tuple[str, ...]:
 def everywhere(
     item: Declaration, objects: Mapping[str, str], layout: MonitorLayout, draw: Callable[[], Any]
 ) -> Any:
-    """A value drawn for every choice of objects that a name may be asked about."""
+    """A value drawn for every choice of objects that a name can have as arguments."""
     vocabulary = layout.rulebook.vocabulary
 
     def of(parameters: tuple[str, ...]) -> Any:
@@ -203,7 +203,7 @@ def everywhere(
 
 
 def values_of(item: Declaration, layout: MonitorLayout) -> list[Any]:
-    """Values of a name that rules tell apart, the last one unknown."""
+    """The values of a name that rules distinguish; the last one is unknown."""
     if isinstance(item, Signal):
         return [False, True, UNKNOWN]
     if isinstance(item, Enumeration):
@@ -213,7 +213,7 @@ def values_of(item: Declaration, layout: MonitorLayout) -> list[Any]:
 
 @lru_cache(maxsize=4)
 def _limits(layout: MonitorLayout) -> Mapping[str, tuple[float, ...]]:
-    """By quantity the limits that rules compare it with by itself, and numbers beside them."""
+    """By quantity, the limits that rules compare it with on its own, and adjacent floats."""
     limits: dict[str, set[float]] = {}
     for own in layout.rules:
         for read in own.rule.machine.reads:
@@ -228,5 +228,5 @@ def _same(value: Any) -> Any:
 
 
 def drawn(chance: Random, values: Sequence[Any], share_unknown: float) -> Any:
-    """A value at random, or none that is known."""
+    """A random value, or unknown."""
     return UNKNOWN if chance.random() < share_unknown else chance.choice(values)

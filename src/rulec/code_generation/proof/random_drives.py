@@ -1,4 +1,4 @@
-"""Drives for two monitors: states drawn at random, and states made for letters of the tables."""
+"""Drives for comparing monitors: random states, and states made for letters of the tables."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ from rulec.vocabulary.partial_values import UNKNOWN_TYPES
 from rulec.witnesses.letter_witness import LetterWitnesses
 
 Drive: TypeAlias = list[tuple[State, Mapping[str, str]]]
-"""States, and the objects that are there in each."""
+"""States, and the objects that are present in each."""
 
 CASTS = 3
 STATES_OF_A_CAST = 24
-"""The states of several drives are some few, in any order, so that each is prepared once."""
+"""The states of several drives are drawn from a small pool, so that each is prepared once."""
 
 POOLS = 8
 STATES_OF_A_POOL = 40, 4000
 LENGTHS = (2, 5, 10, 20, 100, 500)
 QUIET = (0.0, 0.0, 0.5, 0.8, 0.95)
-"""How often a name has its default, so that rules are kept for a while, too."""
+"""Probabilities that a name has its default, so that rules are kept for a while, too."""
 
 
 def drives(
     layout: MonitorLayout, chance: Random, n_states: int, share_unknown: float
 ) -> Iterator[Drive]:
-    """Random drives with objects that come and go, of so many states together."""
+    """Random drives with objects that appear and disappear, with ``n_states`` states in all."""
     left = n_states
     least, most = STATES_OF_A_POOL
     while left > 0:
@@ -52,7 +52,7 @@ def drives(
             drive: Drive = []
             at = chance.randrange(CASTS)
             length = min(chance.choice(LENGTHS), longest)
-            # Who is there changes often in short drives.
+            # In short drives the objects present change often.
             changes = 0.5 if length <= 20 else 0.01
             for _ in range(min(of_pool, length)):
                 if chance.random() < changes:
@@ -63,7 +63,7 @@ def drives(
 
 
 def _casts(layout: MonitorLayout, chance: Random) -> Iterator[dict[str, str]]:
-    """Who is there: of some objects some, which may come back under another type."""
+    """Sets of present objects; an object may reappear with another type."""
     kinds = [kind for kind, (first, end) in layout.seats.items() if first < end]
     known = {f"o{number}": chance.choice(kinds) for number in range(6)}
     for _ in range(CASTS):
@@ -78,7 +78,7 @@ def _casts(layout: MonitorLayout, chance: Random) -> Iterator[dict[str, str]]:
 
 
 def _seated(layout: MonitorLayout, objects: Mapping[str, str]) -> dict[str, str]:
-    """The objects but for those without a seat, which Python's monitor looks at all the same."""
+    """The objects that have a seat; Python's monitor would judge the others, too."""
     room = {stretch: stretch[1] - stretch[0] for stretch in layout.seats.values()}
     seated = {}
     for name, kind in objects.items():
@@ -101,7 +101,7 @@ def _state(
 def _value(
     chance: Random, item: Declaration, layout: MonitorLayout, shares: tuple[float, float]
 ) -> Any:
-    """A value, the default or unknown with these shares of all: unknown first."""
+    """A random value, with given probabilities of unknown (first) and of the default."""
     share_unknown, quiet = shares
     if chance.random() < quiet and type(item.default) not in (*UNKNOWN_TYPES, type(None)):
         return item.default
@@ -110,7 +110,7 @@ def _value(
 
 @dataclass(frozen=True, slots=True)
 class TableDrive:
-    """A drive whose states have been made for letters of a rule, and the table's verdicts on it."""
+    """A drive whose states were made for letters of a rule, and the table's verdicts on it."""
 
     rule: CompiledRule
     drive: Drive
@@ -118,7 +118,7 @@ class TableDrive:
 
 
 def table_drives(layout: MonitorLayout, chance: Random, n_states: int) -> Iterator[TableDrive]:
-    """Random words of letters of each rule, of each class one that is read, as drives."""
+    """Random words of each rule as drives, using one readable letter for each class."""
     vocabulary = layout.rulebook.vocabulary
     for own in layout.rules:
         rule, machine = own.rule, own.rule.machine
@@ -127,7 +127,7 @@ def table_drives(layout: MonitorLayout, chance: Random, n_states: int) -> Iterat
         letters = [letter for letter in plainest if letter is not None]
         trace = witnesses.trace(letters)
         if trace.required:
-            continue  # who is counted cannot be told
+            continue  # the counted objects cannot be determined
         objects = {item.name: item.type for item in (*rule.variables, *trace.objects)}
         if len(_seated(layout, objects)) < len(objects):
             continue
@@ -151,7 +151,7 @@ def table_drives(layout: MonitorLayout, chance: Random, n_states: int) -> Iterat
 
 
 def _with(values: Mapping[tuple[str, tuple[str, ...]], Any], state: dict[str, Any]) -> State:
-    """The state with these values instead."""
+    """The state with these values replaced."""
     for (name, arguments), value in values.items():
         inner, key = state, name
         for argument in arguments:
