@@ -1,4 +1,4 @@
-"""A rulebook's rules as files of other tools: Spot, PRISM and nuXmv, and what their words mean."""
+"""A rulebook's rules as files for Spot, PRISM and nuXmv, and the meaning of their propositions."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from rulec.version import __version__
 def write_ltl(rulebook: Rulebook, lowered: RulebookFormulas, folder: Path) -> list[Path]:
     """Write ``R.csv``, ``R.props``, ``R.smv`` and ``R.propositions.json`` of a rulebook R.
 
-    All files or none; the paths. Raises RulecError R0702, R0754, and R0407 for bounds that do not
-    fit the step.
+    Writes all files or none; returns the paths. Raises RulecError R0702, R0754, and R0407 for
+    bounds that do not fit the step.
     """
     if lowered.problems:
         raise RulecError(lowered.problems)
@@ -41,7 +41,7 @@ def write_ltl(rulebook: Rulebook, lowered: RulebookFormulas, folder: Path) -> li
 
 
 def spot_table(rules: Sequence[RuleTerms]) -> str:
-    """One row a rule, which Spot's tools read with ``-F R.csv/-2``: the second column.
+    """One row per rule; Spot's tools read the second column with ``-F R.csv/-2``.
 
     Columns: rule, formula, facts, history.
     """
@@ -55,7 +55,7 @@ def spot_table(rules: Sequence[RuleTerms]) -> str:
 
 
 def prism_properties(rulebook: Rulebook, rules: Sequence[RuleTerms]) -> str:
-    """Three properties a rule; the labels are the model's."""
+    """Three properties per rule; the model has to define the labels."""
     lines = [
         *_head(rulebook, "//"),
         f"// Labels are what {rulebook.name}.propositions.json says; the model defines them, so",
@@ -72,7 +72,7 @@ def prism_properties(rulebook: Rulebook, rules: Sequence[RuleTerms]) -> str:
 
 
 def nuxmv_modules(rulebook: Rulebook, rules: Sequence[RuleTerms]) -> str:
-    """A module a rule, its propositions as parameters, and a main one in which they are free."""
+    """A module per rule with its propositions as parameters, and a main module that frees them."""
     finite = rulebook.semantics == "finite"
     lines = [*_head(rulebook, "--")]
     main: list[str] = ["MODULE main", "VAR"]
@@ -97,7 +97,7 @@ def nuxmv_modules(rulebook: Rulebook, rules: Sequence[RuleTerms]) -> str:
 
 
 def meanings(rulebook: Rulebook, rules: Sequence[RuleTerms]) -> str:
-    """What each proposition stands for, with where it is all from."""
+    """The meaning of each proposition, with the sources."""
     document = {
         "version": 1,
         "rulebook": rulebook.name,

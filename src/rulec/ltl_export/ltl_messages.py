@@ -1,4 +1,4 @@
-"""Messages about rules that are too long to be written out."""
+"""Messages about rules that are too long to be exported."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""Formulas in the operators that every tool for linear temporal logic has, and as text in each.
+"""Formulas in the operators that all tools for linear temporal logic share, and their texts.
 
-Bounds are unfolded, weak until and strong release said by until and release. A finite word ends
-where a proposition turns false (De Giacomo, Vardi, "Linear temporal logic and linear dynamic logic
-on finite traces", 2013).
+Bounds are unfolded; weak until and strong release are expressed by until and release. A finite word
+ends where a proposition becomes false (De Giacomo, Vardi, "Linear temporal logic and linear dynamic
+logic on finite traces", 2013).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from rulec.logic.fold import Algebra, fold, temporal_operation
 
 
 class Term(NamedTuple):
-    """An operator and what it joins; or a proposition, or ``true``.
+    """An operator with its operands; or a proposition, or ``true``.
 
     Operators are ``!``, ``&``, ``|``, ``->``, ``<->``, ``X``, ``F``, ``G``, ``U`` and ``R``.
     """
@@ -33,9 +33,9 @@ FALSE = Term("!", (TRUE,))
 
 @dataclass(frozen=True, slots=True)
 class Syntax:
-    """How a tool writes what is not as everywhere: operators, ``true``, and propositions.
+    """A tool's own notation: operators, ``true``, and propositions that differ from the usual form.
 
-    Not every tool ``has_implication`` and equivalence between formulas of time.
+    ``has_implication``: it has implication and equivalence between temporal formulas.
     """
 
     signs: Mapping[str, str]
@@ -49,16 +49,16 @@ NUXMV = Syntax({"R": "V", "true": "TRUE"})
 
 
 def conjunction(terms: Sequence[Term]) -> Term:
-    """All of them that say something; true if there are none."""
+    """The conjunction of all terms that are not ``true``; true if there are none."""
     kept = [term for term in terms if term != TRUE]
     return reduce(lambda left, right: Term("&", (left, right)), kept) if kept else TRUE
 
 
 class Terms:
-    """Formulas without past as terms, each part once.
+    """Formulas without past as terms, each subformula translated once.
 
-    ``names`` are those of propositions; ``alive`` is that of the one which is true as long as a
-    finite word lasts, None where words go on for ever.
+    ``names`` maps propositions to names; ``alive`` is the name of the proposition that is true
+    while a finite word lasts, None if words are infinite.
     """
 
     def __init__(self, names: Mapping[ltl.Proposition, str], alive: str | None) -> None:
@@ -82,16 +82,16 @@ class Terms:
         )
 
     def term_of(self, formula: ltl.Formula) -> Term:
-        """The formula, its bounds in steps; raises ValueError for an operator of the past."""
+        """The term of a formula with bounds in steps; raises ValueError for a past operator."""
         return fold(formula, self._algebra, self._known)
 
     def always(self, fact: ltl.Formula) -> Term:
-        """What holds in every state."""
+        """The term that a formula holds in every state."""
         return self._release(None, self.term_of(fact), Range(0, None))
 
     @property
     def lasting(self) -> Term:
-        """What is said of the end of a finite word: there is one, behind its first state."""
+        """The assumption that a finite word has an end, after its first state; else true."""
         if self._alive is None:
             return TRUE
         ended = Term("G", (_not(self._alive),))
@@ -154,9 +154,9 @@ def _or_later(left: Term | None, later: Term) -> Term:
 
 
 def text_of(term: Term, syntax: Syntax) -> str:
-    """The term as a tool reads it."""
+    """The term in a tool's notation."""
     parts: list[str] = []
-    # With a stack of its own: bounds of hundreds of steps are as deep.
+    # With an explicit stack, since bounds of hundreds of steps nest as deep.
     left: list[Term | str] = [term]
     while left:
         piece = left.pop()
@@ -170,7 +170,7 @@ def text_of(term: Term, syntax: Syntax) -> str:
             case ():
                 parts.append(sign if piece == TRUE else syntax.proposition.format(sign))
             case (inner,):
-                # A binary operand brings its own parentheses.
+                # A binary operand has its own parentheses.
                 left += [inner, sign if piece.sign == "!" else f"{sign} "]
             case (first, second):
                 left += [")", second, f" {sign} ", first, "("]
@@ -178,7 +178,7 @@ def text_of(term: Term, syntax: Syntax) -> str:
 
 
 def _by_negation(term: Term) -> Term:
-    """An implication or equivalence by ``!``, ``&`` and ``|``."""
+    """An implication or equivalence expressed by ``!``, ``&`` and ``|``."""
     match term:
         case Term("->", (left, right)):
             return Term("|", (_not(left), right))
@@ -189,7 +189,7 @@ def _by_negation(term: Term) -> Term:
 
 
 def size_of(term: Term) -> int:
-    """How many signs the term's text has, at most, without writing it."""
+    """The greatest number of characters of the term's text, without writing it."""
     known: dict[int, int] = {}
     stack = [term]
     while stack:

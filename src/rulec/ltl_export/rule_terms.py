@@ -1,4 +1,4 @@
-"""Terms of a rule: its formula, facts about propositions, history variables."""
+"""The terms of a rule: its formula, facts about propositions, history variables."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from rulec.rulebook.rulebook_model import Rule, Rulebook
 from rulec.rulebook.rules.axiom_instances import axiom_instances
 
 MOST_SIGNS = 2_000_000
-"""Of one rule's text."""
+"""The greatest number of characters of a rule's text."""
 
 _SIGNS = {"<=": "le", ">=": "ge", "!=": "ne", "<": "lt", ">": "gt", "=": "eq", "+": "plus"}
 _KEYWORDS = """
@@ -45,9 +45,9 @@ _RESERVED = frozenset(_KEYWORDS.split())
 
 @dataclass(frozen=True, slots=True)
 class Proposition:
-    """What a tool's proposition stands for: as a rulebook writes it, and in English.
+    """The meaning of a tool's proposition: in a rulebook's notation, and in English.
 
-    One of a history stands for what held an instant ago.
+    A history proposition stands for what held one instant ago.
     """
 
     name: str
@@ -59,9 +59,9 @@ class Proposition:
 class RuleTerms:
     """A rule for other tools.
 
-    ``facts`` hold in every word that can occur, ``history`` says what the propositions of the
-    ``past`` are: false at first, then what held an instant before. A word that can occur keeps the
-    rule if, with its one history, ``formula`` holds.
+    ``facts`` hold in every possible word. ``history`` defines the propositions of the ``past``:
+    false at first, then the value of their formula one instant before. A possible word keeps the
+    rule if ``formula`` holds with the history that this word determines.
     """
 
     rule: Rule
@@ -85,14 +85,14 @@ def rule_terms(rulebook: Rulebook, lowered: RuleFormula, phrases: Mapping[str, s
     )
     about = {ltl.subject_of(atom) for atom in own}
     known = [knowledge(reads_of(formula, vocabulary), own), *(group.known for group in groups)]
-    # What facts say of other words alone is no business of the rule's.
+    # Facts about other propositions only are not the rule's concern.
     facts = [
         fold_constants(fact)
         for fact in known
         if any(ltl.subject_of(atom) in about for atom in propositions_of(fact))
     ]
     spoken_of = dict.fromkeys([*own, *(atom for fact in facts for atom in propositions_of(fact))])
-    # Past operators become propositions of what held an instant ago.
+    # Past operators become propositions for what held one instant ago.
     past = eliminate_past(formula, registers=False)
     names: dict[ltl.Proposition, str] = {}
     for atom in [*spoken_of, *(memory.atom for memory in past.memories)]:
@@ -123,7 +123,7 @@ def rule_terms(rulebook: Rulebook, lowered: RuleFormula, phrases: Mapping[str, s
 
 
 def fresh_identifier(text: str, taken: set[str]) -> str:
-    """``beside(v)`` as ``beside_v``, ``speed <= 50 km/h`` as ``speed_le_50_km_h``."""
+    """``beside(v)`` becomes ``beside_v``, ``speed <= 50 km/h`` becomes ``speed_le_50_km_h``."""
     spelt = re.sub("|".join(map(re.escape, _SIGNS)), lambda sign: f" {_SIGNS[sign[0]]} ", text)
     name = re.sub(r"[^A-Za-z0-9]+", "_", spelt.replace("_", " ")).strip("_")[:60].rstrip("_")
     if not name or not name[0].isalpha() or name in _RESERVED:
