@@ -28,7 +28,7 @@ _KINDS = {
 
 
 def outline(names: DocumentNames, positions: TextPositions) -> list[lsp.DocumentSymbol]:
-    """The items of a document by name; a rule has its examples below it."""
+    """The items of a document by name; a rule's examples are its children."""
     return [symbol for item in names.file.items for symbol in _symbols(item, names, positions)]
 
 
@@ -88,7 +88,7 @@ def _detail(rule: tree.RuleItem) -> str:
 
 
 def folds(names: DocumentNames, positions: TextPositions) -> list[lsp.FoldingRange]:
-    """Items and examples of several lines, and comments of several lines."""
+    """The items, examples and comments that span several lines."""
     spans: list[Span] = []
     for item in names.file.items:
         spans.append(item.span)

@@ -1,4 +1,4 @@
-"""State of one editor's session: workspace, results, published diagnostics."""
+"""The state of one editor's session: workspace, results, published diagnostics."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ from rulec.language_server.workspace.text_positions import TextPositions
 from rulec.version import __version__
 
 _IDLE_S = 0.3
-"""So long after the last edit the other open documents are checked, which may depend on it."""
+"""Seconds after the last edit until other open documents, which may depend on it, are checked."""
 
 REST_S = 2.0
-"""So long after it is done what would make a keystroke slow."""
+"""Seconds after the last edit until work is done that would slow down a keystroke."""
 
 _NEVER = 1_000_000
 
 
 class EditorSession(LanguageServer):
-    """A server with what it knows of its editor."""
+    """A server with the state of its editor."""
 
     def __init__(self) -> None:
         kind = lsp.TextDocumentSyncKind.Full
@@ -46,19 +46,19 @@ class EditorSession(LanguageServer):
         self.waiting: list[asyncio.TimerHandle] = []
 
     def report_server_error(self, error: Exception, source: Any) -> None:
-        """Say what is wrong with a message: to whoever sent it, or else to whoever looks."""
+        """Report an error in a message: to the client that sent it, or else to the log."""
         if isinstance(error, ValueError) and isinstance(self.protocol, StrictProtocol):
             self.protocol.refuse(None, JsonRpcParseError(str(error)))
         elif not isinstance(error, JsonRpcException):
             super().report_server_error(error, source)
 
     def check(self, document: Document) -> CheckedDocument | None:
-        """Check a document and publish what is found, in whatever file."""
+        """Check a document and publish its findings, whichever file they are in."""
         uri = document.uri
         try:
             checked = self.editor.check(document)
             findings: Iterable[Diagnostic] = checked.findings
-        except RulecError as error:  # the project's settings
+        except RulecError as error:  # in the project's settings
             checked, findings = None, error.diagnostics
         before = self.findings.get(uri, {})
         self.findings[uri] = published.by_file(findings, uri)
@@ -81,13 +81,13 @@ class EditorSession(LanguageServer):
         )
 
     def check_others(self, uri: str) -> None:
-        """Check what is open besides a document, now that nobody types."""
+        """Check the other open documents, now that typing has paused."""
         for document in list(self.editor.documents.values()):
             if document.uri != uri:
                 self.check(document)
 
     def check_others_later(self, uri: str) -> None:
-        """Check what is open besides a document, once nobody types any more."""
+        """Check the other open documents once typing pauses."""
         for timer in self.waiting:
             timer.cancel()
         loop = asyncio.get_running_loop()
@@ -102,7 +102,7 @@ class EditorSession(LanguageServer):
         gc.collect()
 
     def names(self, uri: str) -> tuple[DocumentNames, TextPositions] | None:
-        """The names of a document, and the positions of its text."""
+        """The names in a document, and the positions of its text."""
         document = self.editor.document(uri)
         if document is None:
             return None
@@ -114,6 +114,6 @@ class EditorSession(LanguageServer):
 
 
 def collect_in_pauses() -> None:
-    """Leave old garbage to pauses: to look for it takes 0.1 s, which one would notice."""
+    """Leave full garbage collections to pauses: one takes 0.1 s, a noticeable delay."""
     young, middle, _ = gc.get_threshold()
     gc.set_threshold(young, middle, _NEVER)

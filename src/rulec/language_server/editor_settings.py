@@ -11,12 +11,12 @@ from rulec import resources
 
 
 def editor_settings(editor: str) -> str:
-    """The lines for an editor of ``EDITORS``, with the places of this rulec, each ended."""
+    """The settings text for an editor of ``EDITORS``, with this rulec's paths."""
     return EDITORS[editor](_command())
 
 
 def _command() -> list[str]:
-    """How this rulec is started from any folder: its script if there is one."""
+    """The command that starts this rulec from any folder: its script if there is one."""
     script = Path(sys.executable).with_name("rulec")
     return [str(script)] if script.is_file() else [sys.executable, "-m", "rulec"]
 
@@ -64,7 +64,7 @@ def _vscode(command: list[str]) -> str:
 
 
 def _quoted(text: str) -> str:
-    """Text as Lua, Emacs Lisp and TOML alike write a string."""
+    """A string literal valid in Lua, Emacs Lisp and TOML."""
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
@@ -74,4 +74,4 @@ EDITORS: dict[str, Callable[[list[str]], str]] = {
     "helix": _helix,
     "vscode": _vscode,
 }
-"""Editors by name, each with what writes its lines for a command."""
+"""Editors by name, each with the function that writes its settings for a command."""

@@ -22,9 +22,9 @@ from rulec.rulebook.rulebook_model import Rule, Rulebook
 
 
 def add_commands(server: EditorSession) -> None:
-    """Let a server answer the commands of lenses: each takes a document and a rule's name.
+    """Register the commands of code lenses; each takes a document and a rule's name.
 
-    What takes a compiler is done beside, so that typing goes on. Answers are shown, and returned.
+    Compilation runs in the background, so that typing goes on. Answers are shown and returned.
     """
 
     @server.command(lenses.RUN)
@@ -87,7 +87,7 @@ RuleInDocument = tuple[DocumentNames, Rulebook, Rule]
 
 
 def _rule_asked_about(server: EditorSession, uri: str, name: str) -> RuleInDocument | str:
-    """A document, its rulebook and a rule of it, or why these cannot be had."""
+    """A document, its rulebook and a rule in it, or the reason why they are not available."""
     known = server.names(uri)
     if known is None:
         return _MISTAKES

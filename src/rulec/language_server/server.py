@@ -1,4 +1,4 @@
-"""The server: what an editor sends, and which function answers."""
+"""The server: maps each request of an editor to the function that answers it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from rulec.syntax.formatting import format_source
 
 
 def language_server() -> EditorSession:
-    """A server with all that it can do."""
+    """A server with all its features."""
     server = EditorSession()
     _documents(server)
     _names(server)
@@ -215,7 +215,7 @@ def _layout(server: EditorSession) -> None:
             return []
         try:
             text = format_source(Source(document.name, document.text))
-        except RulecError:  # it has mistakes of spelling, which are shown already
+        except RulecError:  # its syntax errors are shown already
             return []
         if text == document.text:
             return []
@@ -236,13 +236,13 @@ def _between_the_lines(server: EditorSession) -> None:
 
 
 def serve() -> int:
-    """Serve one editor over standard input and output; the exit status that it asks for."""
+    """Serve one editor over standard input and output; returns the exit status that it requests."""
     collect_in_pauses()
     for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
-        # Whoever reads standard input waits in a thread that nothing ends.
+        # A thread blocked on reading standard input cannot be ended otherwise.
         signal.signal(number, lambda number, _: os._exit(128 + number))
     server = language_server()
-    # pygls closes what it writes to when it is told to exit, and standard output is still flushed.
+    # pygls closes its output on exit, but standard output is flushed afterwards.
     with open(sys.stdout.fileno(), "wb", closefd=False) as replies:
         server.start_io(stdout=replies)
     return server.status

@@ -1,4 +1,4 @@
-"""The protocol, with a reply to each request, also to those that no server can answer."""
+"""The protocol with a reply to every request, including invalid ones."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from pygls.protocol import LanguageServerProtocol
 
 
 def _is_no_refusal(record: logging.LogRecord) -> bool:
-    """Tell whether a record is about more than a refusal, which its reply explains."""
+    """Whether a log record is about more than a refusal, which its reply explains already."""
     return not (record.exc_info and isinstance(record.exc_info[1], JsonRpcException))
 
 
-# An editor shows as a crash of the server what pygls logs of each: a name that cannot be, say.
+# Editors show each error logged by pygls as a crash of the server, even for an invalid new name.
 logging.getLogger("pygls.protocol.json_rpc").addFilter(_is_no_refusal)
 
 
 class StrictProtocol(LanguageServerProtocol):
-    """Where pygls reports an error to whoever looks, the client that waits is told, too."""
+    """Sends an error to the waiting client where pygls would only log it."""
 
     def structure_message(self, data: dict[str, Any]) -> Any:
-        """A message as an object; what holds one is answered if it cannot be."""
+        """A message as an object; an invalid request is refused."""
         try:
             return super().structure_message(data)
         except JsonRpcException as problem:
@@ -36,7 +36,7 @@ class StrictProtocol(LanguageServerProtocol):
             raise
 
     def handle_message(self, message: Any) -> None:
-        """Answer a message, or refuse it: no message, too early, or too late."""
+        """Answer a message, or refuse it: invalid, too early, or too late."""
         number, method = (getattr(message, name, None) for name in ("id", "method"))
         is_begun = self._workspace is not None or method in (lsp.INITIALIZE, lsp.EXIT)
         if getattr(message, "jsonrpc", "") != self.VERSION:
@@ -50,6 +50,6 @@ class StrictProtocol(LanguageServerProtocol):
             self.refuse(number, JsonRpcServerNotInitialized())
 
     def refuse(self, number: Any, problem: JsonRpcException) -> None:
-        """Reply with an error, also to what has no number."""
+        """Reply with an error, also to a message without a number."""
         error = {"code": problem.code, "message": problem.message}
         self._send_data({"jsonrpc": self.VERSION, "id": number, "error": error})

@@ -26,25 +26,25 @@ _MOST_KEPT = 2000
 
 @dataclass(slots=True)
 class KnownAnswers:
-    """Answers about rules, which hold as long as what they are about is the same."""
+    """Answers about rules, valid while the rules, examples and parents asked about are equal."""
 
     examples: dict[Formula, tuple[tuple[Example, ...], ExampleAnswer]] = field(default_factory=dict)
     parents: dict[tuple[Formula, tuple[str, ...]], ParentAnswer] = field(default_factory=dict)
 
     def of_examples(self, rule: Rule) -> ExampleAnswer | None:
-        """How the examples of a rule came out; None if it has others now."""
+        """The results of a rule's examples; None if it has other examples now."""
         examples, answer = self.examples.get(rule.formula, ((), None))
         return answer if examples == rule.examples else None
 
     def keep_few(self) -> None:
-        """Forget everything once there is much of it."""
+        """Forget everything once there are too many answers."""
         if len(self.examples) + len(self.parents) > _MOST_KEPT:
             self.examples.clear()
             self.parents.clear()
 
 
 def rule_of(names: DocumentNames, name: str) -> Rule | None:
-    """A rule of the document as meant; None if its rulebook has mistakes."""
+    """A rule of the document after resolution; None if its rulebook has mistakes."""
     resolved = names.checked.resolved
     book = None if resolved is None else resolved.rulebook
     return None if book is None else next((rule for rule in book.rules if rule.name == name), None)
@@ -53,7 +53,7 @@ def rule_of(names: DocumentNames, name: str) -> Rule | None:
 def code_lenses(
     names: DocumentNames, positions: TextPositions, uri: str, known: KnownAnswers
 ) -> list[lsp.CodeLens]:
-    """The lenses of a document's rules, which need a rulebook without mistakes."""
+    """The lenses of a document's rules; they need a rulebook without mistakes."""
     lenses: list[lsp.CodeLens] = []
     for item in names.file.items:
         rule = rule_of(names, item.name.text) if isinstance(item, tree.RuleItem) else None
@@ -67,7 +67,7 @@ def code_lenses(
 
 
 def parent_key(rule: Rule, names: DocumentNames) -> tuple[Formula, tuple[str, ...]]:
-    """What a rule's relation to its parent depends on: its formula, and the texts above."""
+    """The key of a rule's relation to its parent: its formula, and the texts of its bases."""
     return rule.formula, tuple(file.span.source.text for file in names.chain.books[:-1])
 
 
@@ -107,7 +107,7 @@ def _on_recordings(rule: Rule, answer: ExampleAnswer | None) -> Iterator[tuple[s
         if answer.lacking:
             yield f"not judgeable from CommonRoad: lacks {', '.join(answer.lacking)}", ""
         return
-    # What recordings tell, 100 ms: once, when lenses are first asked for.
+    # Takes 100 ms to import: only when lenses are first requested.
     from rulec.extraction.tellable_words import TELLABLE_WORDS
 
     untold = [
@@ -120,7 +120,7 @@ def _on_recordings(rule: Rule, answer: ExampleAnswer | None) -> Iterator[tuple[s
 
 
 def inserted_example(names: DocumentNames, name: str, example: str) -> TextChange | None:
-    """An example at the end of a rule, before its closing brace."""
+    """The change that adds an example at the end of a rule, before its closing brace."""
     for item in names.file.items:
         if isinstance(item, tree.RuleItem) and item.name.text == name:
             end = names.bounds(item.span)[1] - 1

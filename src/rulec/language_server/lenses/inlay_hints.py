@@ -1,4 +1,4 @@
-"""Inlay hints: meanings that a text leaves implicit."""
+"""Inlay hints: meanings that are implicit in the text."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def inlay_hints(
 
 
 Hint = tuple[int, str, str]
-"""A character of the text, what is shown there, and why."""
+"""A character offset, the text shown there, and its explanation."""
 
 
 def _in_item(item: tree.Item, names: DocumentNames) -> Iterator[Hint]:
@@ -43,7 +43,7 @@ def _in_item(item: tree.Item, names: DocumentNames) -> Iterator[Hint]:
 
 
 def _inherited(rule: tree.RuleItem, names: DocumentNames) -> Iterator[Hint]:
-    """The strength and the level of a rule that another book has given them."""
+    """The strength and the level that a rule inherits from another book."""
     entry = names.chain.names.constants.overlay.rules.get(rule.name.text)
     if not rule.override or entry is None:
         return
@@ -72,7 +72,7 @@ def _in_formula(formula: tree.Formula, names: DocumentNames) -> Iterator[Hint]:
 def _narrow(
     left: tree.Formula, follows: str, names: DocumentNames, unless: tree.Formula | None = None
 ) -> Iterator[Hint]:
-    """Parentheses that show how little an operator of time speaks of: ``(never a) and b``."""
+    """Parentheses that show how little a temporal operator applies to: ``(never a) and b``."""
     while isinstance(left, tree.Infix) and not left.grouped:
         left = left.right
     alike = isinstance(unless, tree.Prefix) and unless.operator in BINDS_NARROWLY
@@ -86,7 +86,7 @@ def _narrow(
 
 
 def _units(formula: tree.Compare | tree.Arithmetic, names: DocumentNames) -> Iterator[Hint]:
-    """The unit of a bare 0, and what a number is in the unit of the quantity beside it."""
+    """The unit of a bare 0, and a number converted to the unit of the quantity beside it."""
     sides = (formula.left, formula.right)
     for number, other in (sides, sides[::-1]):
         if not isinstance(number, tree.NumberLiteral) or not isinstance(other, tree.AtomUse):
@@ -116,7 +116,7 @@ def _unit_of(use: tree.AtomUse, names: DocumentNames) -> str:
 
 
 def _value(use: tree.AtomUse, names: DocumentNames) -> Iterator[Hint]:
-    """The value of a parameter on the day whose law it is."""
+    """The value of a parameter on the day whose law applies."""
     constants = names.chain.names.constants
     number = constants.numbers.get(use.name.text)
     if number is None or use.name.text not in constants.overlay.parameters:

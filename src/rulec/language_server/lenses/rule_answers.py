@@ -1,6 +1,6 @@
-"""Answers about a rule that take a compiler: examples, sentence, parent."""
+"""Answers about a rule that need a compiler: examples, sentence, parent."""
 
-# Imports within functions: compilers, automata and reports take 400 ms, and are for who asks.
+# Imports are local: compilers, automata and reports take 400 ms and are needed on request only.
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ COMMONROAD = "commonroad"
 
 @dataclass(frozen=True, slots=True)
 class ExampleAnswer:
-    """How a rule's examples come out, and examples that are missing.
+    """The results of a rule's examples, and examples that are missing.
 
-    ``lacking`` are the words for want of which CommonRoad's recordings cannot judge the rule.
+    ``lacking`` are the words without which CommonRoad's recordings cannot judge the rule.
     """
 
     passed: int
@@ -42,7 +42,7 @@ class ExampleAnswer:
 
 @dataclass(frozen=True, slots=True)
 class ParentAnswer:
-    """A rule beside that of the rulebook that this one extends, with a witness in words."""
+    """A rule compared with that of the rulebook that this one extends, with a witness in words."""
 
     relation: str
     parent: str
@@ -56,7 +56,7 @@ def _compiled(book: Rulebook, rule: Rule) -> CompiledRulebook:
 
 
 def example_answer(book: Rulebook, rule: Rule) -> ExampleAnswer:
-    """Run the examples of a rule, and see what they leave unseen. Raises RulecError."""
+    """Run the examples of a rule and find what they do not cover. Raises RulecError."""
     from rulec.analysis.audit.source_audit import audit_source
     from rulec.book_tests.example_coverage import coverage
     from rulec.book_tests.example_runs import run_rulebook_examples

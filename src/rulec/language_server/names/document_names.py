@@ -1,4 +1,4 @@
-"""The names of a checked document, and where in a text each of them stands."""
+"""The names of a checked document, and their positions in its text."""
 
 from __future__ import annotations
 
@@ -29,29 +29,29 @@ class DocumentNames:
         return self.chain.books[-1]
 
     def bounds(self, span: Span) -> tuple[int, int]:
-        """Where a span stands: characters of the document's text, or of its own file's."""
+        """The character offsets of a span in the document's text, or in the span's own file."""
         if span.source is self.checked.parsed.source:
             start = self.checked.parsed.offset(span.start)
             return start, start + span.end - span.start
         return span.start, span.end
 
     def text_of(self, span: Span) -> str:
-        """The text of the file in which a span stands."""
+        """The text of the file that a span is in."""
         own = span.source is self.checked.parsed.source
         return self.checked.text if own else span.source.text
 
     def is_same(self, symbol: NamedSymbol, other: NamedSymbol, names: DocumentNames) -> bool:
-        """Tell whether something of this document is what another document, ``names``, means."""
+        """Whether a symbol of this document is the same as one of another document, ``names``."""
         if not symbol.is_alike(other):
             return False
         return symbol.kind != "variable" or self.bounds(symbol.span) == names.bounds(other.span)
 
     def all(self) -> Iterator[Occurrence]:
-        """All names of the document that mean something."""
+        """All names of the document that have a meaning."""
         return occurrences(self.file, self.chain)
 
     def at(self, offset: int) -> Occurrence | None:
-        """The name with a character, or that ends before it; the narrowest if there are several."""
+        """The name at a character or ending before it; the shortest if there are several."""
         here = [
             (end - start, number, occurrence)
             for number, occurrence in enumerate(self.all())
@@ -62,7 +62,7 @@ class DocumentNames:
 
 
 def names_in_document(checked: CheckedDocument) -> DocumentNames | None:
-    """The names of a document; None if it could not be read at all."""
+    """The names of a document; None if it could not be parsed at all."""
     resolved = checked.resolved
     if resolved is None:
         return None
@@ -71,7 +71,7 @@ def names_in_document(checked: CheckedDocument) -> DocumentNames | None:
 
 
 def item_at(names: DocumentNames, offset: int) -> tree.Item | None:
-    """The item of the document with a character."""
+    """The item of the document that contains a character."""
     for item in names.file.items:
         start, end = names.bounds(item.span)
         if start <= offset <= end:

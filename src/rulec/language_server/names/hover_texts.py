@@ -23,7 +23,7 @@ from rulec.syntax.tree_printer import print_formula
 
 
 def hover_text(names: DocumentNames, occurrence: Occurrence) -> str:
-    """What is known of a name."""
+    """Everything known about a name."""
     return "\n\n".join(filter(None, _parts(names, occurrence.symbol)))
 
 

@@ -32,9 +32,9 @@ NameKind = Literal[
 
 @dataclass(frozen=True, slots=True)
 class NamedSymbol:
-    """What a name means; ``span`` is where it is declared.
+    """The meaning of a name; ``span`` is where it is declared.
 
-    Of a ``file`` the span is empty: it is the beginning of the rulebook or vocabulary.
+    For a ``file`` the span is empty: the beginning of the rulebook or vocabulary.
     """
 
     kind: NameKind
@@ -42,7 +42,7 @@ class NamedSymbol:
     span: Span
 
     def is_alike(self, other: NamedSymbol) -> bool:
-        """Tell whether two files may mean the same symbol; of variables there may be several."""
+        """Whether two symbols may be the same; different variables can be alike."""
         if (self.kind, self.name) != (other.kind, other.name):
             return False
         return os.path.realpath(self.span.source.name) == os.path.realpath(other.span.source.name)
@@ -50,9 +50,9 @@ class NamedSymbol:
 
 @dataclass(frozen=True, slots=True)
 class Occurrence:
-    """A name in a file, ``span``, and what it means.
+    """A name in a file, ``span``, and its meaning.
 
-    ``listed``: it stands in a topic's list, which knows rules by the beginnings of their names.
+    ``listed``: it is in a topic's list, which names rules by the beginnings of their names.
     """
 
     span: Span
@@ -67,14 +67,14 @@ Scope = Mapping[str, NamedSymbol]
 
 @dataclass(frozen=True, slots=True)
 class NamesOfChain:
-    """Everything that is named in a rulebook, those that it extends, and their vocabularies."""
+    """Everything that is named in a rulebook, its bases, and their vocabularies."""
 
     names: BookNames
     books: Sequence[tree.File]
     vocabularies: Sequence[tree.File]
 
     def symbol(self, name: str) -> NamedSymbol | None:
-        """The option, parameter, definition or word of a name."""
+        """The option, parameter, definition or word with this name."""
         laid, symbols = self.names.constants.overlay, self.names.symbols
         if kind := laid.kind_of(name):
             named: NameKind = "option" if kind == "option" else "definition"
@@ -91,12 +91,12 @@ class NamesOfChain:
         return NamedSymbol("quantity" if isinstance(item, Quantity) else "enumeration", name, span)
 
     def type(self, name: str) -> NamedSymbol | None:
-        """The type of a name."""
+        """The type with this name."""
         span = self.names.symbols.type_spans.get(name)
         return None if span is None else NamedSymbol("type", name, span)
 
     def rule(self, name: str, until: tree.File | None = None) -> NamedSymbol | None:
-        """The rule of a name, where it was first written; not in books below ``until``."""
+        """The rule with this name, where it is declared; ``until`` is the last book searched."""
         named_symbol: NamedSymbol | None = None
         for book in self.books:
             for item in book.items:
@@ -107,7 +107,7 @@ class NamesOfChain:
         return named_symbol
 
     def level(self, name: str) -> NamedSymbol | None:
-        """The priority level of a name, where it is first placed."""
+        """The priority level with this name, where it first appears."""
         for book in self.books:
             for line in book.priorities:
                 for level in line.levels:
@@ -116,12 +116,12 @@ class NamesOfChain:
         return None
 
     def topic(self, name: str) -> NamedSymbol | None:
-        """The topic of a name."""
+        """The topic with this name."""
         entry = self.names.constants.overlay.topics.get(name)
         return None if entry is None else NamedSymbol("topic", name, entry.name.span)
 
     def file(self, name: str) -> NamedSymbol | None:
-        """The rulebook or vocabulary of a name."""
+        """The rulebook or vocabulary with this name."""
         for file in (*self.books[:-1], *self.vocabularies):
             if file.name is not None and file.name.text == name:
                 return NamedSymbol("file", name, Span(file.span.source, 0, 0))
@@ -129,7 +129,7 @@ class NamesOfChain:
 
 
 def occurrences(file: tree.File, chain: NamesOfChain) -> Iterator[Occurrence]:
-    """All names of a file that mean something, in no particular order."""
+    """All names of a file that have a meaning, in no particular order."""
     for line in (*file.uses, *((file.extends,) if file.extends else ())):
         yield from _at(line.name, chain.file(line.name.text))
     for priority in file.priorities:
@@ -219,7 +219,7 @@ def _in_rule(rule: tree.RuleItem, chain: NamesOfChain) -> Iterator[Occurrence]:
 
 
 def variables_of(parameters: Iterable[tree.Parameter]) -> dict[str, NamedSymbol]:
-    """What the names of parameters mean inside of their rule or definition."""
+    """The meanings of parameter names inside their rule or definition."""
     return {
         parameter.name.text: NamedSymbol("variable", parameter.name.text, parameter.name.span)
         for parameter in parameters
@@ -239,7 +239,7 @@ def _types(parameters: Iterable[tree.Parameter], chain: NamesOfChain) -> Iterato
 
 
 def in_formula(formula: tree.Formula, scope: Scope, chain: NamesOfChain) -> Iterator[Occurrence]:
-    """All names in a formula that mean something."""
+    """All names in a formula that have a meaning."""
     match formula:
         case tree.AtomUse():
             yield from _use(formula, scope, chain)

@@ -17,7 +17,7 @@ from rulec.syntax import tree
 
 @dataclass(frozen=True, slots=True)
 class NamePlace:
-    """A name in some file, by characters of its text; ``listed`` among those of a topic."""
+    """A name in some file, by character offsets; ``listed`` if it is in a topic's list."""
 
     uri: str
     start: int
@@ -54,9 +54,9 @@ def references_to(
 def books_with(
     symbol: NamedSymbol, names: DocumentNames, editor: EditorWorkspace
 ) -> Iterator[DocumentNames]:
-    """The sources in which a name stands, of those of the workspace and what the document reads.
+    """The sources that contain a name, among the workspace's files and those the document reads.
 
-    A variable stands where its rule does, which another book may override.
+    A variable occurs where its rule does, which another book may override.
     """
     yield names
     name = symbol.name if symbol.kind != "variable" else _owner(symbol, names)
@@ -80,7 +80,7 @@ def books_with(
 
 
 def _owner(variable: NamedSymbol, names: DocumentNames) -> str:
-    """The rule that a variable belongs to; empty for one of a definition."""
+    """The rule that a variable belongs to; empty for a definition's variable."""
     for item in (item for book in names.chain.books for item in book.items):
         span = item.span
         here = span.source is variable.span.source and span.start <= variable.span.start < span.end

@@ -1,4 +1,4 @@
-"""Giving a symbol another name in all rulebooks of the workspace, or saying why not."""
+"""Renames a symbol in all rulebooks of the workspace, or explains why that is not possible."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ from rulec.syntax.keywords import RESERVED
 
 _NAME = re.compile(r"[^\W\d]\w*")
 _WORDS = ("type", "signal", "quantity", "enumeration", "value", "variable")
-"""Kinds of names that formulas as meant still speak of."""
+"""Kinds of names that still occur in formulas after resolution."""
 
 
 class RefusedRenamingError(Exception):
-    """Why a symbol keeps its name, in words for its author."""
+    """The reason why a symbol cannot be renamed, worded for the author."""
 
 
 @dataclass(frozen=True, slots=True)
 class TextChange:
-    """Characters ``start`` to ``end`` of a document, which become ``text``."""
+    """The replacement of characters ``start`` to ``end`` of a document by ``text``."""
 
     start: int
     end: int
@@ -44,7 +44,7 @@ class TextChange:
 
 
 Changes = Mapping[str, Sequence[TextChange]]
-"""Address of a document -> what becomes of its text, in order."""
+"""Maps the address of a document to the changes of its text, in order."""
 
 
 def renamed(
@@ -52,8 +52,8 @@ def renamed(
 ) -> Changes:
     """The changes that rename a symbol. Raises RefusedRenamingError.
 
-    Every rulebook that is changed, or in which the new name stands, is checked as it would be: it
-    has the same findings and the same rules, but for the name.
+    Every rulebook that changes, or that contains the new name, is checked with the changes: it must
+    have the same findings and the same rules, apart from the name.
     """
     refuse_in_general(symbol, editor)
     if name == symbol.name:
@@ -94,7 +94,7 @@ def refuse_in_general(symbol: NamedSymbol, editor: EditorWorkspace) -> None:
 
 
 def changed_text(text: str, changes: Sequence[TextChange]) -> str:
-    """A text with changes made, which do not overlap."""
+    """A text with non-overlapping changes applied."""
     parts: list[str] = []
     at = 0
     for change in changes:
@@ -106,7 +106,7 @@ def changed_text(text: str, changes: Sequence[TextChange]) -> str:
 def _in_topics(
     symbol: NamedSymbol, name: str, names: DocumentNames, editor: EditorWorkspace
 ) -> Iterator[tuple[str, TextChange]]:
-    """Topics list rules by the beginnings of their names, also rules of books upon them."""
+    """Changes in topics, which list rules, also those of extending books, by name prefix."""
     heads = re.compile(r"\brule\s+([^\W\d]\w*)")
     texts = [
         document.text for document in map(editor.document, editor.sources()) if document is not None
@@ -148,7 +148,7 @@ def _topic_entries(file: tree.File) -> Iterator[tree.TopicEntry]:
 
 
 def _longest_listed(rule: str, book: DocumentNames) -> str:
-    """The longest beginning of a rule's name that a topic lists: it alone says its topics."""
+    """The longest prefix of a rule's name that a topic lists; it alone determines its topics."""
     files = book.chain.books
     entries = (entry for file in files for entry in _topic_entries(file))
     listed = (name.text for entry in entries for name in entry.rules)
@@ -158,7 +158,7 @@ def _longest_listed(rule: str, book: DocumentNames) -> str:
 def _in_topic(
     entry: tree.TopicEntry, old: str, new: str, book: DocumentNames, others: Mapping[str, int]
 ) -> TextChange | None:
-    """What becomes of a topic's rules: the name is replaced, or put behind the last."""
+    """The change of a topic's rules: the name is replaced, or appended."""
 
     def is_of(rule: str, listed: tree.Name) -> bool:
         return f"{rule}_".startswith(f"{listed.text}_")
@@ -177,7 +177,7 @@ def _in_topic(
 def _refuse_other_meaning(
     changes: Changes, symbol: NamedSymbol, name: str, names: DocumentNames, editor: EditorWorkspace
 ) -> None:
-    """Raise RefusedRenamingError unless all books mean the same afterwards."""
+    """Raise RefusedRenamingError unless all books keep their meaning."""
     trial = EditorWorkspace(editor.folders, editor.encoding)
     for uri, shown in editor.documents.items():
         trial.documents[uri] = Document(uri, shown.text, shown.version, shown.parsed)
@@ -205,7 +205,7 @@ def _refuse_other_meaning(
 def _affected(
     changes: Changes, symbol: NamedSymbol, name: str, names: DocumentNames, editor: EditorWorkspace
 ) -> list[str]:
-    """The documents that are changed, and all others upon them with the old name or the new one."""
+    """The documents that change, and all that use the symbol's file and contain either name."""
     uris = dict.fromkeys(changes)
     declared = os.path.realpath(symbol.span.source.name)
     for named_symbol in (symbol, replace(symbol, name=name)):
@@ -235,7 +235,7 @@ def _first_new(before: Sequence[Diagnostic], after: Sequence[Diagnostic]) -> Dia
 def _meaning(
     checked: CheckedDocument, symbol: NamedSymbol, name: str
 ) -> tuple[dict[str, Rule], object] | None:
-    """The rules and their order, with the new name for the old one."""
+    """The rules and their order, with the old name replaced by the new one."""
     book = None if checked.resolved is None else checked.resolved.rulebook
     if book is None:
         return None
@@ -257,7 +257,7 @@ def _meaning(
 
 
 def workspace_edit(changes: Changes, editor: EditorWorkspace) -> lsp.WorkspaceEdit:
-    """Changes as the editor makes them."""
+    """The changes in the form that editors expect."""
     edits: dict[str, list[lsp.TextEdit]] = {}
     for uri, parts in changes.items():
         document = editor.document(uri)
@@ -271,7 +271,7 @@ def workspace_edit(changes: Changes, editor: EditorWorkspace) -> lsp.WorkspaceEd
 def placeholder(
     names: DocumentNames, offset: int, editor: EditorWorkspace
 ) -> tuple[NamedSymbol, int, int]:
-    """What would be renamed at a character, and where. Raises RefusedRenamingError."""
+    """The symbol to be renamed at a character, and its bounds. Raises RefusedRenamingError."""
     occurrence = names.at(offset)
     if occurrence is None:
         raise RefusedRenamingError("there is no name here that could be another one")

@@ -1,4 +1,4 @@
-"""The folders and documents of an editor, each document checked as it is typed."""
+"""The folders and documents of an editor; each document is checked while it is typed."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ from rulec.vocabulary.pint_units import pint_unit
 
 @dataclass(frozen=True, slots=True)
 class CheckedDocument:
-    """A document with what it was read as; what is found is in places of its text.
+    """A document with its parse result; findings refer to places in its text.
 
-    ``resolved`` has its trees and names; None if the text could not be read at all.
+    ``resolved`` has its trees and names; None if the text could not be parsed at all.
     """
 
     name: str
@@ -58,13 +58,13 @@ class Document:
 
     @property
     def path(self) -> Path | None:
-        """Its file, which may not be there yet; None for a document without one."""
+        """Its file, which may not exist yet; None for a document without one."""
         return path_of(self.uri)
 
     @property
     def name(self) -> str:
-        """What messages call it."""
-        # No path is looked up by half a character, which an address may have.
+        """Its name in messages."""
+        # An address may contain a lone surrogate, which no path lookup accepts.
         return str(self.path or self.uri.encode("utf-8", "backslashreplace").decode())
 
 
@@ -75,13 +75,13 @@ def path_of(uri: str) -> Path | None:
     try:
         path = uris.to_fs_path(uri) or ""
         os.fsencode(path)
-    except ValueError:  # the address is none, or has half a character in it
+    except ValueError:  # an invalid address, or one with a lone surrogate
         return None
     return Path(path) if path and "\0" not in path else None
 
 
 def uri_of(file: str | Path) -> str:
-    """The address of a file, or of a document that has none and is called so."""
+    """The address of a file, or of a document without a file that has this name."""
     text = str(file)
     if "://" in text or text.startswith("untitled:"):
         return text
@@ -90,7 +90,7 @@ def uri_of(file: str | Path) -> str:
 
 @dataclass(slots=True)
 class EditorWorkspace:
-    """What is open in an editor; it hides the files of the same paths."""
+    """The documents open in an editor; they replace the files with the same paths."""
 
     folders: tuple[Path, ...] = ()
     encoding: lsp.PositionEncodingKind | str = lsp.PositionEncodingKind.Utf16
@@ -98,8 +98,8 @@ class EditorWorkspace:
     _files: dict[str, Document] = field(default_factory=dict)
 
     def open(self, uri: str, text: str, version: int | None = None) -> Document:
-        """Open a document, or have another text shown in it."""
-        # As in files: a line ends in one sign, which no column counts.
+        """Open a document, or replace the text of an open one."""
+        # As for files: a line ends in a single character, which no column counts.
         text = text.replace("\r\n", "\n").replace("\r", "\n")
         known = self.documents.get(uri)
         if known is None:
@@ -108,7 +108,7 @@ class EditorWorkspace:
         return known
 
     def close(self, uri: str) -> None:
-        """Forget a document; its file counts again."""
+        """Forget a document; its file is used again."""
         self.documents.pop(uri, None)
 
     def document(self, uri: str) -> Document | None:
@@ -139,9 +139,9 @@ class EditorWorkspace:
             yield
 
     def check(self, document: Document) -> CheckedDocument:
-        """Check a document, of which only what was edited is read anew.
+        """Check a document; only its edited parts are parsed again.
 
-        What is found is what ``rulec check`` finds. Raises RulecError for wrong settings.
+        The findings are those of ``rulec check``. Raises RulecError for wrong settings.
         """
         path, name = document.path, document.name
         source = Source(name, document.text)
@@ -161,8 +161,8 @@ class EditorWorkspace:
         return CheckedDocument(name, path, parsed, resolved, findings)
 
     def rest(self) -> None:
-        """Do in a pause what would make a keystroke slow, so that it need not be done then."""
-        # Pint, half a second, is asked for units that are not known.
+        """Do work in a pause that would slow down a later keystroke."""
+        # Pint takes 0.5 s to import, on the first unknown unit.
         pint_unit("")
         for document in list(self.documents.values()):
             parsed = document.parsed and renewed(document.parsed)
@@ -176,7 +176,7 @@ class EditorWorkspace:
         return TextPositions(text, self.encoding)
 
     def sources(self) -> list[str]:
-        """The addresses of all sources in the workspace's folders, and of what is open."""
+        """The addresses of all sources in the workspace's folders, and of open documents."""
         addresses = dict.fromkeys(self.documents)
         known = {os.path.realpath(entry.path) for entry in self.documents.values() if entry.path}
         for folder in self.folders:
@@ -188,7 +188,7 @@ class EditorWorkspace:
         return list(addresses)
 
     def is_read_only(self, file: str | Path) -> bool:
-        """Tell whether a file is not the author's: outside of the workspace, or rulec's own."""
+        """Whether a file should not be changed: outside of the workspace, or rulec's own."""
         path = Path(os.path.realpath(file))
         if any(path == Path(os.path.realpath(open_path)) for open_path in self._open_paths()):
             return path.is_relative_to(os.path.realpath(rulebooks_folder())) and not any(

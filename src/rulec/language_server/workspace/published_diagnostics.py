@@ -14,7 +14,7 @@ SOURCE = "rulec"
 
 
 def by_file(findings: Iterable[Diagnostic], document: str) -> dict[str, list[Diagnostic]]:
-    """Findings by the addresses of their files; what has none is about ``document``."""
+    """Findings by the addresses of their files; those without a file belong to ``document``."""
     by_uri: dict[str, list[Diagnostic]] = {}
     for finding in findings:
         file = uri_of(finding.place.file) if finding.place is not None else document
@@ -23,7 +23,7 @@ def by_file(findings: Iterable[Diagnostic], document: str) -> dict[str, list[Dia
 
 
 def distinct(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Findings without those that another document has led to, too."""
+    """Findings without duplicates, which the checks of several documents can produce."""
     first: dict[tuple[object, ...], Diagnostic] = {}
     for finding in findings:
         place = finding.place
@@ -36,7 +36,7 @@ def distinct(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
 def diagnostics_of(
     findings: Iterable[Diagnostic], text: str, workspace: EditorWorkspace
 ) -> list[lsp.Diagnostic]:
-    """Findings in one text, as the editor shows them."""
+    """Findings in one text, as diagnostics of the protocol."""
     positions = workspace.positions(text)
     texts: dict[str, str] = {}
     return [
@@ -74,14 +74,14 @@ def _range(
 
 
 def in_words(finding: Diagnostic) -> str:
-    """A finding's message, what was expected, the way out and further notes, line by line."""
+    """A finding's message, what was expected, the help and further notes, line by line."""
     message = finding.message + (f" ({finding.expected})" if finding.expected else "")
     way_out = [f"help: {finding.help}"] if finding.help else []
     return "\n".join([message, *way_out, *(f"note: {note}" for note in finding.notes)])
 
 
 def union(by_document: Mapping[str, Mapping[str, list[Diagnostic]]], file: str) -> list[Diagnostic]:
-    """What all checked documents have led to in a file: its own findings first."""
+    """The findings in a file from the checks of all documents; those of its own check first."""
     own = by_document.get(file, {}).get(file, [])
     others = [
         finding

@@ -23,10 +23,10 @@ _WIDTHS = {
 
 @dataclass(frozen=True, slots=True)
 class TextPositions:
-    r"""Positions and ranges of one text; ``encoding`` is what editor and server have agreed on.
+    r"""Positions and ranges in one text; ``encoding`` is what editor and server have agreed on.
 
-    Line ends are those of the protocol: ``\n``, ``\r\n`` and ``\r``. rulec's own lines end with
-    ``\n`` alone.
+    Line ends are those of the protocol: ``\n``, ``\r\n`` and ``\r``. In rulec a line ends only with
+    ``\n``.
     """
 
     text: str
@@ -61,7 +61,7 @@ class TextPositions:
         return lsp.Position(line, width)
 
     def offset(self, position: lsp.Position) -> int:
-        """The character offset of a position; one beyond the line or the text is at its end."""
+        """The character offset of a position, clipped to the end of its line and of the text."""
         starts = self._lines()
         if position.line >= len(starts):
             return len(self.text)

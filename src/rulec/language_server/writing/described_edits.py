@@ -1,6 +1,6 @@
-"""Edits that a help describes in words: what is renamed, moved, left out, or said in another place.
+"""Edits that a help text describes in words: renaming, moving, deleting, or changing another place.
 
-None of them is certain to be what is meant: each is tried before it is offered.
+None of them is certain to be what is meant, so each is tried before it is offered.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from rulec.diagnostics import Diagnostic
 from rulec.language_server.names.renaming import TextChange
 
 Edit = tuple[str, tuple[TextChange, ...]]
-"""What an editor shows of it, and what it changes."""
+"""The edit's title in the editor, and its changes."""
 
 _CLAUSES = (
     "accept|also|cite|level|note|otherwise|reject|require|says|title|topic|unless|weight|when"
@@ -33,7 +33,7 @@ def described_edits(
 ) -> Iterator[Edit]:
     """The edits for a finding about ``text[start:end]``, the most likely first.
 
-    ``stem`` is what the file is called without its ending.
+    ``stem`` is the name of the file without its extension.
     """
     help_text, message, own = finding.help, finding.message, text[start:end]
     if "`rulebook NAME`" in help_text and stem.isidentifier():
@@ -90,13 +90,13 @@ def described_edits(
 
 
 def _is_near(amount: str, was: str) -> bool:
-    """Tell whether a number differs from another by a twentieth at most: no other law."""
+    """Whether two numbers differ by at most a twentieth, so that the law stays about the same."""
     first, second = (Fraction(number.split()[0].replace(",", "")) for number in (amount, was))
     return abs(first - second) * 20 <= second
 
 
 def another_name(finding: Diagnostic, text: str, start: int, end: int) -> Iterator[Edit]:
-    """A name that nothing else has, where the help asks for one."""
+    """An unused name, if the help asks for another one."""
     if "another name" in finding.help or "a name of its own" in finding.help:
         name = _free(text[start:end], text)
         yield _edit(f"Call it `{name}`", start, end, name)
@@ -112,7 +112,7 @@ def _line_end(text: str, offset: int) -> int:
 
 
 def _free(name: str, text: str) -> str:
-    """A name like this one that stands nowhere in a text."""
+    """A variant of this name that does not occur in a text."""
     return next(
         f"{name}_{number}" for number in count(2) if not re.search(rf"\b{name}_{number}\b", text)
     )
@@ -140,14 +140,14 @@ def _into_the_braces(text: str, start: int, end: int) -> Iterator[Edit]:
 
 
 def _in_other_letters(own: str, like: str, text: str) -> Iterator[Edit]:
-    """The name in the letters of the other one; where both are meant, a name of its own."""
+    """The name spelt like the similar one; where both are meant, a name of its own."""
     where = [match.span() for match in re.finditer(rf"\b{re.escape(own)}\b", text)]
     for name in (like, _free(like, text)):
         yield f"Write `{name}`", tuple(TextChange(*span, name) for span in where)
 
 
 def _changing(head: str, text: str, start: int) -> Iterator[Edit]:
-    """An inherited symbol given another value in place of being declared again."""
+    """Set or redefine an inherited symbol instead of declaring it again."""
     first = text.rfind("\n", 0, start) + 1
     equals = text.find("=", start, _line_end(text, start))
     if equals >= 0:
@@ -170,7 +170,7 @@ def _operator_outside(text: str, start: int, end: int) -> Iterator[Edit]:
 
 
 def _beginning_before(words: str, text: str, start: int, end: int) -> Iterator[Edit]:
-    """What is written instead begins with a word that stands before the place already."""
+    """A replacement whose first word is already in the text before the place."""
     first, space, _ = words.partition(" ")
     if ": " in words:
         # As it is declared in the head of its rule

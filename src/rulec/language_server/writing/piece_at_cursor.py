@@ -1,4 +1,4 @@
-"""The piece of a text that somebody is writing, up to the cursor."""
+"""The piece of a text that is being written, up to the cursor."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ from rulec.syntax.split_file import FileSplitter
 
 @dataclass(frozen=True, slots=True)
 class PieceAtCursor:
-    """Piece of a text up to the name at the cursor, which begins at character ``start``.
+    """The piece of a text up to the name at the cursor, which begins at character ``start``.
 
-    ``tokens`` are those of the piece, ``kind`` is what it is; ``accepted`` are the grammar's
-    terminals that can follow. ``in_rule`` and ``in_vocabulary``: it stands between their braces.
+    ``tokens`` are the piece's tokens, ``kind`` is its syntactic kind; ``accepted`` are the
+    grammar's terminals that can follow. ``in_rule`` and ``in_vocabulary``: it is inside their
+    braces.
     """
 
     start: int
@@ -39,7 +40,7 @@ class PieceAtCursor:
 
 
 def piece_at(names: DocumentNames, offset: int) -> PieceAtCursor | None:
-    """The piece with a character of the document; None in a comment or in a text."""
+    """The piece at a character of the document; None in a comment or a string."""
     text = names.checked.text
     start = offset
     while start > 0 and (text[start - 1].isalnum() or text[start - 1] == "_"):
@@ -71,10 +72,10 @@ def piece_at(names: DocumentNames, offset: int) -> PieceAtCursor | None:
 
 
 def _begin(names: DocumentNames, start: int) -> int:
-    """Where the segment with a character begins, so that no more than that is read."""
+    """The start of the segment to read for a character, to avoid reading more."""
     parsed = names.checked.parsed
     before = [at for at in parsed.starts if at <= start]
-    # Nothing may be written yet behind the last item but one.
+    # The last item may still be empty, so begin with the one before it.
     return before[-2] if len(before) > 1 else 0
 
 
@@ -102,7 +103,7 @@ def _none_yet(
     in_rule: bool = False,
     in_vocabulary: bool = False,
 ) -> PieceAtCursor:
-    """Where a piece may begin, of which nothing is written but perhaps its first word."""
+    """A place where a piece may begin, with at most its first word written."""
     return PieceAtCursor(
         start,
         kind,

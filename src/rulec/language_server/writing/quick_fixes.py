@@ -1,4 +1,4 @@
-"""Edits that do what a message's help says, each tried before it is offered."""
+"""Edits that do what a message's help says; each is tried before it is offered."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ from rulec.syntax.messages.structure import NOT_A_RULEBOOK, OUTSIDE_BRACES, UNBA
 _WORD = re.compile(r"[^\W\d]\w*")
 _QUOTED = re.compile(r"`([^`…]+)`")
 _MOST_TRIED = 12
-"""So many edits are tried for one message: each is checked as if it had been typed."""
+"""The greatest number of edits tried for one message: each is checked as if it had been typed."""
 
 _SEVERAL = re.compile(r", | or |such as")
-"""Where several things may stand, none of them is what was meant."""
+"""If several things are possible, none of them is offered."""
 
 _EITHER = "Say `traffic "
-"""What begins so is offered beside another one that would do, for only the author knows."""
+"""Edits with this start are offered beside another valid one, since only the author can choose."""
 
 _ONLY_THE_AUTHOR_KNOWS = re.compile(
     r"the one you mean|the nearest multiples|say it in this state|`override rule \w+` to change it"
@@ -46,7 +46,7 @@ _ONLY_THE_AUTHOR_KNOWS = re.compile(
 _HIDING = frozenset(
     code.code for code in (NOT_A_RULEBOOK, WRONG_KIND_OF_FILE, EXTENDS_CIRCLE, NAME_NOT_FOUND)
 )
-"""Behind these mistakes there may be others, which nobody has looked for."""
+"""Mistakes that keep others from being looked for."""
 
 _UNREADABLE = frozenset(
     code.code
@@ -62,7 +62,7 @@ _DELETING = ("delete", "leave", "keep one")
 
 @dataclass(frozen=True, slots=True)
 class QuickFix:
-    """An edit that mends what a diagnostic is about."""
+    """An edit that fixes the problem of a diagnostic."""
 
     title: str
     finding: Diagnostic
@@ -142,7 +142,7 @@ def _candidates(
 def _quoted_edits(
     finding: Diagnostic, text: str, start: int, end: int
 ) -> Iterator[tuple[str, TextChange]]:
-    """Edits with what the help quotes."""
+    """Edits that use the words quoted in the help."""
     words = [
         word
         for word in _QUOTED.findall(finding.help)
@@ -186,13 +186,13 @@ def _quoted_edits(
 
 
 def _is_example(word: str, help_text: str, own: str) -> bool:
-    """Tell whether a help shows by these words how something looks, not what is to be written."""
+    """Whether the words in a help text are only an example of a form, not the replacement."""
     behind = f"such as `{word}`" in help_text
     return behind and own not in word and word.partition(" ")[0] not in DECLARATION_WORDS
 
 
 def _misspelt(word: str, text: str, start: int) -> Iterator[tuple[str, TextChange]]:
-    """The word of the line that is most like what was meant, and stands before the place."""
+    """The word on the line, before the place, that is most similar to the intended word."""
     line = text.rfind("\n", 0, start) + 1
     words = {match[0]: match.span() for match in _WORD.finditer(text, line, start)}
     near = nearest_name(word, words)
@@ -218,7 +218,7 @@ def _deletions(text: str, start: int, end: int) -> Iterator[tuple[str, TextChang
 
 
 def _line_of_item(text: str, offset: int) -> int:
-    """The beginning of the item with a character, above its comments."""
+    """The beginning of the item at a character, including the comments above it."""
     start = text.rfind("\n", 0, offset) + 1
     while start > 0 and (text[start] in " \t}" or text[start] == "\n"):
         start = text.rfind("\n", 0, start - 1) + 1
@@ -232,7 +232,7 @@ def _line_of_item(text: str, offset: int) -> int:
 
 @dataclass(frozen=True, slots=True)
 class _Trial:
-    """A document in which edits are tried, with what is wrong in it now."""
+    """A document in which edits are tried, with the number of its errors and findings now."""
 
     document: Document
     editor: EditorWorkspace
@@ -240,10 +240,9 @@ class _Trial:
     findings: int
 
     def mends(self, changes: Sequence[TextChange], finding: Diagnostic) -> bool:
-        """Tell whether there is less wrong after some changes, and nothing worse.
+        """Whether changes leave fewer problems, and none that is worse.
 
-        What keeps the rest from being looked at is mended if it is gone, and what is found then can
-        be read.
+        A mistake that hid others counts as fixed if it is gone and the text can then be parsed.
         """
         text = changed_text(self.document.text, changes)
         tried = Document(self.document.uri, text, parsed=self.document.parsed)
@@ -263,7 +262,7 @@ def _errors(findings: Sequence[Diagnostic]) -> list[Diagnostic]:
 
 
 def code_action(fix: QuickFix, uri: str, text: str, editor: EditorWorkspace) -> lsp.CodeAction:
-    """A quick fix as the editor offers it."""
+    """A quick fix as a code action of the protocol."""
     positions = editor.positions(text)
     edits = [
         lsp.TextEdit(positions.range(change.start, change.end), change.text)

@@ -1,4 +1,4 @@
-"""Completions at the cursor, by the grammar and by types."""
+"""Completions at the cursor, determined by grammar and types."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _KINDS = lsp.CompletionItemKind
 def completions(
     names: DocumentNames, offset: int, positions: TextPositions, editor: EditorWorkspace
 ) -> list[lsp.CompletionItem]:
-    """What can stand at a character of a document, the most likely first."""
+    """What can follow at a character of a document, the most likely first."""
     piece = piece_at(names, offset)
     if piece is None:
         return []
@@ -154,7 +154,7 @@ def _files(word: str, names: DocumentNames, editor: EditorWorkspace) -> Iterator
 
 
 def _scope(names: DocumentNames, piece: PieceAtCursor, offset: int) -> dict[str, str]:
-    """The variables that can be spoken of at the cursor, with their types; empty if untyped."""
+    """The variables in scope at the cursor, with their types; empty if untyped."""
     scope: dict[str, str] = {}
     item = item_at(names, offset)
     match item:
@@ -169,7 +169,7 @@ def _scope(names: DocumentNames, piece: PieceAtCursor, offset: int) -> dict[str,
                     scope |= {o.name.text: o.type.text for o in example.objects if o.type}
         case tree.DefineItem(parameters=parameters):
             scope = {x.name.text: x.type.text if x.type else "" for x in parameters}
-    # What has just been written may have no tree yet: `name: type` in what stands before.
+    # Text just written may not be in a tree yet: look for `name: type` before the cursor.
     tokens = piece.tokens
     for number in range(len(tokens) - 2):
         if tokens[number + 1].text == ":" and tokens[number].kind == "word":
@@ -235,7 +235,7 @@ def _provisions(
 def _fitting(
     types: Sequence[str], scope: dict[str, str], names: DocumentNames
 ) -> Iterator[tuple[str, ...]]:
-    """Variables in scope for parameters of some types, each once: all ways of one parameter."""
+    """Distinct variables in scope that fit these types; all choices for a single parameter."""
     symbols = names.chain.names.symbols
     fits = [
         [name for name, kind in scope.items() if not kind or not x or symbols.fits(kind, x)]
@@ -288,7 +288,7 @@ def _arguments(
 
 
 def parameter_types(name: str, names: DocumentNames) -> list[str] | None:
-    """The types that a word or a definition speaks of, empty for any; None for other names."""
+    """The parameter types of a word or definition, empty for any type; None for other names."""
     item = names.chain.names.constants.overlay.definitions.get(name)
     if item is not None:
         return [parameter.type.text if parameter.type else "" for parameter in item.parameters]
