@@ -1,1 +1,1 @@
-"""Programs of rulec's developers, which write the files that are made from others."""
+"""Developers' programs that write the files generated from others."""

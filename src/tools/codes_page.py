@@ -1,4 +1,4 @@
-"""The page ``docs/codes.md``, made from the explanations of the messages."""
+"""The page ``docs/codes.md``, generated from the explanations of the messages."""
 
 from __future__ import annotations
 
@@ -6,5 +6,5 @@ from rulec.report.findings import code_registry
 
 
 def codes_page() -> str:
-    """Render every code of a message, as ``rulec explain --all`` does in Markdown."""
+    """Render all message codes, as ``rulec explain --all`` does in Markdown."""
     return code_registry.as_page() + "\n"

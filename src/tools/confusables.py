@@ -1,7 +1,8 @@
-"""Write ``grammar/confusables.json``: letters that look like other ones.
+"""Write ``grammar/confusables.json``: letters that look like other letters.
 
-``python -m tools.confusables``, in an environment with ``confusable-homoglyphs==3.3.1``, whose data
-are Unicode's ``confusables.txt`` (UTS #39). Not among what is regenerated: it changes with Unicode.
+Run ``python -m tools.confusables`` in an environment with ``confusable-homoglyphs==3.3.1``, whose
+data are Unicode's ``confusables.txt`` (UTS #39). It is not part of regeneration: it changes with
+Unicode.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ SOURCE = (
 
 
 def confusables(data: dict[str, list[dict[str, str]]]) -> dict[str, str]:
-    """What names may look like -> the letters outside of ASCII that look like it."""
+    """Characters of names -> the non-ASCII letters that look like them."""
     like = defaultdict(list)
     for letter, looks in data.items():
         prototypes = [look["c"] for look in looks]

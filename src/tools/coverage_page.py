@@ -1,7 +1,7 @@
 """The page ``docs/coverage.md``: which topics each national rulebook covers, and how well.
 
-Rules say by marks what they are about (`topics` in `schemas`); what is counted stands in the books
-as written and in the situations of `tests/law`.
+Rules are assigned to topics by marks (`topics` in `schemas`); the counts come from the books as
+written and from the situations in `tests/law`.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ PATTERNS = "schemas"
 """The rulebook that declares the topics, and that all national ones extend."""
 
 TYPE_APPROVAL = "un-"
-"""How the names of those begin that say what vehicles must do to be approved: no national law."""
+"""The name prefix of rulebooks on vehicle type approval, which are not national law."""
 
 WHOLE, PART, SILENT, NOTHING = "●", "◐", "–", "·"
 
@@ -52,7 +52,7 @@ What the national rulebooks have rules on, topic by topic, counted from the
 
 @dataclass(frozen=True, slots=True)
 class Book:
-    """A rulebook laid over its bases, and those of its chain that are its own law."""
+    """A rulebook combined with its bases, and the files in its chain that are its own law."""
 
     name: str
     laid: Overlay
@@ -60,16 +60,16 @@ class Book:
 
 
 Situations = Mapping[str, frozenset[str]]
-"""Book -> the topics, named by rules, on which others have written a situation that asks it."""
+"""Book -> the topics (named by rules) for which others have written a situation that tests it."""
 
 
 def coverage_page() -> str:
-    """Render the table of the books that ship. Raises RulecError if one has mistakes."""
+    """Render the table of the shipped rulebooks. Raises RulecError if one has mistakes."""
     return page_of(tuple(national_books()), situations())
 
 
 def page_of(books: Sequence[Book], asked: Situations) -> str:
-    """Render the table of books with the same topics."""
+    """Render the table of books that share the same topics."""
     topics = {name: entry.title.value for book in books for name, entry in book.laid.topics.items()}
     cells = {
         (topic, book.name): cell(book, topic, asked.get(book.name, frozenset()))
@@ -87,7 +87,7 @@ def page_of(books: Sequence[Book], asked: Situations) -> str:
 
 
 def cell(book: Book, topic: str, asked: frozenset[str]) -> str:
-    """A sign for what a book has on a topic, with what its rules lack."""
+    """A sign for how far a book covers a topic, with what its rules lack."""
     rules = [
         entry for entry in book.laid.rules.values() if topic in book.laid.topics_of(entry.item)
     ]
@@ -110,9 +110,9 @@ def _lacks(book: Book, entry: RuleEntry, asked: frozenset[str]) -> Iterator[str]
 
 
 def _asks(topic: str, rule: str, book: Book) -> bool:
-    """Tell whether a situation on a topic asks a rule: by its name, or by how that begins.
+    """Whether a situation on a topic tests a rule: by the rule's name, or by a prefix of it.
 
-    The beginning is enough only where the book has no rule of just that name.
+    A prefix counts only if the book has no rule of exactly that name.
     """
     return topic == rule or (rule.startswith(f"{topic}_") and topic not in book.laid.rules)
 
@@ -140,7 +140,7 @@ def _summary(cells: Mapping[tuple[str, str], str]) -> str:
 
 
 def national_books() -> Iterator[Book]:
-    """The rulebooks that ship and put a law into rules by the shared patterns, by name."""
+    """The shipped rulebooks of national laws that use the shared patterns, by name."""
     for path in sorted(rulebooks_folder().glob("*/*.rules")):
         if path.stem != path.parent.name or path.stem.startswith(TYPE_APPROVAL):
             continue
@@ -159,10 +159,10 @@ def _chain(name: str) -> tuple[tree.File, ...]:
 
 
 def situations(folder: Path = SITUATIONS) -> Situations:
-    """What others than a book's authors have asked it, in a folder's files and its ``asked``.
+    """The situations that people other than a book's authors wrote, in a folder and its ``asked``.
 
-    A situation is theirs if it says ``independent = true``, or its file does; it asks the rules
-    that are its topics, or that it violates.
+    A situation counts if it, or its file, says ``independent = true``; it tests the rules that are
+    its topics, or that it violates.
     """
     asked: dict[str, frozenset[str]] = {}
     for path in (*sorted(folder.glob("*.toml")), *sorted(folder.glob("asked/*.toml"))):

@@ -1,4 +1,4 @@
-"""The major mode for Emacs: what is a comment, a string, a word of the language."""
+"""The major mode for Emacs: comments, strings, and words of the language."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def emacs_mode() -> str:
 
 
 def _listed(texts: tuple[str, ...]) -> str:
-    """Return strings of Lisp, as many on a line as fit."""
+    """Return Lisp strings, as many on a line as fit."""
     lines = [""]
     for text in sorted(texts):
         if len(lines[-1]) + len(text) > 70:

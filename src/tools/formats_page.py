@@ -1,4 +1,4 @@
-"""The tables of formats in the documentation, made from the tables of the code."""
+"""The tables of formats in the documentation, generated from the tables in the code."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ this page, as `rulec formats --words --output-format markdown` does its table.
 
 
 def formats_page() -> str:
-    """Render ``docs/formats.md`` as it is, with the table of formats as it would be now."""
+    """Render ``docs/formats.md`` with the table of formats brought up to date."""
     before, _, rest = PAGE.read_text(encoding="utf-8").partition(BEGIN)
     _, _, after = rest.partition(END)
     table = format_listing.as_markdown(rulec.formats(), (), words=False)

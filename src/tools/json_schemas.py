@@ -1,4 +1,4 @@
-"""The JSON schemas in docs/schemas, made from the types that rulec writes."""
+"""The JSON schemas in docs/schemas, generated from the types that rulec writes."""
 
 from __future__ import annotations
 
@@ -63,11 +63,11 @@ SCHEMAS: Mapping[str, tuple[Any, ...]] = {
     ),
     "words": (list[WordData],),
 }
-"""Name -> the types of an output, or of a line of one; which of several, its fields tell."""
+"""Name -> the types of an output, or of a line of it; several types differ in their fields."""
 
 
 def schema_text(name: str) -> str:
-    """Write a schema of JSON Schema 2020-12."""
+    """Generate a schema of JSON Schema 2020-12."""
     schemas, definitions = msgspec.json.schema_components(
         SCHEMAS[name], ref_template="#/$defs/{name}"
     )
@@ -82,7 +82,7 @@ def schema_text(name: str) -> str:
 
 
 def _without_indents(part: Any) -> Any:
-    """Descriptions come from docstrings, whose indents Python 3.13 strips and others keep."""
+    """Strip indents from descriptions: docstrings keep them before Python 3.13."""
     match part:
         case dict():
             return {
@@ -97,7 +97,7 @@ def _without_indents(part: Any) -> Any:
 
 
 def _required_version(definition: dict[str, Any]) -> dict[str, Any]:
-    """A version and a digest have defaults in the type, but are always written."""
+    """Mark version and digest as required: despite their defaults they are always written."""
     if "version" not in definition.get("properties", {}):
         return definition
     written = [key for key in ("sha256", "version") if key in definition["properties"]]

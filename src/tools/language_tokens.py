@@ -1,4 +1,4 @@
-"""The tokens of ``grammar/rulec.lark`` as editors need them: spelt out, or as patterns."""
+"""The tokens of ``grammar/rulec.lark`` as editors need them: as fixed texts, or as patterns."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rulec.resources import grammar_file
 
 WORD_START: Final = r"[\p{L}\p{Nl}\p{No}_]"
 WORD: Final = WORD_START + r"[\p{L}\p{N}_]*"
-"""A name, in classes of Unicode that every dialect of regular expressions has."""
+"""A name, in Unicode classes that every dialect of regular expressions supports."""
 
 _BOUNDARY = re.compile(r"\\b|\(\?!(?:[^()\\]|\\.)*\)$")
 _RESERVED = re.compile(r"^\(\?!\(\?:.*?\)\\b\)")
@@ -22,15 +22,15 @@ _POWER: Final = r"(\^-?[0-9]+)?"
 
 @cache
 def language_rules() -> tuple[tuple[str, Tree[Any], bool], ...]:
-    """The grammar's rules: name, tree in EBNF, whether it stands for its only child."""
+    """The grammar's rules: name, tree in EBNF, whether it is replaced by its only child."""
     return tuple((name, tree, options.expand1) for name, _, tree, options in _grammar().rule_defs)
 
 
 @cache
 def spellings() -> dict[str, tuple[str, ...]]:
-    """Terminal -> its texts, the words of each with single blanks between them.
+    """Terminal -> its texts, with single blanks between the words of each.
 
-    A terminal whose texts are without number, such as a name, has no entry.
+    A terminal with infinitely many texts, such as a name, has no entry.
     """
     return {
         name: tuple(_unescaped(text) for text in re.split(r"(?<!\\)\|", _optional(pattern)))
@@ -41,7 +41,7 @@ def spellings() -> dict[str, tuple[str, ...]]:
 
 @cache
 def patterns() -> dict[str, str]:
-    """Terminal without number of texts -> its regular expression, reserved words among them."""
+    """Terminal with infinitely many texts -> its regular expression, including reserved words."""
     return {
         name: pattern.replace(r"[^\W\d]\w*", WORD)
         .replace(r"\w", r"[\p{L}\p{N}_]")
@@ -52,7 +52,7 @@ def patterns() -> dict[str, str]:
 
 
 def compound_units() -> str:
-    """The units that are no words: ``%``, ``km/h``, ``m/s^2``."""
+    """A pattern for the units that are not words: ``%``, ``km/h``, ``m/s^2``."""
     return rf"[%°]|{WORD}\^-?[0-9]+|{WORD}{_POWER}(/{WORD}{_POWER})+"
 
 
@@ -73,7 +73,7 @@ def _is_class(pattern: str) -> bool:
 
 
 def _optional(pattern: str) -> str:
-    """``&&?`` written out: ``&&|&``."""
+    """Expand the optional second sign: ``&&?`` becomes ``&&|&``."""
     return re.sub(r"((?:\\?[&|])(\\?[&|]))\?", lambda pair: f"{pair[1]}|{pair[2]}", pattern)
 
 
@@ -84,5 +84,5 @@ def _unescaped(text: str) -> str:
 @cache
 def _grammar() -> Any:
     text = grammar_file("rulec.lark").read_text(encoding="utf-8")
-    made: Any = load_grammar  # without types
+    made: Any = load_grammar  # the function has no type hints
     return made(text, "rulec.lark", [], global_keep_all_tokens=True)[0]

@@ -1,7 +1,7 @@
 """Write ``src/launcher/locks``: the releases that the launcher installs, with their hashes.
 
-``python -m tools.lock``, with uv on PATH. Releases are resolved anew for each Python and all
-platforms (of Spot there is a wheel for one), with what builds rulec and the installer itself.
+Run ``python -m tools.lock`` with uv on PATH. Releases are resolved anew for each Python and all
+platforms (Spot has a wheel for one only), including rulec's build tools and the installers.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ ROOT = Path(__file__).resolve().parents[2]
 LOCKS = ROOT / "src" / "launcher" / "locks"
 PYTHONS = ("3.10", "3.11", "3.12", "3.13", "3.14")
 PURPOSES = {"": (), "-test": ("--extra", "test")}
-"""Ending of a lock's name -> what it has beyond rulec's own needs."""
+"""Suffix of a lock's name -> what it contains beyond rulec's own requirements."""
 UV = ("uv", "pip", "compile", "--quiet", "--universal", "--generate-hashes", "--no-header")
 INSTALLERS = ("editables", "pip", "setuptools; python_version < '3.12'")
-"""What hatchling asks for, besides, to install a checkout; and newer ones than Python brings."""
+"""What hatchling also needs to install a checkout, and newer installers than Python's own."""
 HEAD = """\
 # What ./rulec installs on Python {python}{tests}. `.ci/task lock` writes it anew.
 # Elsewhere: pip install --require-hashes -r THIS_FILE, or uv pip install with the same.
@@ -31,14 +31,14 @@ HEAD = """\
 
 
 def build_tools() -> tuple[str, ...]:
-    """What builds rulec, as pyproject.toml asks for it."""
+    """The requirements for building rulec, from pyproject.toml."""
     file = ROOT / "pyproject.toml"
     project = parsed_toml(Source(file.name, file.read_text(encoding="utf-8")), WRONG_SETTINGS, "")
     return tuple(project["build-system"]["requires"])
 
 
 def lock(python: str, extras: tuple[str, ...]) -> str:
-    """The requirements of a new environment, one release each, with all of its files' hashes."""
+    """The requirements of a new environment, one release each, with the hashes of all its files."""
     with tempfile.TemporaryDirectory() as folder:
         tools = Path(folder) / "build.in"
         tools.write_text("\n".join([*build_tools(), *INSTALLERS, ""]), encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The parser's tables, ``grammar/rulec.tables.json``, made from ``grammar/rulec.lark``."""
+"""The parser's tables, ``grammar/rulec.tables.json``, generated from ``grammar/rulec.lark``."""
 
 from __future__ import annotations
 
@@ -7,5 +7,5 @@ from rulec.syntax.grammar import tables_of
 
 
 def parser_tables() -> str:
-    """Generate the tables that spare the parser their making at each start."""
+    """Generate the tables, so that the parser need not compute them at each start."""
     return tables_of(grammar_file("rulec.lark").read_text(encoding="utf-8"))

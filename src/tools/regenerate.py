@@ -1,6 +1,6 @@
-"""Write the generated files of the repository, or name those that are out of date.
+"""Write the repository's generated files, or name those that are out of date.
 
-``python -m tools.regenerate [--check]``. Exit status: 0, or 1 with ``--check`` if one is.
+``python -m tools.regenerate [--check]``. Exit status: 0, or 1 with ``--check`` if any is.
 """
 
 from __future__ import annotations
@@ -42,11 +42,11 @@ GENERATED: Mapping[str, Callable[[], str]] = {
     "docs/format_words.md": format_words_page,
     **{f"docs/schemas/{name}.json": partial(schema_text, name) for name in SCHEMAS},
 }
-"""Path from the root -> what makes its text."""
+"""Path from the root -> the function that generates its text."""
 
 
 def is_current(name: str) -> bool:
-    """Compare a generated file with what would be written now."""
+    """Compare a generated file with what would be generated now."""
     if name in SHIPPED:
         return SHIPPED[name][1]()
     path = ROOT / name
@@ -54,12 +54,12 @@ def is_current(name: str) -> bool:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Write every file that is out of date; with ``--check`` only name it."""
+    """Write every file that is out of date; with ``--check`` only name them."""
     outdated = [name for name in (*GENERATED, *SHIPPED) if not is_current(name)]
     for name in outdated:
         print(f"{name} is out of date" if "--check" in arguments else f"wrote {name}")
         if "--check" not in arguments:
-            # Machines are made with the parser's tables and the trees that have just been written.
+            # Machines depend on the parser's tables and the trees written just before.
             data = SHIPPED[name][0]() if name in SHIPPED else GENERATED[name]().encode()
             (ROOT / name).parent.mkdir(parents=True, exist_ok=True)
             with written_whole(ROOT / name) as stream:

@@ -1,7 +1,7 @@
-"""What ships beside the rulebooks so that nobody's first call parses or compiles them.
+"""The caches shipped with the rulebooks, so that first calls need not parse or compile them.
 
-The trees of all sources, and the machines of all rulebooks that commands ask for: at the steps of
-their examples and at usual ones, by both compilers, and for words that are cut.
+They hold the trees of all sources, and the machines of all rulebooks that commands request: at the
+steps of their examples and at common steps, by both compilers, and for cut words.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from rulec.syntax.caching import tree_cache
 from rulec.syntax.parser import parse
 
 STEPS_S = (None, Fraction(1), Fraction(1, 2), Fraction(1, 10))
-"""The steps of machines that ship; None are those of the rules' own examples."""
+"""The steps of the shipped machines; None means the steps of the rules' own examples."""
 
 _AT_20_HZ, _AT_25_HZ, _AT_30_HZ = Fraction(1, 20), Fraction(1, 25), Fraction(1, 30)
 STEPS_OF: Mapping[str, Sequence[Fraction]] = {
@@ -39,27 +39,27 @@ STEPS_OF: Mapping[str, Sequence[Fraction]] = {
     "us-nv": (_AT_20_HZ,),
     "cn": (_AT_30_HZ,),
 }
-"""More steps, those of data sets: highD and its kin film German roads at 25 Hz, openDD at 30.
+"""Additional steps, from data sets: highD and its relatives film German roads at 25 Hz, openDD at 30.
 
-nuPlan has American ones, Nevada's for one, at 20 Hz, CitySim at 30, AD4CHE Chinese ones at 30; many
-simulators take 20.
+nuPlan has American roads, including Nevada, at 20 Hz, CitySim at 30, AD4CHE Chinese ones at 30;
+many simulators use 20.
 """
 
 _BOOKS = shipped_key("which rulebooks, of which texts")
 TRIED = ("esterle2019", "de")
-"""Of these rulebooks it is seen each time whether what commands ask for is there."""
+"""For these rulebooks each check tests whether all machines that commands request are there."""
 
 
 @dataclass(frozen=True, slots=True)
 class Book:
-    """A rulebook's share: digests of the texts that it was read from, and how its keys begin."""
+    """A rulebook's share: digests of its source texts, and the beginnings of its keys."""
 
     texts: dict[str, str]
     keys: list[str] = field(default_factory=list)
 
 
 def trees_text() -> bytes:
-    """The file of trees."""
+    """The content of the file of trees."""
     entries = {}
     for path in _sources():
         source = Source(path.name, path.read_text(encoding="utf-8"))
@@ -72,13 +72,13 @@ def trees_text() -> bytes:
 
 
 def are_trees_current() -> bool:
-    """Tell whether the trees are those of the texts and of the code that there are."""
+    """Whether the shipped trees match the current sources and code."""
     keys = {shipped_key(path.read_text(encoding="utf-8")) for path in _sources()}
     return _there(tree_cache).keys == keys
 
 
 def machines_text() -> bytes:
-    """The file of machines; of rulebooks whose texts are as they were, those that are there."""
+    """The content of the file of machines; unchanged rulebooks keep the machines that they have."""
     there = _there(machine_cache)
     entries: dict[bytes, bytes] = {}
     books: dict[str, Book] = {}
@@ -100,9 +100,9 @@ def machines_text() -> bytes:
 
 
 def are_machines_current() -> bool:
-    """Tell whether the texts are those of which the machines are, and the code.
+    """Whether the shipped machines match the current sources and code.
 
-    What is asked for is seen of a few rulebooks.
+    Which machines commands request is checked for a few rulebooks only.
     """
     there = _there(machine_cache)
     known = _books(there)
@@ -114,7 +114,7 @@ def are_machines_current() -> bool:
 
 
 def asked_for(name: str) -> tuple[dict[bytes, bytes], dict[str, str]]:
-    """All machines that commands ask for of a rulebook, and digests of what it is read from."""
+    """All machines that commands request for a rulebook, and digests of its source texts."""
     with keeping(), _recorded() as entries:
         rulebook = read_rulebook(name).rulebook
         steps = StepCompiler(rulebook)
@@ -122,7 +122,7 @@ def asked_for(name: str) -> tuple[dict[bytes, bytes], dict[str, str]]:
             try:
                 compiled = steps.at_own_steps() if step is None else steps(step)
             except RulecError:
-                continue  # a bound that is no multiple of the step
+                continue  # a bound is not a multiple of the step
             second_compiler.certified(compiled)
             prefix_machines.prefix_machines(compiled)
     return entries, {one.name: one.sha256 for one in rulebook.sources}
@@ -140,7 +140,7 @@ def _recorded() -> Iterator[dict[bytes, bytes]]:
         for job, answer in zip(jobs, answers, strict=True):
             if isinstance(answer, Done) and answer.machine.reads == job.reads:
                 key = machine_cache.machine_key(choice or "", job)
-                # Of the second compiler nobody wants more than the tables.
+                # Only the tables of the second compiler are needed.
                 entries[key] = machine_cache.as_bytes(answer, spot, with_text=not choice)
         return answers, spot
 
@@ -180,7 +180,7 @@ def _is_as_it_was(book: Book) -> bool:
 
 
 def _digests() -> dict[str, str]:
-    """Of all sources, by their base names."""
+    """The digests of all sources, by their base names."""
     return {path.name: sha256(path.read_bytes()).hexdigest() for path in _sources()}
 
 
@@ -188,4 +188,4 @@ SHIPPED: Mapping[str, tuple[Callable[[], bytes], Callable[[], bool]]] = {
     f"rulebooks/{shipped_file(tree_cache.SHIPPED).name}": (trees_text, are_trees_current),
     f"rulebooks/{shipped_file(machine_cache.SHIPPED).name}": (machines_text, are_machines_current),
 }
-"""Path from the root -> what makes its content, and whether it is what would be made now."""
+"""Path from the root -> the functions that generate its content and check that it is current."""

@@ -1,4 +1,4 @@
-"""The TextMate grammar in ``grammar/``, made from the words that the parser knows."""
+"""The TextMate grammar in ``grammar/``, generated from the words that the parser knows."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from rulec.syntax import highlighting as words
 
 
 def textmate_grammar() -> str:
-    """Generate the grammar, JSON as editors read it."""
+    """Generate the grammar as JSON for editors."""
     return json.dumps(_grammar(), indent=2, ensure_ascii=False) + "\n"
 
 
@@ -51,7 +51,7 @@ def _pattern(name: str, match: str) -> dict[str, str]:
 
 
 def _named(match: str) -> dict[str, Any]:
-    """A word, and the name that it declares."""
+    """The pattern for a word and the name that it declares."""
     return {
         "match": match,
         "captures": {

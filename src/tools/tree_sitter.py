@@ -1,6 +1,6 @@
-"""The grammar for tree-sitter, and its queries, made from ``grammar/rulec.lark``.
+"""The tree-sitter grammar and its queries, generated from ``grammar/rulec.lark``.
 
-``tree-sitter generate`` takes the JSON as it is: that is what a ``grammar.js`` would come to.
+``tree-sitter generate`` accepts the JSON directly, in place of a ``grammar.js``.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Node = dict[str, Any]
 
 START: Final = "file"
 VALUES: Final = {"NUMBER": "numeral"}
-"""Terminals that are not called as in the language's grammar, where a rule has that name."""
+"""Terminals renamed because a rule of the language's grammar has their name."""
 
 
 def tree_sitter_grammar() -> str:
@@ -36,7 +36,7 @@ def tree_sitter_grammar() -> str:
     for name, tree, _ in language_rules():
         rules.update(_Rule(name, hidden).rules(tree))
     needed = _reachable(rules, START)
-    # What a number is followed by is its unit wherever it can be one.
+    # A word after a number is its unit wherever it can be one.
     rules["number"] = {"type": "PREC_RIGHT", "value": 0, "content": rules["number"]}
     values = {_value(name): _pattern(text) for name, text in patterns().items() if name != "UNIT"}
     unit = _choice([_symbol("name"), _string("step"), _pattern(compound_units())])
@@ -61,7 +61,7 @@ def tree_sitter_grammar() -> str:
 
 
 class _Rule:
-    """One rule of Lark's, and those that its named alternatives become."""
+    """One rule of Lark's grammar, and the rules made of its named alternatives."""
 
     def __init__(self, name: str, hidden: set[str]) -> None:
         self.name = name
@@ -69,7 +69,7 @@ class _Rule:
         self.aliased: dict[str, list[Node]] = {}
 
     def rules(self, tree: Tree[Any]) -> Iterator[tuple[str, Node]]:
-        """The rule itself first."""
+        """This rule first, then those of its named alternatives."""
         own = self._node(tree)
         yield self._shown(self.name), own
         for alias, alternatives in self.aliased.items():
@@ -97,7 +97,8 @@ class _Rule:
         return _choice(nodes) if part.data == "expansions" else _sequence(nodes)
 
     def _aliased(self, content: Any, alias: str) -> Node:
-        # tree-sitter would give the name to each symbol of a sequence: the sequence gets a rule.
+        # tree-sitter would alias each symbol of a sequence separately, so the sequence becomes a
+        # rule.
         first = alias not in self.aliased
         self.aliased.setdefault(alias, []).append(self._node(content))
         symbol = _symbol(f"{self.name}_{alias}")
@@ -207,7 +208,7 @@ def folds() -> str:
 
 
 def tree_sitter_manifest() -> str:
-    """Generate ``tree-sitter.json``, which tells tools where all this is."""
+    """Generate ``tree-sitter.json``, which describes the grammar to tools."""
     language = {
         "name": "rulec",
         "scope": "source.rulec",

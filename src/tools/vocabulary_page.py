@@ -1,6 +1,6 @@
-"""The page ``docs/vocabulary.md``, made from the file of the vocabulary ``road``.
+"""The page ``docs/vocabulary.md``, generated from the file of the vocabulary ``road``.
 
-Above each item of the file stands a comment, `SUPPLIER: what it means`.
+Each item of the file has a comment above it, `SUPPLIER: what it means`.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ source cannot tell it, and verdicts say so.
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """A declared word; ``holds`` describes its values, ``default`` is None for none."""
+    """A declared word; ``holds`` describes its values; ``default`` is None if it has none."""
 
     name: str
     about: str
@@ -69,7 +69,7 @@ def vocabulary_page(source: Source) -> str:
 
 
 def _facts(items: Sequence[tree.Item]) -> Iterator[str]:
-    """A section of what always holds, if the file says anything of the kind."""
+    """A section with the facts, if the file has any."""
     facts = [item for item in items if isinstance(item, tree.FactItem)]
     if facts:
         yield "\n## What always holds\n"
@@ -90,7 +90,7 @@ def comment_above(item: tree.Item) -> str:
 
 
 def _marks(items: Sequence[tree.Item]) -> dict[str, str]:
-    """Name -> what lines of their own say of it."""
+    """Name -> its marks *constant* and *presumed*, from the lines that declare them."""
     marks: dict[str, str] = {}
     for item in items:
         if isinstance(item, tree.ConstantItem | tree.PresumedItem):

@@ -1,4 +1,4 @@
-"""The extension for Visual Studio Code, as far as it follows from the language."""
+"""The parts of the extension for Visual Studio Code that are generated from the language."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The playground: a page that runs rulec in a browser, and what puts it together."""
+"""The playground: a page that runs rulec in a browser, and the program that builds it."""

@@ -1,6 +1,6 @@
 """Write the playground into a folder: ``python -m tools.playground -o FOLDER``.
 
-Exit status: 0, or 2 if a part of it cannot be had, or the folder has something else in it.
+Exit status: 0, or 2 if a part is not available or the folder contains other files.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from tools.playground.parts import (
 from tools.textmate import textmate_grammar
 
 MARK = "playground.json"
-"""What Python is to load; a folder that has it is a playground, and may be written anew."""
+"""The list of what Python loads; a folder with this file is a playground and may be overwritten."""
 
 
 def build(folder: Path) -> None:
@@ -54,10 +54,10 @@ def build(folder: Path) -> None:
 
 
 def samples() -> list[dict[str, str]]:
-    """What the page can start from: the rulebooks of the README, the tutorial and a how-to.
+    """The page's samples: the rulebooks of the README, the tutorial and a how-to.
 
-    Each has traces that it judges, a rulebook that it can be held against, and as JSON the
-    ``others`` that it builds upon.
+    Each has traces to judge, a rulebook to compare with, and as JSON the ``others`` that it
+    extends.
     """
     (quiet_lane,) = _blocks("README.md", "rulec")
     mistaken, *_ = _blocks("docs/tutorial.md", "rulec file")
@@ -90,7 +90,7 @@ def _blocks(page: str, kind: str) -> list[str]:
 
 
 def main() -> int:
-    """Build, and say where."""
+    """Build the playground and print its path."""
     parser = argparse.ArgumentParser(prog="python -m tools.playground", description=build.__doc__)
     parser.add_argument("-o", "--output", type=Path, required=True, help="the folder to write")
     folder = parser.parse_args().output.absolute()

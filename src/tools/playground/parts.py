@@ -1,4 +1,4 @@
-"""The parts of the page that come from elsewhere: Pyodide, rulec's own wheel, libraries."""
+"""The parts of the page from other sources: Pyodide, rulec's own wheel, libraries."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PYODIDE_FILES = (
     "python_stdlib.zip",
     "pyodide-lock.json",
 )
-"""Python itself, as the package ``pyodide`` has it: Python 3.14 in WebAssembly.
+"""Python itself, from the package ``pyodide``: Python 3.14 in WebAssembly.
 
 It is the release for which PyPI has a build of msgspec.
 """
@@ -35,15 +35,15 @@ PLATFORM = (
 )
 
 LIBRARIES = ("astutils", "click", "dd", "lark", "ply", "typing_extensions")
-"""Taken from this environment: what the page's questions import, in Python alone."""
+"""The pure-Python packages that the page's questions import, copied from this environment."""
 
 
 class MissingPartError(Exception):
-    """A part of the page cannot be had."""
+    """A part of the page is not available."""
 
 
 def put_pyodide(folder: Path, work: Path) -> None:
-    """Put Pyodide's files, of the release in ``package-lock.json``, into a folder."""
+    """Put the files of Pyodide, in the release in ``package-lock.json``, into a folder."""
     npm = shutil.which("npm")
     if npm is None:
         raise MissingPartError("npm is not there, which Pyodide comes from: install Node.js")
@@ -56,7 +56,7 @@ def put_pyodide(folder: Path, work: Path) -> None:
 
 
 def put_wheels(folder: Path) -> list[str]:
-    """Put rulec's wheel, of this checkout, and msgspec's into a folder; their names."""
+    """Put the wheels of rulec (this checkout) and msgspec into a folder; returns their names."""
     run([sys.executable, "-m", "hatchling", "build", "--target", "wheel", "-d", folder], ROOT)
     ready = ("--only-binary", ":all:", "--no-deps", "--require-hashes", *PLATFORM)
     wanted = ("--requirement", HERE / "requirements.txt", "--dest", folder, "--quiet")
@@ -65,10 +65,10 @@ def put_wheels(folder: Path) -> list[str]:
 
 
 def put_libraries(archive: Path) -> None:
-    """Write the libraries' modules and licences, each as it is installed here."""
+    """Write the libraries' modules and licences, as they are installed here."""
     with ZipFile(archive, "w", ZIP_DEFLATED) as stream:
         for name, path in sorted(_files()):
-            # Without the times of this installation, the same libraries are the same file.
+            # Without file times, the same libraries always give the same archive.
             stream.writestr(ZipInfo(name), path.read_bytes(), ZIP_DEFLATED)
 
 
@@ -85,7 +85,7 @@ def _files() -> Iterator[tuple[str, Path]]:
 
 
 def run(command: Sequence[str | Path], folder: Path) -> None:
-    """Run a tool in a folder. Raises MissingPartError with what it says if it fails."""
+    """Run a tool in a folder. Raises MissingPartError with its output if it fails."""
     done = subprocess.run(
         command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False
     )

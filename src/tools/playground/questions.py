@@ -1,13 +1,13 @@
-"""What the page asks of rulec, which runs beside it in the browser.
+"""The questions that the page asks rulec, which runs beside it in the browser.
 
-Questions and answers are JSON. What is found, run, judged and compared is told by the documents
-that the commands write with ``--output-format json``; to verdicts is added what the commands say in
-words. Files are in the working directory, which is the page's own. Nothing here needs NumPy,
-Shapely or Spot.
+Questions and answers are JSON. Findings, test runs, verdicts and comparisons are the documents that
+the commands write with ``--output-format json``; verdicts also get the commands' sentences. Files
+are in the working directory, which belongs to the page. Nothing here needs NumPy, Shapely or Spot.
 
 A question has the ``source`` that it is about, and in ``others`` the sources beside it. A rulebook
-to judge by or to compare is named: "" is the ``source``, ``NAME.rules`` one of the ``others``,
-``NAME.json`` a compiled rulebook, whose text is in ``compiled``, ``NAME`` one that ships.
+to judge by or to compare with is given by name: "" is the ``source``, ``NAME.rules`` one of the
+``others``, ``NAME.json`` a compiled rulebook, whose text is in ``compiled``, ``NAME`` a shipped
+one.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from rulec.rulebook.files.search_path import find_rulebook
 from rulec.rulebook.vocabulary_phrases import phrases_of
 
 MOST_EXPLAINED = 20
-"""So many violations of a trace are explained."""
+"""The number of violations of a trace that are explained."""
 
 Question: TypeAlias = Mapping[str, Any]
 Tell: TypeAlias = Callable[[float], object]
@@ -44,8 +44,8 @@ _NAME = re.compile(r"^\s*(?:rulebook|vocabulary)\s+([\w-]+)", re.MULTILINE)
 def answer(text: str, tell: Tell = lambda _: None) -> str:
     """The answer to a question: its ``result``, or what is wrong.
 
-    That are ``findings``, as ``check`` has them, or a mistake of rulec's own, its ``failure``.
-    ``tell`` is told how far a long answer has come.
+    Errors are ``findings``, as in ``check``; a bug in rulec is a ``failure``. ``tell`` is called
+    with the progress of a long answer.
     """
     question = {**json.loads(text), "tell": tell}
     try:
@@ -58,7 +58,7 @@ def answer(text: str, tell: Tell = lambda _: None) -> str:
 
 
 def _source(question: Question) -> Any:
-    """The source of a rulebook that ships."""
+    """The source of a shipped rulebook."""
     return find_rulebook(question["name"], []).read_text("utf-8")
 
 
@@ -83,7 +83,7 @@ def _test(question: Question) -> Any:
 
 
 def _judge(question: Question) -> Any:
-    """A verdict on each trace, violations explained and doubts named, or why there is none."""
+    """For each trace a verdict with explanations and doubts, or the reason why there is none."""
     rules = rulec.compile(_book(question, "book"))
     traces = Path("traces.jsonl" if question["traces"].lstrip()[:1] == "{" else "traces.csv")
     traces.write_text(question["traces"], "utf-8")
@@ -114,7 +114,7 @@ def _verdict(trace: rulec.Trace | rulec.RulecError, rules: rulec.CompiledRuleboo
 def _add_words(
     told: dict[str, Any], explanation: Explanation, phrases: Mapping[str, str], times: StateTimes
 ) -> None:
-    """Add the sentence of an explanation, what would have kept the rule, and by how much."""
+    """Add an explanation's sentence, the ways to keep the rule, and the margins."""
     told["in_words"] = decisive_state_in_words(explanation, phrases, times)
     told["kept_if"] = kept_if(explanation, times) if explanation.looked_at is None else []
     margins = [fact.margins for fact in explanation.facts]
@@ -136,13 +136,13 @@ def _compare(question: Question) -> Any:
 
 
 def _book(question: Question, key: str) -> str:
-    """A rulebook that ships, by its name, or the file of one that is in the page."""
+    """A shipped rulebook by its name, or the file of one in the page."""
     named, written = question[key], _written(question)
     return named or written
 
 
 def _written(question: Question) -> str:
-    """The file with the source, called as its rulebook is; all others are beside it."""
+    """The file with the source, named after its rulebook; all others are beside it."""
     for old in (*Path().glob("*.rules"), *Path().glob("*.json")):
         old.unlink()
     for source in (*question.get("others", ()), question["source"]):
