@@ -39,7 +39,7 @@ STEPS_OF: Mapping[str, Sequence[Fraction]] = {
     "us-nv": (_AT_20_HZ,),
     "cn": (_AT_30_HZ,),
 }
-"""Additional steps, from data sets: highD and its relatives film German roads at 25 Hz, openDD at 30.
+"""More steps, from data sets: highD and its relatives film German roads at 25 Hz, openDD at 30.
 
 nuPlan has American roads, including Nevada, at 20 Hz, CitySim at 30, AD4CHE Chinese ones at 30;
 many simulators use 20.
