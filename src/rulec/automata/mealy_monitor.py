@@ -79,15 +79,13 @@ class MealyMonitor:
     """A deterministic machine that judges a finite word.
 
     The verdict follows its rulebook's semantics: on the word with its last letter repeated for ever
-    (stutter), or on the word as it is (finite).
-
-    A letter is a number in mixed radix: the digit of ``reads[0]`` counts ones, that of ``reads[1]``
-    counts ``reads[0].size``, and so on. ``letters[letter]`` is its class; letters of one class
-    behave the same in every state; ``IMPOSSIBLE`` marks those that axioms exclude.
-    ``successors[state][class]`` is the next state; ``outputs[state][class]`` is the verdict on a
-    word that ends with such a letter read in that state. Runs start in state 0. From state
-    ``rejecting_sink`` no word is accepted, from ``accepting_sink`` every word is; None if there is
-    no such state. The machine is minimal.
+    (stutter), or on the word as it is (finite). A letter is a number in mixed radix: the digit of
+    ``reads[0]`` counts ones, that of ``reads[1]`` counts ``reads[0].size``, and so on.
+    ``letters[letter]`` is its class; letters of one class behave the same in every state;
+    ``IMPOSSIBLE`` marks those that axioms exclude. ``successors[state][class]`` is the next state;
+    ``outputs[state][class]`` is the verdict on a word that ends with such a letter read in that
+    state. Runs start in state 0. From state ``rejecting_sink`` no word is accepted, from
+    ``accepting_sink`` every word is; None if there is no such state. The machine is minimal.
     """
 
     __repr__ = short_repr

@@ -46,10 +46,7 @@ DISTANCE: frozenset[ltl.UnaryOperator | ltl.BinaryOperator] = frozenset(
 
 
 class NotAMultipleError(ValueError):
-    """A bound in seconds, ``offending``, falls between two instants of a trace.
-
-    ``span`` is its place in the source.
-    """
+    """A bound in seconds (``offending``, written at ``span``) falls between two instants."""
 
     def __init__(self, offending: Fraction, step_s: Fraction, span: Span | None) -> None:
         super().__init__(f"{offending} s is not a multiple of {step_s} s")
@@ -91,10 +88,7 @@ def _whole(steps: Fraction) -> int:
 
 
 def has_seconds(formula: ltl.Formula) -> bool:
-    """Whether the formula has a bound in seconds.
-
-    If not, the step of a trace makes no difference.
-    """
+    """Whether the formula has a bound in seconds, and thus depends on the step of a trace."""
     bounds = (operation.bound for operation in operations_of(formula))
     return any(bound is not None and bound.unit == "s" for bound in bounds)
 
@@ -115,10 +109,7 @@ def longest_divisor(times: Iterable[Fraction]) -> Fraction:
 
 
 def operations_of(formula: ltl.Formula) -> Iterator[ltl.Unary | ltl.Binary]:
-    """The operations in a formula, each before its operands.
-
-    Operations in the bodies of counts are left out.
-    """
+    """The operations in a formula, except in bodies of counts, each before its operands."""
     waiting = [formula]
     while waiting:
         match waiting.pop():

@@ -1,7 +1,4 @@
-"""Formulas as plain data for JSON, with numbers as text of fractions.
-
-For example, ``"5/18"``.
-"""
+"""Formulas as plain data for JSON, with numbers as text of fractions. For example, ``"5/18"``."""
 
 from __future__ import annotations
 

@@ -117,10 +117,8 @@ def required_inputs(
 ) -> Iterator[ltl.Atom | ltl.QuantityTerm]:
     """Every atom and quantity that a formula reads, with repetitions.
 
-    Those of every object that a count may include are part of this.
-
-    ``objects`` maps the present objects to their types; ``fits`` returns whether its first type is
-    its second type or a subtype.
+    Those of every object that a count may include are part of this. ``objects`` maps the present
+    objects to their types; ``fits`` returns whether its first type is its second type or a subtype.
     """
     return _inputs(formula, objects, fits, {})
 

@@ -141,19 +141,13 @@ def alias_of(variable: str, formula: ltl.Formula) -> str | None:
 
 
 def holds(formula: ltl.Formula, binding: ObjectBinding, state: PartialState) -> bool | Unknown:
-    """The value of a formula in a state, possibly ``Unknown``.
-
-    Raises TypeError if it has a temporal operator.
-    """
+    """The value of a formula in a state, perhaps unknown. TypeError for a temporal operator."""
     return evaluator_of(formula)(binding, state)
 
 
 @lru_cache(maxsize=_MOST)
 def evaluator_of(formula: ltl.Formula) -> Evaluator:
-    """The formula as a function of binding and state.
-
-    Cached, since it is evaluated for every object in every state.
-    """
+    """The formula as a function of binding and state, cached for all objects and states."""
     return fold(formula, _KLEENE)
 
 

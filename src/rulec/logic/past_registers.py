@@ -52,10 +52,8 @@ class Register:
 class Memory:
     """The proposition ``atom``: whether ``formula`` held one instant ago.
 
-    It is false at the first instant.
-
-    ``formula`` has no past operator, but may contain registers and memories, including this one.
-    Its value depends on the future.
+    It is false at the first instant. ``formula`` has no past operator, but may contain registers
+    and memories, including this one. Its value depends on the future.
     """
 
     atom: ltl.Atom

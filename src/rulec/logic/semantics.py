@@ -36,10 +36,7 @@ def holds(formula: ltl.Formula, word: Sequence[Letter], semantics: Semantics = "
 def truth_values(
     formula: ltl.Formula, word: Sequence[Letter], semantics: Semantics = "stutter"
 ) -> list[bool]:
-    """The formula's truth value at each of the word's instants.
-
-    Raises ValueError as ``holds`` does.
-    """
+    """The formula's truth value at each instant of a word. Raises ValueError as ``holds`` does."""
     parts = _extended(formula, _spelled(word), len(word), semantics)
     return parts[id(formula)][1][: len(word)]
 
@@ -47,10 +44,7 @@ def truth_values(
 def extended_values(
     formula: ltl.Formula, word: Sequence[Letter], semantics: Semantics
 ) -> dict[ltl.Formula, list[bool]]:
-    """The truth values of all parts, extended beyond the word until they settle.
-
-    Operands come before their operations.
-    """
+    """The truth values of all parts, operands first, extended beyond the word until they settle."""
     return dict(_extended(formula, _spelled(word), len(word), semantics).values())
 
 

@@ -73,10 +73,7 @@ class ForbiddenTraces:
             self._search([])
 
     def one_that_allow(self, others: Sequence[AnalyzedRule]) -> bool:
-        """Whether all of the others allow some trace that the rule forbids.
-
-        Raises UndecidedError.
-        """
+        """Whether all others allow some trace that the rule forbids. Raises UndecidedError."""
         numbers = range(len(self._traces))
         if any(all(self._allows(other, number) for other in others) for number in numbers):
             return True

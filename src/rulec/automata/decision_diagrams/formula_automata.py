@@ -30,10 +30,7 @@ _CONNECTIVES = {
 
 
 class FormulaAutomata:
-    """Automata of formulas without past operators, over the letters of some diagrams.
-
-    ``ends``: words are finite.
-    """
+    """Automata of past-free formulas over the letters of diagrams; ``ends`` if words are finite."""
 
     def __init__(self, diagrams: Diagrams, *, ends: bool) -> None:
         self._diagrams = diagrams

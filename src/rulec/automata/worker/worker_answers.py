@@ -35,10 +35,7 @@ class WorkerGreeting:
 
 
 def chosen(choice: str) -> Compiler:
-    """The compiler for a choice; an empty choice is the default.
-
-    Raises ImportError if Spot is required and missing.
-    """
+    """The compiler of a choice (empty: the default). ImportError if required Spot is missing."""
     if choice != compiler_choice.DIAGRAMS:
         try:
             # Spot is loaded only in the worker.

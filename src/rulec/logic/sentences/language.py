@@ -65,10 +65,7 @@ class AdverbWords:
 
 @dataclass(frozen=True, slots=True)
 class BinaryWords:
-    """Patterns of a temporal operator with a left and a right side.
-
-    ``endless`` is for a bound without an upper end.
-    """
+    """Patterns of a temporal operator with two sides; ``endless`` for a bound without upper end."""
 
     plain: str
     bounded: str

@@ -77,10 +77,7 @@ def sentence(
 
 
 def exemption(formula: ltl.Formula, scope: str, language: Language = ENGLISH) -> Phrase:
-    """An exception of a rule as a sentence, without its full stop.
-
-    ``scope`` is as in a rulebook.
-    """
+    """An exception of a rule as a sentence without full stop; ``scope`` as in a rulebook."""
     lead = language.exempt.format(language.stretches[scope])
     return _after(lead, phrase(formula, language, inside=True), language)
 

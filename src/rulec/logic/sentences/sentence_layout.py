@@ -1,7 +1,4 @@
-"""A sentence laid out with its nested lists.
-
-The labels of the levels are (a), (b); (i), (ii); (1), (2).
-"""
+"""A sentence with its nested lists, labelled (a), (b); (i), (ii); (1), (2) by level."""
 
 from __future__ import annotations
 
