@@ -152,7 +152,7 @@ class TestSharedVocabulary:
         second = Vocabulary(
             "second", {"base": ObjectType("base"), "thing": ObjectType("thing", "base")}, {}
         )
-        with pytest.raises(UndecidedError, match="`thing` is not the same type"):
+        with pytest.raises(UndecidedError, match="`thing` is a different type"):
             shared_vocabulary(self.FIRST, second)
 
 
@@ -191,7 +191,7 @@ class TestCounterexample:
         (ours, theirs) = compile_shared(
             [first, unlike], [{"r": one.rules[0]} for one in (first, unlike)]
         )
-        with pytest.raises(UndecidedError, match="`p` is not declared alike in both"):
+        with pytest.raises(UndecidedError, match="`p` is declared differently in the two"):
             counterexample(ours["r"], [theirs["r"]])
 
     def test_a_rule_judges_alone_in_the_words_of_another_vocabulary(self):

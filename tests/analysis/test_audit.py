@@ -67,7 +67,7 @@ def found(one, kind):
         ("to-do", [("§ 12", "Fees")]),
         ("unlisted", [("agreed", "§ 11")]),
         ("not-found", [("agreed", "§ 11: act.md has no § 11")]),
-        ("unread", [("agreed", "custom: it names no article to look for")]),
+        ("unread", [("agreed", "custom: it names no article to look up")]),
         ("law-changed", [("changed", "§ 10a: was “slow.”, is “slower.”")]),
         ("unused", [("unused_word", "")]),
     ],

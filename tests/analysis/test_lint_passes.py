@@ -289,7 +289,7 @@ def test_what_is_left_open_is_a_warning():
     own = Rule("r", "hard", (), P)
     diagnostic = undecided_diagnostic(own, "it can be kept", UndecidedError("it is too large"))
     assert (diagnostic.code, diagnostic.severity) == ("R0807", "warning")
-    assert diagnostic.message == ("not decided of rule `r` whether it can be kept: it is too large")
+    assert diagnostic.message == ("undecided for rule `r` whether it can be kept: it is too large")
 
 
 def test_counts_are_asked_about_at_all_sizes():

@@ -247,8 +247,8 @@ SAME_TREE = ("rules", 1, "tree", 1, 2, "terms", 0, 1, "body", 2)
 @pytest.mark.parametrize(
     ("path", "value", "words"),
     [
-        ((*SPEED_TREE, "limit"), "1/4", "does not read what"),
-        ((*SPEED_TREE, "relation"), "<", "does not read what"),
+        ((*SPEED_TREE, "limit"), "1/4", "does not read the same"),
+        ((*SPEED_TREE, "relation"), "<", "does not read the same"),
         ((*SPEED_TREE, "text"), "speed is low", "two different formulas"),
         ((*SPEED_TREE, "terms"), [], "normal form"),
         ((*SPEED_TREE, "terms"), [["2", QUANTITY]], "normal form"),
@@ -262,19 +262,23 @@ SAME_TREE = ("rules", 1, "tree", 1, 2, "terms", 0, 1, "body", 2)
         ((*COUNT_TREE, "count"), "z", "`near(y)`"),
         ((*COUNT_TREE, "body"), ["always", True], "at other instants"),
         ((*COUNT_TREE, "body"), ["since", True, True], "at other instants"),
-        (("rules", 0, "tree", 1, 1), {"same": ["y", "y"]}, "same object"),
-        (("rules", 1, "tree", 1, 1), {"same": ["x", "x"]}, "same object"),
-        ((*SAME_TREE, "same"), ["y", "z"], "same object"),
+        (("rules", 0, "tree", 1, 1), {"same": ["y", "y"]}, "outside of a count"),
+        (("rules", 1, "tree", 1, 1), {"same": ["x", "x"]}, "outside of a count"),
+        ((*SAME_TREE, "same"), ["y", "z"], "outside of a count"),
         (("rules", 0, "tree", 1, 2, 2, "to"), "4", "two different formulas"),
         (("rules", 0, "step_s"), None, "wrong step"),
         (("rules", 0, "step_s"), "3/4", "multiple"),
         (("rules", 0, "step_s"), "-1/2", "more than 0"),
         (("rules", 1, "step_s"), "1", "wrong step"),
-        (("rules", 0, "machine", "reads", 0, "thresholds", 0, "inclusive"), True, "not read what"),
+        (
+            ("rules", 0, "machine", "reads", 0, "thresholds", 0, "inclusive"),
+            True,
+            "not read the same",
+        ),
         (("rules", 0, "machine", "reads", 0, "thresholds"), [], "does not fit"),
         (("rules", 0, "machine", "reads", 0, "terms"), 3, "terms"),
         (("priorities",), [["safety", "nothing"]], "unknown level"),
-        (("priorities",), [["safety", "legal"], ["legal", "comfort"]], "follows"),
+        (("priorities",), [["safety", "legal"], ["legal", "comfort"]], "transitively closed"),
         (("priorities",), [["safety", "legal"], ["safety", "legal"]], "twice"),
         (("levels",), ["safety", "courtesy"], "unknown level"),
     ],
@@ -359,7 +363,7 @@ def test_machines_for_cut_traces_may_be_lacking_but_not_for_some_rules_alone():
     data = json.loads(to_json(replace(compiled, prefixes=stored(compiled))))
     data["rules"].append({**data["rules"][0], "name": "another"})
     del data["rules"][1]["cut"]
-    assert "for some rules alone" in refused(data)
+    assert "only some of its rules" in refused(data)
 
 
 @pytest.mark.parametrize("version", [3, 4, 5])

@@ -84,7 +84,7 @@ def test_a_rule_that_explodes_is_an_error_and_the_others_compile(position):
         compile_rulebook(Rulebook("test", vocabulary, tuple(rules)), cpu_limit_s=1)
     assert [d.code for d in caught.value.diagnostics] == ["R0401"]
     assert "Boom" in caught.value.diagnostics[0].message
-    assert "rule of its own" in caught.value.diagnostics[0].help
+    assert "a separate rule" in caught.value.diagnostics[0].help
 
 
 def test_two_rules_that_explode_are_two_errors():

@@ -34,14 +34,14 @@ def test_a_conflict(capsys):
     assert (
         capsys.readouterr().out
         == """\
-error[R0804]: rules `caution` and `flow` cannot both be kept any more, though each alone could
+error[R0804]: rules `caution` and `flow` cannot both be kept after some trace, though each alone could
  --> two.rules:4:1
   |
 3 | hard rule caution { require always (wet implies next slow) }
   | ------------------------------------------------------------ `caution` is here
 4 | hard rule flow { require never (wet and next slow) }
   | ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
-  = help: except from one of them what another one asks for, or make it soft
+  = help: give one of them an exception for what another one demands, or make it soft
   = note: after the trace: { wet }
 
 1 error
@@ -65,7 +65,7 @@ def test_formats(capsys):
 def test_what_is_not_decided_is_not_answered(capsys):
     assert main(["analyze", "./nested.rules"]) == 2
     assert (
-        "[R0807]: not decided of rule `r` whether it can be kept and violated"
+        "[R0807]: undecided for rule `r` whether it can be kept and violated"
         in capsys.readouterr().out
     )
 

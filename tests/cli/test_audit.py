@@ -63,7 +63,7 @@ def test_findings_by_kind(folder, capsys):
     status, out, _ = run(capsys, "island.rules")
     assert status == 0
     assert "\nsoftened: an inherited hard rule that was made soft\n  softer  only recomm" in out
-    assert "\ndropped: an inherited rule that was taken out\n  taken_out  there are no s" in out
+    assert "\ndropped: an inherited rule that was dropped\n  taken_out  there are no s" in out
 
 
 @pytest.mark.parametrize(
@@ -85,7 +85,7 @@ def test_fail_on(folder, arguments, expected, capsys):
 
 def test_an_example_that_fails(folder, capsys):
     out = run(capsys, "island.rules", "--examples")[1]
-    assert "failing: an example comes out otherwise than it says\n  changed  example 1\n" in out
+    assert "failing: an example does not have the result that it states\n  changed  example 1\n" in out
 
 
 def test_a_law_s_text_that_has_changed_since(folder, capsys):

@@ -203,7 +203,7 @@ def test_words_that_mean_different_things(tmp_path, capsys):
         )
     assert main(["diff", "./a.rules", "./b.rules"]) == 2
     out = capsys.readouterr().out
-    assert "r: not decided: `gap` is not declared alike in both" in out
+    assert "r: not decided: `gap` is declared differently in the two" in out
 
 
 def test_it_takes_two(capsys):

@@ -73,15 +73,15 @@ def test_nothing_is_required_afterwards(folder, rules, capsys):
     ("text", "words"),
     [
         (None, "no signature beside"),
-        (lambda data: signature_text(data, OTHER), "not signed by the key"),
-        (lambda data: signature_text(data, number=b"anothern"), "not signed by the key"),
-        (lambda data: signature_text(data + b" "), "not signed by the key"),
+        (lambda data: signature_text(data, OTHER), "not signed by the required key"),
+        (lambda data: signature_text(data, number=b"anothern"), "not signed by the required key"),
+        (lambda data: signature_text(data + b" "), "not signed by the required key"),
         (lambda data: signature_text(data, kind=b"Ed"), "without `-l`"),
-        (lambda data: signature_text(data).replace("today", "to-day"), "not signed by the key"),
+        (lambda data: signature_text(data).replace("today", "to-day"), "not signed by the required key"),
         (lambda data: signature_text(data).replace("today", "today\n"), "four lines"),
-        (lambda data: signature_text(data)[:-9], "is no signature"),
+        (lambda data: signature_text(data)[:-9], "is not a signature"),
         (lambda data: "\n\n\n\n", "four lines"),
-        (lambda data: "\ufffd" * 9, "is no signature"),
+        (lambda data: "\ufffd" * 9, "is not a signature"),
     ],
 )
 def test_what_is_not_signed_is_refused(folder, rules, text, words, capsys):

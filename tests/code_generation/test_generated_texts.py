@@ -228,8 +228,8 @@ def test_options_that_make_no_sense(options, tmp_path, capsys):
     ("script", "code", "said"),
     [
         (None, "R0751", "`no-such-compiler` is not found"),
-        ("exit 3", "R0752", "it ended with status 3 and said nothing"),
-        ("kill -SEGV $$", "R0752", "it was ended by signal 11 and said nothing"),
+        ("exit 3", "R0752", "it ended with status 3 without any output"),
+        ("kill -SEGV $$", "R0752", "it was ended by signal 11 without any output"),
         (r"printf 'f\374r' >&2; exit 1", "R0752", "has failed: f\N{REPLACEMENT CHARACTER}r"),
         ("exit 0", "R0752", "it has written no library for this Python: esterle2019.so: "),
     ],
@@ -269,7 +269,7 @@ def test_a_variable_that_is_no_command(esterle, monkeypatch):
     with pytest.raises(RulecError) as caught:
         CLibrary(monitor_layout(esterle, {}))
     (found,) = caught.value.diagnostics
-    assert (found.code, "no command: `gcc 'unclosed`" in found.message) == ("R0751", True)
+    assert (found.code, "not a command: `gcc 'unclosed`" in found.message) == ("R0751", True)
 
 
 def test_an_empty_variable_is_none(monkeypatch):

@@ -171,7 +171,7 @@ def test_lenses_run_examples_and_insert_what_is_missing(watched):
     run, english, *others = lenses(watched)["slow_in_town"]
     assert (run.title, english.title, others) == ("run 1 example", "in plain English", [])
     before = watched.refreshed
-    assert "1 of 1 examples come out as they say" in execute(watched, run)
+    assert "1 of 1 examples pass" in execute(watched, run)
     watched.until(lambda: watched.refreshed, lambda now: now > before)
     run, _, insert = lenses(watched)["slow_in_town"]
     assert run.title == "1 example passes"

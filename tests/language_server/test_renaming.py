@@ -102,7 +102,7 @@ def test_a_variable_also_in_short_forms(books):
     ("new", "why"),
     [
         ("until", "a word of the language"),
-        ("2fast", "is no name"),
+        ("2fast", "is not a name"),
         ("odd", "there would be a mistake"),
         ("gap", "there would be a mistake"),
     ],
@@ -118,7 +118,7 @@ def test_a_word_of_a_vocabulary_that_ships_stays(books):
 
 
 def test_a_book_keeps_the_name_of_its_file(books):
-    assert "called as its file" in refused(books, "over.rules", at(UPON, "extends ground"), "x")
+    assert "the name of its file" in refused(books, "over.rules", at(UPON, "extends ground"), "x")
 
 
 def test_what_can_be_renamed_is_known_before(books):
@@ -129,5 +129,5 @@ def test_what_can_be_renamed_is_known_before(books):
 
 def test_with_a_mistake_in_a_book_nothing_is_renamed(books):
     books.open("over.rules", UPON.replace("and odd", "and"))
-    assert "mend them first" in refused(books, "ground.rules", at(BASE, "define close"), "near")
+    assert "fix them first" in refused(books, "ground.rules", at(BASE, "define close"), "near")
     assert books.open("over.rules", UPON) == []

@@ -51,10 +51,7 @@ def counterexample(
 
 
 class Contest:
-    """A rule that forbids, others that allow, and the states in which they may differ.
-
-    Raises UndecidedError.
-    """
+    """A forbidding rule, allowing ones, and states where they may differ. Raises UndecidedError."""
 
     def __init__(
         self,
@@ -224,7 +221,7 @@ def _universe(
             continue
         words = shared_vocabulary(vocabulary, allowed.rulebook.vocabulary)
         for name in sorted(words.unlike & names):
-            raise UndecidedError(f"`{name}` is not declared alike in both")
+            raise UndecidedError(f"`{name}` is declared differently in the two")
         vocabulary, unsaid = words.vocabulary, unsaid | words.not_shared | words.unlike
     objects = {variable.name: variable.type for variable in forbidding.rule.variables}
     return ObjectUniverse(objects, vocabulary, axioms, unsaid - read)
@@ -266,7 +263,7 @@ def _shared_vocabulary(own: Itself[Vocabulary], other: Itself[Vocabulary]) -> Sh
     types: dict[str, ObjectType] = dict(first.types)
     for name, kind in second.types.items():
         if types.setdefault(name, kind).parent != kind.parent:
-            raise UndecidedError(f"`{name}` is not the same type in both")
+            raise UndecidedError(f"`{name}` is a different type in the two")
     declarations: dict[str, Declaration] = dict(first.declarations)
     unlike = set()
     for name, item in second.declarations.items():

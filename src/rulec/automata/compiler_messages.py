@@ -86,8 +86,8 @@ def no_machine(
         case Failed("reach"):
             return SPOT_MISSING.at(
                 rule.span,
-                f"rule `{rule.name}` takes Spot: it asks for something without end inside "
-                "something else without end",
+                f"rule `{rule.name}` needs Spot: it nests unbounded obligations, or its past "
+                "depends on the future",
                 help=_GET_SPOT,
                 notes=_provision(rule),
             )
@@ -97,7 +97,7 @@ def no_machine(
         case Failed("letters"):
             why = "it reads too many signals, enumerations and numbers at once"
         case Failed("sets"):
-            why = "it takes more acceptance sets than Spot has"
+            why = "it needs more acceptance sets than Spot supports"
         case Failed("steps"):
             why = "one of its bounds has more than 10,000 steps"
     # Whether a bound is given in seconds or steps, the number of its steps makes it large.
@@ -106,12 +106,12 @@ def no_machine(
     if has_bounds and step_s is not None:
         # A user can resample a recording to longer steps, but cannot change the law.
         why += f" for steps of {number_in_words(step_s)} s"
-        more += ", and longer steps are fewer: of a recording every fifth state may do"
+        more += "; longer steps mean fewer: for a recording, every fifth state may be enough"
     return AUTOMATON_TOO_LARGE.at(
         rule.span,
         f"the automaton of rule `{rule.name}` would be too large: {why}",
-        help="say each of its demands in a rule of its own: rules joined by `and` multiply, "
-        "rules beside each other do not" + more,
+        help="write a separate rule for each of its demands: automata of demands joined by `and` "
+        "multiply, those of separate rules do not" + more,
         notes=_provision(rule),
     )
 
@@ -125,7 +125,7 @@ def no_spot(problem: str) -> Diagnostic:
     return SPOT_MISSING.at(
         None,
         f"Spot, which turns rules into automata, cannot be loaded: {problem}",
-        help=f"{_GET_SPOT}; unset RULEC_COMPILER to do without",
+        help=f"{_GET_SPOT}; unset RULEC_COMPILER to compile without it",
     )
 
 
@@ -138,5 +138,6 @@ def not_confined(confined: Confinement) -> Diagnostic:
         None,
         f"RULEC_REQUIRE_CONFINED is set, but Spot's process could {able}",
         help="compile on Linux from 5.13, on x86-64 or ARM64, outside of containers that forbid "
-        "Landlock; judge elsewhere by what was compiled there; or unset RULEC_REQUIRE_CONFINED",
+        "Landlock; judge elsewhere with the rulebook compiled there; or unset "
+        "RULEC_REQUIRE_CONFINED",
     )

@@ -59,8 +59,8 @@ def _with_certificates(books: Sequence[CompiledRulebook]) -> list[CompiledRulebo
             [
                 COMPILERS_DISAGREE.at(
                     books[0].place_of(name),
-                    f"Spot and rulec's own compiler make different tables of rule `{name}`",
-                    help="this is a bug in one of them, none in the rulebook: please report it",
+                    f"Spot and rulec's own compiler make different tables for rule `{name}`",
+                    help="this is a bug in one of them, not in the rulebook: please report it",
                 )
                 for name in different
             ]

@@ -26,7 +26,7 @@ def too_large(excess: str, way_out: str = "") -> RulecError:
     """The error (R0750) about a part that is too large or missing."""
     return NO_MONITOR_IN_C.error(
         None,
-        f"there can be no monitor in C: {excess}",
+        f"a monitor in C is not possible: {excess}",
         help=way_out or "split the rule, or leave it out",
     )
 
@@ -72,7 +72,7 @@ def unreadable_command(command: str, problem: str) -> RulecError:
     """The error (R0751) about a ``CC`` that is not a command."""
     return NO_MONITOR_COMPILER.error(
         None,
-        f"the environment variable `CC` is no command: `{command}` ({problem})",
+        f"the environment variable `CC` is not a command: `{command}` ({problem})",
         help="name a compiler in it as in a shell, such as `gcc -m32`, or unset it",
     )
 
@@ -83,7 +83,7 @@ def no_rust_compiler() -> RulecError:
         None,
         "there is no Rust compiler: `rustc` is not found",
         help="install Rust, or put its folder on the `PATH`; without `--prove` the monitor is "
-        "written all the same",
+        "written without it",
     )
 
 
@@ -94,7 +94,7 @@ def compiler_failed(command: str, output: str, status: int | None = None) -> Rul
     if not first:
         ended = "ended" if status is None else f"ended with status {status}"
         first = f"it {ended if status is None or status >= 0 else f'was ended by signal {-status}'}"
-        first += " and said nothing"
+        first += " without any output"
     is_rust = command.startswith("rustc")
     another = "name another compiler in `CC`"
     if is_rust and "rustup" in output:
@@ -119,6 +119,6 @@ def differs(differences: Sequence[str]) -> RulecError:
     """The error (R0753) about the differences found."""
     return MONITOR_DIFFERS.error(
         None,
-        f"the monitor in C is not what its tables say: {'; '.join(differences[:3])}",
+        f"the monitor in C differs from its tables: {'; '.join(differences[:3])}",
         help="try another compiler (`CC`), and report this",
     )

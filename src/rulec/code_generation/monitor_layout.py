@@ -138,7 +138,7 @@ def monitor_layout(
     """
     rulebook = rulebook.at_one_step()
     if not rulebook.rules:
-        raise too_large(f"rulebook `{rulebook.name}` has no rules", "give one that has some")
+        raise too_large(f"rulebook `{rulebook.name}` has no rules", "choose a rulebook with rules")
     fields = input_fields(rulebook)
     seats = _seats(fields, bounds)
     placing = _Placing(code(fields), fields, seats)
@@ -172,7 +172,7 @@ def _seats(fields: InputFields, bounds: Mapping[str, int]) -> dict[str, tuple[in
             did_you_mean(unknown[0], kinds) or f"known: {', '.join(kinds)}",
         )
     if any(not 0 < bound <= MOST_SEATS for bound in bounds.values()):
-        raise too_large(f"a bound on objects is from 1 to {MOST_SEATS}", "change `--objects`")
+        raise too_large(f"a bound on objects must be from 1 to {MOST_SEATS}", "change `--objects`")
     usual = {kind: USUAL_SEATS for kind in kinds if _parent(kind, vocabulary) is None}
     bounds = usual | dict(bounds)
     seats: dict[str, tuple[int, int]] = {}
@@ -223,7 +223,7 @@ class _Placing:
         of_nobody = {number for number, (source, _) in enumerate(reads) if source == WORLD}
         cells = letter_cells(machine.letters, [read.size for read in machine.reads], of_nobody)
         if len(cells) >= LEAF or len(machine.successors[0]) >= LEAF - 1:
-            raise too_large(f"{subject} too many letters that are not alike")
+            raise too_large(f"{subject} too many different letters")
         at = 1
         while at < len(cells):
             read = cells[at]
@@ -262,7 +262,9 @@ class _Placing:
         expression = self.code.digits(read, places)
         known.setdefault(expression, read.size)
         if len(known) > MOST_READS:
-            raise too_large(f"its rules read {len(known):,} things, at most {MOST_READS:,}")
+            raise too_large(
+                f"its rules read {len(known):,} different values, at most {MOST_READS:,}"
+            )
         return source, list(known).index(expression)
 
     def _seats_of(self, kind: str) -> tuple[int, int]:

@@ -53,7 +53,9 @@ class ReadingCode:
     def digits(self, read: Read | NumberRead, places: Places) -> str:
         """The expression for a read's digits. Raises RulecError R0750 if there are too many."""
         if read.size > MOST_DIGITS:
-            raise too_large(f"{read.size} values of one read are told apart, at most {MOST_DIGITS}")
+            raise too_large(
+                f"a rule distinguishes {read.size} values of one read, at most {MOST_DIGITS}"
+            )
         if read.size == 1:
             return self._whole(0)  # for example a count that is at least 0
         if isinstance(read, Read):

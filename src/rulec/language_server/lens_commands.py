@@ -81,7 +81,7 @@ def add_commands(server: EditorSession) -> None:
         return missing
 
 
-_MISTAKES = "the rulebook has mistakes, which have to be mended before"
+_MISTAKES = "the rulebook has mistakes: fix them first"
 
 RuleInDocument = tuple[DocumentNames, Rulebook, Rule]
 

@@ -41,10 +41,7 @@ def write_ltl(rulebook: Rulebook, lowered: RulebookFormulas, folder: Path) -> li
 
 
 def spot_table(rules: Sequence[RuleTerms]) -> str:
-    """One row per rule; Spot's tools read the second column with ``-F R.csv/-2``.
-
-    Columns: rule, formula, facts, history.
-    """
+    """One row per rule: rule, formula (read by Spot with ``-F R.csv/-2``), facts, history."""
     table = io.StringIO()
     rows = csv.writer(table, lineterminator="\n")
     rows.writerow(["rule", "formula", "facts", "history"])
@@ -58,8 +55,8 @@ def prism_properties(rulebook: Rulebook, rules: Sequence[RuleTerms]) -> str:
     """Three properties per rule; the model has to define the labels."""
     lines = [
         *_head(rulebook, "//"),
-        f"// Labels are what {rulebook.name}.propositions.json says; the model defines them, so",
-        "// that facts and history are certain: else a label is not what it stands for.",
+        f"// Labels have the meanings in {rulebook.name}.propositions.json. The model must define",
+        "// them so that facts and history hold with probability 1, or they do not mean that.",
     ]
     for terms in rules:
         name = fresh_identifier(terms.rule.name, set())

@@ -23,5 +23,5 @@ def too_long(rule: Rule, why: str) -> RulecError:
     return TOO_LONG_IN_LTL.error(
         rule.span,
         f"rule `{rule.name}` is too long in LTL: {why}",
-        help="take a larger step, or its automaton, which is small: leave out `--emit ltl`",
+        help="use a larger step, or its automaton, which is small: leave out `--emit ltl`",
     )

@@ -64,7 +64,7 @@ def _of_rule(rule: str, cite: str, law: LawText, law_now: LawText | None) -> Ite
             else:
                 yield CiteCheck(rule, place, "found")
     for piece in references_in(cite)[1]:
-        yield CiteCheck(rule, piece, "unread", "it names no article to look for")
+        yield CiteCheck(rule, piece, "unread", "it names no article to look up")
 
 
 def _looked_for(cite: str, law: LawText) -> Iterator[Reference]:

@@ -109,14 +109,14 @@ def _cannot_be_kept(
 ) -> Diagnostic:
     *firsts, last = names
     whole = [sides[name] for name in names]
-    when = "at all" if clash.trace is None else "any more"
+    when = "at all" if clash.trace is None else "after some trace"
     notes = () if clash.trace is None else trace_note("after the trace", clash.trace, whole)
     both = "both" if len(names) == 2 else "all"
     return CONFLICTING_RULES.at(
         rules[last].span,
         f"rules {', '.join(f'`{name}`' for name in firsts)} and `{last}` cannot {both} be kept "
         f"{when}, though each alone could",
-        help="except from one of them what another one asks for, or make it soft",
+        help="give one of them an exception for what another one demands, or make it soft",
         labels=tuple(
             Label(place, f"`{name}` is here")
             for name in firsts
@@ -161,8 +161,8 @@ def contradictions(
             rules[second].span,
             f"rules `{first}` and `{second}` cannot both be kept where "
             f"`{formula_text(antecedent.formula)}`",
-            help="say in one of them, by `when` or `unless`, where the other one comes first; "
-            "or forbid that outright",
+            help="limit one of them, by `when` or `unless`, to where the other one does not apply; "
+            "or forbid that situation outright",
             labels=() if label is None else (Label(label, f"`{first}` is here"),),
             severity="warning",
         )

@@ -117,7 +117,7 @@ def undecided_diagnostic(rule: Rule, question: str, problem: UndecidedError) -> 
     """The warning (R0807) that a question about a rule was left open."""
     return NOT_DECIDED.at(
         rule.span,
-        f"not decided of rule `{rule.name}` whether {question}: {problem}",
-        help="say less in one rule; rules beside each other are looked at one by one",
+        f"undecided for rule `{rule.name}` whether {question}: {problem}",
+        help="split the rule: separate rules are analysed one by one",
         severity="warning",
     )

@@ -152,8 +152,7 @@ def _idle(
                 finding_messages.NEVER_TRIGGERED.at(
                     rule.span,
                     message + f"`{formula_text(trigger.formula)}`",
-                    help="no state of the world can be like that; say what is meant, or leave it "
-                    "out",
+                    help="no state of the world can satisfy it; correct it, or leave it out",
                     severity="warning",
                 ),
             )
@@ -165,20 +164,20 @@ def _alone(rule: Rule, answers: RuleAnswers) -> Iterator[Diagnostic]:
             yield finding_messages.CANNOT_BE_VIOLATED.at(
                 rule.span,
                 f"nothing can violate rule `{rule.name}`",
-                help="it holds in every trace that can be"
+                help="it holds in every possible trace"
                 + (
-                    ", since what is constant in it, such as an option, counts as it stands"
+                    ", with the constants in it, such as options, as they are set"
                     if has_constant(rule.formula)
                     else ""
                 )
-                + "; say what it is to forbid",
+                + "; make it forbid something",
                 severity="warning",
             )
         elif not answers.can_be_kept(rule.name):
             yield finding_messages.CANNOT_BE_KEPT.at(
                 rule.span,
                 f"nothing can keep rule `{rule.name}`",
-                help="every trace violates it; say what it is to allow",
+                help="every trace violates it; make it allow something",
             )
     except UndecidedError as problem:
         yield finding_messages.undecided_diagnostic(rule, "it can be kept and violated", problem)
@@ -217,7 +216,7 @@ def _implied(rule: Rule, premises: Sequence[Rule]) -> Diagnostic:
     return finding_messages.ADDS_NOTHING.at(
         rule.span,
         f"rule `{rule.name}` adds nothing: {names} {verb} all that it forbids",
-        help="leave it out, unless its own provision is worth a rule",
+        help="leave it out, unless its provision deserves a rule of its own",
         labels=tuple(
             Label(place, label) for premise in premises if (place := at(premise.span)) is not None
         ),
@@ -230,8 +229,8 @@ def _to_drop(name: str, diagnostic: Diagnostic, extends: Span | None) -> Diagnos
     if diagnostic.code != finding_messages.ADDS_NOTHING.code:
         return _inherited(diagnostic, extends)
     way_out = (
-        f'write `drop rule {name} because "…"`, or override it rather than write another one, '
-        "unless its own provision is worth a rule"
+        f'write `drop rule {name} because "…"`, or override it instead of writing another one, '
+        "unless its provision deserves a rule of its own"
     )
     return replace(_inherited(diagnostic, extends), help=way_out)
 
@@ -270,7 +269,7 @@ def _weaker(
     return finding_messages.WEAKER_THAN_BASE.at(
         rule.span,
         f"rule `{rule.name}` is {how} than in `{base.name}`, which this rulebook extends",
-        help="if the law has it so, nothing is to be done",
+        help="if that is what the law says, leave it as it is",
         notes=tuple(notes),
         severity="warning",
     )

@@ -98,10 +98,10 @@ def _check_names(rulebook: CompiledRulebook) -> None:
 def _with_steps(rulebook: CompiledRulebook, read: schema.BundleFile) -> CompiledRulebook:
     """The rulebook for a file's steps; each of its rules is for one of the steps or for all."""
     steps = [number_from_data(step) for step in read.steps or ()]
-    _require(len(set(steps)) == len(steps) > 0, "its steps are none, or one is there twice")
+    _require(len(set(steps)) == len(steps) > 0, "it has no steps, or one of them twice")
     pairs = list(zip(rulebook.rules, read.rules, strict=True))
     known = all(rule.step_s in (None, *steps) for rule in rulebook.rules)
-    _require(known, "a rule is for a step that is none of the file's")
+    _require(known, "a rule is for a step that the file does not have")
     books = []
     for step in steps:
         own = [(rule, entry) for rule, entry in pairs if rule.step_s in (None, step)]
@@ -123,7 +123,7 @@ def _prefixes(read: schema.BundleFile) -> StoredPrefixes | None:
     """The machines for cut traces, checked; None if the file has none."""
     lacking = [rule.cut is UNSET for rule in read.rules]
     if any(lacking):
-        _require(all(lacking), "it has machines for traces that are cut for some rules alone")
+        _require(all(lacking), "only some of its rules have machines for cut traces")
         return None
     for rule in read.rules:
         if rule.cut:
@@ -131,7 +131,7 @@ def _prefixes(read: schema.BundleFile) -> StoredPrefixes | None:
             known = len(rule.cut.starts) > 0 and set(rule.cut.starts) <= set(
                 range(len(rule.cut.successors))
             )
-            _require(known, f"the table of rule `{rule.name}` for cut traces begins nowhere")
+            _require(known, f"the table of rule `{rule.name}` for cut traces has no valid start")
     return StoredPrefixes({rule.name: _cut_tables(rule) for rule in read.rules})
 
 
@@ -143,14 +143,14 @@ def _priorities(read: schema.BundleFile) -> frozenset[tuple[str, str]]:
     """The priorities, checked to be a pre-order of the levels."""
     _require(len(set(read.levels)) == len(read.levels), "two levels have the same name")
     pairs = frozenset(read.priorities)
-    _require(len(pairs) == len(read.priorities), "a priority is said twice")
+    _require(len(pairs) == len(read.priorities), "a priority is listed twice")
     named = {level for pair in pairs for level in pair}
     _require(named <= set(read.levels), "a priority is about an unknown level")
     below: dict[str, set[str]] = {level: {level} for level in read.levels}
     for higher, lower in pairs:
         below[higher].add(lower)
     closed = all(below[lower] <= below[higher] for higher, lower in pairs)
-    _require(closed, "the priorities leave out what follows from them")
+    _require(closed, "the priorities are not transitively closed")
     return pairs
 
 
@@ -182,7 +182,7 @@ def _axiom(fact: schema.AxiomEntry, vocabulary: Vocabulary) -> CompiledAxiom:
     )
     _check_parts(axiom, fact, vocabulary, "a fact")
     timeless = all(part.operator in BOOLEAN for part in operations_of(axiom.formula))
-    _require(timeless, "a fact speaks of more than one state")
+    _require(timeless, "a fact is about more than one state")
     return axiom
 
 
@@ -211,7 +211,7 @@ def _check_formula(
         match waiting.pop():
             case ltl.Atom() as atom:
                 known = _is_known(atom, vocabulary, variables)
-                _require(known, f"{of} speaks of `{atom}`, which its vocabulary lacks")
+                _require(known, f"{of} uses `{atom}`, which its vocabulary lacks")
             case ltl.Comparison(terms) as comparison:
                 normal = _is_normal(comparison)
                 _require(normal, f"{of} compares numbers that are not in their normal form")
@@ -220,11 +220,11 @@ def _check_formula(
             case ltl.Same(left, right):
                 comparable = counted and {left, right} <= variables
                 _require(
-                    comparable, f"{of} asks for the same object where there is none to compare"
+                    comparable, f"{of} compares unknown variables, or compares outside of a count"
                 )
             case ltl.Unary() | ltl.Binary() as operation:
                 now = not counted or operation.operator in BOOLEAN
-                _require(now, f"{of} counts objects by what they do at other instants")
+                _require(now, f"{of} counts objects by what holds at other instants")
                 if isinstance(operation, ltl.Unary):
                     waiting.append(operation.operand)
                 else:
@@ -299,7 +299,7 @@ def _check_rule(
     _check_parts(rule, read, vocabulary, f"rule `{name}`")
     _check_machine(read.machine, name)
     same = rule.machine.reads == reads_of(formula, vocabulary)
-    _require(same, f"the table of rule `{name}` does not read what its formula does")
+    _require(same, f"the table of rule `{name}` does not read the same as its formula")
     known = not rule.level or rule.level in levels
     _require(known, f"rule `{name}` has an unknown level")
     _require(rule.weight > 0, f"rule `{name}` has no weight")

@@ -43,8 +43,8 @@ def check_digest(data: bytes, file: str) -> None:
         return
     raise changed(
         file,
-        f"this compiled rulebook is not as it was written: the SHA-256 of all that follows its "
-        f"second line is {digest[:12].decode()}…, and that line says another",
+        f"this compiled rulebook has been changed: the SHA-256 of all that follows its second "
+        f"line is {digest[:12].decode()}…, but that line has another one",
     )
 
 
@@ -57,8 +57,8 @@ def without_digest(file: str, version: int, steps: Iterable[str]) -> RulecError:
     """R0411 for a file of an earlier version, with the command that writes it again."""
     return NO_DIGEST.error(
         SourceLocation(file),
-        f"this compiled rulebook is of version {version}, which has no digest, so nothing tells "
-        "whether it is as it was written",
+        f"this compiled rulebook is of version {version}, which has no digest, so changes to it "
+        "would go unnoticed",
         help=_way_out(file, steps),
     )
 
@@ -68,4 +68,4 @@ def _way_out(file: str, steps: Iterable[str] = ()) -> str:
     # A damaged file does not say reliably which rulebook it was, and its own name may differ.
     words = ["rulec", "compile", "RULEBOOK", *(word for step in steps for word in ("--step", step))]
     command = shlex.join([*words, "-o", str(path.parent)])
-    return f"make it anew from its source, a name or a path: `{command}`"
+    return f"compile it again from its source, a name or a path: `{command}`"

@@ -193,7 +193,7 @@ def from_json(data: bytes, file: str) -> CompiledRulebook:
             f"{schema.VERSION}",
         )
     if not has_digest(data):
-        message = "this compiled rulebook is not as it was written: its digest is not in its place"
+        message = "this compiled rulebook has been changed: its digest is not in its place"
         raise changed(file, message)
     try:
         return rulebook_of(msgspec.json.decode(data, type=schema.BundleFile))
@@ -221,10 +221,7 @@ def _damaged(file: str, message: str) -> RulecError:
 
 
 def read_compiled(path: Path) -> CompiledRulebook:
-    """Read a compiled rulebook's file.
-
-    Raises RulecError: R0701, R0404, R0410, R0411, and as ``check_signed``.
-    """
+    """Read a compiled rulebook. Raises R0701, R0404, R0410, R0411, and as ``check_signed``."""
     return from_json(read_signed(path), str(path))
 
 

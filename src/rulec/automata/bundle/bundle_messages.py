@@ -101,7 +101,7 @@ echo '{"step_s": 0.5, "states": [{"p": false}, {"p": true}]}' > trace.jsonl
 """
 OTHER_STEP = Code(
     "R0507",
-    title="a trace has another step than a rule was compiled for",
+    title="a trace has a step that a rule was not compiled for",
     why="A bound in seconds corresponds to a number of states that depends on the time step "
     "`step_s` of the trace. A compiled rulebook has this number for certain steps only, chosen by "
     "`rulec compile --step`; with the source of the rulebook, every trace is judged by its own "

@@ -38,7 +38,7 @@ def compiled_files(references: Sequence[str]) -> list[str]:
             elif not is_pattern or _is_compiled(Path(place)):
                 paths[place] = None
         if is_pattern and not places:
-            raise _nothing(reference, "no file is called like that")
+            raise _nothing(reference, "no file matches this pattern")
     return list(paths)
 
 

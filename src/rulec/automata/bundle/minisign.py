@@ -45,7 +45,7 @@ def public_key(text: str) -> PublicKey:
         raise SignatureFormatError("it is empty")
     kind, number, key = _parts(lines[-1], 32)
     if kind != _KEY:
-        raise SignatureFormatError("it is no Ed25519 key")
+        raise SignatureFormatError("it is not an Ed25519 key")
     return PublicKey(number, key)
 
 
@@ -53,20 +53,20 @@ def detached_signature(text: str) -> DetachedSignature:
     """The signature in a file's text. Raises SignatureFormatError."""
     lines = text.splitlines()
     if len(lines) != 4 or not lines[2].startswith(_TRUSTED):
-        raise SignatureFormatError("it has not the four lines of a signature")
+        raise SignatureFormatError("it does not have the four lines of a signature")
     kind, number, signature = _parts(lines[1], 64)
     if kind != _DIGESTED:
-        raise SignatureFormatError("it is not of a digest; sign without `-l`")
+        raise SignatureFormatError("it does not sign a digest; sign without `-l`")
     of_comment = _decoded(lines[3])
     if len(of_comment) != 64:
-        raise SignatureFormatError("its comment's signature is not of 64 bytes")
+        raise SignatureFormatError("its comment's signature does not have 64 bytes")
     return DetachedSignature(number, signature, lines[2].removeprefix(_TRUSTED), of_comment)
 
 
 def _parts(line: str, length: int) -> tuple[bytes, bytes, bytes]:
     data = _decoded(line)
     if len(data) != 10 + length:
-        raise SignatureFormatError(f"its Base64 is not of {10 + length} bytes")
+        raise SignatureFormatError(f"its Base64 does not have {10 + length} bytes")
     return data[:2], data[2:10], data[10:]
 
 

@@ -53,7 +53,7 @@ def check_signed(path: Path, data: bytes) -> None:
     try:
         signature = detached_signature(_text(beside))
     except (OSError, ValueError) as problem:
-        message = f"`{beside.name}` beside it is no signature: {problem}"
+        message = f"`{beside.name}` beside it is not a signature: {problem}"
         raise _not_signed(path, message) from None
     try:
         signed = has_signed(key, signature, data)
@@ -64,20 +64,22 @@ def check_signed(path: Path, data: bytes) -> None:
             help=f"`{install_command('signed')}`",
         ) from None
     if not signed:
-        raise _not_signed(path, "it is not signed by the key that is required")
+        raise _not_signed(path, "it is not signed by the required key")
 
 
 def refuse_source(reference: str | Path) -> None:
     """Raise R0412 for a rulebook that is not compiled if a signature is required."""
     if os.environ.get(VARIABLE):
-        raise _not_signed(Path(reference), "only compiled rulebooks are signed, and this is none")
+        raise _not_signed(
+            Path(reference), "only compiled rulebooks can be signed, and this is not one"
+        )
 
 
 def _not_signed(path: Path, message: str) -> RulecError:
     return NOT_SIGNED.error(
         SourceLocation(str(path)),
         message,
-        help="get the file and its signature from who made them, or sign it with "
+        help="get the file and its signature from their author, or sign it with "
         "`minisign -S -m FILE`",
     )
 
@@ -92,7 +94,7 @@ def _key(required: str) -> PublicKey:
     except (OSError, SignatureFormatError, ValueError) as problem:
         raise NO_KEY.error(
             SourceLocation(required),
-            f"this is no public key of minisign's: {problem}",
+            f"this is not a public key of minisign: {problem}",
             help="give the path of a key that `minisign -G` made, or its second line",
         ) from None
 

@@ -22,6 +22,6 @@ def choice() -> str:
             None,
             f"{VARIABLE} is `{name}`, and there is no such compiler",
             help=did_you_mean(name, [SPOT, DIAGRAMS])
-            or f"it is `{SPOT}` or `{DIAGRAMS}`; unset, it is Spot where that is installed",
+            or f"use `{SPOT}` or `{DIAGRAMS}`; if it is unset, Spot is used where it is installed",
         )
     return name

@@ -50,7 +50,11 @@ def _inherited(rule: tree.RuleItem, names: DocumentNames) -> Iterator[Hint]:
     start = names.bounds(rule.span)[0]
     if rule.strength is None and entry.item.strength is not None:
         deed = "confirm" if rule.confirm else "override"
-        yield start + len(deed), f" {entry.item.strength}", "inherited: nothing else is said here"
+        yield (
+            start + len(deed),
+            f" {entry.item.strength}",
+            "inherited, since this rule does not set it",
+        )
     end = names.bounds(rule.name.span)[1]
     if rule.level is None and entry.item.level is not None and not rule.variables:
         yield end, f" in {entry.item.level.text}", "inherited level"
@@ -80,7 +84,7 @@ def _narrow(
         if alike:
             return
         start, end = names.bounds(left.span)
-        why = f"`{left.operator}` binds tighter than `{follows}`: it speaks of this alone"
+        why = f"`{left.operator}` binds tighter than `{follows}`: it applies to this part only"
         yield start, "(", why
         yield end, ")", why
 

@@ -1,6 +1,6 @@
 """Answers about a rule that need a compiler: examples, sentence, parent."""
 
-# Imports are local: compilers, automata and reports take 400 ms and are needed on request only.
+# Imports within functions: compilers, automata and reports take 400 ms, needed on request only.
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ class ExampleAnswer:
     def in_words(self, rule: str) -> str:
         """One sentence each on examples, edges and recordings."""
         total = self.passed + len(self.failing)
-        text = [f"{rule}: {self.passed} of {total} examples come out as they say"]
+        text = [f"{rule}: {self.passed} of {total} examples pass"]
         if self.failing:
-            text.append(f"otherwise come out: {', '.join(self.failing)}")
+            text.append(f"failing: {', '.join(self.failing)}")
         if self.missing:
             text.append(f"untested edges: {len(self.missing)}, the first one by\n{self.missing[0]}")
         if self.lacking:

@@ -89,7 +89,7 @@ def _rule(names: DocumentNames, name: str) -> Iterator[str]:
     laid = names.chain.names.constants.overlay
     entry = laid.rules.get(name)
     if entry is None:
-        yield f"Rule `{name}`, which is no rule of this rulebook any more."
+        yield f"Rule `{name}`, which this rulebook no longer has."
         return
     item = entry.item
     heads = ", ".join(

@@ -59,7 +59,9 @@ def renamed(
     if name == symbol.name:
         return {}
     if not _NAME.fullmatch(name):
-        raise RefusedRenamingError(f"`{name}` is no name: letters, digits and `_`, no digit first")
+        raise RefusedRenamingError(
+            f"`{name}` is not a name: letters, digits and `_`, no digit first"
+        )
     if name in RESERVED:
         raise RefusedRenamingError(f"`{name}` is a word of the language")
     changes: dict[str, list[TextChange]] = {}
@@ -74,19 +76,19 @@ def renamed(
         parts.sort(key=lambda change: change.start)
         path = path_of(uri)
         if path is not None and editor.is_read_only(path):
-            raise RefusedRenamingError(f"`{symbol.name}` stands in {path}, {_NOT_YOURS}")
+            raise RefusedRenamingError(f"`{symbol.name}` occurs in {path}, {_NOT_YOURS}")
     _refuse_other_meaning(changes, symbol, name, names, editor)
     return changes
 
 
-_NOT_YOURS = "which is outside of the editor's folders and stays as it is"
+_NOT_YOURS = "which is outside of the editor's folders and is not changed"
 
 
 def refuse_in_general(symbol: NamedSymbol, editor: EditorWorkspace) -> None:
     """Raise RefusedRenamingError if a symbol cannot be renamed, whatever its new name."""
     if symbol.kind == "file":
         raise RefusedRenamingError(
-            f"`{symbol.name}` is called as its file: rename that, and what stands behind `rulebook`"
+            f"`{symbol.name}` is the name of its file: rename that, and the name after `rulebook`"
         )
     declared = symbol.span.source.name
     if path_of(uri_of(declared)) is not None and editor.is_read_only(declared):
@@ -192,13 +194,13 @@ def _refuse_other_meaning(
         now = _checked(trial, trial.documents[uri])
         file = was.path or was.name
         if any(diagnostic.severity == "error" for diagnostic in was.findings):
-            raise RefusedRenamingError(f"{file} has mistakes: mend them first")
+            raise RefusedRenamingError(f"{file} has mistakes: fix them first")
         new = _first_new(was.findings, now.findings)
         if new is not None:
             raise RefusedRenamingError(f"with `{name}` there would be a mistake: {new.message}")
         if symbol.kind not in _WORDS and _meaning(was, symbol, name) != _meaning(now, symbol, name):
             raise RefusedRenamingError(
-                f"with `{name}` the rules in {file} would mean another thing"
+                f"with `{name}` the rules in {file} would change their meaning"
             )
 
 
@@ -274,6 +276,6 @@ def placeholder(
     """The symbol to be renamed at a character, and its bounds. Raises RefusedRenamingError."""
     occurrence = names.at(offset)
     if occurrence is None:
-        raise RefusedRenamingError("there is no name here that could be another one")
+        raise RefusedRenamingError("there is no name here to rename")
     refuse_in_general(occurrence.symbol, editor)
     return occurrence.symbol, *names.bounds(occurrence.span)
