@@ -121,23 +121,23 @@ def _header(layout: MonitorLayout) -> Iterator[str]:
         #define RULEC_PENDING 2u      /* would be violated if this were the end */
         #define RULEC_VIOLATED 3u     /* for good */
 
-        /* What a step comes to; after all but the first it has not been taken. */
+        /* The status of a step; with any but the first, the state was refused. */
         typedef uint8_t rulec_status;
         #define RULEC_OK 0u
-        #define RULEC_NULL 1u              /* a pointer leads nowhere */
-        #define RULEC_BAD_TYPE 2u          /* an object's type is none */
+        #define RULEC_NULL 1u              /* a pointer is NULL */
+        #define RULEC_BAD_TYPE 2u          /* an object's type is invalid */
         #define RULEC_TWICE 3u             /* an object is given twice */
         #define RULEC_TOO_MANY 4u          /* there are more than RULEC_MOST_OBJECTS objects */
         #define RULEC_EXCLUDED_BY_FACTS 5u /* facts of the vocabulary exclude such a state */
 
-        /* In place of a signal (0 or 1) or of an enumeration's value that is not known, as what is
-         * none counts, too; of numbers NaN, infinity and what is beyond 2^53. */
+        /* An unknown signal (otherwise 0 or 1) or enumeration; invalid values count as unknown.
+         * Unknown numbers are NaN, infinity and anything beyond 2^53. */
         #define RULEC_UNKNOWN 255u
         #define RULEC_UNKNOWN_NUMBER (0x1p+1000)
         """).splitlines()
     yield f"#define RULEC_RULES {len(rules)}u"
     yield f"#define RULEC_TYPES {len(fields.types)}u"
-    yield f"#define RULEC_SEATS {layout.n_seats}u /* objects that are watched at a time */"
+    yield f"#define RULEC_SEATS {layout.n_seats}u /* objects that can be watched at a time */"
     yield "#define RULEC_MOST_OBJECTS 60000u"
     yield f"#define RULEC_N_SOURCES {len(layout.rulebook.sources) or 1}u"
     if steps:
@@ -148,7 +148,7 @@ def _header(layout: MonitorLayout) -> Iterator[str]:
         name = fields.constants[RULE, own.rule.name]
         yield f"#define RULEC_{name} {number}u /* {in_comment(about)} */"
     yield ""
-    yield "/* Types of objects; an object is given the narrowest that it is of. */"
+    yield "/* Types of objects; give each object its most specific type. */"
     for number, kind in enumerate(fields.types):
         first, end = layout.seats[kind]
         seats = f"{end - first} seats: {first} to {end - 1}" if first < end else "no seats"
@@ -168,20 +168,20 @@ def _header(layout: MonitorLayout) -> Iterator[str]:
 def _input(layout: MonitorLayout) -> Iterator[str]:
     fields = layout.fields
     yield "typedef struct {"
-    yield "    uint32_t id; /* the same as long as it is the same object */"
+    yield "    uint32_t id; /* constant for the same object */"
     yield "    uint8_t type;"
     yield from (f"    {_field(item, layout)}" for item in fields.about(1))
     yield "} rulec_object;"
     yield ""
     yield "typedef struct {"
     yield "    size_t n_objects;"
-    yield "    const rulec_object *objects; /* who is there */"
+    yield "    const rulec_object *objects; /* the objects that are present */"
     yield from (f"    {_field(item, layout)}" for item in fields.about(0))
     for item in fields.about(2):
         yield (
             f"    const {_kind(item)} *{fields.identifiers[item.name]}; "
-            f"/* {_about(item)}, for all {len(item.parameters)} of n_objects, the last counting "
-            "ones; NULL: of none */"
+            f"/* {_about(item)}, for all choices of {len(item.parameters)} objects, the last index "
+            "varying fastest; NULL: defaults */"
         )
     yield "} rulec_input;"
 
@@ -219,8 +219,8 @@ def _sizes(layout: MonitorLayout) -> Iterator[str]:
         if name not in ("RULES", "TYPES", "SEATS"):
             yield f"#define RULEC_{name} {size}u"
     own, shared = sizes["WORLD_READS"], sizes["WORLD_READS"] + sizes["SEATS"] * sizes["OWN_READS"]
-    yield f"#define RULEC_OWN {own}u /* where the digits of those on seats begin */"
-    yield f"#define RULEC_SHARED {shared}u /* and of several */"
+    yield f"#define RULEC_OWN {own}u /* where the digits of objects on seats begin */"
+    yield f"#define RULEC_SHARED {shared}u /* and those about several objects */"
     # The array ends after the highest index that a place of valid width can have.
     yield f"#define RULEC_DIGITS {shared + sizes['PLACES'] + 1}u"
     yield "#define RULEC_SOURCES 16u"

@@ -115,7 +115,10 @@ def _field(item: Declaration, layout: MonitorLayout, *, several: bool = False) -
     if isinstance(item, Quantity):
         about += in_comment(f", in {item.unit}")
     if several:
-        about += f": for all {len(item.parameters)} objects, the last counting ones; or empty"
+        about += (
+            f": for all choices of {len(item.parameters)} objects, the last index varying fastest"
+        )
+        about += "; or empty"
         return f"{kind}[] {name}{about}"
     return f"{kind} {name} {_default(item)}{about}"
 
@@ -143,21 +146,21 @@ def _constants(layout: MonitorLayout, about: int) -> Iterator[str]:
 def _object_message(layout: MonitorLayout) -> Iterator[str]:
     fields = layout.fields
     yield from _head(layout)
-    yield "# 255, and numbers beyond 2^53, are not known."
+    yield "# 255, and numbers beyond 2^53, mean unknown."
     for number, kind in enumerate(fields.types):
         yield f"uint8 {fields.constants[TYPE, kind]}={number}"
     yield from _constants(layout, 1)
-    yield "uint32 id  # the same as long as it is the same object"
-    yield "uint8 type 255  # the narrowest that it is of"
+    yield "uint32 id  # constant for the same object"
+    yield "uint8 type 255  # its most specific type"
     yield from (_field(item, layout) for item in fields.about(1))
 
 
 def _state_message(layout: MonitorLayout) -> Iterator[str]:
     yield from _head(layout)
-    yield "# 255, and numbers beyond 2^53, are not known."
+    yield "# 255, and numbers beyond 2^53, mean unknown."
     yield from _constants(layout, 0)
     yield "std_msgs/Header header"
-    yield "Object[] objects  # who is there"
+    yield "Object[] objects  # the objects that are present"
     yield from (_field(item, layout) for item in layout.fields.about(0))
     yield from (_field(item, layout, several=True) for item in layout.fields.about(2))
 
@@ -169,19 +172,19 @@ def _verdict_message(layout: MonitorLayout) -> Iterator[str]:
     for number, own in enumerate(layout.rules):
         yield f"uint16 {layout.fields.constants[RULE, own.rule.name]}={number}"
     yield "std_msgs/Header header  # that of the state"
-    yield "uint8 status  # 0, or why the state has not been taken: R_NULL to R_EXCLUDED_BY_FACTS"
+    yield "uint8 status  # 0, or why the state was refused: R_NULL to R_EXCLUDED_BY_FACTS"
     yield "uint8 best  # of all hard rules together"
     yield "uint8 worst"
     yield f"uint8[{len(layout.rules)}] rules_best  # of each rule, by its constant"
     yield f"uint8[{len(layout.rules)}] rules_worst"
-    yield "uint32 violations  # choices of objects that have violated a rule for good"
+    yield "uint32 violations  # choices of objects that violated a rule for good"
     yield "uint32 left_out  # objects for which there was no seat"
 
 
 def _core(layout: MonitorLayout) -> Iterator[str]:
     name, fields = prefix_of(layout.rulebook.name), layout.fields
     messages = message_fields(layout)
-    yield "// Between messages and the monitor in C; it takes nothing of ROS but the messages."
+    yield "// Between messages and the monitor in C; it uses nothing of ROS but the messages."
     yield ""
     yield "#pragma once"
     yield ""

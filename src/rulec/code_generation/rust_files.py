@@ -30,7 +30,7 @@ name = "{name}"
 """
 
 _TEST = """\
-//! The monitor takes a state of which nothing is known, and refuses what is no state.
+//! The monitor accepts a state with all values unknown, and refuses invalid states.
 
 use {name}::*;
 
@@ -69,7 +69,7 @@ def rust_source(layout: MonitorLayout) -> str:
             *[f"// {line}".rstrip() for line in head_lines(layout)],
             "#![no_std]",
             "#![forbid(unsafe_code)]",
-            "// Not every rulebook needs all of it, and fields have its vocabulary's names.",
+            "// Not every rulebook uses all of this, and fields have its vocabulary's names.",
             "#![allow(dead_code, non_snake_case)]",
             "",
             *formed(data),
@@ -124,16 +124,16 @@ def rust_harness(layout: MonitorLayout) -> str:
 
 def _constants(layout: MonitorLayout) -> Iterator[str]:
     fields, rules = layout.fields, layout.rules
-    yield "/// In place of a signal (0 or 1) or of an enumeration's value that is not known."
+    yield "/// An unknown signal (otherwise 0 or 1) or enumeration."
     yield "pub const UNKNOWN: u8 = 255;"
-    yield "/// In place of a number that is not known, as infinity and what is beyond 2^53."
+    yield "/// An unknown number, as are infinity and anything beyond 2^53."
     yield "pub const UNKNOWN_NUMBER: f64 = f64::NAN;"
-    yield "/// Objects that may be given at a time."
+    yield "/// The most objects at a time."
     yield "pub const MOST_OBJECTS: usize = 60_000;"
     for name, size in layout.array_sizes.items():
         yield f"pub const {name}: usize = {size};"
     yield ""
-    yield "/// Numbers of rules, of types of objects, and of the values of enumerations."
+    yield "/// The numbers of rules, of types of objects, and of the values of enumerations."
     yield "pub mod names {"
     for number, own in enumerate(rules):
         about = f"{own.rule.strength}; {own.rule.cite}" if own.rule.cite else own.rule.strength
@@ -147,7 +147,7 @@ def _constants(layout: MonitorLayout) -> Iterator[str]:
                 yield f"    pub const {fields.constants[item.name, value]}: u8 = {number};"
     yield "}"
     yield ""
-    yield "/// The names of the rules, the articles that they stand for, and the sources' digests."
+    yield "/// The names of the rules, the articles that they cite, and the sources' digests."
     digests = [f"{source.name} {source.sha256}" for source in layout.rulebook.sources]
     for name, texts in (
         ("RULE_NAMES", [own.rule.name for own in rules]),
@@ -164,7 +164,7 @@ def _kind(item: Declaration) -> str:
 def _input(layout: MonitorLayout) -> Iterator[str]:
     fields = layout.fields
     world, own, several = (list(fields.about(number)) for number in range(3))
-    yield "/// An object, with the number that is its own as long as it is there."
+    yield "/// An object, with an id that stays the same while it is present."
     yield "#[derive(Clone, Copy, Debug)]"
     yield "#[repr(C)]"
     yield "pub struct Object {"
@@ -174,20 +174,20 @@ def _input(layout: MonitorLayout) -> Iterator[str]:
         yield from _field(item, layout, _kind(item))
     yield "}"
     yield ""
-    yield "/// The state of the world, and who is there."
+    yield "/// The state of the world, and the objects that are present."
     yield "#[derive(Clone, Copy, Debug)]"
     yield "pub struct Input<'a> {"
     yield "    pub objects: &'a [Object],"
     for item in world:
         yield from _field(item, layout, _kind(item))
     for item in several:
-        yield "    // For all choices of objects, the last counting ones; None: of none"
+        yield "    // For all choices of objects, the last index varying fastest; None: defaults"
         yield from _field(item, layout, f"Option<&'a [{_kind(item)}]>")
     yield "}"
     yield ""
     yield "impl Object {"
     for constructor, defaults in (("defaults", True), ("unknown", False)):
-        yield f"    /// An object of which nothing is said{' but the defaults' * defaults}."
+        yield f"    /// An object with every value {'its default' if defaults else 'unknown'}."
         yield "    #[must_use]"
         yield f"    pub const fn {constructor}(id: u32, r#type: u8) -> Self {{"
         inits = _inits(own, layout, defaults=defaults)
@@ -197,7 +197,7 @@ def _input(layout: MonitorLayout) -> Iterator[str]:
     yield ""
     yield "impl<'a> Input<'a> {"
     for constructor, defaults in (("defaults", True), ("unknown", False)):
-        yield f"    /// A state of which nothing is said{' but the defaults' * defaults}."
+        yield f"    /// A state with every value {'its default' if defaults else 'unknown'}."
         yield "    #[must_use]"
         yield f"    pub const fn {constructor}(objects: &'a [Object]) -> Self {{"
         inits = _inits(world, layout, defaults=defaults)

@@ -1,10 +1,10 @@
-/* The machines. A rule has an instance for each choice of seats that its variables may stand for;
- * an instance is in one state of the rule's machine, or in one of several, if not all is known.
+/* The machines. A rule has an instance for each choice of seats for its variables; an instance is
+ * in one state of the rule's machine, or in one of several, if values are unknown.
  *
- * No table and no array is left, whatever is in them: what a table says is bounded before it is a
- * place in another one, or tables are a little longer than what is read of them. */
+ * No access is outside of a table or an array, whatever these contain: a number read from a table
+ * is bounded before it is used as an index, or the indexed table is padded. */
 
-#define RULEC_NOBODY ((uint8_t)RULEC_TYPES) /* the type of who sits on an empty seat */
+#define RULEC_NOBODY ((uint8_t)RULEC_TYPES) /* the type on an empty seat */
 #define RULEC_EMPTY 0xffffu   /* no object of the input */
 #define RULEC_SEVERAL 0xffffu /* not one entry of the table, or several classes of letters */
 #define RULEC_LEAF 0x8000u
@@ -13,27 +13,27 @@
 #define RULEC_WITHIN(best, worst) ((uint8_t)((uint8_t)(best) | (uint8_t)((uint8_t)(worst) << 2)))
 
 #define RULEC_LOST ((uint8_t)1u)    /* violated for good */
-#define RULEC_DOUBTED ((uint8_t)2u) /* perhaps violated by who has left */
+#define RULEC_DOUBTED ((uint8_t)2u) /* perhaps violated by objects that have left */
 
-/* Where an instance is: the entry that it took last, or RULEC_SEVERAL. Then its states are a set, and
- * its verdict has a place of its own. */
+/* An instance's position: the entry that it took last, or RULEC_SEVERAL: then its states are a set,
+ * and its verdict is stored separately. */
 static inline uint8_t rulec_said(const rulec_state *state, uint32_t instance)
 {
     const uint16_t at = state->at[instance];
     return (at == RULEC_SEVERAL) ? state->verdict[instance] : RULEC_EXACTLY(at & 3u);
 }
 
-/* Where an instance stands during a step. */
+/* The position of an instance during a step. */
 typedef struct {
     uint32_t number;
-    uint16_t turns[RULEC_VARIABLES]; /* among the seats that are taken, or were */
+    uint16_t turns[RULEC_VARIABLES]; /* among the seats that are or were taken */
     uint16_t seats[RULEC_VARIABLES];
-    uint16_t start; /* the first cell of which objects decide */
+    uint16_t start; /* the first cell that depends on objects */
     uint32_t first; /* the instance with the first seat for the last variable */
     const uint16_t *digits[RULEC_SOURCES];
 } rulec_instance;
 
-/* The seat that an object has had, looked for at a likely one first. */
+/* The seat that an object had; a likely one is tried first. */
 static uint16_t rulec_seat_of(const rulec_state *state, uint32_t id, uint8_t type, uint16_t likely)
 {
     uint16_t seat = likely;
@@ -48,13 +48,13 @@ static uint16_t rulec_seat_of(const rulec_state *state, uint32_t id, uint8_t typ
     return RULEC_EMPTY;
 }
 
-/* Seats: objects keep theirs as long as they are there, others get those that are free. */
+/* Seats: objects keep theirs while they are present, new ones get free seats. */
 static rulec_status rulec_seat(rulec_state *state, const rulec_input *in, uint32_t *left_out)
 {
     size_t one;
     uint16_t seat;
     size_t n_new = 0u;
-    uint16_t next = 0u; /* where the next object sits, if they come in the order of their seats */
+    uint16_t next = 0u; /* the next object's seat, if objects are in the order of their seats */
     *left_out = 0u;
     state->crowded = 0u;
     for (seat = 0u; seat < RULEC_TYPES; seat++) {
@@ -99,11 +99,11 @@ static rulec_status rulec_seat(rulec_state *state, const rulec_input *in, uint32
                 break;
             }
             if (other >= in->n_objects) {
-                free = (free == RULEC_EMPTY) ? seat : free; /* nobody sits there */
+                free = (free == RULEC_EMPTY) ? seat : free; /* it is free */
             } else if ((in->objects[other].id == id) && (in->objects[other].type == type)) {
                 return RULEC_TWICE;
             } else {
-                /* somebody else's seat */
+                /* another object's seat */
             }
         }
         if (!has_seat && (free < RULEC_SEATS)) {
@@ -115,13 +115,13 @@ static rulec_status rulec_seat(rulec_state *state, const rulec_input *in, uint32
             state->crowded = 1u;
             state->absent[type] = 1u;
         } else {
-            /* sits already */
+            /* has a seat already */
         }
     }
     return RULEC_OK;
 }
 
-/* The class of the letter that is read, from a cell on, if what is not known cannot decide. */
+/* The class of the letter that is read, from a cell on, if no unknown value matters. */
 static inline uint16_t rulec_class(const uint16_t *cells, uint16_t start,
     const uint16_t *const *digits)
 {
@@ -137,7 +137,7 @@ static inline uint16_t rulec_class(const uint16_t *cells, uint16_t start,
     return (uint16_t)(at & 0x7fffu);
 }
 
-/* The cell from which on objects are read, after what is said of nobody; a class if nothing is. */
+/* The first cell that reads objects, after the reads of no object; a class if there is none. */
 static uint16_t rulec_start(const uint16_t *cells, const uint16_t *world)
 {
     uint16_t at = cells[0];
@@ -170,7 +170,7 @@ static void rulec_clear(uint32_t *bits, uint32_t n)
     }
 }
 
-/* Where a cell leads: a node to be looked at later, for cells lead onward, or a class. */
+/* The target of a cell: a class, or a node to be visited later, since cells only lead onward. */
 static void rulec_lead(rulec_state *state, uint16_t cell)
 {
     const uint32_t by = (uint32_t)cell & 0x7fffu;
@@ -179,7 +179,7 @@ static void rulec_lead(rulec_state *state, uint16_t cell)
     } else if (by < (RULEC_CLASS_WORDS * 32u)) {
         rulec_set(state->classes, by);
     } else {
-        /* no state of the world is such */
+        /* facts exclude such a state */
     }
 }
 
@@ -211,14 +211,14 @@ static bool rulec_classes(rulec_state *state, const rulec_rule *rule, const uint
     return any;
 }
 
-/* The entry of a state and a class of letters. */
+/* The entry for a state and a class of letters. */
 static inline uint16_t rulec_entry(const rulec_rule *rule, uint32_t from, uint32_t by)
 {
     const uint32_t place = rule->first_entry + (from * rule->n_classes) + by;
     return rulec_entries[(place < RULEC_ENTRIES) ? place : 0u];
 }
 
-/* A step where not all is known: from each possible state by each possible class. */
+/* A step with unknown values: from each possible state by each possible class. */
 static void rulec_advance_all(rulec_state *state, const rulec_rule *rule, uint32_t instance)
 {
     const uint32_t first = rule->first_word
@@ -268,7 +268,7 @@ static void rulec_advance_all(rulec_state *state, const rulec_rule *rule, uint32
     state->verdict[instance] = RULEC_WITHIN(best, worst);
 }
 
-/* A step by what is read. */
+/* A step by the input's values. */
 static void rulec_advance(rulec_state *state, const rulec_rule *rule, const rulec_instance *one)
 {
     const uint16_t by = rulec_class(&rulec_cells[rule->first_cell], one->start, one->digits);
@@ -298,7 +298,7 @@ static void rulec_lose(rulec_state *state, uint16_t number, const rulec_instance
     }
 }
 
-/* Objects part: what is pending is violated, what is open stays open. */
+/* Objects leave: a pending verdict becomes violated, an open one stays open. */
 static void rulec_part(rulec_state *state, uint16_t number, const rulec_instance *one)
 {
     const uint8_t verdict = rulec_said(state, one->number);
@@ -313,7 +313,7 @@ static void rulec_part(rulec_state *state, uint16_t number, const rulec_instance
     }
 }
 
-/* The digits that an instance reads of several objects together. */
+/* The digits that an instance reads about several objects together. */
 static void rulec_look(rulec_state *state, const rulec_input *in, const rulec_rule *rule,
     const rulec_instance *one)
 {
@@ -336,18 +336,18 @@ static void rulec_look(rulec_state *state, const rulec_input *in, const rulec_ru
 }
 
 typedef struct {
-    bool was;   /* all objects were there in the state before */
-    bool stays; /* and all still are */
-    bool is;    /* all are there now */
+    bool was;   /* all objects were present in the state before */
+    bool stays; /* and all are still present */
+    bool is;    /* all are present now */
 } rulec_presence;
 
-/* The best verdict of the worst so far, and the worst, with its best: as verdicts are kept. */
+/* The worst of the best verdicts so far, and the worst one as stored (best, and worst times 4). */
 typedef struct {
     uint8_t best;
     uint8_t worst;
 } rulec_tally;
 
-/* Let a variable stand for the object on a seat; false if another one does. */
+/* Bind a variable to the object on a seat; false if another variable has it. */
 static inline bool rulec_bind(const rulec_state *state, uint16_t variable, uint16_t seat,
     rulec_instance *one)
 {
@@ -381,7 +381,7 @@ static bool rulec_turn(const rulec_state *state, const rulec_rule *rule, rulec_i
     return !carry;
 }
 
-/* Bind all variables but the last as it is their turn; whether somebody is or was there. */
+/* Bind all variables but the last for this turn; whether their objects are or were present. */
 static bool rulec_there(const rulec_state *state, const rulec_rule *rule, rulec_instance *one,
     rulec_presence *found)
 {
@@ -411,7 +411,7 @@ static bool rulec_there(const rulec_state *state, const rulec_rule *rule, rulec_
     return found->was || found->is;
 }
 
-/* Stand where the last variable is for the object on a seat. */
+/* Move to the instance whose last variable has the object on a seat. */
 static inline void rulec_stand(rulec_instance *one, uint16_t seat)
 {
     const uint32_t number = one->first + seat;
@@ -434,7 +434,7 @@ static void rulec_begin(const rulec_state *state, const rulec_rule *rule, rulec_
     }
 }
 
-/* What an instance says counts for its rule; `before` is what it said a step ago. */
+/* Add an instance's verdict to its rule's; `before` is its verdict one step ago. */
 static void rulec_hear(rulec_state *state, uint16_t number, const rulec_instance *one,
     uint8_t before, rulec_tally *tally)
 {
@@ -444,7 +444,7 @@ static void rulec_hear(rulec_state *state, uint16_t number, const rulec_instance
         rulec_lose(state, number, one, state->next_id);
     }
     tally->best = ((now & 3u) > tally->best) ? (uint8_t)(now & 3u) : tally->best;
-    /* Worse at worst, or as bad at worst and worse at best, in one number */
+    /* Compares the worst verdict first, then the best one, as a single number */
     if (now > tally->worst) {
         tally->worst = now;
         if ((state->flags[number] & RULEC_LOST) == 0u) {
@@ -476,7 +476,7 @@ static void rulec_visit(rulec_state *state, const rulec_input *in, uint16_t numb
     }
 }
 
-/* Some seats in turn for the last variable of a rule; `there` are the objects of the others. */
+/* Some seats in turn for the last variable of a rule; `there`: presence of the others' objects. */
 static void rulec_visit_each(rulec_state *state, const rulec_input *in, uint16_t number,
     rulec_instance *one, const rulec_presence *there, const uint16_t *seats, uint16_t n_seats,
     rulec_tally *tally)
@@ -498,7 +498,7 @@ static void rulec_visit_each(rulec_state *state, const rulec_input *in, uint16_t
     }
 }
 
-/* The seats of those who stay and are of a type. */
+/* The seats of the objects of a type that stay. */
 static void rulec_find_fitting(rulec_state *state, uint8_t type)
 {
     const uint8_t *const fits = rulec_fits[type];
@@ -513,7 +513,7 @@ static void rulec_find_fitting(rulec_state *state, uint8_t type)
     state->fitting_type = type;
 }
 
-/* The next entry of an instance, by a class of letters; what it says counts if it is news. */
+/* The next entry of an instance, by a class of letters; its verdict is added if it changed. */
 static inline void rulec_enter(rulec_state *state, uint16_t number, rulec_instance *one,
     uint16_t entry, rulec_tally *tally)
 {
@@ -525,8 +525,9 @@ static inline void rulec_enter(rulec_state *state, uint16_t number, rulec_instan
     }
 }
 
-/* Those who stay, in turn for the last variable of a rule, the others of which stay, too. If all is
- * known the entry is looked up, and nothing else is to be done where it says what has been said. */
+/* The objects that stay, in turn for the last variable of a rule whose others stay, too. If all
+ * values are known, the entry is looked up; if its verdict has not changed, nothing else needs to
+ * be done. */
 static void rulec_visit_fitting(rulec_state *state, const rulec_input *in, uint16_t number,
     rulec_instance *one, rulec_tally *tally)
 {
@@ -553,7 +554,7 @@ static void rulec_visit_fitting(rulec_state *state, const rulec_input *in, uint1
     }
 }
 
-/* A rule about nobody. */
+/* A rule about no object. */
 static void rulec_visit_world(rulec_state *state, const rulec_input *in, uint16_t number,
     rulec_instance *one, rulec_tally *tally)
 {
@@ -568,7 +569,7 @@ static void rulec_visit_world(rulec_state *state, const rulec_input *in, uint16_
     }
 }
 
-/* All objects in turn for the last variable of a rule; `there` are those of the others. */
+/* All objects in turn for the last variable of a rule; `there`: presence of the others' objects. */
 static void rulec_visit_last(rulec_state *state, const rulec_input *in, uint16_t number,
     rulec_instance *one, const rulec_presence *there, rulec_tally *tally)
 {
@@ -605,7 +606,7 @@ static void rulec_visit_all(rulec_state *state, const rulec_input *in, uint16_t 
     }
 }
 
-/* Whether facts exclude what a rule reads of some objects. */
+/* Whether facts exclude the values that a rule reads about some objects. */
 static bool rulec_is_excluded(rulec_state *state, const rulec_input *in, const rulec_rule *rule)
 {
     rulec_instance one;
@@ -752,7 +753,7 @@ rulec_status rulec_step(rulec_state *state, const rulec_input *input, rulec_verd
             return RULEC_EXCLUDED_BY_FACTS;
         }
     }
-    /* A state that is refused has changed nothing so far. */
+    /* Up to here a refused state has changed nothing. */
     verdict->left_out = left_out;
     verdict->book.best = RULEC_SATISFIED;
     verdict->book.worst = RULEC_SATISFIED;

@@ -1,4 +1,4 @@
-/* What a proof asks of a monitor's source, of which this is the end. */
+/* The functions that a proof calls; appended to a monitor's source. */
 
 size_t rulec_state_size(void);
 size_t rulec_state_size(void)
@@ -103,7 +103,7 @@ void rulec_all_steps(uint32_t number, uint16_t *reached, uint8_t *verdicts, uint
     }
 }
 
-/* The digits that are read of an input: of nobody, of one object, of several. */
+/* The digits read from an input: about no object, about one, about several. */
 void rulec_digits(const rulec_input *in, const size_t *who, uint32_t source, uint16_t *digits);
 void rulec_digits(const rulec_input *in, const size_t *who, uint32_t source, uint16_t *digits)
 {
@@ -119,8 +119,8 @@ void rulec_digits(const rulec_input *in, const size_t *who, uint32_t source, uin
     }
 }
 
-/* Steps through all states of a drive: how many have been taken. After each, the verdict of every
- * instance, the best and the worst times 4, and who sits where; 0 is nobody. */
+/* Steps through all states of a drive and returns how many were accepted. After each, the verdict
+ * of every instance (the best, and the worst times 4) and the object on each seat (0 for none). */
 uint32_t rulec_run(rulec_state *state, const rulec_input *inputs, uint32_t n, uint8_t *verdicts,
     uint32_t *ids);
 uint32_t rulec_run(rulec_state *state, const rulec_input *inputs, uint32_t n, uint8_t *verdicts,

@@ -14,7 +14,7 @@ using Input = rulec_input;
 using Verdict = rulec_verdict;
 using Range = rulec_range;
 
-/* An object of which nothing is said but the defaults, or nothing at all. */
+/* An object with every value its default, or every value unknown. */
 inline Object object(std::uint32_t id, std::uint8_t type) noexcept
 {
     Object said;
@@ -29,7 +29,7 @@ inline Object unknown_object(std::uint32_t id, std::uint8_t type) noexcept
     return said;
 }
 
-/* The state of a world without objects, of which nothing is said but the defaults, or nothing. */
+/* A world without objects, with every value its default, or every value unknown. */
 inline Input input() noexcept
 {
     Input said;
@@ -44,22 +44,22 @@ inline Input unknown_input() noexcept
     return said;
 }
 
-/* What a step comes to: the verdict, if it has been taken. */
+/* The result of a step: its status, and the verdict if the state was accepted. */
 struct Step {
     rulec_status status;
     Verdict verdict;
     explicit operator bool() const noexcept { return status == RULEC_OK; }
 };
 
-/* A monitor, without heap or exceptions. A copy goes on by itself. */
+/* A monitor, without heap or exceptions. A copy is independent. */
 class Monitor {
 public:
     Monitor() noexcept { begin(); }
 
-    /* Forget all that was before, as where another drive begins. */
+    /* Forget all earlier states: another drive begins. */
     void begin() noexcept { rulec_init(&state_); }
 
-    /* Takes the next state of the world, in which these objects are there: an array or a vector. */
+    /* Takes the next state of the world, with these objects: an array or a vector. */
     template <typename Objects>
     [[nodiscard]] Step step(Input world, const Objects &objects) noexcept
     {
@@ -68,7 +68,7 @@ public:
         return step(world);
     }
 
-    /* The same, where the input says itself who is there. */
+    /* The same, with the objects of the input. */
     [[nodiscard]] Step step(const Input &world) noexcept
     {
         Step result{};
@@ -76,8 +76,8 @@ public:
         return result;
     }
 
-    /* The id of the object that a rule's variable, from 0, stands for where its verdict is the
-     * worst; 0 if the rule has no such variable. */
+    /* The id of the object of a rule's variable (from 0) in the choice of objects with the worst
+     * verdict; 0 if the rule has no such variable. */
     [[nodiscard]] std::uint32_t about(std::uint32_t rule, std::uint32_t variable) const noexcept
     {
         return rulec_about(&state_, rule, variable);

@@ -1,6 +1,6 @@
-/* Reading: what an input says, as digits. A digit is a number below 255 that says on which side of
- * its limits a value is, or which one it is. Where the value is not known there are several: the
- * lower byte has the least of them, the upper byte how many more there are. */
+/* Reading: an input's values as digits. A digit is a number below 255: on which side of its limits
+ * a value is, or which value it is. An unknown value has several digits: the lower byte is the
+ * least of them, the upper byte the number of further ones. */
 
 #define RULEC_KNOWN(digit) ((uint16_t)(digit))
 #define RULEC_FROM_TO(low, high) \
@@ -155,11 +155,11 @@ static inline uint16_t rulec_order(double first, double second, uint8_t sides)
     return digits;
 }
 
-/* Eight times a number, if that is a whole one and the number below 1e9. */
+/* Eight times a number, if that is a whole number and the number is below 1e9. */
 static inline bool rulec_eighths(double value, int64_t *eighths)
 {
     bool is_whole = false;
-    /* The first is false for NaN, as the others are; analysers know it of the first. */
+    /* All comparisons are false for NaN; static analysers recognise it in the first one. */
     if ((value == value) && (value > -1e9) && (value < 1e9)) {
         const double exact = value * 8.0; /* only the exponent changes */
         *eighths = (int64_t)exact;
@@ -168,10 +168,10 @@ static inline bool rulec_eighths(double value, int64_t *eighths)
     return is_whole;
 }
 
-/* A sum of factors times numbers, each between two bounds. Whole numbers of eighths are weighed
- * exactly. Of others every factor, limit, product and sum, and every number as a decimal, is wrong
- * by 2^-53 of its size at most: all together by less than (n + 8) 2^-53 times the sum of all sizes.
- * Where that could decide, the digits on both sides are possible. */
+/* A sum of factors times numbers, each between two bounds. Whole numbers of eighths are computed
+ * exactly. Otherwise every factor, limit, product and sum, and every number as a decimal, has an
+ * error of at most 2^-53 of its size: in all, less than (n + 8) 2^-53 times the sum of all sizes.
+ * If that could matter, the digits on both sides are possible. */
 static uint16_t rulec_weigh(const double *low, const double *high, const rulec_shape *shape)
 {
     double least = 0.0;

@@ -1,4 +1,4 @@
-// A node that takes states of the world and says after each what the monitor says.
+// A node that receives states of the world and publishes the monitor's verdict after each.
 
 #include "core.hpp"
 

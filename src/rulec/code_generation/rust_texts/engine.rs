@@ -18,30 +18,30 @@ const VERDICTS: [Verdict; 4] = [
     Verdict::Violated,
 ];
 
-/// The best and the worst that a verdict comes to, whatever is not known may be.
+/// The best and the worst that a verdict can be where values are unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Range {
     pub best: Verdict,
     pub worst: Verdict,
 }
 
-/// What a step says.
+/// The result of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Said {
     /// Of all hard rules together.
     pub book: Range,
     /// Of each rule, soft ones included.
     pub rules: [Range; RULES],
-    /// Choices of objects that have violated a rule for good.
+    /// Choices of objects that violated a rule for good.
     pub violations: u32,
     /// Objects for which there was no seat.
     pub left_out: u32,
 }
 
-/// Why a step has not been taken; the monitor is as it was.
+/// Why a state was refused; the monitor is unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// An object's type is none.
+    /// An object's type is invalid.
     BadType,
     /// An object is given twice.
     Twice,
@@ -58,7 +58,7 @@ struct Rule {
     n_classes: usize,
     first_instance: usize,
     first_word: usize,
-    /// Of each variable: its type, and the first seat and the one behind the last.
+    /// For each variable: its type, the first seat and the one after the last.
     variables: &'static [(usize, usize, usize)],
     together: &'static [u16],
     start: u8,
@@ -95,14 +95,14 @@ fn range(best: u8, worst: u8) -> Range {
     }
 }
 
-/// What lasts from one step to the next.
+/// The state kept from one step to the next.
 #[derive(Clone)]
 struct Kept {
     id: [u32; SEATS],
     kind: [u8; SEATS],
     /// The entry that an instance took last, or SEVERAL: then its states are a set.
     at: [u16; INSTANCES],
-    /// Of an instance with a set of states: the best verdict, and the worst times 4.
+    /// For an instance with a set of states: the best verdict, and the worst times 4.
     verdict: [u8; INSTANCES],
     states: [u32; WORDS],
     about: [[u32; VARIABLES]; RULES],
@@ -110,7 +110,7 @@ struct Kept {
     violations: u32,
 }
 
-/// What a step works with.
+/// The working memory of a step.
 #[derive(Clone)]
 struct Work {
     next_id: [u32; SEATS],
@@ -129,7 +129,7 @@ struct Work {
     following: [u32; STATE_WORDS],
 }
 
-/// A monitor. A clone goes on by itself.
+/// A monitor. A clone is independent.
 #[derive(Clone)]
 pub struct Monitor {
     kept: Kept,
@@ -157,7 +157,7 @@ fn is_set(bits: &[u32], place: usize) -> bool {
     (bits[place / 32] >> (place % 32)) & 1 != 0
 }
 
-/// The class of the letter that is read, if what is not known cannot decide.
+/// The class of the letter that is read, if no unknown value matters.
 fn class(cells: &[u16], digit: impl Fn(u16) -> u16) -> u16 {
     let mut at = cells[0];
     while at < LEAF {
@@ -262,7 +262,7 @@ impl Kept {
         }
     }
 
-    /// Objects part: what is pending is violated, what is open stays open.
+    /// Objects leave: a pending verdict becomes violated, an open one stays open.
     fn part(&mut self, number: usize, one: &Instance) {
         let verdict = self.said(one.number);
         let (best, worst) = (verdict & 3, verdict >> 2);
@@ -274,7 +274,7 @@ impl Kept {
         }
     }
 
-    /// A step where not all is known: from each possible state by each possible class.
+    /// A step with unknown values: from each possible state by each possible class.
     fn advance_all(&mut self, rule: &Rule, instance: usize, by: &[u32], following: &mut [u32]) {
         let n_words = rule.n_states() / 32 + 1;
         let first = rule.first_word + (instance - rule.first_instance) * n_words;
@@ -348,8 +348,8 @@ impl Monitor {
         Self { kept, work }
     }
 
-    /// The id of the object that a rule's variable, from 0, stands for where its verdict is the
-    /// worst; none if the rule has no such variable.
+    /// The id of the object of a rule's variable (from 0) in the choice of objects with the worst
+    /// verdict; none if the rule has no such variable.
     #[must_use]
     pub fn about(&self, rule: usize, variable: usize) -> Option<u32> {
         let about = self.kept.about.get(rule)?;
@@ -358,13 +358,13 @@ impl Monitor {
             .copied()
     }
 
-    /// Takes the next state. An object that is no longer there has left; if it comes back, or under
-    /// another type, it begins anew. Those for which there is no seat are counted, and every rule that
-    /// could speak of them is violated at worst from then on.
+    /// Takes the next state. An object that is missing has left; if it returns, or changes its
+    /// type, it is a new object. Objects for which there is no seat are counted; from then on the
+    /// worst verdict of every rule that could apply to them is violated.
     ///
     /// # Errors
     ///
-    /// What is wrong with the input; then the monitor is as it was.
+    /// The problem with the input; then the monitor is unchanged.
     pub fn step(&mut self, input: &Input) -> Result<Said, Refusal> {
         if input.objects.len() > MOST_OBJECTS || !has_all_pairs(input) {
             return Err(Refusal::TooMany);
@@ -394,7 +394,7 @@ impl Monitor {
         Ok(said)
     }
 
-    /// Seats: objects keep theirs as long as they are there, others get those that are free.
+    /// Seats: objects keep theirs while they are present, new ones get free seats.
     fn seat(&mut self, input: &Input) -> Result<u32, Refusal> {
         let (kept, work) = (&self.kept, &mut self.work);
         work.crowded = false;
@@ -470,8 +470,8 @@ impl Monitor {
         }
     }
 
-    /// The instance of a choice of seats, if its objects are or were there; each object stands for one
-    /// variable alone.
+    /// The instance of a choice of seats, if its objects are or were present; no object is used for
+    /// two variables.
     fn there(&self, rule: &Rule, one: &mut Instance) -> Option<Presence> {
         let (kept, work) = (&self.kept, &self.work);
         let mut found = Presence {
@@ -507,7 +507,7 @@ impl Monitor {
         false
     }
 
-    /// Does something for every choice of objects that are or were there.
+    /// Calls a function for every choice of objects that are or were present.
     fn each(&mut self, rule: &Rule, mut take: impl FnMut(&mut Self, &Instance, Presence)) {
         let mut one = Instance {
             number: 0,
@@ -523,7 +523,7 @@ impl Monitor {
         }
     }
 
-    /// Whether facts exclude what a rule reads of some objects.
+    /// Whether facts exclude the values that a rule reads about some objects.
     fn is_excluded(&mut self, input: &Input, number: usize) -> bool {
         let rule = &RULE_TABLE[number];
         let mut excluded = false;
@@ -575,7 +575,7 @@ impl Monitor {
                 this.kept.lose(number, one, &this.work.next_id);
             }
             best = best.max(now & 3);
-            // Worse at worst, or as bad at worst and worse at best, in one number
+            // Compares the worst verdict first, then the best one, as a single number
             if now > worst {
                 worst = now;
                 if this.kept.flags[number] & LOST == 0 {
@@ -607,12 +607,12 @@ impl Default for Monitor {
     }
 }
 
-/// What a proof asks of the tables; nothing for monitoring.
+/// The parts of the tables that a proof reads; not needed for monitoring.
 #[doc(hidden)]
 pub mod proof {
     use super::*;
 
-    /// Its cells and its entries.
+    /// A rule's cells and entries.
     pub fn tables_of(rule: usize) -> (&'static [u16], &'static [u16]) {
         (RULE_TABLE[rule].cells, RULE_TABLE[rule].entries)
     }

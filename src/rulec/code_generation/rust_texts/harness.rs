@@ -1,4 +1,4 @@
-// A monitor in Rust under the names that a proof of one in C calls.
+// A monitor in Rust with the functions of the C harness, which a proof calls.
 
 use rulec_::*;
 

@@ -1,6 +1,6 @@
-// Reading: what an input says, as digits. A digit is a number below 255 that says on which side of its
-// limits a value is, or which one it is. Where the value is not known there are several: the lower
-// byte has the least of them, the upper byte how many more there are.
+// Reading: an input's values as digits. A digit is a number below 255: on which side of its limits
+// a value is, or which value it is. An unknown value has several digits: the lower byte is the
+// least of them, the upper byte the number of further ones.
 
 /// 2^53: numbers beyond it, infinity and NaN are unknown.
 const MOST: f64 = 9_007_199_254_740_992.0;
@@ -127,7 +127,7 @@ fn order(first: f64, second: f64, sides: u16) -> u16 {
     }
 }
 
-/// Eight times a number, if that is a whole one and the number below 1e9.
+/// Eight times a number, if that is a whole number and the number is below 1e9.
 fn eighths(value: f64) -> Option<i64> {
     if !(value > -1e9 && value < 1e9) {
         return None;
@@ -145,10 +145,10 @@ fn size_of(number: f64) -> f64 {
     }
 }
 
-/// A sum of factors times numbers, each between two bounds. Whole numbers of eighths are weighed
-/// exactly. Of others every factor, limit, product and sum, and every number as a decimal, is wrong by
-/// 2^-53 of its size at most: all together by less than (n + 8) 2^-53 times the sum of all sizes.
-/// Where that could decide, the digits on both sides are possible.
+/// A sum of factors times numbers, each between two bounds. Whole numbers of eighths are computed
+/// exactly. Otherwise every factor, limit, product and sum, and every number as a decimal, has an
+/// error of at most 2^-53 of its size: in all, less than (n + 8) 2^-53 times the sum of all sizes.
+/// If that could matter, the digits on both sides are possible.
 fn weigh(values: &[(f64, f64)], shape: &Shape) -> u16 {
     let (mut least, mut most, mut size) = (0.0, 0.0, 0.0);
     let mut whole = (!shape.whole_factors.is_empty()).then_some((0_i64, 0_i64));
