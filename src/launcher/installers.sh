@@ -1,8 +1,8 @@
 # shellcheck shell=sh disable=SC2034,SC2154 # the launcher's files share their variables
-# Running uv and pip: their settings, their words, and what these mean. Sourced by set_up.sh.
+# Runs uv and pip: their settings, their output, and its meaning. Sourced by set_up.sh.
 
-# pip's settings that choose an index or certificates stay, and hold for uv too; those that would
-# send the packages elsewhere go.
+# Keeps pip's settings for the index and certificates, and applies them to uv, too; unsets those that
+# would install the packages elsewhere.
 settle_installers() {
     unset VIRTUAL_ENV UV_PYTHON UV_SYSTEM_PYTHON PIP_PYTHON PIP_TARGET PIP_PREFIX PIP_ROOT \
         PIP_REQUIRE_VIRTUALENV PIP_REQUIREMENT PIP_EDITABLE PIP_NO_DEPS PIP_DRY_RUN PIP_REPORT
@@ -23,9 +23,9 @@ os.chdir(sys.argv[1])
 os.execvp(sys.argv[2], sys.argv[2:])
 '
 
-# Runs a command in the checkout, its words going to the log. In the background, because a shell
-# puts off a signal until a command in front ends; in a group of its own, to be ended whole. What
-# it leaves in its temporary folder when it is ended goes with the environment.
+# Runs a command in the checkout with its output in the log. It runs in the background, because a
+# shell delays signals until a foreground command ends, and in its own process group, so that it can
+# be killed as a whole. Its temporary files are removed with the environment.
 quietly() {
     mkdir -p "$stamps/tmp" 2>/dev/null
     TMPDIR=$stamps/tmp "$python" -E -c "$in_own_group" "$home" "$@" >"$log" 2>&1 </dev/null &
@@ -36,7 +36,7 @@ quietly() {
     return "$status"
 }
 
-# Renamed first, so that not even a kill leaves half of it in place.
+# Renamed first, so that even if killed here, no partial environment stays in place.
 discard() {
     if [ -e "$environment" ]; then mv "$environment" "$environment.gone"; fi
     rm -rf "$environment.gone"
@@ -44,14 +44,14 @@ discard() {
 
 log_has() { grep -qiE "$1" "$log"; }
 
-# Without the index, or its trust, an installer stops before it has changed anything.
+# If the index is unreachable or untrusted, an installer stops before it changes anything.
 is_untrusted() { log_has 'certificate'; }
 is_unreachable() {
     log_has 'name resolution|failed to resolve|dns error|unreachable|newconnection|proxyerror' ||
         log_has 'connection (refused|reset|broken)|timed out|error sending request'
 }
 
-# Stops with the reason found in the installer's words, or else with the last of these.
+# Stops with the reason found in the installer's output, or else with the end of that output.
 give_up() {
     keep=
     if is_untrusted; then
@@ -65,17 +65,17 @@ mirror: HTTPS_PROXY, PIP_INDEX_URL), and call again."
     elif log_has 'do not match the hashes|hash mismatch'; then
         tail -n 20 "$log" | sed 's/^/  | /' >&2
         reason="a package is not the one that the lock names: its hash differs, so nothing of it was \
-installed. Ask whoever runs your package index before you call again."
+installed. Ask the operator of your package index before you call again."
     elif log_has 'no matching distribution|could not find a version|no solution found'; then
         tail -n 20 "$log" | sed 's/^/  | /' >&2
         reason="the package index lacks a release that the lock names. Use another index \
-(PIP_INDEX_URL), or take the releases that it has, unchecked, with RULEC_UNLOCKED=1, and call again."
+(PIP_INDEX_URL), or use the releases that it has, unchecked, with RULEC_UNLOCKED=1, and call again."
     elif log_has 'no space left|disk quota' || [ ! -s "$log" ]; then # the log had no room either
         reason="the disk is full, it seems; the environment takes up to 500 MB. Make room, and \
 call again."
     else
         tail -n 20 "$log" | sed 's/^/  | /' >&2
-        reason="the installation failed with the words above. See what is amiss, and call again."
+        reason="the installation failed with the output above. Fix the problem, and call again."
     fi
     if [ -n "$keep" ] && [ -d "$stamps/before" ]; then
         mv "$stamps/before/"* "$stamps"

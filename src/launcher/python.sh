@@ -1,10 +1,10 @@
 # shellcheck shell=sh disable=SC2034,SC2154 # the launcher's files share their variables
-# Which Python the environment is made with. Sourced by set_up.sh.
+# Chooses the Python for the environment. Sourced by set_up.sh.
 
-# Four lines: the version ("3.12", with a word more if it is not plain CPython), whether it can
-# make environments, the platform ("wheel" if Spot's fits it), the interpreter itself; the last
+# Prints four lines: the version ("3.12", with another word if it is not plain CPython), whether it
+# can create environments, the platform ("wheel" if Spot's wheel fits), and the interpreter's path
 # without symlinks, so that a system upgrade that replaces it breaks the environment visibly.
-# Any Python must be able to run this, to say that it is too old.
+# Every Python must be able to run this, so that a version that is too old is reported as such.
 probe='
 import os, platform, sys, sysconfig
 version = "%d.%d" % sys.version_info[:2]
@@ -32,7 +32,7 @@ if system == "Linux":
 sys.stdout.write("\n".join((version, venv, place, os.path.realpath(sys.executable))))
 '
 
-# Sets python, version and place to those of the first Python that will do.
+# Sets python, version and place to those of the first suitable Python.
 find_python() {
     if [ -n "${RULEC_PYTHON:-}" ]; then
         set -- "$RULEC_PYTHON"
@@ -42,7 +42,7 @@ find_python() {
     seen=
     for candidate in "$@"; do
         if ! command -v "$candidate" >/dev/null 2>&1; then
-            [ -z "${RULEC_PYTHON:-}" ] || seen=", $candidate is not there"
+            [ -z "${RULEC_PYTHON:-}" ] || seen=", $candidate is not found"
             continue
         fi
         answer=$("$candidate" -E -c "$probe" 2>/dev/null </dev/null) || answer=
@@ -69,9 +69,8 @@ apt install python$version-venv)"
         "Install one${uv:+ (uv python install 3.13)}, or set RULEC_PYTHON to one, and call again."
 }
 
-# Sets own_spot to the version of the Spot that python itself brings, where no wheel fits or none is
-# wanted, and leave_wheel where none is to be installed: rulec then compiles with that Spot, or
-# without any.
+# If no wheel fits or none is wanted, sets leave_wheel, and own_spot to the version of the Spot that
+# python itself has, if any: rulec then compiles with that Spot, or without Spot.
 check_platform() {
     own_spot= leave_wheel=
     if [ "$place" = wheel ] && [ -z "${RULEC_OWN_SPOT:-}" ]; then return; fi
@@ -83,5 +82,5 @@ check_platform() {
             "the Python into which it was installed."
     own_spot=
     say "Spot comes ready-made only for Linux on x86-64 with glibc 2.34 or newer and Python up to" \
-        "3.13, and this is $place. rulec compiles without it; for a Spot of your own see docs/installation.md."
+        "3.13, and this is $place. rulec compiles without it; to use your own Spot see docs/installation.md."
 }

@@ -1,5 +1,5 @@
 # shellcheck shell=sh disable=SC2034,SC2154 # the launcher's files share their variables
-# Makes the launcher's environment, or renews it. Sourced by the launcher.
+# Creates or updates the launcher's environment. Sourced by the launcher.
 
 for part in python installers; do
     # shellcheck source=/dev/null
@@ -19,7 +19,7 @@ check_folder() {
     rm -rf "$environment.gone"
     if [ -d "$environment" ]; then rmdir "$environment" 2>/dev/null; fi
     if [ -L "$environment" ] || { [ -e "$environment" ] && [ ! -d "$stamps" ]; }; then
-        stop "$environment is there already, not made by rulec, which needs the place for its own" \
+        stop "$environment exists but was not made by rulec, which needs that path for its own" \
             "environment. Move it away or delete it, and call again."
     fi
 }
@@ -37,15 +37,15 @@ check_space() {
     esac
 }
 
-# The kernel's lock on the checkout's folder ends with its last holder, killed or not, including an
-# installer that has outlived the launcher: it cannot go stale, and leaves no file behind.
+# The kernel releases the lock on the checkout's folder when its last holder ends, even if killed,
+# including an installer that outlives the launcher: it cannot go stale, and leaves no file behind.
 lock='
 import fcntl, signal, sys
 signal.signal(signal.SIGINT, signal.SIG_DFL)
 try:
     fcntl.flock(9, fcntl.LOCK_EX | fcntl.LOCK_NB)
 except BlockingIOError:
-    sys.stderr.write("rulec: another call is at the set-up; waiting for its end ...\n")
+    sys.stderr.write("rulec: another call is setting up; waiting for it to finish ...\n")
     fcntl.flock(9, fcntl.LOCK_EX)
 except OSError:
     pass  # a file system without locks
@@ -62,7 +62,7 @@ interrupted() {
     exit "$1"
 }
 
-# Lets a Spot from elsewhere stand for the wheel: a distribution of the wheel's name, and empty.
+# Lets another Spot stand in for the wheel: an empty distribution with the wheel's name.
 bring_own_spot() {
     [ -n "$own_spot" ] || return 0
     site=$("$environment/bin/python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
@@ -71,9 +71,9 @@ bring_own_spot() {
         >"$site/spottl-$own_spot.dist-info/METADATA"
 }
 
-# Every release is one of the lock's, and every file has one of its hashes, the tools that build rulec
-# included; then the project itself, editable, without looking for anything. RULEC_UNLOCKED takes
-# today's releases within the ranges of pyproject.toml instead.
+# Installs the lock's releases, checked by their hashes, including rulec's build tools; then the
+# project itself, editable, without resolving anything. With RULEC_UNLOCKED it installs current
+# releases within the ranges of pyproject.toml instead.
 install_project() {
     if [ -n "${RULEC_UNLOCKED:-}" ]; then
         install_with -e ".$extra"
@@ -110,21 +110,21 @@ build() {
     install_project
 }
 
-# uv reads neither pip's configuration nor the system's certificates: where it fails, pip may do.
+# uv reads neither pip's configuration nor the system's certificates: if it fails, pip may succeed.
 leave_uv() {
     [ -n "$uv" ] || return 1
-    say "uv could not; trying venv and pip ..."
+    say "uv failed; trying venv and pip ..."
     uv=
 }
 
-# Why an environment that is there will not do.
+# Why the existing environment cannot be used.
 say_why_anew() {
     if [ ! -r "$stamps/run" ]; then
         say "the last set-up did not finish; starting over ..."
     elif [ -n "$made_from" ] && [ "${made_from#* * }" != "$home" ]; then
         say "the environment here was made for ${made_from#* * }; making a new one ..."
     else
-        say "the environment's Python is gone, or another one is asked for; making a new one ..."
+        say "the environment's Python is gone, or another one is requested; making a new one ..."
     fi
 }
 
@@ -134,7 +134,7 @@ make_anew() {
     build || { leave_uv && build; }
 }
 
-# The environment stays; without its stamps it counts as unfinished for as long as this takes.
+# The environment stays; without its stamps it counts as unfinished during the installation.
 add_to_it() {
     if [ "$made_from" = "$wanted" ]; then
         say "adding what the tests need ..."
@@ -174,7 +174,7 @@ make_ready() {
 }
 
 set_up() {
-    # An environment keeps to the Python that it was once asked to be made with.
+    # An environment keeps the Python that was requested when it was made.
     read_stamp run
     if [ -n "$made_with" ] && command -v "$made_with" >/dev/null; then
         RULEC_PYTHON=${RULEC_PYTHON:-$made_with}

@@ -67,7 +67,7 @@ def test_unknown_reason_shows_the_installers_last_words(checkout):
     assert [line for line in said if line.startswith("  | ")] == [
         f"  | word {n}" for n in range(11, 31)
     ]
-    assert said[-1].startswith("rulec: the installation failed with the words above.")
+    assert said[-1].startswith("rulec: the installation failed with the output above.")
     assert not checkout.environment.exists()
 
 

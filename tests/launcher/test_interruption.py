@@ -68,7 +68,7 @@ def test_killed_set_up_is_started_over_after_its_installer_has_ended(checkout):
     assert checkout.environment.exists()  # nobody was there to remove it
     stop_waiting(checkout, "pip")
     second = checkout.start("./rulec")
-    assert second.stderr.readline().startswith("rulec: another call is at the set-up; waiting")
+    assert second.stderr.readline().startswith("rulec: another call is setting up; waiting")
     checkout.let_go_on()
     _, err = second.communicate(timeout=20)
     assert second.returncode == 0
@@ -98,7 +98,7 @@ def test_two_first_calls_make_one_environment(checkout):
     first = checkout.start("./rulec", "first")
     checkout.wait_until_waiting("venv")
     second = checkout.start("./rulec", "second")
-    assert second.stderr.readline().startswith("rulec: another call is at the set-up; waiting")
+    assert second.stderr.readline().startswith("rulec: another call is setting up; waiting")
     assert len(checkout.calls("venv")) == 1
     checkout.let_go_on()
     for process, word in (first, "first"), (second, "second"):

@@ -84,7 +84,7 @@ def test_rulec_python_may_be_a_name(checkout):
     ("asked", "fault"),
     [
         ("other", "other is 3.8."),
-        ("/no/python", "/no/python is not there."),
+        ("/no/python", "/no/python is not found."),
         ("cat", "cat does not"),
     ],
 )

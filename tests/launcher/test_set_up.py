@@ -137,7 +137,7 @@ def test_vanished_python_is_noticed(ready):
 
 def test_python_asked_for_later_is_honoured_and_kept(ready):
     other = str(ready.add_tool("other", version=[3, 12, 0]))
-    assert "another one is asked for" in ready.call(RULEC_PYTHON=other).stderr
+    assert "another one is requested" in ready.call(RULEC_PYTHON=other).stderr
     assert ready.call(RULEC_PYTHON=other).stderr == ""
     assert ready.call().stderr == ""  # asked once, kept
     (ready.folder / "pyproject.toml").write_text("# pulled\n")
@@ -162,7 +162,7 @@ def test_where_uv_fails_pip_starts_afresh(checkout, failing):
     checkout.tell(failing, status=1, says="invalid peer certificate: UnknownIssuer")
     result = checkout.call()
     assert result.returncode == 0
-    assert "uv could not; trying venv and pip" in result.stderr
+    assert "uv failed; trying venv and pip" in result.stderr
     assert "UnknownIssuer" not in result.stderr
     assert tools(checkout)[-3:] == MADE
 

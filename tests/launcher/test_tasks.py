@@ -60,7 +60,7 @@ def test_every_task_of_the_list_is_there(ready):
 def test_a_task_that_there_is_not_is_refused_with_the_list(ready):
     result = run(ready, "cofee")
     assert result.returncode == 2
-    assert result.stderr.startswith("There is no task cofee. There are:\n  .ci/task check ")
+    assert result.stderr.startswith("There is no task cofee. The tasks are:\n  .ci/task check ")
     assert tools(ready) == []
 
 

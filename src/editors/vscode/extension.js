@@ -1,4 +1,4 @@
-// Starts rulec's language server for the rulebooks that are open. All that it knows is in `rulec lsp`.
+// Starts rulec's language server for open rulebooks. All language features are in `rulec lsp`.
 "use strict";
 
 const vscode = require("vscode");
@@ -19,7 +19,7 @@ function start() {
     vscode.window.showErrorMessage(
       `rulec: \`${command.join(" ")} lsp\` does not start. ` +
         "In rulec's checkout `.venv/bin/python -m pip install -e '.[lsp]'` installs it; " +
-        "the setting `rulec.command` says where it is.",
+        "set `rulec.command` to its path.",
     ),
   );
 }
