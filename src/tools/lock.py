@@ -66,4 +66,4 @@ if __name__ == "__main__":
     try:
         main()
     except FileNotFoundError as error:
-        sys.exit(f"{error.filename} is not there: pip install uv")
+        sys.exit(f"{error.filename} is not found: pip install uv")

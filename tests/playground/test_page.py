@@ -42,7 +42,7 @@ class Page:
     def judge(self, traces, book="this rulebook"):
         self.ask("Traces")
         self.page.get_by_label("Judged by").select_option(book)
-        self.page.get_by_label("What was driven").fill(traces)
+        self.page.get_by_label("Traces: one per line").fill(traces)
 
     def compare(self, first, second, rule):
         self.ask("Compare")
@@ -311,7 +311,7 @@ def test_what_is_long_is_folded_and_opened_from_the_keyboard(page):
     page.expect("#test .pass >> visible=true").to_have_count(30)
     page.write(many_rules(31))
     page.expect("#test .pass >> visible=true").to_have_count(31)
-    missing = page.page.locator("#test summary", has_text="that no example tries")
+    missing = page.page.locator("#test summary", has_text="that no example covers")
     missing.focus()
     page.page.keyboard.press("Enter")
     page.page.get_by_role("button", name="Insert it").last.click()
@@ -380,7 +380,7 @@ def test_the_page_is_accessible_and_fits(chromium, address, axe, screen, theme):
         page.write(many_rules(30))
         page.expect("#test .result").to_contain_text("and 20 more that pass")
         check(page, axe, f"{screen}-{theme}-folded")
-        page.page.get_by_text("that no example tries").last.click()
+        page.page.get_by_text("that no example covers").last.click()
         check(page, axe, f"{screen}-{theme}-opened")
 
 

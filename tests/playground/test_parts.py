@@ -45,7 +45,7 @@ def test_a_folder_with_other_files_is_left_alone(tmp_path, monkeypatch, capsys):
     (tmp_path / "letters.txt").write_text("dear all")
     monkeypatch.setattr("sys.argv", ["playground", "-o", str(tmp_path)])
     assert playground.main() == 2
-    assert "has other files in it" in capsys.readouterr().err
+    assert "contains other files" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["letters.txt"]
 
 

@@ -29,9 +29,9 @@ MARK = "playground.json"
 
 
 def build(folder: Path) -> None:
-    """Write the page whole, or raise MissingPartError and leave the folder as it was."""
+    """Write the whole page, or raise MissingPartError and leave the folder unchanged."""
     if folder.exists() and any(folder.iterdir()) and not (folder / MARK).is_file():
-        raise MissingPartError(f"{folder} has other files in it: name a folder of the page's own")
+        raise MissingPartError(f"{folder} contains other files: choose an empty folder")
     folder.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=folder.parent, prefix=".playground-") as temporary:
         page, npm = Path(temporary, "page"), Path(temporary, "npm")

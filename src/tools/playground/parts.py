@@ -46,7 +46,7 @@ def put_pyodide(folder: Path, work: Path) -> None:
     """Put the files of Pyodide, in the release in ``package-lock.json``, into a folder."""
     npm = shutil.which("npm")
     if npm is None:
-        raise MissingPartError("npm is not there, which Pyodide comes from: install Node.js")
+        raise MissingPartError("npm is not found, which Pyodide is installed with: install Node.js")
     for name in ("package.json", "package-lock.json"):
         shutil.copy(HERE / name, work)
     run([npm, "ci", "--omit=dev", "--ignore-scripts", "--no-audit", "--no-fund", "--silent"], work)

@@ -1,8 +1,8 @@
-// What rulec answers, as elements.
+// Converts rulec's answers to elements.
 
 import { counted, element, folded } from "./dom.js";
 
-// So many of a list are shown at first.
+// The number of entries shown before a list is expanded.
 const MOST_LINES = 10;
 const MOST_TOLD = 5;
 
@@ -10,7 +10,7 @@ const plain = (items) => element("ul", { class: "plain" }, items);
 
 const lines = (...texts) => texts.filter(Boolean).map((text) => element("p", {}, text));
 
-/** A finding; `onShow` leads to its place, `onFix` mends it. */
+/** A finding; `onShow` shows its place, `onFix` fixes it. */
 export function finding(one, onShow, onFix) {
   const place = one.place?.line ? `line ${one.place.line}` : "";
   const inSource = one.isOwn && place;
@@ -34,11 +34,11 @@ export function finding(one, onShow, onFix) {
 
 const quoted = (text) => (text.trim().length > 40 ? `“${text.trim().slice(0, 40)}…”` : `“${text.trim()}”`);
 
-/** A message, in which rulec puts what is written in a source between backticks. */
+/** A message, in which rulec puts source text between backticks. */
 const said = (text) =>
   text.split("`").map((part, n) => (n % 2 ? element("code", {}, part) : part));
 
-/** What is found below the editor, whose list has it as its items. */
+/** The items of the list of findings below the editor. */
 export function messages(found, onShow, onFix) {
   const items = found.map((one) => finding(one, onShow, onFix));
   const rest = (part) => element("ol", { class: "findings" }, part);
@@ -46,13 +46,13 @@ export function messages(found, onShow, onFix) {
   return [...(first?.children ?? []), ...(more ? [element("li", { class: "more" }, more)] : [])];
 }
 
-/** What is wrong with a question: findings, or a failure. */
+/** The problem with a question: findings, or an internal failure. */
 export function trouble(answer) {
   if (answer.findings) return element("ul", { class: "findings" }, answer.findings.map((one) => finding(one)));
-  return element("p", { class: "error" }, `rulec itself has failed, which is a mistake of ours: ${answer.failure}`);
+  return element("p", { class: "error" }, `rulec failed, which is a bug in rulec: ${answer.failure}`);
 }
 
-/** The examples, those of the rulebook's own rules first, and those that are missing. */
+/** The examples, those of the rulebook's own rules first, and the missing ones. */
 export function examples(run, isOwn, onShow, onInsert) {
   const passes = run.examples.map((one) => {
     const name = `${one.rule}/${one.label || one.number}`;
@@ -84,8 +84,8 @@ export function examples(run, isOwn, onShow, onInsert) {
   return [
     ...folded([...owned, ...others].filter(isFailing), 2 * MOST_LINES, "failed", "that fail", plain),
     ...folded(passed, MOST_LINES, "passed", "that pass", plain),
-    missing.length ? element("h3", {}, `Not tried by any example: ${missing.length}`) : null,
-    ...folded(missing, MOST_LINES, "missing", "that no example tries", plain),
+    missing.length ? element("h3", {}, `Not covered by any example: ${missing.length}`) : null,
+    ...folded(missing, MOST_LINES, "missing", "that no example covers", plain),
     others.length
       ? element(
           "details",
@@ -113,11 +113,11 @@ export function rules({ rules: listed, rulebook }) {
   return folded(articles, 4 * MOST_LINES, "rules", "rules");
 }
 
-/** What is said of each trace. */
+/** The answer for each trace. */
 export const verdicts = (listed) =>
   folded(listed.map(verdict), 2 * MOST_LINES, "traces", "traces");
 
-/** A verdict on a trace, what is open and what cannot be judged. */
+/** A verdict on a trace, with the rules that are open and those that cannot be judged. */
 function verdict(one) {
   if (one.findings) return trouble(one);
   const kept = one.violations.length ? "satisfied, but for soft rules" : "satisfied";
@@ -135,11 +135,11 @@ function verdict(one) {
 const doubt = (one) =>
   element("p", { class: "open" }, `${one.strength} rule `, element("b", {}, one.rule), `${about(one.binding)}: ${one.in_words}`);
 
-/** The rules that cannot be judged, by what is not told. */
+/** The rules that cannot be judged, by the reason. */
 function unjudged(listed) {
   const reasons = new Map();
   for (const { rule, untold, why } of listed) {
-    const reason = why || `the trace does not tell ${untold.join(", ")}`;
+    const reason = why || `the trace does not provide ${untold.join(", ")}`;
     reasons.set(reason, [...(reasons.get(reason) ?? []), rule]);
   }
   if (!reasons.size) return [];
@@ -154,7 +154,7 @@ const about = (binding) => (bound(binding) ? ` for ${bound(binding)}` : "");
 
 function violation(one) {
   const told = one.explanation;
-  const after = one.step === null ? "violated by how it ends" : `cannot be kept any more after state ${one.step}${one.when}`;
+  const after = one.step === null ? "violated at the end of the trace" : `cannot be kept any more after state ${one.step}${one.when}`;
   return element(
     "div",
     { class: "violation" },
@@ -179,7 +179,7 @@ function explained({ states, decisive, facts, parts }) {
       title,
       depth,
       begins: n === facts.length,
-      // Beside a truth value stands by how much.
+      // A truth value is followed by its margin.
       cells: values.map((value, place) => {
         const mark = changed && place === at && n < facts.length ? "*" : "";
         return [shown(value), margins[place]].filter(Boolean).join(" ") + mark;
@@ -230,7 +230,7 @@ const RELATIONS = {
   undecided: "not decided",
 };
 
-/** What differs, rule by rule; `onTry` judges a trace that was found. */
+/** The differences, rule by rule; `onTry` judges a trace that was found. */
 export function comparison(diff, onTry) {
   const names = { first: diff.first.name, second: diff.second.name };
   const filled = (text) => text.replace(/\{(\w+)\}/g, (_, name) => names[name]);
@@ -265,12 +265,12 @@ export function comparison(diff, onTry) {
     alone(`Only in ${names.first}`, diff.only_first),
     alone(`Only in ${names.second}`, diff.only_second),
     diff.settings.length
-      ? element("p", {}, `Set otherwise: ${diff.settings.map((one) => `${one.name} (${one.first} in ${names.first}, ${one.second} in ${names.second})`).join(", ")}`)
+      ? element("p", {}, `Different settings: ${diff.settings.map((one) => `${one.name} (${one.first} in ${names.first}, ${one.second} in ${names.second})`).join(", ")}`)
       : null,
   ];
 }
 
-/** A trace as a table of what its states say. */
+/** A trace as a table of its states' values. */
 function states(trace) {
   const rows = new Map();
   trace.states.forEach((state, n) => {
@@ -280,7 +280,7 @@ function states(trace) {
     }
   });
   return table(
-    `Objects: ${Object.entries(trace.objects).map(([name, type]) => `${name} (${type})`).join(", ") || "none"}; what is not said has its default`,
+    `Objects: ${Object.entries(trace.objects).map(([name, type]) => `${name} (${type})`).join(", ") || "none"}; omitted values have their defaults`,
     trace.states.map((_, n) => String(n)),
     [...rows].map(([title, cells]) => ({ title, depth: 0, begins: false, cells })),
     -1,

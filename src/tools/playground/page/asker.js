@@ -1,7 +1,7 @@
-// Asks rulec in a worker of its own: one question after another, the last of each kind only.
+// Asks rulec in a worker: one question after another, only the latest of each kind.
 
 export class Asker {
-  /** `onState` is told what is going on: "starting", "asking" with the question, or "ready". */
+  /** `onState` is called with the state: "starting", "asking" with the question, "ready", "broken". */
   constructor(onState) {
     this.onState = onState;
     this.waiting = new Map();
@@ -18,7 +18,7 @@ export class Asker {
     this.worker.onerror = (event) => this.heard({ broken: event.message || "it cannot be loaded" });
   }
 
-  /** The answer; undefined if it was stopped, or if a newer question of its kind came first. */
+  /** The answer; undefined if it was stopped, or replaced by a newer question of its kind. */
   ask(question, onProgress = () => {}) {
     return new Promise((resolve) => {
       this.waiting.get(question.ask)?.resolve(undefined);
@@ -28,7 +28,7 @@ export class Asker {
     });
   }
 
-  /** End whatever is going on, and what waits. */
+  /** Stop the current question and drop the waiting ones. */
   stop() {
     this.worker.terminate();
     for (const { resolve } of [this.current, ...this.waiting.values()].filter(Boolean)) resolve();
@@ -39,7 +39,7 @@ export class Asker {
 
   next() {
     if (!this.isReady || this.current) return;
-    // Messages on what is being typed come before all that takes longer.
+    // Checks of the text being typed have priority over longer questions.
     const kind = this.waiting.has("check") ? "check" : this.waiting.keys().next().value;
     if (kind === undefined) {
       this.onState("ready");

@@ -1,6 +1,6 @@
-// Elements, made of text alone: nothing that comes from a link or from rulec is read as HTML.
+// Builds elements from text only: nothing from a link or from rulec is parsed as HTML.
 
-/** An element with attributes (those that begin with "on" listen) and children. */
+/** An element with attributes (those that begin with "on" are event listeners) and children. */
 export function element(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
@@ -20,13 +20,13 @@ export const counted = (n, noun) => `${n} ${noun}${n === 1 ? "" : "s"}`;
 const unfolded = new Set();
 
 /**
- * The first of many nodes, and the rest behind "and 12 more …", each part in what `wrap` makes.
+ * The first of many nodes, and the rest behind "and 12 more …", each part wrapped by `wrap`.
  *
- * What was opened stays open when the list is made anew: lists are known by `key`.
+ * A list stays expanded when it is rebuilt: lists are identified by `key`.
  */
 export function folded(nodes, most, key, noun, wrap = (part) => part) {
   if (!nodes.length) return [];
-  // One or two more are hardly longer than the line that would hide them.
+  // One or two more entries take hardly more room than the line that would hide them.
   if (nodes.length <= most + 2) return [wrap(nodes)].flat();
   const rest = element(
     "details",

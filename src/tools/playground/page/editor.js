@@ -1,4 +1,4 @@
-// A text area, and below it the same text in colours with what is wrong underlined.
+// A text area, and beneath it the same text with colours and underlined errors.
 
 import { element } from "./dom.js";
 
@@ -14,7 +14,7 @@ const CLASSES = [
 
 const classOf = (scope) => CLASSES.find(([pattern]) => pattern.test(scope))?.[1];
 
-/** What colours a text, by the grammar for editors that the parser's words are in. */
+/** A function that colours a text by the TextMate grammar for editors. */
 export function colouring(grammar) {
   const patterns = grammar.patterns.map(({ name, match, captures }) => ({
     match: new RegExp(match, "dmuy"),
@@ -43,7 +43,7 @@ export function colouring(grammar) {
 
 const WORD = /^(?:[\p{L}_][\p{L}\p{N}_]*|\s+|.)/su;
 
-/** The text with its colours and its underlines, as nodes. */
+/** The text with its colours and underlines, as nodes. */
 function painted(text, spans, marks) {
   const cuts = new Set([0, text.length]);
   for (const [from, to] of [...spans, ...marks]) cuts.add(from).add(to);
@@ -59,14 +59,14 @@ function painted(text, spans, marks) {
   });
 }
 
-/** Where the lines of a text begin. */
+/** The offsets at which the lines of a text begin. */
 function starts(text) {
   const found = [0];
   for (let n = text.indexOf("\n"); n >= 0; n = text.indexOf("\n", n + 1)) found.push(n + 1);
   return found;
 }
 
-/** A place in a text; rulec counts lines and code points from 1, JavaScript half of some. */
+/** The offset of a place; rulec counts lines and code points from 1, JavaScript UTF-16 units. */
 function offset(text, lines, line, column) {
   const start = lines[Math.min(line, lines.length) - 1];
   const end = lines[line] ?? text.length + 1;
@@ -97,7 +97,7 @@ export class Editor {
     this.paint();
   }
 
-  /** From and to of a finding's place. */
+  /** The start and end offsets of a finding's place. */
   range(place) {
     const lines = starts(this.text);
     const from = offset(this.text, lines, place.line ?? 1, place.column ?? 1);
@@ -111,7 +111,7 @@ export class Editor {
     this.paint();
   }
 
-  /** Select a place, and have it in sight. */
+  /** Select a place and scroll it into view. */
   show(place) {
     const [from, to] = this.range(place);
     this.area.focus();
@@ -121,11 +121,11 @@ export class Editor {
     this.area.scrollTop = Math.max(0, line * height - this.area.clientHeight / 3);
   }
 
-  /** Put a text in place of another one, such that it can be undone. */
+  /** Replace a text so that it can be undone. */
   replace(from, to, text) {
     this.area.focus();
     this.area.setSelectionRange(from, to);
-    // There is no other way to edit that the browser's own undo knows.
+    // No other way of editing is part of the browser's undo history.
     if (!document.execCommand("insertText", false, text)) {
       this.area.setRangeText(text);
       this.area.dispatchEvent(new Event("input"));

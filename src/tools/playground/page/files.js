@@ -1,28 +1,28 @@
-// Several rulebooks and vocabularies side by side, of which the editor shows one.
+// Several rulebooks and vocabularies; the editor shows one of them.
 
 import { element } from "./dom.js";
 
 const NEW = (name) => `vocabulary ${name} {\n  signal fog default false\n}\n`;
 
-/** What a file is called: as the rulebook or the vocabulary in it is. */
+/** The name of a file: that of the rulebook or vocabulary in it. */
 export const nameOf = (text) => `${/^\s*(?:rulebook|vocabulary)\s+([\w-]+)/m.exec(text)?.[1] ?? "rulebook"}.rules`;
 
 const isVocabulary = (text) => /^\s*vocabulary\b/m.test(text) && !/^\s*rulebook\b/m.test(text);
 
 export class Files {
-  /** `onChange` is told of another file that is shown, of a new one and of one that is gone. */
+  /** `onChange` is called when another file is shown, or a file is added or removed. */
   constructor(list, removal, editor, onChange) {
     Object.assign(this, { list, removal, editor, onChange, texts: [""], at: 0 });
   }
 
-  /** Take what the editor has. */
+  /** Store the editor's text. */
   keep() {
     const before = nameOf(this.texts[this.at]);
     this.texts[this.at] = this.editor.text;
     if (nameOf(this.editor.text) !== before) this.paint();
   }
 
-  /** All but the one that is shown. */
+  /** All files except the one that is shown. */
   others() {
     return this.texts.filter((_, n) => n !== this.at);
   }
@@ -31,19 +31,19 @@ export class Files {
     return this.texts.some((text) => nameOf(text) === name);
   }
 
-  /** What questions are about: the rulebook that is shown, or beside a vocabulary the first one. */
+  /** The subject of questions: the rulebook that is shown, or the first one if a vocabulary is. */
   rulebook() {
     const first = this.texts.findIndex((text) => !isVocabulary(text));
     const at = isVocabulary(this.texts[this.at]) && first >= 0 ? first : this.at;
     return { source: this.texts[at], others: this.texts.filter((_, n) => n !== at) };
   }
 
-  /** The names of the rulebooks beside that one. */
+  /** The names of the other rulebooks. */
   otherBooks() {
     return this.rulebook().others.filter((text) => !isVocabulary(text)).map(nameOf);
   }
 
-  /** Begin with one text that is shown, and others beside it. */
+  /** Start with one text that is shown, and others. */
   fill(text, others = "[]") {
     const listed = JSON.parse(others);
     const beside = Array.isArray(listed) ? listed.filter((one) => typeof one === "string") : [];
@@ -53,7 +53,7 @@ export class Files {
     this.paint();
   }
 
-  /** Show another file, one more or one in place of the one of its name. */
+  /** Show a new file, which replaces one with the same name. */
   add(text) {
     this.keep();
     let number = 1;
@@ -79,10 +79,10 @@ export class Files {
     this.onChange();
   }
 
-  /** Show a place, in whatever file it is. */
+  /** Show a place, whichever file it is in. */
   show(place) {
     this.keep();
-    // Of two of the same name the one that is shown counts, as in questions.
+    // Of two files with the same name the one that is shown is meant, as in questions.
     const isShown = nameOf(this.texts[this.at]) === place.file;
     const at = this.texts.findIndex((text) => nameOf(text) === place.file);
     if (at >= 0 && !isShown) this.choose(at);

@@ -1,4 +1,4 @@
-// What is on the page as a link: JSON, packed, behind the `#`, which browsers send to nobody.
+// The page's contents as a link: packed JSON after the `#`, which browsers do not send.
 
 const VERSION = "1.";
 const MOST = 1_000_000;
@@ -14,7 +14,7 @@ async function through(stream, bytes) {
   return new Uint8Array(await new Blob(parts).arrayBuffer());
 }
 
-/** The part of a link behind its `#`. */
+/** The part of a link after its `#`. */
 export async function packed(content) {
   const bytes = new TextEncoder().encode(JSON.stringify(content));
   const small = await through(new CompressionStream("deflate-raw"), bytes);
@@ -22,7 +22,7 @@ export async function packed(content) {
   return VERSION + text.replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
 }
 
-/** What a link has in it: texts by name. Throws an Error for what is no such link. */
+/** The texts in a link, by name. Throws an Error if the link is not valid. */
 export async function unpacked(fragment) {
   if (!fragment.startsWith(VERSION)) throw new Error("it is of another version");
   const text = fragment.slice(VERSION.length).replaceAll("-", "+").replaceAll("_", "/");

@@ -1,4 +1,4 @@
-// The page: what is typed, chosen and asked, and where answers are put.
+// The page: handles input, choices and questions, and shows the answers.
 
 import { comparison, examples, messages, rules, trouble, verdicts } from "./answers.js";
 import { Asker } from "./asker.js";
@@ -18,7 +18,7 @@ const DOING = {
   test: "Running the examples",
   judge: "Judging the traces",
   compare: "Comparing",
-  rules: "Saying it in English",
+  rules: "Writing it in English",
 };
 
 let patience;
@@ -36,11 +36,11 @@ const asker = new Asker(stateChanged);
 function stateChanged(state, about) {
   clearTimeout(patience);
   byId("stop").hidden = true;
-  if (state === "starting") say("Python is starting: some 16 MB, the first time");
+  if (state === "starting") say("Python is starting (about 16 MB the first time)");
   else if (state === "ready") say("Ready");
   else if (state === "broken") say(`Python does not start: ${about}`);
   else {
-    // What takes no time need not be announced.
+    // Quick answers need no announcement.
     patience = setTimeout(() => {
       say(`${DOING[about.ask]} …`);
       byId("stop").hidden = false;
@@ -52,7 +52,7 @@ function say(text) {
   if (byId("state").textContent !== text) byId("state").textContent = text;
 }
 
-// Editing: messages at once, the rest when they have come and there is no error.
+// Editing: the check runs first, the other questions after it if there is no error.
 
 function edited() {
   clearTimeout(pause);
@@ -87,7 +87,7 @@ function mend(fix) {
   editor.replace(...exactly(fix.place), fix.text);
 }
 
-/** A place as it is written: that of an insertion is empty. */
+/** The text at a place; empty for an insertion. */
 function exactly(place) {
   const [from, to] = editor.range(place);
   const isEmpty = place.line === place.end_line && place.column === place.end_column;
@@ -98,7 +98,7 @@ function outdated() {
   const panel = byId(tab);
   if (tab === "compare") return;
   panel.querySelector(".summary").textContent =
-    isSound === false ? "This waits for a rulebook without errors." : "…";
+    isSound === false ? "Waiting for a rulebook without errors." : "…";
   panel.querySelector(".result").replaceChildren();
   delete asked[tab];
 }
@@ -199,7 +199,7 @@ function compare(event) {
   void answered("compare", question, key);
 }
 
-// Tabs: arrows go from one to the next, as everywhere.
+// Tabs: arrow keys move between them, as usual.
 
 function show(kind) {
   tab = kind;
@@ -251,7 +251,7 @@ async function tidy() {
   else editor.replace(0, source.length, answer.result);
 }
 
-// Files: what is shown is one of several, which stand side by side.
+// Files: one of several is shown.
 
 function filesChanged() {
   listBooks();
@@ -259,7 +259,7 @@ function filesChanged() {
   void look();
 }
 
-/** Files of the user's own disk: sources, compiled rulebooks, traces. */
+/** Files from the user's disk: sources, compiled rulebooks, traces. */
 async function opened() {
   const input = byId("open");
   for (const file of input.files) {
@@ -279,7 +279,7 @@ async function opened() {
   edited();
 }
 
-/** The rulebooks that a question can be about: those here, and those that ship. */
+/** The rulebooks that a question can be about: those on the page, and the shipped ones. */
 function listBooks() {
   const named = (name) => element("option", { value: name }, name);
   for (const id of ["judge-book", "first", "second"]) {
@@ -291,7 +291,7 @@ function listBooks() {
   }
 }
 
-// Links: the address says at all times what is on the page, but for what was opened compiled.
+// Links: the address always contains the page's contents, except opened compiled rulebooks.
 
 async function keepLink() {
   const content = { source: editor.text, others: JSON.stringify(files.others()), traces: traces.value, tab };
@@ -349,7 +349,7 @@ async function started() {
   }
 }
 
-// To begin with
+// At the start
 
 const fetched = async (name) => (await fetch(name)).json();
 const [words, { samples, rulebooks }] = await Promise.all([fetched("words.json"), fetched("samples.json")]);
@@ -358,7 +358,7 @@ editor.spansOf = colouring(words);
 const options = (listed) => listed.map(({ name, title }) => element("option", { value: name }, title === name ? name : `${name}: ${title}`));
 byId("start").append(
   element("optgroup", { label: "Samples" }, samples.map(({ title }) => element("option", { value: title }, title))),
-  element("optgroup", { label: "Rulebooks that ship" }, options(rulebooks)),
+  element("optgroup", { label: "Shipped rulebooks" }, options(rulebooks)),
 );
 listBooks();
 listen();

@@ -1,4 +1,4 @@
-// Python with rulec in it: a question comes as JSON, and so does its answer.
+// Python with rulec: questions and answers are JSON.
 
 import { loadPyodide } from "./pyodide/pyodide.mjs";
 
@@ -25,7 +25,7 @@ async function started() {
 
 const told = (progress) => self.postMessage({ progress });
 
-// What cannot be gone on from is an error of the worker, which the page starts anew.
+// After a fatal error the page starts a new worker.
 const answer = await started().catch((error) => {
   self.postMessage({ broken: String(error.message).trim().split("\n").at(-1) });
 });
