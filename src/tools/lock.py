@@ -1,6 +1,6 @@
 """Write ``src/launcher/locks``: the releases that the launcher installs, with their hashes.
 
-Run ``python -m tools.lock`` with uv on PATH. Releases are resolved anew for each Python and all
+Run ``python -m tools.lock`` with uv on PATH. Releases are resolved again for each Python and all
 platforms (Spot has a wheel for one only), including rulec's build tools and the installers.
 """
 

@@ -1,1 +1,1 @@
-"""Answer questions about rulebooks rather than about traces."""
+"""Questions about rulebooks rather than about traces."""

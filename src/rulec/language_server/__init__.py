@@ -1,1 +1,1 @@
-"""The language server: what an editor asks while a rulebook is written."""
+"""The language server, which answers editors while a rulebook is written."""

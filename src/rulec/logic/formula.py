@@ -204,7 +204,7 @@ def subject_of(proposition: Proposition) -> object:
 def with_operands(
     operation: Unary | Binary, transform: Callable[[Formula], Formula]
 ) -> Unary | Binary:
-    """The operation on transformed operands, the left one first."""
+    """The operation with transformed operands; the left one is transformed first."""
     if isinstance(operation, Unary):
         return Unary(operation.operator, transform(operation.operand), operation.bound)
     left = transform(operation.left)

@@ -1,1 +1,1 @@
-"""Audit what a rulebook rests on: sources, examples, gaps."""
+"""Audit of a rulebook's basis: sources, examples, gaps."""

@@ -1,4 +1,4 @@
-"""Messages about what the automata of rules tell of a rulebook."""
+"""Messages about findings from the automata of rules."""
 
 from __future__ import annotations
 

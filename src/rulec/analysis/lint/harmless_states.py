@@ -45,7 +45,7 @@ def have_harmless_state(
 def harmless_classes(machine: MealyMonitor) -> frozenset[int]:
     """The letter classes that are accepted in every state from which the rule can be kept.
 
-    These include the states reached by an accepted letter, where the trace may end.
+    Such states include those reached by an accepted letter, where the trace may end.
     """
     kept = {
         target

@@ -1,4 +1,4 @@
-"""A compiler of its own, on decision diagrams, for whatever prefixes of a word decide.
+"""A compiler without Spot, on decision diagrams, for formulas that prefixes of a word decide.
 
-The modules are described in the README beside this.
+The README beside this file describes the modules.
 """

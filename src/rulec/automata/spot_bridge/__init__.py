@@ -1,9 +1,8 @@
-"""Everything that is asked of Spot; the only package that imports it.
+"""All calls of Spot; the only package that imports it.
 
-Spot may use unbounded time or memory, or end its process, on a formula whose automaton explodes.
-So this package is only ever loaded in a process of its own, see ``compiler_worker``.
-
-The modules are described in the README beside this.
+Spot may use unbounded time or memory, or end its process, on a formula whose automaton explodes. So
+this package is loaded only in a separate process, see ``compiler_worker``. The README beside this
+file describes the modules.
 """
 
 from rulec.automata.compiler_jobs import CheckError

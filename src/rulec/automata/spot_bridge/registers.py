@@ -88,7 +88,7 @@ class _Operands:
             for register in registers
         ]
         self.nothing = buddy.bddtrue
-        """That no register says anything, as a condition on their atoms."""
+        """The condition on the registers' atoms that none of them is true."""
         for *_, atom in self._registers:
             self.nothing &= -atom
         self._known: dict[_Values, list[tuple[Any, Any, _Values]]] = {}

@@ -1,1 +1,1 @@
-"""The process in which compilers run, and which of them."""
+"""The process in which compilers run, and the choice of the compiler."""

@@ -1,1 +1,1 @@
-"""Monitors in C, held against the tables that they were made of."""
+"""Proofs of monitors in C against the tables that they were made from."""

@@ -1,1 +1,1 @@
-"""Formulas as English: sentences, phrases of time, phrases of atoms."""
+"""Formulas as sentences in English, German and French: atoms, temporal operators, layout."""
