@@ -31,18 +31,18 @@ TYPE_APPROVAL = "un-"
 WHOLE, PART, SILENT, NOTHING = "●", "◐", "–", "·"
 
 _SIGNS = {
-    WHOLE: "whole: every rule on the topic is the book's own law, by its own article, has an "
-    "example that it accepts and one that it rejects, and a situation that was written from the "
-    "statute by somebody who did not write the book",
-    PART: "in part; behind it stands what some rule lacks: `a` its own article (it is inherited, "
-    "not confirmed), `e` an example, `s` a situation by somebody else",
-    SILENT: "the book says that it has nothing on it, and why",
+    WHOLE: "complete: every rule on the topic is the book's own law with its own article, has an "
+    "example that it accepts and one that it rejects, and a situation that another author wrote "
+    "from the statute",
+    PART: "partial, followed by what some rule lacks: `a` its own article (it is inherited, not "
+    "confirmed), `e` an example, `s` a situation by another author",
+    SILENT: "the book states that it has no rule on the topic, and why",
     NOTHING: "nothing",
 }
 _HEAD = f"""\
 # Coverage
 
-What the national rulebooks have rules on, topic by topic, counted from the
+The topics on which the national rulebooks have rules, counted from the
 [marks](language.md#topics-and-articles) in the books and from the situations in `tests/law`.
 `.ci/task regenerate` writes this page.
 

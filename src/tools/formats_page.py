@@ -14,11 +14,11 @@ END = "<!-- end of formats -->\n"
 _HEAD = """\
 # What each format can tell
 
-Which words of the vocabulary [`road`](vocabulary.md) some file of each [format](formats.md) can
-tell, so that a rulebook may be judged by them. A particular file may lack signs, lamps or weather:
-`rulec audit R --source FILE` says what it does tell, and which rules can be judged on that;
-[Recorded traffic](recorded_words.md) says how each word is found. `.ci/task regenerate` writes
-this page, as `rulec formats --words --output-format markdown` does its table.
+The words of the vocabulary [`road`](vocabulary.md) that files of each [format](formats.md) can
+provide for judging by a rulebook. A particular file may lack signs, lamps or weather:
+`rulec audit R --source FILE` shows which words it provides, and which rules they are enough for;
+[Recorded traffic](recorded_words.md) describes how each word is found. `.ci/task regenerate` writes
+this page; `rulec formats --words --output-format markdown` prints its table.
 
 """
 

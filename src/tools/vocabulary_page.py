@@ -18,12 +18,12 @@ _HEAD = """\
 # The vocabulary `road`
 
 The words for rulebooks of countries, as [`road.rules`](../rulebooks/vocabulary/road.rules)
-declares them, and who supplies them: the scene (ego's own motion, and what is measured of others),
-the map (the road, its marks and signs), or an interpretation (what others are about to do, and what
-traffic is like). Near is the kerb's side, far the other one. What a state does not mention has its
-default; `–` means that there is none, so that it has to be mentioned where a rule reads it. What is
-*constant* stays the same for a whole trace; of what is *presumed* the default holds even where a
-source cannot tell it, and verdicts say so.
+declares them, with their sources: the scene (ego's own motion, and measurements of others),
+the map (the road, its marks and signs), or an interpretation (the intentions of others, and the
+kind of traffic). Near is the kerb's side, far the other one. A word that a state does not mention
+has its default; `–` means that it has none, so that states must mention it if a rule reads it. A
+*constant* word has the same value for a whole trace; the default of a *presumed* word holds even
+if a source cannot provide it, and verdicts say so.
 `.ci/task regenerate` writes this page.
 """
 
@@ -73,7 +73,7 @@ def _facts(items: Sequence[tree.Item]) -> Iterator[str]:
     facts = [item for item in items if isinstance(item, tree.FactItem)]
     if facts:
         yield "\n## What always holds\n"
-        yield "A trace or an example that says otherwise, where a rule reads it, is an error.\n"
+        yield "A trace or an example that contradicts a fact that a rule reads is an error.\n"
     for item in facts:
         yield f"- `{' '.join(item.span.text.split()).removeprefix('fact ')}`"
 
