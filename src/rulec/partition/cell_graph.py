@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import networkx
 
 _FINER = 1000
-"""Parts of the unit of costs where driving costs something, too."""
+"""The cost unit is divided by this where driving costs are added."""
 
 Edges = tuple[tuple[int, ...], ...]
 Margins = tuple[tuple[int | None, ...], ...]
@@ -34,10 +34,10 @@ class NavigationGraph:
 
     ``successors[p][i]`` are the cells of layer p + 1 that follow cell i of layer p, in ascending
     order; ``margins[p][i]`` their time margins in layers, None for staying. ``objects`` are those
-    that are on the road at some time, ``alternatives`` as less likely predictions have them, and
-    ``present`` the first and last layer of each. With ``bounds`` of ego's motion its cells and
-    edges are those that can be driven, ``reach[p][i]`` bounds ego's place and speed in cell i, and
-    ``driving[p][i]`` is what being there adds to a path's cost at least.
+    on the road at some time, ``alternatives`` those by less likely predictions, and ``present`` the
+    first and last layer of each. With ``bounds`` of ego's motion, the graph has only cells and
+    edges that can be driven, ``reach[p][i]`` bounds ego's place and speed in cell i, and
+    ``driving[p][i]`` is the least that the cell adds to a path's cost.
     """
 
     __repr__ = short_repr
@@ -66,13 +66,13 @@ class NavigationGraph:
 
     @property
     def leads_to_a_goal(self) -> bool:
-        """Whether there is a path at all."""
+        """Whether there is a path from the start to a goal."""
         reached = self.reached
         return len(reached) == len(self.layers) and not reached[-1].isdisjoint(self.goals)
 
     @property
     def reached(self) -> list[set[int]]:
-        """The cells, layer by layer, to which paths from the start lead, as far as they do."""
+        """The cells that paths from the start lead to, layer by layer up to the last reached."""
         reached = [{self.start}]
         for edges in self.successors:
             onward = {after for cell in reached[-1] for after in edges[cell]}
@@ -88,33 +88,33 @@ class NavigationGraph:
 
     @property
     def nodes(self) -> int:
-        """Number of cells of all layers."""
+        """The number of cells in all layers."""
         return sum(len(layer.cells) for layer in self.layers)
 
     @property
     def edges(self) -> int:
-        """Number of edges, staying included."""
+        """The number of edges, including those for staying."""
         return sum(len(followers) for layer in self.successors for followers in layer)
 
     def at_times(self, names: Mapping[str, str]) -> dict[str, tuple[int, int]]:
-        """First and last layers of who is not always there, renamed."""
+        """The first and last layer of objects that are not always present, by their new names."""
         always = (0, len(self.layers) - 1)
         spans = {new: self.present[name] for name, new in names.items()}
         return {new: span for new, span in spans.items() if span != always}
 
     def trace_graph(self) -> TraceGraph:
-        """The cells as states and whole-number costs, without geometry.
+        """The cells as states and costs as whole numbers, without geometry.
 
         With the partition ``paper``: ``position`` (object -> b, f, l, r) and ``surface`` (R_cw,
         R_pc). With ``fine``: ``station``, ``lateral`` and ``surface``. The scenario's signals are
         added. An object that is not on the road in a layer is missing from its states.
 
-        A change costs 1 / margin, in 1/s. To be added exactly it is counted in ``cost_unit``, of
-        which every such cost is a whole multiple. With bounds of ego's motion each cell adds what
-        it costs at least to drive there, rounded down.
+        A change costs 1 / margin, in 1/s. For exact sums it is counted in ``cost_unit``, of which
+        every such cost is a whole multiple. With bounds of ego's motion each cell adds its least
+        driving cost, rounded down.
         """
         whole = lcm(*range(1, len(self.layers) + 1))
-        # With bounds, costs are finer than those of changes.
+        # With bounds, driving costs need a finer unit.
         whole = whole if self.bounds is None else whole * _FINER
         unit = Fraction(1) / (whole * self.step)
         return TraceGraph(
@@ -131,7 +131,7 @@ class NavigationGraph:
         )
 
     def _weights(self, whole: int, unit: Fraction) -> tuple[tuple[tuple[int, ...], ...], ...]:
-        """What edges cost: changes of cell by their margin, cells by what it takes to be there."""
+        """The edges' costs: changes of cell by their margins, plus the cells' driving costs."""
         rows = tuple(_weights(margins, whole) for margins in self.margins)
         if self.bounds is None:
             return rows
@@ -148,9 +148,10 @@ class NavigationGraph:
         )
 
     def costs_nothing(self, p: int, i: int, j: int) -> bool:
-        """Whether no change counts from cell i of layer p to cell j of the next one.
+        """Whether moving from cell i of layer p to cell j of the next layer costs nothing.
 
-        Its surface alone differs, or where ego is beside those who are in other lanes all along.
+        True if only the surface differs, or only ego's station relative to objects that stay in
+        other lanes on the same side.
         """
         here, there = self.layers[p].cells[i], self.layers[p + 1].cells[j]
         before, after = here.signature, there.signature
@@ -166,7 +167,7 @@ class NavigationGraph:
         )
 
     def signals_of(self, objects: Mapping[str, Obstacle]) -> State:
-        """Signals of the scenario and of some objects, constant over time."""
+        """Signals of the scenario and of the given objects, constant over time."""
         signals: dict[str, dict[str, PartialValue]] = {}
         for name, obstacle in objects.items():
             for signal, value in obstacle.signals.items():
@@ -176,12 +177,12 @@ class NavigationGraph:
     def to_networkx(self) -> networkx.DiGraph:
         """The graph for networkx, with nodes ``(layer, cell index)``.
 
-        Nodes have ``cell``, ``state`` (the valuation), ``polygon`` (shapely, in metres of s and d),
-        ``start`` and ``goal`` (bool); edges ``margin_s`` (seconds; None for staying), ``weight``
-        (int, in ``cost_unit``) and ``cost`` (1/s); the graph ``step_s`` and ``cost_unit``
-        (Fraction, 1/s).
+        Node attributes: ``cell``, ``state`` (the valuation), ``polygon`` (shapely, in metres of s
+        and d), ``start`` and ``goal`` (bool); edge attributes: ``margin_s`` (seconds; None for
+        staying), ``weight`` (int, in ``cost_unit``) and ``cost`` (1/s); graph attributes:
+        ``step_s`` and ``cost_unit`` (Fraction, 1/s).
         """
-        import networkx  # it takes 0.1 s to load, and few need it
+        import networkx  # imported late: 0.1 s, rarely needed
 
         traces = self.trace_graph()
         graph = networkx.DiGraph(step_s=self.step_s, cost_unit=traces.cost_unit)
@@ -210,7 +211,7 @@ class NavigationGraph:
 
 
 def valuation(cell: Cell, names: Sequence[str], code: bytes) -> State:
-    """Surface and relations of a cell; ``code``: a byte for each name."""
+    """Surface and relations of a cell; ``code`` has one byte for each name."""
     if cell.partition == "paper":
         return {
             "position": dict(zip(names, code.decode("ascii"), strict=False)),
@@ -224,7 +225,7 @@ def valuation(cell: Cell, names: Sequence[str], code: bytes) -> State:
 
 
 def _keeps_its_side(before: str | tuple[str, str], after: str | tuple[str, str]) -> bool:
-    """Whether ego is on the same side of an object both times, and not in its lane."""
+    """Whether ego is on the same side of an object both times, and never in its lane."""
     if isinstance(before, str) or isinstance(after, str):
         return False
     return before[1] == after[1] != "same_lane"

@@ -1,4 +1,4 @@
-"""Dead ends of a scenario: last layer, who closes it, remedies."""
+"""Dead ends of a scenario: the last layer reached, the obstacles that close it, and remedies."""
 
 from __future__ import annotations
 
@@ -14,18 +14,17 @@ from rulec.scenario.motion import swept
 from rulec.scenario.time_grid import MAX_LAYERS
 
 MOST_TIMES_FINER = 4
-"""Steps are halved so often at most to find one that opens a way: by this factor."""
+"""The step is halved at most down to this fraction to find one that opens a way."""
 
 
 @dataclass(frozen=True, slots=True)
 class DeadEnd:
-    """The last layer that a way reaches, and what happens there.
+    """The last layer that a path from the start reaches, and why none goes on.
 
-    ``closed_by`` are the obstacles that sweep places onward of its cells within the next layer,
-    or where ego's motion leads from there; none if ways reach the last layer and no goal, or if
-    the road ends them.
-    ``opened_by`` are options of a graph, as the command line has them, with each of which alone
-    there is a way.
+    ``closed_by`` are the obstacles that in the next layer sweep lanes within the cells reached, or
+    within ego's reach from there; empty if paths reach the last layer but no goal, or if the road
+    ends. ``opened_by`` are options of a graph, as typed on the command line, each of which alone
+    opens a way.
     """
 
     layer: int
@@ -34,7 +33,7 @@ class DeadEnd:
 
 
 def dead_end(graph: NavigationGraph) -> DeadEnd | None:
-    """Where the last way of a graph ends; None if one leads to a goal."""
+    """Where the paths of a graph end; None if one leads to a goal."""
     if graph.leads_to_a_goal:
         return None
     layer = graph.last_layer
@@ -61,7 +60,7 @@ def _closing(graph: NavigationGraph, layer: int) -> Iterator[str]:
 
 
 def _onward(graph: NavigationGraph, layer: int, cell: int) -> Iterable[Box]:
-    """Where ego may be on the way from a cell within a step; within no bounds all of the cell."""
+    """Where ego may be within a step from a cell; the whole cell if its motion has no bounds."""
     bounds, own = graph.bounds, graph.reach[layer][cell] if graph.reach else None
     if bounds is None or own is None:
         return graph.layers[layer].cells[cell].boxes
@@ -72,7 +71,7 @@ def _onward(graph: NavigationGraph, layer: int, cell: int) -> Iterable[Box]:
 
 
 def _openings(graph: NavigationGraph) -> Iterator[str]:
-    """Options with each of which alone there is a way, those that change least first."""
+    """Options each of which alone opens a way, the smallest change first."""
     finer = 2
     while finer <= MOST_TIMES_FINER and (len(graph.layers) - 1) * finer < MAX_LAYERS:
         step = float(graph.step / finer)

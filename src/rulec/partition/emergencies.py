@@ -1,4 +1,4 @@
-"""Least braking on all ways through a scenario, where it is hard."""
+"""The least braking on all paths through a scenario, where hard braking is needed."""
 
 from __future__ import annotations
 
@@ -8,14 +8,13 @@ from rulec.partition.cell_graph import NavigationGraph
 from rulec.partition.navigation_graph import COMFORTABLE, has_way_within
 
 _WITHIN = 0.1
-"""It is found as nearly as this (m/s²)."""
+"""Precision (m/s²) of the result."""
 
 
 def least_braking(graph: NavigationGraph) -> float | None:
-    """The braking (m/s²) that every way of a graph takes at least; None if that is usual.
+    """The braking (m/s²) that every path of a graph needs at least; None if that is usual.
 
-    It is proved by reachable sets, in which ego is a point: the least that can be driven may be
-    more.
+    It is proved by reachable sets, in which ego is a point, so the real minimum may be higher.
     """
     bounds = graph.bounds
     if bounds is None or not graph.leads_to_a_goal or bounds.braking <= COMFORTABLE:

@@ -1,4 +1,4 @@
-"""Maneuver envelopes: what a trajectory planner is given (paper, equation 1)."""
+"""Maneuver envelopes: the input of a trajectory planner (paper, equation 1)."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ Profile = tuple[tuple[float, float], ...]
 class Envelope:
     """The bounds of a maneuver in one layer, in metres.
 
-    ``d_left`` and ``d_right`` are constant between breakpoints; the first one stands at ``s_min``,
-    the last one holds up to ``s_max``. Where a missing lane splits a cell in two at one s, they are
-    the outer bounds.
+    ``d_left`` and ``d_right`` are constant between breakpoints; the first is at ``s_min``, the last
+    holds up to ``s_max``. Where a missing lane splits a cell in two at one s, they are the outer
+    bounds.
     """
 
     __repr__ = short_repr

@@ -1,10 +1,10 @@
 """The edges of a navigation graph, and how long each of its changes of cell stays open.
 
-An edge from A at layer p to B at p + 1: A continues as some A', B continues some B°, A and B° are
-adjacent or the same at p, A' and B at p + 1. If B continues A it is staying. Else it is a change,
-and it stays open as long as the two remain adjacent: the longest run of layers back from (A, B°)
-and on from (A', B), following continuations. The 2019 paper names the quantity; this reading of it
-is ours.
+There is an edge from A at layer p to B at p + 1 if A continues as some A', B continues some B°, A
+and B° are adjacent or the same at p, and so are A' and B at p + 1. If B continues A it is staying.
+Otherwise it is a change, which stays open as long as the two cells remain adjacent: the longest run
+of layers back from (A, B°) and on from (A', B), following continuations. The 2019 paper names the
+quantity; this reading of it is ours.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from rulec.partition.cells import cell_links
 from rulec.partition.cells.cell_model import Layer
 
 _Runs = Sequence[Mapping[int, int]]
-"""For each cell, its neighbours, and for how many layers each of them has been one."""
+"""For each cell, its neighbours, each with the number of layers for which it has been one."""
 
 
 def edges(
@@ -51,9 +51,9 @@ def edges(
 
 
 def _runs(layers: Sequence[Layer], back: Sequence[cell_links.Links]) -> list[_Runs]:
-    """Layers for which each adjacent pair has been adjacent so far.
+    """The number of layers for which each adjacent pair has been adjacent so far.
 
-    ``back[p]`` leads from layer p + 1 to layer p, in whichever order of time layers are given.
+    ``back[p]`` leads from layer p + 1 to layer p, in whichever order of time the layers are given.
     """
     runs: list[_Runs] = [
         [dict.fromkeys(row, 1) for row in layer.neighbours] for layer in layers[:1]
@@ -61,7 +61,7 @@ def _runs(layers: Sequence[Layer], back: Sequence[cell_links.Links]) -> list[_Ru
     for layer, links in zip(layers[1:], back, strict=True):
         earlier, current = runs[-1], []
         for a, row in enumerate(layer.neighbours):
-            # The longest run with each cell before, of all cells that continue as this one
+            # Per earlier neighbour, the longest run among all cells that continue as this one
             longest = _longest_of(earlier[origin] for origin in links[a])
             current.append(
                 {
@@ -74,7 +74,7 @@ def _runs(layers: Sequence[Layer], back: Sequence[cell_links.Links]) -> list[_Ru
 
 
 def _longest_of(rows: Iterable[Mapping[int, int]]) -> dict[int, int]:
-    """The longest run with each cell."""
+    """For each cell the longest of its runs."""
     longest: dict[int, int] = {}
     for row in rows:
         for cell, run in row.items():
@@ -84,9 +84,9 @@ def _longest_of(rows: Iterable[Mapping[int, int]]) -> dict[int, int]:
 
 
 def _longest(runs: Iterable[tuple[int, Iterable[int]]]) -> dict[int, int]:
-    """The longest run to each cell, of runs to several each."""
+    """For each cell the longest of the runs to it; each run may lead to several cells."""
     longest: dict[int, int] = {}
-    # The longest ones come last, and stay
+    # The longest come last, so they overwrite shorter ones
     for run, cells in sorted(runs, key=itemgetter(0)):
         longest.update(dict.fromkeys(cells, run))
     return longest

@@ -1,4 +1,4 @@
-"""The navigation graph: cells of every layer, and the steps between them.
+"""The navigation graph: the cells of every layer, and the edges between them.
 
 Definitions: Esterle, Aravantinos, Knoll, IV 2019, "Free Space-Time Partitioning"; where that leaves
 one open, ours is in ``docs/scenarios.md``.
@@ -32,18 +32,20 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 FINEST_S = Fraction(1, 20)
-"""Where no path is left the step of a recorded scene is halved, down to this (s)."""
+"""The step of a recorded scene is halved down to this (s) where no path is left."""
 
 GENTLE, COMFORTABLE = 2.0, 4.0
-"""So it is where none is left that takes no more acceleration and braking than this (m/s²),"""
+"""The step is also halved where no path is left within these accelerations and brakings (m/s²)."""
 
 COMFORTABLE_S = Fraction(1, 8)
-"""down to this (s); of such steps the longest one with a gentle path counts, or a comfortable one.
+"""The shortest step (s) for that.
+
+The longest step with a gentle path is used, else a comfortable.
 """
 
 
 class GraphOptions(TypedDict, total=False):
-    """The options of ``navigation_graph``; None is as if there were none."""
+    """The options of ``navigation_graph``; None is the same as leaving one out."""
 
     partition: PartitionName | None
     adjacency: cell_links.AdjacencyName
@@ -66,19 +68,19 @@ def navigation_graph(
 ) -> NavigationGraph:
     """Partition a scenario's free space over time and link the cells.
 
-    ``partition`` is ``paper`` (behind, in front, left, right; if none is given) or ``fine``
-    (station and lateral); ``adjacency``, when two cells are next to each other, ``touch``, ``edge``
-    or ``forward``; ``extent``, how wide obstacles are, ``lane`` (all lanes that they touch),
-    ``clearance`` (without where ego gets past beside them) or ``body``: if none is given
-    ``clearance`` in a recorded scene within bounds, else ``lane``. Planning interval and horizon
-    (s) are the scenario's unless given; in a recorded scene the interval is then the longest one up
-    to that which leaves ego a place to start, or half of that, and so on, where no gentle path
-    would be left. Within ``bounds`` of ego's motion, the scenario's unless given, only what ego can
-    drive is kept; a text is read as ``read_bounds`` does, and ``none`` keeps everything.
+    ``partition`` is ``paper`` (behind, in front, left, right; the default) or ``fine`` (station and
+    lateral). ``adjacency`` defines when two cells are next to each other: ``touch``, ``edge`` or
+    ``forward``. ``extent`` is the width of obstacles: ``lane`` (all lanes that they touch),
+    ``clearance`` (without the part in which ego can pass beside them) or ``body``; the default is
+    ``clearance`` in a recorded scene with bounds, else ``lane``. Step and horizon (s) are by
+    default the scenario's. In a recorded scene the default step is the longest one up to the
+    scenario's that leaves ego a place to start; it is halved, repeatedly, while no gentle path is
+    left. Within ``bounds`` of ego's motion, by default the scenario's, only what ego can drive is
+    kept; a text is parsed by ``read_bounds``, and ``none`` keeps everything.
 
     Raises RulecError R0606 if horizon and step do not fit together, R0607 if ego has no start cell,
-    R0608 for an unknown partition, adjacency or extent, R0770 for bounds that make no sense, R0718
-    for too many obstacles and layers.
+    R0608 for an unknown partition, adjacency or extent, R0770 for invalid bounds, R0718 for too
+    many obstacles and layers.
     """
     plan, times = _planned(
         scenario,
@@ -106,17 +108,17 @@ def navigation_graph(
 
 
 def _halved(times: Timing, finest: Fraction) -> Iterator[Timing]:
-    """The same horizon in these steps, in half of them, and so on."""
+    """The same horizon with this step, half of it, and so on down to ``finest``."""
     while times.step >= finest:
         yield times
         times = _in_steps_of(times.step / 2, times)
 
 
 def has_way(scenario: Scenario, **options: Unpack[GraphOptions]) -> bool:
-    """True if the graph of these options has a path; the step is the scenario's unless given.
+    """Whether the graph with these options has a path; the default step is the scenario's.
 
-    Only what ways from the start reach is looked at, and how long it stays open is not. Raises
-    RulecError as ``navigation_graph`` does.
+    Only cells on paths from the start are computed, and no margins. Raises RulecError as
+    ``navigation_graph`` does.
     """
     plan, times = _planned(scenario, **options)
     graph = _reached(plan, times)
@@ -124,14 +126,14 @@ def has_way(scenario: Scenario, **options: Unpack[GraphOptions]) -> bool:
 
 
 def has_way_within(graph: NavigationGraph, bounds: MotionBounds) -> bool:
-    """True if a path of a graph is left within bounds of ego's motion, no wider than its own."""
-    from rulec.partition.motion.reachable_graph import reachable  # NumPy, only where it is needed
+    """Whether a path of a graph remains within bounds of motion that are no wider than its own."""
+    from rulec.partition.motion.reachable_graph import reachable  # NumPy, only if needed
 
     return reachable(graph, bounds).leads_to_a_goal
 
 
 def _has_way_with(most: float, graph: NavigationGraph) -> bool:
-    """Whether, if ego's motion has bounds, some way may take no more (m/s²) than this."""
+    """Whether a path needs at most ``most`` m/s²; true if ego's motion has no bounds."""
     own = graph.bounds
     if own is None:
         return True
@@ -145,7 +147,7 @@ def _has_way_with(most: float, graph: NavigationGraph) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _Plan:
-    """What a graph is made of, and how, but for its layers."""
+    """The scenario and the options of a graph, except its layers."""
 
     scenario: Scenario
     partition: PartitionName
@@ -193,7 +195,7 @@ def _planned(
 
 
 def _in_steps_of(step: Fraction, times: Timing) -> Timing:
-    """The same horizon in other steps."""
+    """The same horizon with another step."""
     return Timing(step, int((times.layers - 1) * times.step / step) + 1)
 
 
@@ -206,15 +208,15 @@ def _cut(plan: _Plan, times: Timing) -> NavigationGraph:
     graph = _graph(plan, times, places, start=start, layers=layers, steps=steps)
     if plan.bounds is None:
         return graph
-    from rulec.partition.motion.reachable_graph import reachable  # NumPy, only where it is needed
+    from rulec.partition.motion.reachable_graph import reachable  # NumPy, only if needed
 
     return reachable(graph, plan.bounds)
 
 
 def _reached(plan: _Plan, times: Timing) -> NavigationGraph | None:
-    """The graph without bounds, with the edges of ways from the start alone, and no margins.
+    """The graph without bounds and margins, with only the edges on paths from the start.
 
-    None if no way leads to a goal.
+    None if no path leads to a goal.
     """
     places = _places(plan, times)
     cut = _layers(plan, times, places)
@@ -255,7 +257,7 @@ class _CutLayer(NamedTuple):
 
 
 def _layers(plan: _Plan, times: Timing, places: Occupancy) -> Iterator[_CutLayer]:
-    """The layers in turn; nothing leads to the first one."""
+    """The layers in order; the first has no continuations."""
     before: Plane | None = None
     for p, (regions, names, others) in enumerate(
         zip(places.swept, places.names, places.others, strict=True)
@@ -281,7 +283,7 @@ def _graph(
     layers: Sequence[Layer],
     steps: tuple[Sequence[Edges], Sequence[Margins]],
 ) -> NavigationGraph:
-    """The graph of these edges and margins, without bounds of ego's motion."""
+    """The graph with these edges and margins, without bounds of ego's motion."""
     predictions = places.predicted_of.items()
     goal = plan.scenario.goal
     goal = None if goal is None else snapped(goal, places.s, places.d)

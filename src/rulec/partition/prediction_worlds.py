@@ -1,7 +1,7 @@
-"""A graph's maneuvers where obstacles do something else than what is likeliest.
+"""A graph's maneuvers in worlds where obstacles do not do what is likeliest.
 
-A world says of each obstacle which of its predictions comes true. Ego goes the same way through
-the same cells; what these say of an obstacle is what the prediction in question makes of them.
+A world chooses one prediction for each obstacle. Ego takes the same path through the same cells;
+the relation of a cell to an obstacle is the one by the chosen prediction.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ from rulec.trace.trace_model import State, TraceGraph
 Of = TypeVar("Of")
 
 World = Mapping[str, int]
-"""Obstacle -> the number of the prediction that comes true; 0, the likeliest, if left out."""
+"""Obstacle -> the number of the prediction that comes true; 0, the likeliest, if missing."""
 
 
 @dataclass(frozen=True, slots=True)
 class PredictedPath:
-    """Path through a graph, with every prediction of every obstacle.
+    """A path through a graph, with every prediction of every obstacle.
 
     ``weights`` are, for each obstacle, those of its predictions; predictions that the path's cells
-    do not tell apart are one, called by the smallest number. ``traces`` is a graph of this path
-    alone; ``predicted`` says who its objects are. Of those that are ``hit`` some state does not say
-    where they are, for there they are where ego is.
+    do not distinguish are merged under the smallest number. ``traces`` is a graph of this path
+    alone; ``predicted`` maps its objects to predictions. Objects in ``hit`` have no relation in
+    some state, because there they are where ego is.
     """
 
     traces: TraceGraph
@@ -41,7 +41,7 @@ class PredictedPath:
 
 
 def predicted_path(graph: NavigationGraph, path: Sequence[int]) -> PredictedPath:
-    """A path, given by its cells' indices, as all predictions have it."""
+    """A path, given by its cells' indices, with all predictions."""
     cells = [layer.cells[i] for layer, i in zip(graph.layers, path, strict=True)]
     weights = _told_apart(graph, cells)
     who = {
@@ -90,9 +90,9 @@ def _told_apart(graph: NavigationGraph, cells: Sequence[Cell]) -> dict[str, dict
 
 
 def world_graph(graph: NavigationGraph, world: World) -> TraceGraph | None:
-    """Paths without a collision in a world; None if there are none.
+    """The paths without a collision in a world; None if there are none.
 
-    Obstacles have the names that they have in the scenario, whatever they do.
+    Obstacles keep the names that they have in the scenario.
     """
     who, named = _in_world(graph, world)
     free = [
@@ -110,7 +110,7 @@ def world_graph(graph: NavigationGraph, world: World) -> TraceGraph | None:
 
 
 def named_in(graph: NavigationGraph, world: World) -> dict[str, Obstacle]:
-    """Obstacles on the road in a world, by their names there."""
+    """The obstacles on the road in a world, by their names there."""
     who, named = _in_world(graph, world)
     return {named[name]: prediction.obstacle for name, prediction in who.items()}
 

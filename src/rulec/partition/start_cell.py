@@ -1,4 +1,4 @@
-"""Start cell of ego, and the message where there is none."""
+"""The start cell of ego, and the message where there is none."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def start_cell(
     partition: PartitionName,
     extent: ExtentName,
 ) -> int:
-    """Cell of ego's centre; on a border the one left and ahead.
+    """The cell of ego's centre; on a border the one to the left and ahead.
 
     Raises RulecError R0607 if an obstacle sweeps that place within the first interval.
     """
@@ -61,7 +61,7 @@ def start_cell(
     if scenario.account is None:
         remedy = "move ego along the road, or that obstacle"
     smaller = f"a smaller step does not help here: {remedy}"
-    # To the centimetre: where ego was recorded is the result of sums
+    # Rounded to the centimetre, because recorded places carry rounding errors
     at = f"s = {round(s, 2) + 0.0:g}, d = {round(d, 2) + 0.0:g}"
     raise _no_start(
         f"{blockers} {verb} ego's place ({at}) between 0 s and {step:g} s, "
@@ -82,9 +82,9 @@ def step_that_leaves_room(
     extent: ExtentName = "lane",
     fraction: int = 1,
 ) -> Timing | None:
-    """The longest step with which the first interval leaves ego's place free.
+    """The longest step whose first interval leaves ego's place free.
 
-    The step of ``timing`` divided by ``fraction``, or half of that, and so on.
+    Tried are the step of ``timing`` divided by ``fraction``, half of that, and so on.
     """
     while fraction <= _FINEST and (timing.layers - 1) * fraction < MAX_LAYERS:
         first = Timing(timing.step / fraction, 1)

@@ -1,6 +1,6 @@
-"""Scenarios: the road, ego, obstacles and their prediction; reading them from files.
+"""Scenarios: the road, ego, the obstacles with their predictions, and reading scenarios from files.
 
-Names are imported when they are asked for: a recorded drive takes little of all this.
+Names are imported on first use, because a recorded drive needs only few of them.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ _HOME = {
     "available_scenarios": "scenario_files",
     "load_scenario": "scenario_files",
 }
-"""The modules of names that are not in the model."""
+"""The modules of the exported names that are not in ``scenario_model``."""
 
 
 def __getattr__(name: str) -> Any:

@@ -22,7 +22,7 @@ class Box:
         return f"s {self.s_min:g} to {self.s_max:g}, d {self.d_min:g} to {self.d_max:g}"
 
     def overlaps(self, box: Box) -> bool:
-        """True if the interiors meet, not only the borders."""
+        """Whether the interiors intersect; touching borders do not count."""
         return (
             self.s_min < box.s_max
             and box.s_min < self.s_max
@@ -31,14 +31,14 @@ class Box:
         )
 
     def shift_to(self, box: Box) -> tuple[float, float]:
-        """The way from this middle to another's, along and across the road."""
+        """The displacement (m) from this centre to another box's, along and across the road."""
         return (
             (box.s_min + box.s_max - self.s_min - self.s_max) / 2,
             (box.d_min + box.d_max - self.d_min - self.d_max) / 2,
         )
 
     def covers(self, s: float, d: float) -> bool:
-        """True if the closed rectangle holds the point."""
+        """Whether the closed rectangle contains the point."""
         return self.s_min <= s <= self.s_max and self.d_min <= d <= self.d_max
 
 
@@ -48,7 +48,7 @@ def centred(s: float, d: float, length: float, width: float) -> Box:
 
 
 def enclosing(boxes: Sequence[Box]) -> Box:
-    """The smallest rectangle around some."""
+    """The smallest rectangle that contains all the given ones."""
     return Box(
         min(box.s_min for box in boxes),
         max(box.s_max for box in boxes),

@@ -1,4 +1,4 @@
-"""An obstacle's place at an instant, and its swept space."""
+"""An obstacle's position at an instant, and the space it sweeps."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Facing = Literal["along", "left", "against", "right"]
 
 
 def span(motion: model.Motion) -> tuple[float, float]:
-    """First and last time (s) at which the obstacle is there."""
+    """The first and the last time (s) at which the obstacle exists."""
     match motion:
         case model.ConstantAcceleration():
             return 0.0, inf
@@ -36,10 +36,10 @@ def position_at(
 
 
 def swept(obstacle: model.Obstacle, start: float, end: float) -> Box | None:
-    """The bounds of the space occupied from ``start`` to ``end`` (s), both included.
+    """The bounding box of the space occupied from ``start`` to ``end`` (s), both included.
 
-    Exact: between the times that it looks at, motion along and across the road is monotone. None if
-    the obstacle is not there in that interval.
+    Exact, because motion along and across the road is monotone between the times that are
+    evaluated. None if the obstacle does not exist in that interval.
     """
     motion = obstacle.motion
     if isinstance(motion, model.Footprints):
@@ -57,10 +57,10 @@ def swept(obstacle: model.Obstacle, start: float, end: float) -> Box | None:
 
 
 def facing(obstacle: model.Obstacle, start: float, end: float) -> Facing:
-    """The walking direction from ``start`` to ``end`` (s), by right angles of the road.
+    """The walking direction from ``start`` to ``end`` (s), rounded to right angles of the road.
 
-    Who stands keeps the direction of the last steps before, failing that takes that of the next
-    steps. A direction half-way between two right angles counts as across the road.
+    An obstacle at rest has the direction of its last movement before, otherwise that of its next
+    one. A direction half-way between two right angles counts as across the road.
     """
     if obstacle.walking_direction is not None:
         angle = radians(obstacle.walking_direction)
@@ -69,12 +69,15 @@ def facing(obstacle: model.Obstacle, start: float, end: float) -> Facing:
 
 
 def stands_forever(motion: model.Motion) -> bool:
-    """True if the obstacle never moves, and so shows no direction."""
+    """Whether the obstacle never moves, so that its motion shows no direction."""
     return _heading(motion, 0.0, 0.0) == (0.0, 0.0)
 
 
 def _heading(motion: model.Motion, start: float, end: float) -> tuple[float, float]:
-    """The displacement within an interval; at rest that of the last step before, else the next."""
+    """The displacement within an interval.
+
+    At rest that of the last step before it, else the next one.
+    """
     match motion:
         case model.ConstantAcceleration():
             speed = motion.speed or max(motion.acceleration, 0.0)

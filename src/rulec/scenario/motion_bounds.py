@@ -1,11 +1,11 @@
-"""Bounds of ego's motion along and across the road, by types of vehicles.
+"""Bounds of ego's motion along and across the road, by type of vehicle.
 
-Sources: speeds, accelerations and bodies are those of CommonRoad's vehicle models 2 (BMW 320i),
+Sources: speeds, accelerations and body sizes are those of CommonRoad's vehicle models 2 (BMW 320i),
 3 (VW Vanagon) and 4 (a lorry), package commonroad-vehicle-models 3.0.2: Althoff, Koschi, Manzinger,
-"CommonRoad: Composable benchmarks for motion planning on roads", IV 2017; 11.5 m/s² is what tyres
-can do. What engines can do, and motion across the road, are bounded as in the settings that
-commonroad-reach 2025.2.1 comes with. A bus has the lorry's bounds; motorcycles and bicycles have
-the bodies and speeds of SUMO's types of these names.
+"CommonRoad: Composable benchmarks for motion planning on roads", IV 2017; 11.5 m/s² is the limit of
+the tyres. The limits of the engine and of motion across the road are the default settings of
+commonroad-reach 2025.2.1. A bus has the lorry's bounds; motorcycles and bicycles have the body
+sizes and speeds of SUMO's vehicle types of these names.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from rulec.scenario.scenario_messages import UNFITTING_BOUNDS
 
 @dataclass(frozen=True, slots=True)
 class MotionBounds:
-    """Greatest speeds (m/s) and accelerations (m/s²) of ego, and its body (m).
+    """Greatest speeds (m/s) and accelerations (m/s²) of ego, and the size of its body (m).
 
-    It does not reverse, and moves sideways at most as fast as ahead: its heading stays within 45°
-    of the road's, unless it starts with more. All are in the coordinates of the road.
+    Ego does not reverse, and moves sideways at most as fast as ahead: its heading stays within 45°
+    of the road's, unless it starts with a larger angle. All values are in road coordinates.
     """
 
     speed: float = 50.8
@@ -49,24 +49,25 @@ BOUNDS_OF: Mapping[str, MotionBounds] = MappingProxyType(
 """The bounds of each type of vehicle."""
 
 NO_BOUNDS = "none"
-"""In place of bounds: ego may be anywhere at any moment, as in the paper."""
+"""The word for no bounds: ego may be anywhere at any moment, as in the paper."""
 
 _TYPES = MappingProxyType({"cyclist": "bicycle", "taxi": "car", "vehicle": "car"})
 
 FARTHEST = 1000.0
-"""No bound is larger."""
+"""The largest value accepted for a bound."""
 
 
 def bounds_of(types: Sequence[str]) -> MotionBounds:
-    """The bounds for the first of these types that has some, else those of a car."""
+    """The bounds of the first of these types that has any, else those of a car."""
     known = (BOUNDS_OF.get(_TYPES.get(word, word)) for word in types)
     return next((bounds for bounds in known if bounds is not None), BOUNDS_OF["car"])
 
 
 def read_bounds(text: str, own: MotionBounds | None) -> MotionBounds | None:
-    """Bounds as written: ``none``, a type of vehicle, numbers by name, or a type and numbers.
+    """Parse bounds: ``none``, a type of vehicle, numbers by name, or a type and numbers.
 
-    Numbers alone change ``own`` bounds, or a car's. Raises RulecError R0770.
+    Numbers without a type change the ``own`` bounds, or a car's if there are none. Raises
+    RulecError R0770.
     """
     if text.strip() == NO_BOUNDS:
         return None

@@ -1,4 +1,4 @@
-"""The paper's words for where ego is: beside which part of an obstacle, and on which surface."""
+"""The paper's words for ego's position: the part around an obstacle, and the surface."""
 
 from __future__ import annotations
 

@@ -19,11 +19,11 @@ from rulec.toml import parsed_toml
 
 
 def read_scene(path: Path, choice: Choice) -> Scenario:
-    """The scenario in a recording, seen from the chosen ego.
+    """The scenario of a recording, seen from the chosen ego.
 
     Raises RulecError: as for ``read_recording``, R0612 if what is chosen is not in the file.
     """
-    # Scenarios in TOML start without NumPy and Shapely, which recordings need
+    # Imported late: TOML scenarios do not need NumPy and Shapely, which recordings do
     from rulec.scenario.recorded.recorded_scene import seen_from_ego
 
     source = RecordingSource(path, choice.map_path, choice.input_format, choice.scenario_id)
@@ -47,13 +47,13 @@ def available_scenarios() -> tuple[str, ...]:
 
 
 def load_scenario(name_or_path: str | os.PathLike[str], choice: Choice | None = None) -> Scenario:
-    """A scenario by its built-in name, or from a file: TOML, or recorded traffic.
+    """Load a scenario by its built-in name, or from a file: TOML, or recorded traffic.
 
-    A built-in name comes first; ``./s1`` is a file in any case. Whose maneuvers are sought in a
-    recorded scene, and along which road, is the ``choice``. See ``docs/scenarios.md``. Raises
-    RulecError R0601 for an unknown name, R0701 for a file that cannot be read, R0101 and R0602 to
-    R0606 for what is wrong in it, all mistakes of one file together; R0610 to R0615 for recorded
-    traffic, R0613 also for a ``choice`` where there is none to be made.
+    Built-in names have precedence; ``./s1`` is always a file. ``choice`` selects ego and its road
+    in a recorded scene. See ``docs/scenarios.md``. Raises RulecError R0601 for an unknown name,
+    R0701 for a file that cannot be read, R0101 and R0602 to R0606 for mistakes in the file, all
+    reported together; R0610 to R0615 for recorded traffic, R0613 also for a ``choice`` where the
+    file offers none.
     """
     name = os.fspath(name_or_path)
     known = available_scenarios()

@@ -28,7 +28,7 @@ SURFACES: tuple[Surface, ...] = get_args(Surface)
 
 Interval = tuple[float, float]
 SignalValue = PartialValue
-"""A value, an interval, or that it is unknown."""
+"""A value, an interval, or the mark of an unknown value."""
 
 PEDESTRIAN = "pedestrian"
 
@@ -36,12 +36,12 @@ Prediction = Literal["recorded", "constant"]
 PREDICTIONS: tuple[Prediction, ...] = get_args(Prediction)
 
 CONGESTED_BELOW_KMH = 30.0
-"""Traffic is taken to be congested where the middle one of its vehicles is slower than this."""
+"""Traffic counts as congested if the median speed (km/h) of its vehicles is below this."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """A surface that reaches across the whole road from ``s[0]`` to ``s[1]``."""
+    """A surface that covers the whole width of the road from ``s[0]`` to ``s[1]``."""
 
     surface: Surface
     s: Interval
@@ -49,7 +49,7 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class MissingLane:
-    """An interval in which a lane, counted from the right from 1, does not exist."""
+    """A stretch on which a lane (numbered from the right from 1) does not exist."""
 
     lane: int
     s: Interval
@@ -60,7 +60,7 @@ class Road:
     """A road of lanes side by side.
 
     ``s`` is its extent, ``lanes`` are the bounds of its lanes in ``d`` from right to left: one more
-    than there are lanes. What no stretch names is carriageway.
+    than there are lanes. Where no stretch names a surface it is carriageway.
     """
 
     s: Interval
@@ -70,11 +70,11 @@ class Road:
 
     @property
     def outline(self) -> Box:
-        """From end to end, between the outer bounds."""
+        """The rectangle from end to end, between the outer bounds."""
         return Box(*self.s, self.lanes[0], self.lanes[-1])
 
     def holes(self) -> tuple[Box, ...]:
-        """The pieces between the outer bounds that are not road."""
+        """The rectangles between the outer bounds that are not road."""
         return tuple(
             Box(*gap.s, self.lanes[gap.lane - 1], self.lanes[gap.lane]) for gap in self.missing
         )
@@ -84,9 +84,9 @@ class Road:
 class ConstantAcceleration:
     """Motion of a centre with constant acceleration along the road, from time 0 on.
 
-    A negative ``speed`` is oncoming traffic. Who brakes to standstill stays there and does not
-    reverse; that ends the sideways motion too. From standstill only a positive acceleration sets
-    off. ``lateral_speed`` is constant, up to ``until_d`` if that is given.
+    A negative ``speed`` is oncoming traffic. An obstacle that brakes to a standstill stays there
+    and does not reverse; that ends its sideways motion too. From standstill it sets off only with a
+    positive acceleration. ``lateral_speed`` is constant, up to ``until_d`` if that is given.
     """
 
     s: float
@@ -99,9 +99,9 @@ class ConstantAcceleration:
 
 @dataclass(frozen=True, slots=True)
 class Trajectory:
-    """Timed positions ``(t, s, d)`` of a centre, straight lines in between.
+    """Timed positions ``(t, s, d)`` of a centre, with straight lines in between.
 
-    Before the first and after the last one the obstacle is not there.
+    The obstacle does not exist before the first and after the last one.
     """
 
     points: tuple[tuple[float, float, float], ...]
@@ -109,10 +109,10 @@ class Trajectory:
 
 @dataclass(frozen=True, slots=True)
 class Footprints:
-    """Bounds at ascending times that move in straight lines in between.
+    """Bounding boxes at ascending times, interpolated linearly in between.
 
-    None where it is nowhere near the road. Before the first time and after the last one the
-    obstacle is not there. Unlike a trajectory's, its extent may change, as when a vehicle turns.
+    None where the obstacle is not near the road. It does not exist before the first time and after
+    the last one. Unlike a trajectory's, its extent may change, as when a vehicle turns.
     """
 
     times: tuple[float, ...]
@@ -134,10 +134,10 @@ class Alternative:
 class Obstacle:
     """Another traffic participant: a rectangle along the road that moves by a prediction.
 
-    ``motion`` is the likeliest, of probability ``weight``, that of the ``alternatives`` being the
-    rest. ``broader`` are more and more general words for its type, for rulebooks that lack it.
-    ``length`` and ``width`` count where the motion is that of a centre. ``walking_direction`` is in
-    degrees from ego's direction, counter-clockwise: 90 is to the left.
+    ``motion`` is the likeliest one, with probability ``weight``; the ``alternatives`` have the
+    rest. ``broader`` are increasingly general words for its type, for rulebooks that lack it.
+    ``length`` and ``width`` are used where the motion is that of a centre. ``walking_direction`` is
+    in degrees from ego's direction, counter-clockwise: 90 is to the left.
     """
 
     id: str
@@ -153,7 +153,7 @@ class Obstacle:
 
     @property
     def walks(self) -> bool:
-        """True if its regions are in its own frame, like pedestrians' (the paper, II-B)."""
+        """Whether its regions are in its own frame, like pedestrians' (the paper, II-B)."""
         return self.type == PEDESTRIAN or self.walking_direction is not None
 
 
@@ -161,9 +161,9 @@ class Obstacle:
 class Ego:
     """Ego's centre at time 0, with its size, speed (m/s) and the bounds of its motion.
 
-    The size only tells if it stands in something; where a body is needed and it is 0, that of the
-    bounds counts. Without a ``speed`` that is unknown; without ``bounds`` ego may be anywhere at
-    any moment.
+    The size only decides whether ego starts inside an obstacle; where a body is needed and the size
+    is 0, that of the bounds is used. ``speed`` None is unknown; without ``bounds`` ego may be
+    anywhere at any moment.
     """
 
     s: float
@@ -176,22 +176,21 @@ class Ego:
 
     @property
     def body(self) -> Box:
-        """The rectangle of ego at time 0, a point if its size is not known."""
+        """The rectangle of ego at time 0, a point if its size is unknown."""
         return centred(self.s, self.d, self.length, self.width)
 
 
 @dataclass(frozen=True, slots=True)
 class Account:
-    """The provenance of a scenario that was made of a recorded scene.
+    """How a scenario was made from a recorded scene.
 
     ``left_out`` of the file's ``recorded`` obstacles are never on the road of ``reference``, the
-    lanelet ego starts from; ``until_s`` is when the recording ends, and from when on who was still
-    there goes on as before; ``derived`` says how each derived signal came about,
-    ``remarks`` what the file leaves open, and is taken to be. ``map_ends`` if it does so ahead of
-    ego, which gets there at its speed when the horizon is over, or soon after. A ``mirrored``
-    scene has left and right exchanged. ``source`` is the recording that it was read from, and
-    ``origin`` its road in that (``recorded.scene_origin.SceneOrigin``), None unless others do what
-    was recorded.
+    lanelet ego starts from. ``until_s`` is when the recording ends; participants present then
+    continue as before. ``derived`` explains each derived signal, ``remarks`` what the file leaves
+    open and what is assumed. ``map_ends``: whether the map ends ahead of ego, and ego gets there at
+    its speed at the end of the horizon or soon after. A ``mirrored`` scene has left and right
+    exchanged. ``source`` is the recording that it was read from, ``origin`` its road in that
+    recording (``recorded.scene_origin.SceneOrigin``), None unless the others move as recorded.
     """
 
     reference: str
@@ -213,12 +212,11 @@ USUAL_HORIZON_S = 4.0
 class Scenario:
     """A scene and its prediction: everything that a partition is computed from.
 
-    ``signals`` hold in every state. ``goal`` is a region that a maneuver has to reach; None means
-    that every cell of the last layer will do. ``account`` is there if the scene was recorded: then
-    signals and types that a rulebook does not know are no mistake, ``step_s`` is only the longest
-    step that is good, and, if the map ends, ``horizon_s`` the longest horizon. ``places`` are those
-    in the file of signals with the obstacle that each is about, of types with no signal; without an
-    obstacle of the scene's.
+    ``signals`` hold in every state. ``goal`` is a region that a maneuver has to reach; None allows
+    every cell of the last layer. ``account`` is given if the scene was recorded: then signals and
+    types that a rulebook does not know are no mistake, ``step_s`` is only an upper limit, and, if
+    the map ends, so is ``horizon_s``. ``places`` maps (signal, obstacle id) to its place in the
+    file, with an empty signal for the obstacle's type and an empty id for signals of the scene.
     """
 
     __repr__ = short_repr
@@ -243,13 +241,13 @@ class Choice:
     """A choice of ego, time, road and prediction in a recorded scene.
 
     ``ego``: a planning problem or a participant; None is the first planning problem. ``at_s``: the
-    time of the file that becomes time 0; None is the planning problem's, the participant's first.
-    ``reference``: the lanelet whose centre line is the reference line; None is the one ego is on.
-    ``prediction``: others move as recorded, or from time 0 on with constant acceleration; or each
-    of them does the one or the other, with these probabilities. Traffic is ``congested`` below a
-    median speed. ``ego_width_m``: None is what the participant has whose part ego takes, if it
-    takes one's; else ego is a point. ``map_path``, ``input_format`` and ``scenario_id`` are those
-    of a ``RecordingSource``. Ids are those of the file; numbers will do.
+    time of the file that becomes time 0; None is the planning problem's, or the participant's
+    first. ``reference``: the lanelet whose centre line is the reference line; None is the one ego
+    is on. ``prediction``: others move as recorded, or from time 0 on with constant acceleration; a
+    mapping gives each of these two a probability. ``congested_below_kmh`` is the median speed below
+    which traffic is congested. ``ego_width_m``: None is the width of the participant that ego
+    replaces, if any; else ego is a point. ``map_path``, ``input_format`` and ``scenario_id`` are
+    those of a ``RecordingSource``. Ids are those of the file; numbers are accepted.
     """
 
     ego: str | int | None = None
@@ -283,7 +281,7 @@ _ROUNDING = Fraction(1, 1000)
 def weighted(motions: Iterable[Alternative]) -> list[Alternative]:
     """Motions by descending weight, normalised to probabilities, equal ones merged.
 
-    Of equally likely ones the first stays first.
+    Equally likely ones keep their order.
     """
     together: dict[Motion, Fraction] = {}
     for alternative in motions:
@@ -295,5 +293,5 @@ def weighted(motions: Iterable[Alternative]) -> list[Alternative]:
 
 
 def is_distribution(total: Fraction) -> bool:
-    """True if weights add up to 1 within rounding, as three times 0.333 does."""
+    """Whether weights add up to 1 within rounding, as three times 0.333 does."""
     return abs(total - 1) <= _ROUNDING

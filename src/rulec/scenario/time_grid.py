@@ -1,4 +1,4 @@
-"""Horizon and step: how many layers there are, and when they begin."""
+"""Horizon and step: the number of layers, and when they begin."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from rulec.diagnostics.argument_kinds import is_finite
 from rulec.scenario.scenario_messages import UNFITTING_HORIZON
 
 MAX_LAYERS = 10_000
-# A step typed as 0.3333333333 is meant as a third; one typed as 0.3333 is not
+# A step typed as 0.3333333333 means a third; one typed as 0.3333 does not
 _ROUNDING = Fraction(1, 10**9)
 
 
@@ -26,11 +26,11 @@ class Timing:
 
 
 def timing(horizon_s: float, step_s: float) -> Timing:
-    """The ``horizon / step + 1`` layers of a horizon (s) cut into steps (s).
+    """The ``horizon / step + 1`` layers of a horizon (s) divided into steps (s).
 
-    Decimals count as typed, so that 4.0 s is forty steps of 0.1 s. Raises RulecError R0606 if one
-    of them is no time above 0, the horizon is not a whole multiple of the step, or there were more
-    than ``MAX_LAYERS`` layers.
+    Decimals are taken exactly as typed, so that 4.0 s is forty steps of 0.1 s. Raises RulecError
+    R0606 if a value is not a time above 0, the horizon is not a whole multiple of the step, or
+    there would be more than ``MAX_LAYERS`` layers.
     """
     for name, value in (("horizon", horizon_s), ("step", step_s)):
         number = not isinstance(value, bool) and isinstance(value, (int, float))
@@ -62,13 +62,13 @@ def timing(horizon_s: float, step_s: float) -> Timing:
 
 
 def whole_steps(horizon_s: float, step_s: float) -> float:
-    """The longest time (s) up to a horizon that is a whole number of steps, or one step."""
+    """The longest whole number of steps (s) within a horizon, but at least one step."""
     step = Fraction(str(step_s))
     return float(max(Fraction(str(horizon_s)) // step, 1) * step)
 
 
 def _steps_that_fit(horizon: Fraction, steps: int) -> str:
-    """The steps that divide a horizon nearest to so many, written as they can be given again."""
+    """A hint with the steps that divide the horizon and are nearest to a number of steps."""
     numbers = [
         number
         for number in range(1, min(4 * steps + 4, MAX_LAYERS))
@@ -81,4 +81,4 @@ def _steps_that_fit(horizon: Fraction, steps: int) -> str:
 
 
 _SHORT = 1000
-"""A step that is offered has at most three digits behind the point."""
+"""A suggested step has at most three decimals."""

@@ -1,1 +1,1 @@
-"""Cells of one layer of the road."""
+"""Dividing the road into the cells of one layer."""

@@ -1,12 +1,12 @@
 """Adjacency of a plane's cells, and their continuation in the next layer.
 
-Adjacent are cells by one of three definitions:
+Adjacency has three definitions:
 
-- ``touch``: their closures meet, a corner is enough (paper, section V-B, after Altché and de La
-  Fortelle).
+- ``touch``: the closures of the cells meet, a corner is enough (paper, section V-B, after Altché
+  and de La Fortelle).
 - ``edge``: they share a border of positive length.
 - ``forward``: they share such a border, and it can be crossed sideways or ahead. A neighbour that
-  can only be entered backwards, across borders at which it has the smaller ``s``, lies only behind.
+  can only be entered backwards, across borders at which it has the smaller ``s``, is excluded.
 
 A cell of layer p continues as one of layer p + 1 if both overlap one cell of the plane at the
 instant between them, with the obstacles where they are at that moment.
@@ -23,11 +23,11 @@ from rulec.partition.cells.cell_model import Plane, Row
 AdjacencyName = Literal["touch", "edge", "forward"]
 
 Links = tuple[frozenset[int], ...]
-"""For each cell of one plane, cells of another one."""
+"""For each cell of one plane, a set of cells of another plane."""
 
 
 def neighbours(plane: Plane, adjacency: AdjacencyName) -> tuple[tuple[int, ...], ...]:
-    """Adjacent cells of every cell, ascending, without the cell itself."""
+    """The adjacent cells of every cell, ascending, without the cell itself."""
     beside: list[set[int]] = [set() for _ in plane.cells]
     for row in plane.rows:
         for behind, ahead in pairwise(row.runs):
@@ -43,7 +43,7 @@ def neighbours(plane: Plane, adjacency: AdjacencyName) -> tuple[tuple[int, ...],
 
 
 def _side_by_side(row: Row, other: Row, *, corners: bool = False) -> Iterator[tuple[int, int]]:
-    """Cells of runs that share a stretch, with ``corners`` a point, of ``s``."""
+    """Pairs of cells whose runs share an interval of ``s``; with ``corners`` a point is enough."""
     start = 0
     for run in row.runs:
         while start < len(other.runs) and other.runs[start].s_max < run.s_min:
@@ -76,7 +76,7 @@ def overlaps(plane: Plane, later: Plane) -> Links:
 
 
 def inverse(links: Links, size: int) -> Links:
-    """The links the other way, for ``size`` cells."""
+    """The reverse links, for ``size`` cells."""
     origins: list[set[int]] = [set() for _ in range(size)]
     for i, cells in enumerate(links):
         for j in cells:

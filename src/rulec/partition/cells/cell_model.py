@@ -21,8 +21,8 @@ Signature = dict[str, str] | dict[str, tuple[str, str]]
 class Cell:
     """Connected piece of free road with one relation to every obstacle.
 
-    ``boxes`` are rectangles with disjoint interiors that make it up. ``code`` has one byte for each
-    of ``objects``, then one for each of the layer's ``alternatives``.
+    ``boxes`` are rectangles with disjoint interiors whose union is the cell. ``code`` has one byte
+    for each of ``objects``, then one for each of the layer's ``alternatives``.
     """
 
     __repr__ = short_repr
@@ -53,14 +53,14 @@ class Cell:
     @property
     def polygon(self) -> Polygon:
         """Shapely polygon of the cell in ``s`` and ``d`` (m)."""
-        import shapely  # 0.1 s, and few ask for polygons
+        import shapely  # imported late: 0.1 s, rarely needed
 
         return shapely.union_all(
             [shapely.box(b.s_min, b.d_min, b.s_max, b.d_max) for b in self.boxes]
         )
 
     def meets(self, region: Box) -> bool:
-        """Tell whether some area is in the region."""
+        """Whether the cell shares some area with the region."""
         return any(box.overlaps(region) for box in self.boxes)
 
 
@@ -84,13 +84,13 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """Road cut into cells at some time, its rows from right to left."""
+    """The road divided into cells at some time, with rows from right to left."""
 
     rows: tuple[Row, ...]
     cells: tuple[Cell, ...]
 
     def cells_at(self, s: float, d: float) -> Iterator[int]:
-        """Cells whose closure holds a point, those right and behind first."""
+        """Cells whose closure contains a point; those to the right and behind come first."""
         for row in self.rows:
             if row.d_min <= d <= row.d_max:
                 for run in row.runs:
@@ -100,7 +100,7 @@ class Plane:
 
 @dataclass(frozen=True, slots=True)
 class Reach:
-    """Bounds of ego's place (m) and speed (m/s) in a cell when its layer begins."""
+    """Bounds of ego's place (m) and speed (m/s) in a cell at the beginning of its layer."""
 
     s: tuple[float, float]
     d: tuple[float, float]
@@ -112,9 +112,9 @@ class Reach:
 class Layer:
     """Cells of ``[start_s, start_s + step]``.
 
-    ``neighbours[i]`` are those adjacent to cell ``i``, ascending, never the cell itself; with the
-    adjacency ``forward`` they need not be mutual. ``alternatives`` are objects as less likely
-    predictions have them.
+    ``neighbours[i]`` are the cells adjacent to cell ``i``, ascending, never the cell itself; with
+    the adjacency ``forward`` they need not be mutual. ``alternatives`` are the objects by less
+    likely predictions.
     """
 
     __repr__ = short_repr

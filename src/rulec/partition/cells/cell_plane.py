@@ -1,9 +1,9 @@
-"""Cells: connected parts of the road cut by obstacles' regions.
+"""Cells: connected parts of the road, cut by obstacles' regions.
 
-All borders run along or across the road, so the cuts of all regions form a grid. Rows of the grid
-are read off as runs of equal labels (surface and one letter per obstacle) and runs of neighbouring
-rows that share a border of positive length and a label grow together. That gives the same cells as
-intersecting polygons one obstacle after the other, without rounding and without empty ones.
+All borders run along or across the road, so the cuts of all regions form a grid. Each row of the
+grid is read as runs of equal labels (surface and one letter per obstacle), and runs of neighbouring
+rows that share a label and a border of positive length are merged. That gives the same cells as
+intersecting polygons one obstacle after the other, without rounding errors and empty cells.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from rulec.scenario import Box
 
 _CARRIAGEWAY, _CROSSING = b"w", b"c"
 
-# A run before it knows its cell: first and last cut, label
+# A run not yet assigned to a cell: first and last cut, label
 _Piece = tuple[int, int, bytes]
 
 
 def plane(
     roadway: Roadway, regions: Sequence[Region], partition: PartitionName, names: Sequence[str]
 ) -> Plane:
-    """Cut the road by regions of the obstacles with these ``names``."""
+    """Cut the road by the regions of the obstacles with these ``names``."""
     s_cuts, d_cuts = _cuts(roadway, regions)
     rows = [list(_pieces(roadway, regions, s_cuts, bounds)) for bounds in pairwise(d_cuts)]
     numbers = _connected(rows)
@@ -48,7 +48,7 @@ def plane(
             objects,
             label[1:],
         )
-        for label, boxes in parts.values()  # which are numbered in reading order
+        for label, boxes in parts.values()  # numbered in reading order
     )
     return Plane(tuple(finished), tuple(cells))
 
@@ -81,7 +81,7 @@ def _pieces(
             first, last = _columns(s_cuts, hole.s_min, hole.s_max)
             surface[first:last] = bytes([OCCUPIED]) * (last - first)
     columns = [bytes(surface)]
-    """A string for the surface, one per obstacle; read crosswise they are labels."""
+    """One string for the surface and one per obstacle; the column at a place is its label."""
     for region in regions:
         extent = region.extent
         first, last = _columns(s_cuts, extent.s_min, extent.s_max)
@@ -102,7 +102,7 @@ def _columns(s_cuts: list[float], start: float, end: float) -> tuple[int, int]:
 
 
 def _connected(rows: list[list[_Piece]]) -> list[list[int]]:
-    """The cell of every piece, cells numbered from 0 in reading order."""
+    """The cell number of every piece; cells are numbered from 0 in reading order."""
     offsets = list(accumulate(map(len, rows), initial=0))
     parent = list(range(offsets[-1]))
 

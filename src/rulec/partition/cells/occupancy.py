@@ -1,10 +1,11 @@
-"""Regions of the obstacles in every layer and between two.
+"""Regions of the obstacles in every layer and at the instants between layers.
 
-An obstacle is in a layer if what it sweeps there has some area on the road. One that leaves and
-comes back counts as another object, called ``id_2``: a rule is judged on one stretch of presence.
+An obstacle is in a layer if it sweeps some area of the road there. One that leaves and comes back
+counts as another object, called ``id_2``, because a rule is judged on one stretch of presence.
 
-Cells avoid what is occupied if everybody does what is likeliest. Each other prediction cuts the
-road too, as an obstacle of its own would, but what it occupies is road: there ego is hit by it.
+Cells leave out what is occupied if every obstacle does what is likeliest. Each other prediction
+cuts the road too, as a further obstacle would, but the space it occupies stays road, where ego
+would be hit by it.
 """
 
 from __future__ import annotations
@@ -20,15 +21,14 @@ from rulec.scenario.motion import swept
 from rulec.scenario.time_grid import Timing
 
 HIT = ord("x")
-"""In place of a relation to an obstacle as a less likely prediction has it: that is here."""
+"""Code of a cell that an obstacle occupies by a less likely prediction, in place of a relation."""
 
 
 @dataclass(frozen=True, slots=True)
 class Predicted:
-    """Obstacle by one prediction; ``number`` 0 is the likeliest.
+    """An obstacle moving by one of its predictions; ``number`` 0 is the likeliest.
 
-    ``obstacle`` moves by that prediction. Its ``id`` is like that of no other; ``of`` is the id in
-    the scenario.
+    The ``id`` of ``obstacle`` is unique among all predictions; ``of`` is the id in the scenario.
     """
 
     obstacle: Obstacle
@@ -37,7 +37,7 @@ class Predicted:
 
 
 def predicted(scenario: Scenario) -> tuple[Predicted, ...]:
-    """Obstacles by their likeliest predictions, then by each further one."""
+    """Every obstacle by its likeliest prediction, then by each further one."""
     predictions = [Predicted(obstacle, obstacle.id, 0) for obstacle in scenario.obstacles]
     taken = {obstacle.id for obstacle in scenario.obstacles}
     for obstacle in scenario.obstacles:
@@ -54,12 +54,12 @@ def predicted(scenario: Scenario) -> tuple[Predicted, ...]:
 
 @dataclass(frozen=True, slots=True)
 class Occupancy:
-    """Scenario over time: names in the file's order, and their regions.
+    """The regions of all obstacles over time.
 
-    ``names[p][k]`` is the name of the obstacle of ``swept[p][k]``: first come obstacles as it is
-    likeliest, in ``names``, then, in ``others``, those that other predictions have there.
-    ``instants[p]`` are the regions at the moment between layers p and p + 1. ``s`` and ``d`` snap
-    coordinates of ego and the goal.
+    ``names[p][k]`` is the name of the obstacle of ``swept[p][k]``: first those by the likeliest
+    predictions, in ``names``, then those by other predictions, in ``others``. ``instants[p]`` are
+    the regions at the moment between layers p and p + 1. ``s`` and ``d`` snap coordinates of ego
+    and the goal.
     """
 
     roadway: Roadway
@@ -76,7 +76,7 @@ class Occupancy:
 def scene(
     scenario: Scenario, timing: Timing, partition: PartitionName, extent: ExtentName = "lane"
 ) -> Occupancy:
-    """Occupied regions in every layer and at every instant between two."""
+    """The regions in every layer and at every instant between two layers."""
     predictions = predicted(scenario)
     obstacles = [prediction.obstacle for prediction in predictions]
     likeliest = len(scenario.obstacles)
@@ -110,14 +110,14 @@ def scene(
                 extent=extent,
                 wide=snapped(wide[i, interval], s, d),
             )
-            if region is not None and i >= likeliest:  # which may be entered
+            if region is not None and i >= likeliest:  # by a less likely prediction: ego may enter
                 table = region.table.replace(bytes([OCCUPIED]), bytes([HIT]))
                 region = replace(region, table=table)
             if region is not None:
                 yield region
 
     layer_regions = tuple(tuple(regions(interval, interval)) for interval in layers)
-    # At an instant a pedestrian faces where it goes next
+    # At an instant a pedestrian faces in the direction of its next movement
     instants = tuple(
         tuple(regions(moment, upcoming))
         for moment, upcoming in zip(moments, layers[1:], strict=True)
@@ -137,7 +137,7 @@ def scene(
 
 
 def _half_width(scenario: Scenario, extent: ExtentName) -> float:
-    """Half of ego's width (m), so far as that counts; with ``clearance`` its bounds may tell."""
+    """Half of ego's width (m) where it counts; with ``clearance`` its bounds may provide it."""
     ego = scenario.ego
     width = ego.width
     if extent == "clearance" and not width and ego.bounds is not None:
@@ -146,12 +146,12 @@ def _half_width(scenario: Scenario, extent: ExtentName) -> float:
 
 
 def _wider(body: Box, half: float) -> Box:
-    """Region outside of which ego's centre is not beside the obstacle."""
+    """The region outside of which ego's centre is not beside the obstacle."""
     return Box(body.s_min, body.s_max, body.d_min - half, body.d_max + half)
 
 
 def _narrower(outline: Box, half: float, start: float) -> Box:
-    """Road for ego's centre, as close to its edges as at start."""
+    """The road for ego's centre; its edges are no closer than ego is to them at the start."""
     return Box(
         outline.s_min,
         outline.s_max,

@@ -1,8 +1,8 @@
 """Regions around one obstacle and their names.
 
-An obstacle's rectangle, as wide as its extent says, cuts the road in three both ways. A region
-table names the nine parts, row by row from right to left, each row in the direction of ``s``; ``o``
-is the obstacle.
+An obstacle's rectangle, as wide as the extent demands, divides the road in three both ways. A
+region table names the nine parts, row by row from right to left, each row in the direction of
+``s``; ``o`` is the obstacle.
 """
 
 from __future__ import annotations
@@ -20,8 +20,11 @@ from rulec.scenario.paper_words import LATERALS, PAPER_TABLES, STATIONS
 PartitionName = Literal["paper", "fine"]
 
 ExtentName = Literal["lane", "clearance", "body"]
-"""How wide an obstacle is taken to be: as the lanes that it touches, as those without the rest of
-one in which ego gets past beside it, or as what it sweeps."""
+"""The assumed width of an obstacle: ``lane``, the lanes that it touches.
+
+``clearance``, these lanes without the part of one in which ego can pass beside it; ``body``, what
+it sweeps.
+"""
 
 OCCUPIED = ord("o")
 
@@ -30,17 +33,17 @@ _FINE = b"0123o5678"
 STATION_OF: Mapping[int, str] = MappingProxyType(
     {code: STATIONS[i % 3] for i, code in enumerate(_FINE) if code != OCCUPIED}
 )
-"""What codes of the fine partition say along the road."""
+"""The station (along the road) that a code of the fine partition means."""
 
 LATERAL_OF: Mapping[int, str] = MappingProxyType(
     {code: LATERALS[i // 3] for i, code in enumerate(_FINE) if code != OCCUPIED}
 )
-"""What codes of the fine partition say across the road."""
+"""The lateral relation (across the road) that a code of the fine partition means."""
 
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """Rectangle of an obstacle, with the names of its surroundings."""
+    """The rectangle of an obstacle, with the codes of the parts around it."""
 
     obstacle: int
     extent: Box
@@ -59,7 +62,7 @@ def region_of(
 ) -> Region | None:
     """Region of an obstacle that sweeps ``body``; None off the road.
 
-    ``wide`` is the body and what ego's centre needs to either side.
+    ``wide`` is the body widened by the room that ego's centre needs on either side.
     """
     lanes = roadway.lanes_touched(body)
     if lanes is None:

@@ -1,9 +1,9 @@
 """The road as rectangles with snapped coordinates.
 
-Every coordinate of every layer and instant goes through one table: those within ``EPSILON_M`` of
-each other become one number. After that two coordinates are either the same or clearly apart; no
-sliver appears between a lane's bound and a car that was computed to stand on it, and no gap wider
-than ``EPSILON_M`` is lost.
+The coordinates of all layers and instants go through one table, which merges those within
+``EPSILON_M`` of each other into one number. After that two coordinates are either equal or clearly
+different: there is no sliver between a lane's bound and a car that was computed to stand on it, and
+no gap wider than ``EPSILON_M`` is lost.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ from dataclasses import dataclass
 from rulec.scenario import Box, Road
 
 EPSILON_M = 1e-6
-"""Coordinates this close (m) are one place; rounding errors are a hundred times smaller."""
+"""Coordinates this close (m) are the same place; rounding errors are a hundred times smaller."""
 
 CLEARANCE_M = 0.25
-"""So far (m) ego keeps from who reaches into its lane, and from the other bound of that."""
+"""Ego's distance (m) from an obstacle that reaches into its lane, and from the lane's far bound."""
 
 Snap = dict[float, float]
 
 
 def snap_table(fixed: Iterable[float], moving: Iterable[float]) -> Snap:
-    """Representative of every coordinate, one of the road's, ``fixed``, where possible."""
+    """Maps every coordinate to its representative, one of the road's (``fixed``) where possible."""
     ranked = sorted({*((value, 0) for value in fixed), *((value, 1) for value in moving)})
     table: Snap = {}
     group: list[tuple[float, int]] = []
@@ -37,7 +37,7 @@ def snap_table(fixed: Iterable[float], moving: Iterable[float]) -> Snap:
 
 
 def snapped(box: Box, s: Snap, d: Snap) -> Box:
-    """The box with its corners replaced."""
+    """The box with snapped corners."""
     return Box(s[box.s_min], s[box.s_max], d[box.d_min], d[box.d_max])
 
 
@@ -72,10 +72,10 @@ class Roadway:
     def without_clear_part(
         self, lanes: tuple[float, float], body: Box, wide: Box
     ) -> tuple[float, float]:
-        """Bounds of the lanes that a body touches, without the rest of one that it reaches into.
+        """Bounds of the lanes that a body touches, without the clear part of one it reaches into.
 
-        That is one in which its middle is not, and ego gets past beside it: ``wide`` is the body
-        and what ego's centre needs to either side.
+        A lane has a clear part if the body's middle is not in it, and ego can pass beside the body
+        there. ``wide`` is the body widened by the room that ego's centre needs on either side.
         """
         right, left = lanes
         middle = (body.d_min + body.d_max) / 2

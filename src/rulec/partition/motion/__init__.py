@@ -1,1 +1,1 @@
-"""Drivability for ego: reachable cells, and trajectories through them."""
+"""What ego can drive: reachable cells, and trajectories through them."""

@@ -8,20 +8,21 @@ from rulec.partition.cells.cell_model import Reach
 from rulec.scenario.scenario_model import Ego
 
 PER_ACCELERATION = 0.25
-"""What a greatest acceleration of 1 m/s² costs."""
+"""Cost per m/s² of the greatest acceleration."""
 
 PER_SPEED = 0.1
-"""What a mean distance of 1 m/s from ego's speed costs."""
+"""Cost per m/s of the mean difference from ego's initial speed."""
 
 
 def least_costs(
     ego: Ego, reach: Sequence[Sequence[Reach | None]], step: float
 ) -> tuple[tuple[float, ...], ...]:
-    """For each cell of each layer a share of the least cost of trajectories there.
+    """Shares, per layer and cell, of lower bounds on the cost of trajectories through the cell.
 
-    Who is away from where ego gets at its speed after t seconds, by x m, has accelerated by
-    2 x / t² at some time and was faster or slower by x / t in the mean. A path costs at least what
-    each of its cells tells, and so their mean, of which each has its share.
+    A trajectory that after t seconds is x m away from where ego's initial speed leads has
+    accelerated by at least 2 x / t² at some time, and its mean speed differs by x / t. A path costs
+    at least the bound of each of its cells, hence at least their mean; a cell's share is its bound
+    divided by the number of steps.
     """
     last = max(len(reach) - 1, 1)
     return tuple(

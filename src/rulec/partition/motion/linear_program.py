@@ -1,7 +1,7 @@
-"""Linear programs, solved by HiGHS, to which rows are added until a solution is good.
+"""Linear programs, solved by HiGHS, to which rows can be added until a solution is good.
 
-Source: Huangfu, Hall, "Parallelizing the dual revised simplex method" (2018); the solver's own
-interface for Python, `highspy`.
+Source: Huangfu, Hall, "Parallelizing the dual revised simplex method" (2018); through the solver's
+own Python interface, `highspy`.
 """
 
 from __future__ import annotations
@@ -13,19 +13,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 Row = NDArray[np.float64]
-"""A coefficient for each variable."""
+"""One coefficient for each variable."""
 
 
 @dataclass(frozen=True, slots=True)
 class Solution:
-    """The variables of a solution with the least cost, and that cost."""
+    """The variables of a solution of least cost, and that cost."""
 
     values: Row
     cost: float
 
 
 class LinearProgram:
-    """Least ``cost`` over variables within bounds and rows within bounds."""
+    """Minimizes ``cost`` over variables within bounds, subject to rows within bounds."""
 
     def __init__(self, cost: Row, low: Row, high: Row) -> None:
         self._size, self._count = len(cost), 0
@@ -36,7 +36,7 @@ class LinearProgram:
         self._solver.addCols(self._size, cost, _finite(low), _finite(high), *no_rows)
 
     def add(self, rows: NDArray[np.float64], low: Row, high: Row) -> int:
-        """Keep each of these rows, times the variables, between its bounds: the first's number."""
+        """Add rows, times the variables, with their bounds; returns the first row's number."""
         first = self._count
         self._count += len(rows)
         used = rows != 0
@@ -48,13 +48,13 @@ class LinearProgram:
         return first
 
     def change(self, numbers: NDArray[np.intp], low: Row, high: Row) -> None:
-        """Keep rows of these numbers between other bounds."""
+        """Change the bounds of the rows with these numbers."""
         own = numbers.astype(np.int32)
         bounds = _finite(low), _finite(high)
         self._solver.changeRowsBounds(len(own), own, *bounds)  # type: ignore[attr-defined]
 
     def solved(self) -> Solution | None:
-        """A solution; None if there is none."""
+        """A solution of least cost; None if there is none."""
         self._solver.run()
         if self._solver.getModelStatus() != highspy.HighsModelStatus.kOptimal:
             return None

@@ -1,4 +1,4 @@
-"""The linear program of ego's motion along and across the road, in pieces of even acceleration."""
+"""The linear program of ego's motion along and across the road, piecewise constant acceleration."""
 
 from __future__ import annotations
 
@@ -18,31 +18,33 @@ from rulec.partition.motion.reachable_graph import ego_motion
 from rulec.scenario import Box, MotionBounds
 
 PIECE_S = 0.1
-"""Accelerations last so long at most."""
+"""The greatest length (s) of a piece of constant acceleration."""
 
 PER_JERK, PER_LANE, PER_END = 0.25, 0.2, 0.1
-"""What a mean jerk of 1 m/s³ costs, a metre beside a lane's middle, at the end 1 m/s off ego's
-speed, or across the road."""
+"""Costs per m/s³ of mean jerk, per m from a lane's middle, per m/s at the end.
+
+The last counts the difference from ego's initial speed, and the speed across the road.
+"""
 
 COMFORTABLE, PER_HARD = 4.0, 4.0
-"""No harder (m/s²) than this is usual; and what each m/s² above it costs more."""
+"""The greatest usual acceleration (m/s²), and the extra cost of each m/s² above it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlaceRows:
-    """Ego's coordinate at some times, as rows over the variables and what is added to them."""
+    """Ego's coordinate at some times: rows of coefficients over the variables, and constants."""
 
     rows: NDArray[np.float64]
     fixed: Row
 
     def of(self, solution: Solution) -> Row:
-        """The coordinate in a solution."""
+        """The coordinate's values in a solution."""
         return np.asarray(self.rows @ solution.values + self.fixed)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Bounded:
-    """Rows over the variables, each between its bounds."""
+    """Rows over the variables, each with its bounds."""
 
     rows: NDArray[np.float64]
     low: Row
@@ -50,7 +52,7 @@ class Bounded:
 
 
 class MotionProgram:
-    """Ego's motion through the layers of a graph: variables, what they cost, and their bounds."""
+    """Ego's motion through the layers of a graph: variables, their costs and their bounds."""
 
     def __init__(self, graph: NavigationGraph, bounds: MotionBounds) -> None:
         self.graph, self.bounds = graph, bounds
@@ -58,23 +60,23 @@ class MotionProgram:
         self.piece = graph.step_s / self._parts
         self.count = self._parts * (len(graph.layers) - 1)
         self._motion = ego_motion(graph.scenario.ego, bounds, graph.step_s, len(graph.layers))
-        # Pieces' accelerations along and across, the greatest up to what is usual and beyond,
-        # changes of both, speeds' distances, distances from lanes, the speed across at the end, the
-        # one along at the start.
+        # Variables: accelerations of pieces along and across, the greatest up to the usual limit
+        # and beyond it, jerks along and across, differences of speed, distances from lanes, the
+        # speed across at the end, the speed along at the start.
         n, layers = self.count, len(graph.layers) - 1
         self.at = np.cumsum([0, n, n, 2, n - 1, n - 1, n, layers, 1])
         self.size = int(self.at[-1]) + 1
         self.layers_s = np.array([layer.start_s for layer in graph.layers])
 
     def along(self, times: Row) -> PlaceRows:
-        """Where ego is along the road at some times."""
+        """Ego's place along the road at some times."""
         ego = self.graph.scenario.ego
         places = self._places(times, 0, ego.s, 0.0)
         places.rows[:, -1] = times
         return places
 
     def across(self, times: Row) -> PlaceRows:
-        """Where it is across."""
+        """Ego's place across the road at some times."""
         ego = self.graph.scenario.ego
         return self._places(times, 1, ego.d, ego.lateral_speed)
 
@@ -88,7 +90,7 @@ class MotionProgram:
         return PlaceRows(rows, place + speed * times)
 
     def speeds(self, axis: int) -> PlaceRows:
-        """Speeds at the ends of pieces."""
+        """The speeds along one axis at the ends of pieces."""
         rows = np.zeros((self.count, self.size))
         first = int(self.at[axis])
         rows[:, first : first + self.count] = np.tri(self.count) * self.piece
@@ -97,9 +99,9 @@ class MotionProgram:
         return PlaceRows(rows, np.full(self.count, sideways * axis))
 
     def program(self, *, braking_only: bool = False) -> LinearProgram:
-        """A program of what ego can drive, wherever it is.
+        """A program of the motions that ego can drive, without constraints on its place.
 
-        With ``braking_only`` the cost is the hardest braking (m/s²), and nothing else.
+        With ``braking_only`` the cost is the hardest braking (m/s²) alone.
         """
         at, n, motion = self.at, self.count, self._motion
         ego = self.graph.scenario.ego
@@ -119,7 +121,7 @@ class MotionProgram:
         if braking_only:
             cost[:] = 0.0
             cost[at[2] : at[3]] = 1.0
-            # Ahead and aside ego may accelerate as it likes
+            # Only braking counts, not acceleration ahead or sideways
             every = -every[:n]
         program = LinearProgram(cost, low, high)
         speeds, sideways = self.speeds(0), self.speeds(1)
@@ -146,9 +148,9 @@ class MotionProgram:
         return program
 
     def in_cells(self, cells: Sequence[Cell]) -> Bounded:
-        """Rows that keep ego in cells when their layers begin, after the first.
+        """Rows that keep ego in cells at the beginning of their layers, except the first.
 
-        Four for each: along, across, and two for the distance from the middle of a lane.
+        Each layer has four rows: along, across, and two for the distance from a lane's middle.
         """
         along, across = self.along(self.layers_s[1:]), self.across(self.layers_s[1:])
         count = len(along.rows)
@@ -159,7 +161,7 @@ class MotionProgram:
         return Bounded(rows.reshape(-1, self.size), low, high)
 
     def cell_bounds(self, cells: Sequence[Cell]) -> tuple[Row, Row]:
-        """The bounds of these rows; of layers without a cell there are none."""
+        """The bounds of these rows; layers without a cell are unbounded."""
         ego = self.graph.scenario.ego
         low = np.full((len(self.graph.layers) - 1, 4), -np.inf)
         high = -low
@@ -178,7 +180,7 @@ class MotionProgram:
         slacks: NDArray[np.intp],
         fixed: Row | float = 0.0,
     ) -> None:
-        """Make sums of slack variables at least as great as rows are, and what is added to them."""
+        """Constrain slack variables to be at least the rows plus the constants ``fixed``."""
         own = rows.copy()
         own[np.arange(len(rows))[:, None], slacks.reshape(len(rows), -1)] -= 1.0
         program.add(own, np.full(len(rows), -np.inf), np.zeros(len(rows)) - fixed)
@@ -190,12 +192,12 @@ class MotionProgram:
         slacks: NDArray[np.intp],
         fixed: Row | float = 0.0,
     ) -> None:
-        """The same, whatever the sign of these."""
+        """Constrain slack variables to be at least the absolute values of rows plus constants."""
         self._at_most(program, rows, slacks, fixed)
         self._at_most(program, -rows, slacks, -fixed)
 
     def _middles(self, boxes: Sequence[Box]) -> Iterator[float]:
-        """The middle of a lane for each layer: in the cell, nearest to the one before."""
+        """A lane's middle for each layer: of those in the cell, the one nearest to the previous."""
         scenario = self.graph.scenario
         lanes = [(low + high) / 2 for low, high in pairwise(scenario.road.lanes)]
         last = min(lanes, key=lambda d: abs(d - scenario.ego.d))

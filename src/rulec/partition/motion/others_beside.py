@@ -1,4 +1,4 @@
-"""On which sides of others ego is along a path, and where a motion overlaps them."""
+"""On which sides of the obstacles ego is along a path, and where a motion overlaps them."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from rulec.scenario.geometry import centred
 from rulec.scenario.motion import swept
 
 CHECK_S = 0.05
-"""At every multiple of this, and twice in a piece, ego overlaps nobody."""
+"""Overlaps are checked at every multiple of this (s), and twice in a piece."""
 
 GAP_M = 0.01
-"""So far ego stays from others, for the solver's rounding."""
+"""The gap (m) that ego keeps from obstacles, for the solver's rounding."""
 
 Side = str
-"""Where ego is of an obstacle: behind, in_front, right, left."""
+"""Where ego is relative to an obstacle: behind, in_front, right, left."""
 
 _SIDES = {
     "b": "behind",
@@ -38,7 +38,7 @@ _SIDES = {
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cut:
-    """A row that keeps ego between bounds; equal if its ``name`` is."""
+    """A row that keeps ego between bounds; cuts with equal ``name`` are the same."""
 
     name: tuple[object, ...]
     row: Row
@@ -47,14 +47,14 @@ class Cut:
 
 
 class OthersBeside:
-    """Others along a graph's layers, and how near ego comes to them."""
+    """The obstacles during a graph's layers, and where ego would overlap them."""
 
     def __init__(self, motion: MotionProgram) -> None:
         self._motion, self._graph = motion, motion.graph
 
     @cached_property
     def times(self) -> Row:
-        """Where others are looked at: ends and middles of pieces, multiples of 0.05 s."""
+        """Times (s) of the checks: ends and middles of pieces, and multiples of 0.05 s."""
         count, piece = self._motion.count, self._motion.piece
         own = np.arange(2 * count + 1) * piece / 2
         every = np.arange(int(count * piece / CHECK_S + 1e-9) + 1) * CHECK_S
@@ -62,12 +62,12 @@ class OthersBeside:
 
     @cached_property
     def along(self) -> PlaceRows:
-        """Where ego is along the road at these times."""
+        """Ego's place along the road at these times."""
         return self._motion.along(self.times)
 
     @cached_property
     def across(self) -> PlaceRows:
-        """Where it is across."""
+        """Ego's place across the road at these times."""
         return self._motion.across(self.times)
 
     @cached_property
@@ -84,7 +84,7 @@ class OthersBeside:
 
     @cached_property
     def body(self) -> tuple[float, float]:
-        """Half of ego's length and width; 0 where such a body would stand in somebody."""
+        """Half of ego's length and width; 0 where such a body would start inside an obstacle."""
         ego, bounds = self._graph.scenario.ego, self._motion.bounds
         length, width = ego.length or bounds.length, ego.width or bounds.width
         body = centred(ego.s, ego.d, length, width)
@@ -102,10 +102,10 @@ class OthersBeside:
         sure: bool = False,
         preferred: Collection[Side] = (),
     ) -> Iterator[Cut]:
-        """Rows for where a solution overlaps somebody up to a time, by the path's cells.
+        """Rows to add where a solution overlaps obstacles up to a time, by the path's cells.
 
-        Those that are ``sure`` are kept by whatever goes along the path: its cells leave one side.
-        Of several sides one that is ``preferred`` is taken, then the one that is nearest.
+        With ``sure``, only rows that every motion along the path keeps, because its cells leave
+        just one side. Among several sides a ``preferred`` one is chosen, then the nearest.
         """
         last = int(np.searchsorted(self.times, until + 1e-9))
         along, across = self.along, self.across
@@ -114,7 +114,7 @@ class OthersBeside:
         length, width = self.body
         for name, (all_there, all_boxes) in self.boxes.items():
             there, boxes = all_there[:last], all_boxes[:last]
-            # How far ego is beside, on each side; it overlaps where on all sides that is not enough
+            # Ego's clearance on each side; it overlaps where none is enough
             beyond = {
                 "behind": boxes[:, 0] - length - s,
                 "in_front": s - boxes[:, 1] - length,
@@ -132,13 +132,13 @@ class OthersBeside:
                 if sure:
                     yield self._cut(name, side, k)
                     continue
-                # Together with those just before and after: it will be near there, too.
+                # Add rows just before and after as well: the next solution will be close there too.
                 for j in range(max(k - 1, 1), min(k + 2, len(s))):
                     if there[j]:
                         yield self._cut(name, side, j)
 
     def _cut(self, name: str, side: Side, k: int) -> Cut:
-        """The row that keeps ego on a side of somebody at a time."""
+        """The row that keeps ego on one side of an obstacle at time number ``k``."""
         (length, width), boxes = self.body, self.boxes[name][1]
         places = self.along if side in ("behind", "in_front") else self.across
         low, high = {
@@ -151,7 +151,7 @@ class OthersBeside:
         return Cut((name, side, k), places.rows[k], float(low) - fixed, float(high) - fixed)
 
     def sides(self, name: str, time: float, path: Sequence[int]) -> set[Side]:
-        """On which sides of an obstacle the path's cells are around a time."""
+        """The sides of an obstacle on which the path's cells are around a time."""
         layer = min(int(time / self._graph.step_s + 1e-9), len(path) - 1)
         sides: set[Side] = set()
         for p in {layer, min(layer + 1, len(path) - 1)}:

@@ -1,10 +1,11 @@
 """The part of a navigation graph that ego can drive.
 
-For every cell and layer a set of positions and speeds with which ego may be there when the layer
-begins: forward from ego's start, backward from the goals, and forward once more within what both
-leave. An edge goes where no motion leads from the one set to the other; a cell where no edge is
-left. Motion along and across the road is looked at apart, joined by how far ego turns, and a cell
-counts as the rectangle around it: more may be kept than can be driven, and nothing less.
+For every cell the set of positions and speeds that ego may have there at the beginning of its layer
+is computed: forward from ego's start, backward from the goals, and forward again within the
+remaining sets. An edge is removed if no motion leads from one set to the other, a cell if it has no
+edge left. Motion along and across the road is treated separately, joined only by ego's steering
+limit, and a cell is replaced by its bounding rectangle: more may be kept than can be driven, but
+never less.
 """
 
 from __future__ import annotations
@@ -25,15 +26,15 @@ from rulec.scenario import MotionBounds
 from rulec.scenario.scenario_model import Ego
 
 MOST_MOMENTS = 40
-"""Sets have directions for so many moments at most, spread over the layers."""
+"""The most moments for which sets have directions; they are spread over the layers."""
 
 _Pair = tuple[Sets, Sets]
-"""Sets along and across the road."""
+"""A pair of sets: along and across the road."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Edges:
-    """Edges from one layer to the next by the cells at their ends."""
+    """The edges from one layer to the next, by the cells at their ends."""
 
     origins: NDArray[np.intp]
     targets: NDArray[np.intp]
@@ -41,7 +42,10 @@ class _Edges:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EgoMotion:
-    """Motion along and across the road; ``slope`` is the greatest ratio of the second to it."""
+    """Motion along and across the road.
+
+    ``slope`` is the greatest ratio of speed across to along.
+    """
 
     along: AxisMotion
     across: AxisMotion
@@ -49,7 +53,7 @@ class EgoMotion:
 
 
 def ego_motion(ego: Ego, bounds: MotionBounds, step: float, layers: int) -> EgoMotion:
-    """Ego's motion in layers of ``step`` (s). What it starts with is within the bounds."""
+    """Ego's motion in layers of ``step`` (s). Bounds are widened to include its initial speeds."""
     speed, sideways = ego.speed or 0.0, abs(ego.lateral_speed)
     numbers = np.unique(np.linspace(0, layers - 1, min(layers, MOST_MOMENTS)).round())
     moments = numbers * step
@@ -63,9 +67,9 @@ def ego_motion(ego: Ego, bounds: MotionBounds, step: float, layers: int) -> EgoM
 
 
 def reachable(graph: NavigationGraph, bounds: MotionBounds) -> NavigationGraph:
-    """The graph without what ego cannot reach, or cannot leave towards a goal, within bounds.
+    """The graph without what ego, within bounds, cannot reach, or cannot leave towards a goal.
 
-    Where it reaches no goal, without what it cannot reach.
+    If ego cannot reach a goal, only what it cannot reach is removed.
     """
     ego, step = graph.scenario.ego, float(graph.step)
     motion = ego_motion(ego, bounds, step, len(graph.layers))
@@ -95,11 +99,11 @@ def reachable(graph: NavigationGraph, bounds: MotionBounds) -> NavigationGraph:
 
 
 _Nodes = tuple[_Pair, NDArray[np.bool_]]
-"""Sets of all cells of a layer, and which of them hold something."""
+"""The sets of all cells of a layer, and which of them are not empty."""
 
 
 def _areas(cells: Sequence[Cell]) -> NDArray[np.float64]:
-    """Rows of s_min, s_max, d_min, d_max of rectangles around cells, a hair wider."""
+    """Rows of s_min, s_max, d_min, d_max of the cells' bounding rectangles, slightly widened."""
     rows = [(box.s_min, box.s_max, box.d_min, box.d_max) for box in (c.bounds for c in cells)]
     around = np.array(rows).reshape(-1, 4)
     return np.asarray(around + np.array([-1, 1, -1, 1]) * ROUNDING)
@@ -117,7 +121,7 @@ def _rows(pair: _Pair, chosen: NDArray[np.intp] | NDArray[np.bool_]) -> _Pair:
 
 
 def _clipped(pair: _Pair, area: NDArray[np.float64], motion: EgoMotion, now: float) -> _Pair:
-    """Sets within areas, a row each."""
+    """The sets intersected with areas, row by row."""
     along, across = pair
     along[0][:, 0] = np.maximum(along[0][:, 0], area[:, 0])
     along[1][:, 0] = np.minimum(along[1][:, 0], area[:, 1])
@@ -146,7 +150,7 @@ def _something(pair: _Pair) -> NDArray[np.bool_]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Way:
-    """Layers of sets, and which edges some motion takes."""
+    """The sets of each layer, and which edges some motion takes."""
 
     nodes: list[_Nodes]
     driven: list[NDArray[np.bool_]]
@@ -154,7 +158,7 @@ class _Way:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Course:
-    """What ways lead through: edges, rectangles around cells, times of layers; and ego's motion."""
+    """Common data: edges, bounding rectangles of cells, times of layers, and ego's motion."""
 
     edges: Sequence[_Edges]
     areas: Sequence[NDArray[np.float64]]
@@ -194,7 +198,7 @@ def _forward(course: _Course, first: _Nodes, within: Sequence[_Nodes] | None) ->
 
 
 def _backward(course: _Course, forward: _Way, goals: Sequence[int]) -> list[_Nodes]:
-    """Of the sets those from which a goal can be reached."""
+    """The subsets from which a goal can be reached."""
     edges, times, motion = course.edges, course.times, course.motion
     pair, there = forward.nodes[-1]
     goal = np.zeros(len(there), dtype=bool)
@@ -219,7 +223,7 @@ def _backward(course: _Course, forward: _Way, goals: Sequence[int]) -> list[_Nod
 
 
 def _kept(graph: NavigationGraph, edges: Sequence[_Edges], final: _Way) -> list[NDArray[np.bool_]]:
-    """Edges, layer by layer, on a way of driven edges from the start to a goal."""
+    """Masks, layer by layer, of the edges on a path of driven edges from the start to a goal."""
     alive = np.zeros(len(graph.layers[-1].cells), dtype=bool)
     alive[list(graph.goals)] = True
     alive &= final.nodes[-1][1]
@@ -236,7 +240,7 @@ def _kept(graph: NavigationGraph, edges: Sequence[_Edges], final: _Way) -> list[
 def _short_of_goals(
     graph: NavigationGraph, edges: Sequence[_Edges], forward: _Way
 ) -> list[NDArray[np.bool_]]:
-    """Edges, layer by layer, that some motion takes, but for those to a goal."""
+    """Masks, layer by layer, of the edges that some motion takes, except those to a goal."""
     *before, last = forward.driven
     return [*before, last & ~np.isin(edges[-1].targets, list(graph.goals))]
 
@@ -247,7 +251,7 @@ def _without(
     kept: Sequence[NDArray[np.bool_]],
     final: _Way,
 ) -> NavigationGraph:
-    """The graph with these edges alone, and with the cells at their ends."""
+    """The graph with only these edges and the cells at their ends."""
     edge_rows = [_by_origin(rows, keep) for rows, keep in zip(graph.successors, kept, strict=True)]
     ends: list[set[int]] = [{graph.start}]
     for rows, used in zip(graph.successors, edge_rows, strict=True):

@@ -1,11 +1,12 @@
-"""Sets of positions and speeds that contain all that ego can reach, along or across the road.
+"""Sets of positions and speeds that contain everything ego can reach, along or across the road.
 
-A motion is a double integrator with bounds on speed and acceleration. A set is given by bounds in
-some directions: position, speed, and where ego would be at each of some later or earlier moments if
-it kept its speed. A motion's own step maps each of these directions to one of them, so the bounds
-of a step are exact but for the bounds on speed, and no set leaves out what can be reached.
+A motion is a double integrator with bounds on speed and acceleration. A set is given by its bounds
+in some directions: position, speed, and the position ego would have at each of some moments if it
+kept its speed. A step of the motion maps each of these directions to another one of them, so the
+bounds after a step are exact except for the bounds on speed, and no set leaves out anything that
+can be reached.
 
-Arrays have a row for each set and a column for each direction: position (m), speed (m/s), then the
+Arrays have one row per set and one column per direction: position (m), speed (m/s), then the
 positions at the moments (m).
 """
 
@@ -17,21 +18,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 Bounds = NDArray[np.float64]
-"""A row for each set, a column for each direction."""
+"""One row per set, one column per direction."""
 
 Sets = tuple[Bounds, Bounds]
 """Lower and upper bounds."""
 
 ROUNDING = 1e-6
-"""Sets are wider by this (m, m/s), so that rounding cuts nothing."""
+"""Sets are widened by this (m, m/s), so that rounding excludes nothing."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AxisMotion:
     """Motion along one axis: least and greatest speed and acceleration.
 
-    ``moments`` (s) are those of the directions, ``step`` (s) is that of the layers, of which all
-    moments are multiples.
+    ``moments`` (s) are those of the directions, and multiples of ``step`` (s), the layers' length.
     """
 
     speeds: tuple[float, float]
@@ -60,7 +60,7 @@ class AxisMotion:
 
     def _moved(self, sets: Sets, now: float, *, forward: bool) -> Sets:
         (low, high), (least, most) = sets, self.accelerations
-        # Back in time, who has accelerated most was slowest.
+        # Back in time, the greatest acceleration leads to the lowest speed.
         slower, faster = (least, most) if forward else (-most, -least)
         new_low, new_high = np.empty_like(low), np.empty_like(high)
         way_low = self._way(low[:, 1], slower)
@@ -81,19 +81,19 @@ class AxisMotion:
         return self.tightened((new_low, new_high), now + self.step if forward else now)
 
     def _way(self, speeds: Bounds, acceleration: float) -> Bounds:
-        """How far who keeps to an acceleration gets in a step, within the bounds of speed."""
+        """The distance covered in a step at constant acceleration, within the bounds of speed."""
         end = self.speeds[1] if acceleration > 0 else self.speeds[0]
         for_s = np.clip((end - speeds) / acceleration, 0.0, self.step)
         reached = speeds + acceleration * for_s
         return np.asarray((speeds + reached) / 2 * for_s + reached * (self.step - for_s))
 
     def tightened(self, sets: Sets, now: float) -> Sets:
-        """The same sets, by what their bounds say of each other."""
+        """The same sets with each bound tightened by what the other bounds imply."""
         low, high = sets
         ahead = self.moments - now
         other = ahead != 0
         apart = ahead[other]
-        # Position, speed and each moment's position: each by the two others.
+        # Position, speed and each moment's position: each is implied by the two others.
         for _ in range(2):
             ends = (ahead * low[:, 1:2], ahead * high[:, 1:2])
             away_low, away_high = np.minimum(*ends), np.maximum(*ends)
@@ -109,17 +109,17 @@ class AxisMotion:
 
 
 def common(first: Sets, second: Sets) -> Sets:
-    """What is in both, row by row."""
+    """The intersections, row by row."""
     return np.maximum(first[0], second[0]), np.minimum(first[1], second[1])
 
 
 def anything_in(sets: Sets) -> NDArray[np.bool_]:
-    """Whether something is in each set."""
+    """Mask of the sets that are not empty."""
     return np.asarray((sets[0] <= sets[1] + ROUNDING).all(axis=1))
 
 
 def together(sets: Sets, groups: NDArray[np.intp], count: int) -> Sets:
-    """For each of ``count`` groups one set around all sets of it; nothing for an empty group."""
+    """For each of ``count`` groups the hull of its sets; an empty set for an empty group."""
     low = np.full((count, sets[0].shape[1]), np.inf)
     high = -low
     np.minimum.at(low, groups, sets[0])

@@ -1,7 +1,7 @@
 """Lower bounds on the cost of driving through a path's first cells.
 
-One linear program is kept, whose rows are switched on for the cells, and for the others that ego
-stays beside: each next one is near the last one, and solved in a few steps.
+One linear program is reused: its rows for cells, and for the sides of obstacles, are switched on
+and off, because each solution is close to the last one and is then found in a few steps.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from rulec.partition.motion.motion_program import MotionProgram
 from rulec.partition.motion.others_beside import Cut, OthersBeside
 
 _MOST_ROUNDS = 12
-"""So often rows are added; fewer leave the bound lower than it might be."""
+"""The most rounds of adding rows; stopping early leaves a weaker bound."""
 
 _HAIR_S = 1e-6
 
@@ -25,19 +25,19 @@ _Names = frozenset[tuple[object, ...]]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WayBound:
-    """The cheapest motion through some cells, and the names of the rows that keep it beside."""
+    """The cheapest motion through some cells, and the names of the rows about obstacles used."""
 
     solution: Solution
     cuts: _Names
 
     @property
     def cost(self) -> float:
-        """What every motion through them costs at least."""
+        """The least cost of all motions through these cells."""
         return self.solution.cost
 
 
 class WayBounds:
-    """Bounds of the first parts of a graph's paths; ``braking_only`` is as in programs."""
+    """Cost bounds for beginnings of a graph's paths; ``braking_only`` as in ``MotionProgram``."""
 
     def __init__(
         self, motion: MotionProgram, others: OthersBeside, *, braking_only: bool = False
@@ -49,12 +49,15 @@ class WayBounds:
         self._rows: dict[tuple[object, ...], tuple[int, Cut]] = {}
 
     def of(self, path: Sequence[int], before: _Names = frozenset()) -> WayBound | None:
-        """The bound of a path's first part, which has these rows at least; None without a way."""
+        """The bound for a path's beginning, with rows ``before`` at least.
+
+        None if it cannot be driven.
+        """
         cells = [layer.cells[i] for layer, i in zip(self._graph.layers, path, strict=False)]
         low, high = self._motion.cell_bounds(cells)
         until = float(self._motion.layers_s[len(path) - 1])
         if len(path) < len(self._graph.layers):
-            # Just when ego gets to the last cell it may be on the side that the next one leaves
+            # On arrival in the last cell ego may already be on the side that the next cell allows
             until -= _HAIR_S
         names, found = before, None
         for _ in range(_MOST_ROUNDS):
@@ -79,7 +82,7 @@ class WayBounds:
             self._rows |= {cut.name: (first + k, cut) for k, cut in enumerate(cuts)}
 
     def _switch(self, names: _Names, low: Row, high: Row) -> None:
-        """Switch the rows of cells to these bounds, and those of others on or off."""
+        """Set the bounds of the rows of cells, and switch the rows about obstacles on or off."""
         numbers = [np.arange(self._first, self._first + len(low))]
         lows, highs = [low], [high]
         if self._rows:

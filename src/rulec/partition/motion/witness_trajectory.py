@@ -1,10 +1,10 @@
 """Trajectories that prove paths drivable.
 
 A trajectory has constant accelerations along and across the road in short pieces. A linear program
-finds the one of least cost that is in the path's cells when their layers begin, within bounds of
-ego's motion. What is not convex is added where a solution needs it: a cell's rectangle that is
-nearest, and on which side of an obstacle ego is, as its cells say. So what is found is proved, and
-something may not be found although it can be driven.
+finds the one of least cost that is in the path's cells at the beginning of their layers, within the
+bounds of ego's motion. Constraints that are not convex are added where a solution violates them:
+the nearest rectangle of a cell, and the side of an obstacle on which ego stays, as its cells allow.
+So a trajectory that is found is a proof, but one that exists may be missed.
 """
 
 from __future__ import annotations
@@ -31,27 +31,28 @@ from rulec.partition.motion.way_bounds import WayBounds
 from rulec.scenario import Box, MotionBounds
 
 MOST_ROUNDS = 25
-"""So often rows are added before a path is given up."""
+"""The most rounds of adding rows before a path is given up."""
 
 PER_GOAL = 0.5
-"""What the whole horizon up to the goal costs."""
+"""Cost of reaching the goal only at the end of the horizon."""
 
 _PREFERRED: Sequence[Collection[Side]] = ((), ("right", "left"), ("behind", "in_front"))
-"""Where ego may be on several sides of somebody, on which it is, one after the other."""
+"""Preferred sides where ego may be on several sides of an obstacle, tried in this order."""
 
 EASED, _EASED_ENOUGH = 4.0, 0.5
-"""So hard (m/s²) ego may have to brake after the end; in terms of squares of speeds."""
+"""Braking (m/s²) that ego may need after the end, and the tolerance (m²/s²) of that check."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrivingCost:
-    """What a trajectory costs.
+    """The cost of a trajectory.
 
-    ``acceleration``: 0.25 for each m/s² of the greatest one, along or across, and 4 more for each
-    above 4. ``jerk``: 0.25 for each m/s³ of its mean. ``speed``: 0.1 for each m/s by which it is
-    away from ego's, in the mean, and as much at the end, which is to be made up for. ``lane``: 0.2
-    for each metre beside the middle of a lane, in the mean of the layers. ``goal``: 0.5 for the
-    whole horizon until ego is in the goal.
+    ``acceleration``: 0.25 per m/s² of the greatest one, along or across, and 4 more per m/s² above
+    4. ``jerk``: 0.25 per m/s³ of its mean. ``speed``: 0.1 per m/s of the mean difference from ego's
+    initial speed, and 0.1 per m/s of the difference at the end, which has to be made up for.
+    ``lane``: 0.2 per metre from the middle of a lane, as the mean over the layers, and 0.1 per m/s
+    across the road at the end. ``goal``: 0.5 times the part of the horizon until ego is in the
+    goal.
     """
 
     acceleration: float
@@ -62,15 +63,15 @@ class DrivingCost:
 
     @property
     def total(self) -> float:
-        """The sum."""
+        """The sum of all parts."""
         return self.acceleration + self.jerk + self.speed + self.lane + self.goal
 
 
 @dataclass(frozen=True, slots=True)
 class WitnessTrajectory:
-    """States (time, s, speed along, d, speed across) at ends of pieces, in s, m and m/s.
+    """States (time, s, speed along, d, speed across) at the ends of pieces, in s, m and m/s.
 
-    In between accelerations are constant.
+    Accelerations are constant in between.
     """
 
     states: tuple[tuple[float, float, float, float, float], ...]
@@ -81,9 +82,9 @@ class WitnessTrajectory:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Attempt:
-    """A path's trajectory if there is one; if not, the rows that were added last.
+    """A path's trajectory if one was found; otherwise the rows that were added last.
 
-    It ``was_eased`` if it had to end slower for who is ahead then.
+    ``was_eased``: whether ego had to be slower at the end because of an obstacle ahead.
     """
 
     trajectory: WitnessTrajectory | None
@@ -101,18 +102,18 @@ class WitnessSearch:
 
     @cached_property
     def bounds(self) -> WayBounds:
-        """What first parts of paths cost at least."""
+        """Lower bounds on the cost of paths' beginnings."""
         return WayBounds(self._motion, self._others)
 
     @cached_property
     def braking_bounds(self) -> WayBounds:
-        """How hard (m/s²) ego brakes at least on first parts of paths."""
+        """Lower bounds on ego's hardest braking (m/s²) on paths' beginnings."""
         return WayBounds(self._motion, self._others, braking_only=True)
 
     def of(self, path: Sequence[int]) -> WitnessTrajectory | None:
-        """The trajectory of least cost that was found for a path; None if none was.
+        """The trajectory of least cost found for a path; None if none was found.
 
-        If one is found so, it ends no faster than it can become as slow as who is ahead.
+        If possible, its final speed lets ego slow down to the speed of the obstacle ahead.
         """
         for preferred in _PREFERRED:
             for eased in (True, False):
@@ -124,9 +125,9 @@ class WitnessSearch:
         return None
 
     def in_way(self, path: Sequence[int]) -> tuple[str, ...]:
-        """Who is in ego's way along a path of which no trajectory was found, the first one first.
+        """The obstacles in ego's way along a path without a trajectory, the earliest first.
 
-        Nobody if ego's bounds alone do not let it through the cells.
+        Empty if ego's bounds alone prevent it from passing through the cells.
         """
         hits: list[tuple[int, str]] = []
         for cut in self._attempt(path, (), eased=False).cuts:
@@ -167,10 +168,10 @@ class WitnessSearch:
         return _Attempt(None, was_eased, cuts)
 
     def _too_fast(self, solution: Solution, path: Sequence[int]) -> Iterator[Cut]:
-        """Rows that keep ego from ending too fast for who is ahead of it then.
+        """Rows that keep ego from being too fast at the end for an obstacle ahead of it.
 
-        With ``EASED`` it is not too fast at v, so far behind one at u, if v² <= u² + 2 EASED way,
-        of which a row is a tangent.
+        A speed v is not too fast at a distance ``way`` behind an obstacle of speed u if v² <= u² +
+        2 EASED way; the row is a tangent of that.
         """
         others, times = self._others, self._others.times
         ends = times[-1:]
@@ -182,7 +183,7 @@ class WitnessSearch:
             if not there[-2:].all() or "behind" not in others.sides(name, float(ends[0]), path):
                 continue
             rear, _, right, left = boxes[-1].tolist()
-            # Who comes towards ego is to be stopped before, at least
+            # For an oncoming obstacle ego has to be able to stop before it, at least
             driven = float(boxes[-1, 0] - boxes[-2, 0]) / float(times[-1] - times[-2])
             speed = max(driven, 0.0)
             in_way = right - width < d < left + width
@@ -199,7 +200,7 @@ class WitnessSearch:
         path: Sequence[int],
         preferred: Collection[Side] = (),
     ) -> Iterator[Cut]:
-        """Rows that a solution breaks."""
+        """Rows that a solution violates."""
         times = self._motion.layers_s
         along, across = self._motion.along(times), self._motion.across(times)
         for p, (s, d) in enumerate(zip(along.of(solution), across.of(solution), strict=True)):
@@ -217,7 +218,7 @@ class WitnessSearch:
     def _trajectory(
         self, solution: Solution, cells: Sequence[Cell], path: Sequence[int]
     ) -> WitnessTrajectory | None:
-        """The solution as a trajectory, looked through once more."""
+        """The solution as a trajectory, checked once more; None if it violates a row."""
         if next(self._broken(solution, cells, path), None) is not None:
             return None
         motion, at = self._motion, self._motion.at
@@ -260,5 +261,5 @@ class WitnessSearch:
 
 
 def _away(box: Box, s: float, d: float) -> float:
-    """How far a place is outside a rectangle."""
+    """The distance (m, the larger of both axes) of a place from a rectangle; 0 inside."""
     return max(box.s_min - s, s - box.s_max, box.d_min - d, d - box.d_max, 0.0)

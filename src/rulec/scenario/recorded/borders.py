@@ -1,4 +1,4 @@
-"""Places along a line, told which piece they are in: looked up in a table, not searched for."""
+"""Finding the piece of a line that contains a place, by table lookup instead of a search."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy import float64, intp
 from numpy.typing import NDArray
 
 _HAIR_M = 1e-6
-"""What cells are found wrong by, of places along a line, is less."""
+"""Upper bound (m) of the rounding error when a place is assigned to a cell."""
 
 _FEWEST, _MOST_CELLS, _MOST_TRIED = 8, 1 << 14, 2
 
@@ -19,9 +19,10 @@ _Values = NDArray[float64]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Cells:
-    """Stretches of one length (m), from ``origin`` on, and the last border before each of them.
+    """Intervals of equal length from ``origin`` (m) on, ``per_m`` of them per metre.
 
-    No more than ``tried`` borders are within one.
+    ``before`` is the number of the last border before each cell; at most ``tried`` borders lie
+    within one cell.
     """
 
     origin: float
@@ -32,14 +33,14 @@ class _Cells:
 
 @dataclass(frozen=True, eq=False)
 class Borders:
-    """Borders between pieces of a line, ascending (m)."""
+    """Ascending borders (m) between the pieces of a line."""
 
     places: _Values
 
     def before(self, s: _Values) -> NDArray[intp]:
-        """The number of the last border that is not behind each place, the first one before it.
+        """For each place the number of the last border at or before it; 0 before the first border.
 
-        Any for NaN.
+        The result for NaN is arbitrary.
         """
         cells = self._cells
         if cells is None:
@@ -58,8 +59,8 @@ class Borders:
 
     @cached_property
     def _cells(self) -> _Cells | None:
-        """Cells with few borders each; None if they would be many."""
-        # What is before the second border is in the first cell, behind the last but one in the last
+        """A table whose cells contain few borders each; None if it would need too many cells."""
+        # The first cell extends to before the second border, the last to behind the last but one
         inner = self.places[1:-1]
         if len(inner) < _FEWEST:
             return None

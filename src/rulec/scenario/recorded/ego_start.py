@@ -17,19 +17,22 @@ from rulec.scenario.recorded.route import lanelet_of
 from rulec.scenario.scenario_model import Choice
 
 _FARTHEST = 1e15
-"""No file has so many time steps."""
+"""The largest time step number considered; no file has that many steps."""
 
 _SAME_PLACE_M = 0.1
 
 _AGAINST_MPS = 2.0
-"""Who goes back faster does not turn or park, but drives on the oncoming side, or reverses."""
+"""An ego that moves backwards faster than this (m/s) is not turning or parking.
+
+It drives on the oncoming side, or reverses.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class EgoStart:
-    """Ego's state at time 0, which is a step of the file, and its goals.
+    """Ego's state at time 0, which is a time step of the file, and its goals.
 
-    ``participant`` is the one whose part it takes over, if any.
+    ``participant`` is the recorded participant that ego replaces, if any.
     """
 
     participant: str | None
@@ -39,7 +42,7 @@ class EgoStart:
 
 
 def ego_start(recording: recorded.Recording, choice: Choice, file: str) -> EgoStart:
-    """The start of the chosen ego. Raises RulecError R0612 if it is not there."""
+    """The start of the chosen ego. Raises RulecError R0612 if the file does not contain it."""
     problems = {problem.id: problem for problem in recording.problems}
     moving = {
         participant.id: participant.states
@@ -93,14 +96,14 @@ def _of_problem(
 
 
 def _is_ego(participant: recorded.Participant, problem: recorded.PlanningProblem) -> bool:
-    """True if a participant is ego's own recorded drive, starting in ego's place."""
+    """Whether a participant is the recorded drive of ego: it is at the problem's start place."""
     state = participant.states.get(problem.step)
     place = problem.start
     return state is not None and hypot(state.x - place.x, state.y - place.y) < _SAME_PLACE_M
 
 
 def ego_size(recording: recorded.Recording, start: EgoStart, choice: Choice) -> tuple[float, float]:
-    """Ego's length and width (m), as chosen or else as recorded; 0 if not known."""
+    """Ego's length and width (m): the chosen width, else the recorded size; 0 if unknown."""
     length, width = 0.0, 0.0
     for participant in recording.participants:
         if participant.id == start.participant:
@@ -114,7 +117,7 @@ def ego_size(recording: recorded.Recording, start: EgoStart, choice: Choice) -> 
 
 
 class EgoMotionFields(TypedDict):
-    """What an ``Ego`` has of its motion."""
+    """The fields of an ``Ego`` that describe its motion."""
 
     speed: float | None
     lateral_speed: float
@@ -124,10 +127,11 @@ class EgoMotionFields(TypedDict):
 def ego_motion(
     recording: recorded.Recording, start: EgoStart, heading: float, reference: str, file: str
 ) -> EgoMotionFields:
-    """Ego's speed along and across a road that leads to ``heading`` (rad), and its bounds.
+    """Ego's speed along and across a road with direction ``heading`` (rad), and its motion bounds.
 
-    Those of a car, unless ego takes the part of somebody of another type. Raises RulecError R0612
-    for one that goes back along its lanelet, the ``reference``: maneuvers lead ahead.
+    The bounds are those of the participant's type if ego replaces one, else a car's. Raises
+    RulecError R0612 if ego moves backwards along its lanelet ``reference``, because maneuvers only
+    go ahead.
     """
     types = (body.object_types for body in recording.participants if body.id == start.participant)
     bounds = bounds_of(next(types, ()))
@@ -177,10 +181,10 @@ def _step(recording: recorded.Recording, at_s: float, file: str) -> int:
 
 
 def named_ids(ids: Iterable[str]) -> str:
-    """Ids for people."""
+    """Ids as text for messages."""
     return named(list(ids))
 
 
 def choice_error(message: str, way_out: str, file: str) -> RulecError:
-    """The error (R0612) that a choice is not in the file."""
+    """The error R0612: what was chosen is not in the file."""
     return NOT_IN_RECORDING.error(SourceLocation(file), message, help=way_out)

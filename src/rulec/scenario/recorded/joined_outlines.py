@@ -1,4 +1,4 @@
-"""The outlines of bodies end to end, so that all are projected together."""
+"""The outlines of many bodies concatenated, so that all are projected in one call."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ _REACH_FACTOR, _REACH_MORE_M = 2.0, 3.0
 
 @dataclass(frozen=True, eq=False)
 class JoinedOutlines:
-    """Outlines end to end: the ``corners`` of all (m), and how many each one has, at least one."""
+    """Concatenated outlines: the ``corners`` of all (m), and how many each has, at least 1."""
 
     corners: Points
     counts: NDArray[intp]
 
     @classmethod
     def of(cls, outlines: Sequence[Points]) -> JoinedOutlines:
-        """Join outlines, of which there is one at least."""
+        """Join outlines; at least one is needed."""
         return cls(np.concatenate(outlines), np.array([len(outline) for outline in outlines]))
 
     @classmethod
     def of_bodies(cls, bodies: Sequence[NDArray[float64] | Sequence[Points]]) -> JoinedOutlines:
-        """Join the outlines of bodies, of which there is one at least.
+        """Join the outlines of bodies; at least one is needed.
 
-        Those of a rigid body may be one array (axes: moment, corner, and x and y).
+        The outlines of a rigid body may be one array (axes: moment, corner, and x and y).
         """
         corners: list[Points] = []
         counts: list[int] = []
@@ -49,23 +49,23 @@ class JoinedOutlines:
 
     @cached_property
     def regular(self) -> bool:
-        """True if all have as many corners."""
+        """Whether all outlines have the same number of corners."""
         return bool((self.counts == self.counts[0]).all())
 
     @cached_property
     def starts(self) -> NDArray[intp]:
-        """The number of the first corner of each."""
+        """The index of each outline's first corner."""
         return np.append(0, self.counts.cumsum()[:-1])
 
     @cached_property
     def middles(self) -> Points:
-        """The mean of the corners of each."""
+        """The mean of each outline's corners."""
         middles: Points = np.add.reduceat(self.corners, self.starts) / self.counts[:, None]
         return middles
 
     @cached_property
     def reach(self) -> NDArray[float64]:
-        """How far (m) along a line the feet of corners may be from their middle's, for each."""
+        """How far (m) along a line the corners' feet may be from that of an outline's middle."""
         x, y = self.corners.T - self.middles.T.repeat(self.counts, axis=1)
         farthest = np.sqrt(np.maximum.reduceat(x * x + y * y, self.starts))
         reach: NDArray[float64] = farthest * _REACH_FACTOR + _REACH_MORE_M
@@ -74,7 +74,7 @@ class JoinedOutlines:
     def least_and_greatest(
         self, values: NDArray[float64]
     ) -> tuple[NDArray[float64], NDArray[float64]]:
-        """The bounds of the corners' values (a row of each kind): a row for each outline."""
+        """Least and greatest of the corners' values (a row per coordinate), a row per outline."""
         bounds = (f.reduceat(values, self.starts, axis=1).T for f in (np.minimum, np.maximum))
         least, greatest = bounds
         return least, greatest

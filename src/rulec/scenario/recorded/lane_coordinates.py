@@ -1,9 +1,9 @@
-"""The lanes of ego's road, and places between their straightened bounds.
+"""The lanes of ego's road, and coordinates between their straightened bounds.
 
-Lanes get wider and narrower, begin and end; the road of a scenario has lanes of one width. So
-across the road a place is put in proportion between the bounds of its lane: the middle of a lane
-stays the middle, and a car that keeps within its lane does so in the scenario. Where ego is, lanes
-have the width that they have there.
+Recorded lanes widen, narrow, begin and end, but a scenario's road has lanes of constant width. So a
+place's offset is scaled between the bounds of its lane: the middle of a lane stays the middle, and
+a car that keeps within its lane does so in the scenario too. Each lane has the width that it has at
+ego's place.
 """
 
 from __future__ import annotations
@@ -31,13 +31,16 @@ if TYPE_CHECKING:
     from rulec.scenario.scenario_model import MissingLane
 
 NARROWEST_LANE_M = 1.0
-"""Where a lane is narrower it has not begun yet, or has ended."""
+"""Where a lane is narrower than this (m), it has not begun yet or has ended."""
 
 TOUCHING_M = 0.3
-"""Who reaches into a lane by less is not in it: positions are no better than that."""
+"""A body that reaches into a lane by less than this (m) is not in it.
+
+Recorded positions are no more precise than that.
+"""
 
 _WIDEST_M = 20.0
-"""How far apart along a road (m) two edges of one pedestrian crossing may be at most."""
+"""The greatest distance (m) along a road between two edges of one pedestrian crossing."""
 
 _NARROWEST_M = 0.1
 _BESIDE_LINE_M = 0.5
@@ -48,7 +51,7 @@ _FAR_M = 50.0
 _ABOUT_M = 20.0
 _HAIR_M = 0.01
 _AT_ONCE = 1 << 10
-"""Outlines that are looked at together: what is computed of them stays near at hand."""
+"""Outlines processed per batch, so that intermediate arrays stay in the processor's cache."""
 
 _Values = NDArray[float64]
 _Beside = Sequence["Lanelet | None"]
@@ -58,8 +61,8 @@ _Beside = Sequence["Lanelet | None"]
 class Lanes:
     """Bounds of lanes from right to left along the road.
 
-    ``bounds[i]`` are at ``s[i]``, and ``straight`` are those in the scenario.
-    ``there[i][k]``: does lane k (from 0) exist between ``s[i]`` and ``s[i + 1]``?
+    ``bounds[i]`` are the offsets of the bounds at ``s[i]``, ``straight`` those in the scenario.
+    ``there[i][k]``: whether lane k (from 0) exists between ``s[i]`` and ``s[i + 1]``.
     """
 
     s: _Values
@@ -72,7 +75,10 @@ class Lanes:
         return Borders(self.s)
 
     def straightened(self, places: Points) -> Points:
-        """The ``d`` of places (rows ``s``, ``d``) between the lanes' straight bounds, a column."""
+        """The scenario's ``d`` of places (rows ``s``, ``d``), scaled between the straight bounds.
+
+        One column.
+        """
         left_of = self.from_bounds(places)
         lane = np.clip((left_of >= 0).sum(axis=1) - 1, 0, left_of.shape[1] - 2)
         row = np.arange(len(places))
@@ -84,13 +90,13 @@ class Lanes:
         return np.column_stack((np.where(inside, stretched, beyond),))
 
     def from_bounds(self, places: Points) -> Points:
-        """How far (m) left of each bound (columns) places are."""
+        """How far (m) each place (row) is to the left of each bound (column)."""
         at, off = places[:, 0], places[:, 1]
-        # NaN comes out as NaN, wherever it is put
+        # NaN may get any piece: the result is NaN in any case
         before = self._piece(at)
         start = self.s.take(before)
         part = np.minimum(np.maximum((at - start) / (self.s.take(before + 1) - start), 0.0), 1.0)
-        # The axis of the bounds comes first in memory
+        # In memory the axis of the bounds comes first
         first, second = (self.bounds.T.take(number, axis=1) for number in (before, before + 1))
         first *= 1 - part
         second *= part
@@ -99,19 +105,22 @@ class Lanes:
         return left_of
 
     def existing_at(self, s: _Values) -> NDArray[np.bool_]:
-        """Flags of the lanes (last axis, from the right) that exist at places."""
+        """Mask of the lanes (last axis, from the right) that exist at places."""
         return self.there[self.pieces_at(s)]
 
     def pieces_at(self, s: _Values) -> NDArray[intp]:
-        """The numbers of the pieces between rows of bounds at places, the nearest beyond them."""
+        """The index of the interval of ``self.s`` that contains each place.
+
+        Beyond the ends the nearest.
+        """
         return self._piece(np.where(np.isnan(s), 0.0, s))
 
     def _piece(self, s: _Values) -> NDArray[intp]:
         return np.minimum(self._borders.before(s), len(self.s) - 2)
 
     def missing(self, start: float, end: float, shift: float) -> tuple[MissingLane, ...]:
-        """The gaps of lanes between two places, ``shift`` subtracted from each ``s``."""
-        # Scenarios' model, 10 ms: not for recorded drives.
+        """Where lanes are missing from ``start`` to ``end``; ``shift`` is subtracted from ``s``."""
+        # Imported late (10 ms), since recorded drives do not need it.
         from rulec.scenario.scenario_model import MissingLane
 
         missing = []
@@ -132,10 +141,10 @@ def lanes_along(
     ego_s: float,
     numbers: Sequence[int] | None = None,
 ) -> Lanes:
-    """The lanes beside those of the way that lead the same way.
+    """The lanes of the road along a route: the route's own and those beside it in its direction.
 
-    ``numbers``: which lane each lanelet of the way is, from any on; else they are one lane.
-    Raises ValueError if there is no lane as wide as ``NARROWEST_LANE_M``.
+    ``numbers``: the lane number of each lanelet of the route, from any first number on; without
+    them the route is one lane. Raises ValueError if no lane is as wide as ``NARROWEST_LANE_M``.
     """
     lanelets = [recording.lanelets[number] for number in way]
     borders = borders_along(lanelets, line)
@@ -167,7 +176,7 @@ def lanes_along(
         raise ValueError(f"no lane of the road is as wide as {NARROWEST_LANE_M:g} m")
     kept = slice(existing[0], existing[-1] + 1)
     widths = np.stack([width for width, _ in columns], axis=1)
-    # The columns right of the way's own lanelet, at each place
+    # The number of columns right of the route's own lanelet, at each place
     before = own_number[pieces_at(borders, grid)] - own_number.min() + len(on_the_right)
     first = right - np.where(np.arange(len(columns)) < before[:, None], widths, 0.0).sum(axis=1)
     bounds = np.column_stack((first, widths)).cumsum(axis=1)
@@ -181,7 +190,7 @@ def lanes_along(
 
 @dataclass(frozen=True, slots=True)
 class _Strip:
-    """The shared data of all lanes: route, lanelet borders, sample places, its lanes."""
+    """Data shared by all lanes: route, lanelet borders along it, sample places, lane numbers."""
 
     recording: Recording
     way: Sequence[Lanelet]
@@ -192,9 +201,9 @@ class _Strip:
 
 
 def borders_along(lanelets: Sequence[Lanelet], line: ReferenceLine) -> _Values:
-    """The places at which lanelets begin, and the last one ends."""
+    """The places along the line (m) at which the lanelets begin, and where the last one ends."""
     ends = np.array([lanelets[0].centre[0], *(lanelet.centre[-1] for lanelet in lanelets)])
-    # A line that comes by a place again is beside it more than once
+    # A line that passes a place twice has several feet there, so search near the expected one
     about = np.cumsum([0.0, *map(lanelet_length, lanelets)])
     about *= line.length / about[-1] if about[-1] else 0.0
     places = line.coordinates_near(ends, about, np.full(len(ends), _ABOUT_M))[:, 0]
@@ -218,8 +227,8 @@ def _usual_widths(
 def _by_number(
     strip: _Strip, by_rank: Sequence[tuple[_Values, NDArray[np.bool_]]]
 ) -> Iterator[tuple[_Values, NDArray[np.bool_]]]:
-    """Widths and presences by lane, from those by rank beside the way's own lanelet."""
-    # Ranks begin with the rightmost; where the way is one lane they are the lanes
+    """Widths and presence by lane, from those by rank beside the route's own lanelet."""
+    # Rank 0 is the rightmost; if the route is one lane, ranks are lane numbers
     own = strip.own_number - strip.own_number.min()
     at = own[pieces_at(strip.borders, strip.grid)]
     for number in range(len(by_rank) + int(own.max())):
@@ -237,7 +246,7 @@ def _by_number(
 def _side(
     strip: _Strip, inner: _Values, lanes: Iterable[tuple[_Beside, _Values]], *, left: bool
 ) -> list[tuple[_Values, NDArray[np.bool_]]]:
-    """Widths and presences of the lanes on a side, which come with their outer bounds."""
+    """Widths and presence of the lanes on one side, given with their outer bounds."""
     columns = []
     for lanelets, bound in lanes:
         present = np.array([lanelet is not None for lanelet in lanelets])
@@ -251,7 +260,7 @@ def _side(
 
 
 def _beside(strip: _Strip, *, left: bool) -> list[_Beside]:
-    """The lanes on a side of the way's own, nearest first: a lanelet, or none, for each of its."""
+    """The lanes on one side of the route, nearest first: per lanelet of it a lanelet or None."""
     rows = [lanes_beside(strip.recording, lanelet.id, left=left) for lanelet in strip.way]
     return [
         [strip.recording.lanelets[row[k]] if len(row) > k else None for row in rows]
@@ -267,11 +276,11 @@ def _bounds(strip: _Strip, lanes: Sequence[tuple[_Beside, bool]]) -> list[_Value
     ]
     numbers, bounds = zip(*(own for lane in bounds_of for own in lane), strict=True)
     points, counts = densified_lines(bounds, _EVERY_M)
-    # All places together, each near the piece of its lanelet
+    # Project all places in one call, each near its lanelet's stretch
     piece = np.repeat(numbers, counts)
     start, end = strip.borders[piece], strip.borders[piece + 1]
     places = strip.line.coordinates_near(points, (start + end) / 2, (end - start) / 2 + _FAR_M)
-    # Where the way changes lanes its bounds do not go on
+    # Where the route changes lanes, bounds do not continue
     same = np.concatenate(([True], np.diff(strip.own_number) == 0, [True]))
     low, high = (np.where(goes_on, _MARGIN_M, 0.0) for goes_on in (same[piece], same[piece + 1]))
     kept = (places[:, 0] >= start - low) & (places[:, 0] <= end + high)
@@ -292,12 +301,12 @@ def outline_bounds(
     across: Callable[[Points], Points],
     expected: tuple[_Values, _Values] | None = None,
 ) -> tuple[_Values, _Values]:
-    """The least and the greatest coordinates of each outline, of which there is one, a row each.
+    """The least and the greatest coordinates of each outline, one row each; at least one is needed.
 
-    Columns: ``s``, ``d`` (m from the line), and those that ``across`` gives of these two. NaN for
-    outlines that are not beside the line. Corners are projected near the foot of their middle, so
-    that no body is torn apart where a road meets itself. ``expected``: for each middle about which
-    ``s``, and how far from there, its foot is.
+    Columns: ``s``, ``d`` (m from the line), and what ``across`` computes from these two. NaN for
+    outlines that are not beside the line. Corners are projected near the foot of the outline's
+    middle, so that no body is torn apart where a road meets itself. ``expected``: for each outline
+    the approximate ``s`` of its middle's foot, and how far from there the foot may be.
     """
     middles = (
         line.coordinates_near(outlines.middles, *expected)
@@ -314,7 +323,7 @@ def outline_bounds(
     rows = line.coordinates_of_rows(corners, around, outlines.reach)
     parts = []
     for begin in range(0, len(rows), _AT_ONCE):
-        # Corner by corner, so that those of all outlines stand together
+        # Corner-major, so that minimum and maximum run over contiguous outlines
         own = rows[begin : begin + _AT_ONCE].swapaxes(0, 1)
         values = _with_across(own.reshape(-1, 2), across)
         by_corner = values.reshape(len(values), len(own), -1)
@@ -324,14 +333,14 @@ def outline_bounds(
 
 
 def _with_across(feet: Points, across: Callable[[Points], Points]) -> _Values:
-    """Coordinates of places and what a function gives of them, a row each."""
+    """Coordinates of places and what a function computes from them; one row per coordinate."""
     return np.concatenate((feet.T, across(feet).T))
 
 
 def kept_off_touched(low: _Values, high: _Values, straight: _Values) -> tuple[_Values, _Values]:
-    """Extents across the lanes, ending at the marks of lanes that they merely touch.
+    """Extents across the lanes, cut off at the bound of a lane that they merely touch.
 
-    A narrow body, such as a pedestrian's, is in a lane with most of it.
+    A narrow body, such as a pedestrian's, is in the lane that contains more than half of it.
     """
     enough = np.minimum(TOUCHING_M, (high - low) / 2)
     first, last = pieces_at(straight, low), pieces_at(straight, high)
@@ -347,10 +356,11 @@ def kept_off_touched(low: _Values, high: _Values, straight: _Values) -> tuple[_V
 def crossings_along(
     recording: Recording, line: ReferenceLine, lanes: Lanes, start: float, end: float
 ) -> Iterator[tuple[float, float]]:
-    """The stretches (``s``) that crosswalks take up on the lanes, within ``start`` and ``end``.
+    """The stretches (``s``) that crosswalks cover on the lanes, within ``start`` and ``end``.
 
-    They lie across the line; one beside it is another road's, onto which a lane turns off. A road
-    that turns round and comes back beside itself may meet one twice, far apart along it.
+    A crosswalk has to lie across the line; one beside it belongs to another road, onto which a lane
+    turns off. A road that turns round and comes back beside itself may meet one crosswalk twice, at
+    places far apart along it.
     """
     for lanelet in recording.lanelets.values():
         if "crosswalk" not in lanelet.types:

@@ -1,8 +1,9 @@
-"""The pieces of a line on which a place may have its foot, found without trying each in full.
+"""The pieces of a line that may contain the foot of a place, without trying every piece in full.
 
-The places with a foot on a piece lie between the two lines that bound its fan, one through each
-end. On which side of such a line a place is, is a sum of products: for all places and pieces that
-is one product of matrices. Single precision will do, since who may have a foot is tried in full.
+The places with a foot on a piece lie in its fan, between two bounding lines through its ends. The
+side of such a line on which a place lies is given by a sum of products, so one matrix product
+decides it for all places and pieces. Single precision is enough, because every candidate is then
+computed in full.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 from rulec.recordings.recording import Points
 
 _MARGIN_M, _MARGIN_PART = 1e-2, 1e-6
-"""What single precision rounds away, of a place so far (m) from the line's first corner."""
+"""Rounding error of single precision: a constant (m), and a share of the largest distance."""
 
 _AT_ONCE = 1 << 17
 _MOST_PLACES = 256
@@ -27,10 +28,11 @@ _Values = NDArray[float64]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LineFans:
-    """How far places are beyond each end of a piece, first and last ones included.
+    """The bounding lines of pieces' fans, for testing which pieces may contain a place's foot.
 
-    That is ``normals`` (3 rows, a column for each end) times x, y from ``origin`` and 1. A place
-    beyond the one end and before the other, but for ``margin``, may have its foot on the piece.
+    ``normals`` (3 rows, one column per bounding line, first and last included) times (x, y, 1),
+    relative to ``origin``, is how far (m) a place is beyond each line. A place beyond the first
+    line of a piece and before its second, within ``margin``, may have its foot on the piece.
     """
 
     origin: Points
@@ -40,9 +42,10 @@ class LineFans:
     def candidates(
         self, places: Points, low: NDArray[intp], high: NDArray[intp]
     ) -> tuple[NDArray[intp], NDArray[intp]]:
-        """Numbers of places, each's end to end, with the pieces that may have a foot, ascending.
+        """Pairs of places' numbers and numbers of pieces that may contain their feet.
 
-        Only pieces from ``low`` to ``high`` of each place; all that have a foot are among them.
+        The pairs of a place are consecutive, pieces ascending. Only pieces from ``low`` to ``high``
+        of each place are considered; none that contains a foot is left out.
         """
         parts = list(self._parts(places, low, high))
         if not parts:
@@ -58,7 +61,7 @@ class LineFans:
         farthest = float(np.nanmax(np.abs(away), initial=0.0))
         margin = (self.margin * (_MARGIN_M + _MARGIN_PART * farthest)).astype(float32)
         homogeneous = np.column_stack((away, np.ones(len(away)))).astype(float32)
-        # Places with the same pieces in question go together; few numbers are sorted faster
+        # Batch places with similar piece ranges; 16-bit keys sort faster
         order = (low.astype(np.uint16) if count < _FEW else low).argsort(kind="stable")
         widest = int((high - low).max(initial=0)) + 1
         bounded = bool((high - low + 1 < count).any())
@@ -78,10 +81,13 @@ class LineFans:
 
 
 def line_fans(start: Points, ahead: Points, lengths: _Values, slopes: Points) -> LineFans:
-    """The fans of pieces, with the slopes of the lines that bound them (columns) at either end."""
+    """The fans of pieces.
+
+    ``slopes`` (two columns) are those of the bounding lines at either end.
+    """
     origin = start[:1]
     corners = np.concatenate((start, start[-1:] + ahead[-1:] * lengths[-1:, None])) - origin
-    # Two pieces have the line between them in common
+    # Neighbouring pieces share a bounding line
     directions = np.concatenate((ahead, ahead[-1:]))
     slope = np.concatenate((slopes[:, 0], slopes[-1:, 1]))
     normals = directions + slope[:, None] * np.stack((-directions[:, 1], directions[:, 0]), axis=1)

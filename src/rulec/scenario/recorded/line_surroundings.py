@@ -1,4 +1,4 @@
-"""Distance filter around a line, by a grid of squares."""
+"""A fast filter for places near a line: a grid of squares."""
 
 from __future__ import annotations
 
@@ -14,16 +14,17 @@ from rulec.recordings.recording import Points
 _SQUARE_M = 10.0
 _MOST_SQUARES = 1 << 22
 _MOST_ALONG = 1 << 16
-"""So many squares at most along the line, however far beyond its ends somebody may come from."""
+"""The most squares along the line, however far it is extended beyond its ends."""
 
 _Values = NDArray[float64]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LineSurroundings:
-    """Squares of a grid, those flagged that places near a line may lie in.
+    """A grid of squares, with flags of those that may contain places near a line.
 
-    ``corner`` is the grid's lowest one, ``size`` a square's (m). The outermost are not flagged.
+    ``corner`` is the grid's lowest corner, ``size`` a square's edge (m). The outermost squares are
+    not flagged.
     """
 
     corner: Points
@@ -31,9 +32,12 @@ class LineSurroundings:
     flags: NDArray[bool_]
 
     def holds(self, x: _Values, y: _Values) -> NDArray[bool_]:
-        """Flags of places that may be near, all that are among them; NaN is nowhere."""
+        """Mask of the places that may be near.
+
+        No place that is near is left out, NaN is not near.
+        """
         (i, j) = (
-            # NaN comes to lie in the outermost square
+            # NaN is put in the outermost square, which has no flag
             np.fmin(np.fmax((values - low) * (1 / self.size), 0.0), count - 1).astype(np.int32)
             for values, low, count in zip((x, y), self.corner, self.flags.shape, strict=True)
         )
@@ -42,7 +46,7 @@ class LineSurroundings:
 
 
 def line_surroundings(corners: Points, near_m: float) -> LineSurroundings:
-    """The squares in which all places lie that are within ``near_m`` of a line through corners."""
+    """The squares that contain all places within ``near_m`` of the line through ``corners``."""
     arc = arc_lengths(corners)
     size = _SQUARE_M
     area = (np.ptp(corners, axis=0) + 2 * near_m).prod()
@@ -51,7 +55,7 @@ def line_surroundings(corners: Points, near_m: float) -> LineSurroundings:
     count = int(np.ceil(arc[-1] / (size / 2))) + 1
     at = np.linspace(0.0, arc[-1], count)
     samples = interpolated(at, arc, corners)
-    # The nearest sample is a quarter of a square farther away than the line, at most
+    # Samples are half a square apart, so the nearest is at most a quarter farther than the line
     more = int(np.ceil(near_m / size + 0.25))
     corner = samples.min(axis=0) - (more + 1.5) * size
     squares = ((samples - corner) / size).astype(int)

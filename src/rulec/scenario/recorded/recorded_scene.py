@@ -1,10 +1,10 @@
-"""From a recording to a scenario along ego's road.
+"""Making a scenario along ego's road from a recording.
 
-The words of signals are those of the vocabulary ``road``. What the file does not say is not made
-up: such a signal is missing, and the rulebook's own default holds. No file states congestion,
-though: traffic is congested where the median speed of the vehicles on ego's road that go ego's way
-is below a threshold. Speeds are those at which they cover the road from time 0 on, for a second if
-the recording goes on so long: in some recordings the speed that is written down is another one.
+The signals' names are those of the vocabulary ``road``. A signal that the file does not provide is
+missing, and the rulebook's default applies. One signal is derived, since no file states congestion:
+traffic is congested where the median speed of the vehicles on ego's road in ego's direction is
+below a threshold. These speeds are measured along the road from time 0 on, for a second if the
+recording is that long, because the speed written in some recordings differs.
 """
 
 from __future__ import annotations
@@ -42,16 +42,16 @@ from rulec.scenario.time_grid import whole_steps
 STEP_S = 0.5
 
 FEWEST = 3
-"""So many vehicles it takes for traffic to be congested."""
+"""The fewest vehicles that can make traffic congested."""
 
 _STEPS_S = STEP_S, STEP_S / 2, STEP_S / 4, STEP_S / 8
-"""A horizon that is shorter than a step takes one of the others."""
+"""The steps (s) from which a horizon shorter than the usual step takes the longest that fits."""
 
 _FOR_S = 1.0
 _MORE_M = 5.0
 
 LIGHT_FOR_S = 10.0
-"""A light counts if all of ego's show one colour for so long from time 0 on."""
+"""Ego's light counts if all its traffic lights show one colour for this long (s) from time 0 on."""
 
 LANELETS_TO_A_LIGHT = 2
 """Ego's light is that of its own lanelet, or else of the next one."""
@@ -68,7 +68,7 @@ _KMH = 3.6
 
 
 def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
-    """The scenario that a recording gives, seen from the chosen ego.
+    """The scenario of a recording, seen from the chosen ego.
 
     Raises RulecError R0612 if what is chosen is not in it, ValueError if its lanes cannot be laid
     out along a line.
@@ -115,7 +115,7 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
     count = int(lanes.existing_at(np.array(ego_s)).sum())
     ahead = [recording.lanelets[number] for number in way[way.index(own) :]]
     derived = {
-        # The paper's word and that of the vocabulary `road`
+        # The paper's name, and that of the vocabulary `road`
         "CONGESTED": congestion,
         "congested": congestion,
         **map_signals(ahead, count, recording.step_s, start.step),
@@ -124,7 +124,7 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
     horizon_s, step_s, remarks = USUAL_HORIZON_S, STEP_S, recording.remarks
     map_ends = ends_s is not None and ends_s < USUAL_HORIZON_S
     if ends_s is not None and map_ends:
-        # A road that ends there would have ego stop for nothing
+        # Beyond the map's end ego would have to stop for no reason
         step_s = next((step for step in _STEPS_S if step <= ends_s), _STEPS_S[-1])
         horizon_s = whole_steps(ends_s, step_s)
         away = f"{road.outline.s_max:.1f} m ahead of ego, which gets there in {ends_s:.1f} s"
@@ -163,10 +163,10 @@ def seen_from_ego(recording: Recording, choice: Choice, file: str) -> Scenario:
 def _map_ends_s(
     recording: Recording, last: str, away_m: float, speed_mps: float | None
 ) -> float | None:
-    """When ego gets where the map ends (s); None if it does not.
+    """The time (s) at which ego reaches the end of the map; None if the map does not end there.
 
-    The last lanelet of its road leads nowhere then. Nor does one beside that, or else it is a lane
-    that ends.
+    The map ends where neither the last lanelet of ego's road nor a lane beside it has a successor;
+    if a lane beside it has one, only ego's lane ends. None also if ego has no speed.
     """
     left, right = (lanes_beside(recording, last, left=left) for left in (True, False))
     leads_on = any(recording.lanelets[name].successors for name in (last, *left, *right))
@@ -176,7 +176,7 @@ def _map_ends_s(
 def _place_on(
     own: str, state: TrackState, way: Sequence[Lanelet], line: ReferenceLine
 ) -> tuple[float, float]:
-    """The coordinates of a place on a lanelet of the way, which may come by the place again."""
+    """The coordinates of ego on lanelet ``own``; the route may pass the same place twice."""
     borders = borders_along(way, line)
     number = next(k for k, lanelet in enumerate(way) if lanelet.id == own)
     middle, reach = (borders[number + 1] + borders[number]) / 2, np.diff(borders)[number] / 2
@@ -190,10 +190,10 @@ def _place_on(
 def map_signals(
     ahead: Sequence[Lanelet], lanes: int, step_s: float, step: int
 ) -> dict[str, tuple[SignalValue, str]]:
-    """Signal -> value, and where it comes from.
+    """Signal -> its value, and a text that says where the value comes from.
 
-    ``ahead`` are the lanelets of ego's road from its own on, ``lanes`` how many there are beside
-    each other, ``step`` the one at which time 0 is.
+    ``ahead`` are the lanelets of ego's road from its own on, ``lanes`` is the number of lanes side
+    by side at ego's place, ``step`` the time step of time 0.
     """
     own = ahead[0]
     signals: dict[str, tuple[SignalValue, str]] = {}
@@ -217,7 +217,7 @@ def map_signals(
 
 
 def congested(obstacles: Iterable[Obstacle], road: Box, below_kmh: float) -> tuple[bool, str]:
-    """The decision if traffic is congested, and its reason."""
+    """Whether traffic is congested, and the reason as text."""
     speeds = [
         speed * _KMH
         for obstacle in obstacles
@@ -234,11 +234,11 @@ def congested(obstacles: Iterable[Obstacle], road: Box, below_kmh: float) -> tup
 
 
 def _speed(obstacle: Obstacle, road: Box) -> float | None:
-    """The speed along the road (m/s); None off the road, or for oncoming traffic."""
+    """The speed along the road (m/s); None off the road, and for oncoming traffic."""
     now = swept(obstacle, 0.0, 0.0)
     then = swept(obstacle, _FOR_S, _FOR_S)
     if now is None or then is None or not now.overlaps(road):
         return None
     speed = now.shift_to(then)[0] / _FOR_S
-    # Who stands may drift backwards by what the recording is inexact
+    # Inexact recordings let standing vehicles drift backwards
     return max(speed, 0.0) if speed > -1.0 else None

@@ -1,11 +1,11 @@
 """Frenet coordinates: arc length ``s`` along a reference line, offset ``d``.
 
-The foot of a place is where the place is perpendicular to the line. On a line of straight pieces
-that leaves gaps at the outside of every bend and overlaps at the inside; so directions are
-interpolated along each piece between those of its ends (Bender, Ziegler, Stiller, "Lanelets:
-Efficient map representation for autonomous driving", IV 2014), and ``s`` and ``d`` vary without
-jumps. Pieces are 5 m long at most, so that a bend is felt no farther from it. Beyond its ends the
-line goes on straight.
+A place's foot is where the perpendicular of the line leads through the place. On a line of straight
+pieces that leaves gaps on the outside of every bend and overlaps on the inside; so the direction is
+interpolated along each piece between the directions at its ends (Bender, Ziegler, Stiller,
+"Lanelets: Efficient map representation for autonomous driving", IV 2014), and ``s`` and ``d`` vary
+without jumps. Pieces are 5 m long at most, so that a bend has no effect farther away than that.
+Beyond its ends the line continues straight.
 """
 
 from __future__ import annotations
@@ -32,12 +32,13 @@ from rulec.scenario.recorded.sure_feet import MANY, PieceFans, sure_feet, sure_f
 from rulec.trace.plain_arrays import distinct
 
 BEYOND_M = 2000.0
-"""How far the line goes on straight beyond its ends."""
+"""How far (m) the line continues straight beyond its ends."""
 
 _BESIDE_M = 15.0
-"""Who is so near to the line itself is not on what it would be beyond its ends.
+"""A place this near (m) to the line itself is not assigned to the line's straight extensions.
 
-Nobody knows how it goes on there; straight on it comes by its own other parts after a bend or two.
+The real road beyond the ends is unknown, and the straight extension may pass the line's own other
+parts after a bend or two.
 """
 
 _CLOSEST_M = 0.05
@@ -52,10 +53,10 @@ _Values = NDArray[float64]
 
 @dataclass(frozen=True, kw_only=True)
 class ReferenceLine:
-    """A line of straight pieces: start, direction and length of each.
+    """A line of straight pieces: arc length, start, direction and length of each.
 
-    ``first`` and ``change``: the slope of the interpolated direction at its beginning, as seen from
-    the piece, and by how much it changes up to the end.
+    ``first`` and ``change``: the slope of the interpolated direction at a piece's beginning,
+    relative to the piece, and by how much the slope changes up to its end.
     """
 
     arc: _Values
@@ -67,11 +68,11 @@ class ReferenceLine:
 
     @property
     def length(self) -> float:
-        """From the first corner to the last, without what lies beyond."""
+        """The length (m) from the first corner to the last, without the extensions."""
         return float(self.arc[-1])
 
     def headings_at(self, s: _Values) -> _Values:
-        """The directions of the pieces at places, in radians."""
+        """The directions (rad) of the pieces at places."""
         return self._headings[self._piece(s)]
 
     @cached_property
@@ -80,7 +81,7 @@ class ReferenceLine:
         return headings
 
     def directions_at(self, s: _Values) -> tuple[_Values, _Values, _Values]:
-        """The same, and their cosines and sines."""
+        """The directions (rad) of the pieces at places, with their cosines and sines."""
         pieces = self._piece(s)
         headings, cosines, sines = (values.take(pieces) for values in self._directions)
         return headings, cosines, sines
@@ -90,11 +91,14 @@ class ReferenceLine:
         return self._headings, np.cos(self._headings), np.sin(self._headings)
 
     def heading_at(self, s: float) -> float:
-        """The direction of the piece at ``s``, in radians."""
+        """The direction (rad) of the piece at ``s``."""
         return float(self.headings_at(np.array([s]))[0])
 
     def coordinates(self, places: Points) -> Points:
-        """Frenet coordinates ``s`` and ``d`` of places, a row each; NaN without a foot."""
+        """Frenet coordinates ``s`` and ``d`` of places, one row each.
+
+        NaN for a place without a foot.
+        """
         coordinates, sure = sure_feet(self.piece_fans, places)
         left = (~sure).nonzero()[0]
         low = np.zeros(len(left), dtype=intp)
@@ -102,7 +106,7 @@ class ReferenceLine:
         return coordinates
 
     def coordinates_near(self, places: Points, around: _Values, reach: _Values) -> Points:
-        """Frenet coordinates of feet within ``reach`` of a given ``s`` each."""
+        """Frenet coordinates of places, with feet within ``reach`` of ``around`` (``s``)."""
         low, high = self._piece(around - reach), self._piece(around + reach)
         if len(places) < MANY:
             return self._nearest(places, low, high)
@@ -113,9 +117,9 @@ class ReferenceLine:
         return coordinates
 
     def coordinates_of_rows(self, places: Points, around: _Values, reach: _Values) -> Points:
-        """The same of rows of as many places, with an ``s`` for each row; NaN for those of NaN.
+        """Like ``coordinates_near`` for rows of equally many places, with one ``around`` per row.
 
-        Axes: row, place, and x and y or ``s`` and ``d``.
+        Axes: row, place, and x and y or ``s`` and ``d``. A row whose ``around`` is NaN gets NaN.
         """
         coordinates, sure = sure_feet_near(self.piece_fans, places, around, reach)
         rows, columns = np.divmod((~sure).ravel().nonzero()[0], places.shape[1])
@@ -125,7 +129,7 @@ class ReferenceLine:
         return coordinates
 
     def surroundings(self, near_m: float, beyond_m: float) -> LineSurroundings:
-        """Where places may be within ``near_m`` of the line, up to ``beyond_m`` beyond its ends."""
+        """A filter for places within ``near_m`` of the line, up to ``beyond_m`` beyond its ends."""
         at = np.concatenate(([-beyond_m], self.arc[1:], [self.length + beyond_m]))
         pieces = self._piece(at)
         return line_surroundings(
@@ -142,12 +146,12 @@ class ReferenceLine:
 
     @cached_property
     def piece_fans(self) -> PieceFans:
-        """Its pieces, as they are needed to find feet without trying each."""
+        """The pieces in the form that ``sure_feet`` needs."""
         own = self.lengths, self.first, self.change, self.arc
         return PieceFans(np.stack((*self.ahead.T, *self.start.T, *own)))
 
     def _nearest(self, places: Points, low: NDArray[intp], high: NDArray[intp]) -> Points:
-        """The coordinates of the nearest foot on one of the pieces from ``low`` to ``high``."""
+        """The coordinates of each place's nearest foot on the pieces from ``low`` to ``high``."""
         if not len(places):
             return np.empty((0, 2))
         numbers, pieces = self._fans.candidates(places, low, high)
@@ -161,7 +165,7 @@ class ReferenceLine:
         good = (turned_lengths > 0) & (part >= -_HAIR) & (part <= 1 + _HAIR)
         at = good.nonzero()[0]
         numbers, own, foot, across = numbers[at], pieces[at], part[at] * lengths[at], across[at]
-        # As feet that are sure are computed, to the last digit
+        # The same formula as in sure_feet, for bit-identical results
         distance = np.sqrt(np.square(along[at] - foot) + np.square(across))
         away = distance + np.where((own == 0) | (own == len(self.arc) - 1), _BESIDE_M, 0.0)
         best = _least_of_each(numbers, away)
@@ -172,7 +176,7 @@ class ReferenceLine:
 
 
 def _least_of_each(groups: NDArray[intp], values: _Values) -> NDArray[intp]:
-    """Where the first of the least values of each group is; each is end to end."""
+    """The index of the first least value in each group; the values of a group are consecutive."""
     if not len(groups):
         return groups
     begins = np.concatenate(([True], groups[1:] != groups[:-1]))
@@ -184,7 +188,7 @@ def _least_of_each(groups: NDArray[intp], values: _Values) -> NDArray[intp]:
 
 
 def reference_line(corners: Points) -> ReferenceLine:
-    """The line through corners, without those too close together.
+    """The line through corners, leaving out those too close together.
 
     Raises ValueError if all of them are in one place.
     """
@@ -217,9 +221,9 @@ def reference_line(corners: Points) -> ReferenceLine:
 
 
 def leading_on(corners: Points) -> Points:
-    """A line without corners to which it leads back for less than a metre, as where maps overlap.
+    """Drop the corners at which a line turns back for less than 1 m, as where maps overlap.
 
-    Who is beside such a place would be as far along the line as its end.
+    A place beside such a corner would be as far along the line as the line's end.
     """
     kept = without_repeats(corners, _CLOSEST_M)
     steps = np.diff(kept, axis=0)
@@ -230,11 +234,12 @@ def leading_on(corners: Points) -> Points:
 
 
 def smoothed(corners: Points) -> Points:
-    """A line without the small kinks to and fro that middles have where lanelets meet.
+    """A centre line without the small zigzags that it has where lanelets meet.
 
-    Some lanes beside it, one who drives straight on would jump along the line there. In each place
-    is the mean of 10 m around it; by how much that flattens curves is found in the same way, and
-    added again (twicing: Tukey, "Exploratory data analysis", 1977). The ends stay.
+    Some lanes away from it, a vehicle that drives straight on would otherwise jump along the line
+    there. Each place becomes the mean of the 10 m around it; the amount by which that flattens
+    curves is estimated in the same way and added again (twicing: Tukey, "Exploratory data
+    analysis", 1977). The ends do not move.
     """
     kept = densified(without_repeats(corners, _CLOSEST_M), _STEP_M)
     arc = arc_lengths(kept)
@@ -247,7 +252,7 @@ def smoothed(corners: Points) -> Points:
 
 
 def _means(points: Points) -> Points:
-    """The means of the points around each, fewer at the ends."""
+    """The moving mean of points, over fewer points near the ends."""
     sums = np.concatenate((np.zeros((1, 2)), points.cumsum(axis=0)))
     own = np.arange(len(points))
     reach = np.minimum(np.minimum(own, own[::-1]), round(_SMOOTH_M / _STEP_M))
@@ -256,7 +261,7 @@ def _means(points: Points) -> Points:
 
 
 def _bends(points: Points) -> NDArray[intp]:
-    """The numbers of points that are enough: every 5 m, and more where a line bends."""
+    """The numbers of the points to keep: one every 5 m, and more where the line bends."""
     steps = np.diff(points, axis=0)
     angles = np.arctan2(steps[:, 1], steps[:, 0])
     turned = np.concatenate(([0.0], np.abs(turn(angles[:-1], angles[1:]))))
@@ -268,11 +273,14 @@ def _bends(points: Points) -> NDArray[intp]:
 
 
 def turn(before: Angle, after: Angle) -> Angle:
-    """The way from one angle (rad) to another, the short way round."""
+    """The signed difference (rad) between two angles, the short way round."""
     return wrapped(after - before)
 
 
 def pieces_at(borders: _Values, s: _Values) -> NDArray[intp]:
-    """The numbers of the pieces between ascending borders at places, the nearest beyond them."""
+    """The index of the piece between ascending borders at each place.
+
+    Beyond the ends the nearest.
+    """
     pieces = borders.searchsorted(np.where(np.isnan(s), 0.0, s), "right") - 1
     return np.minimum(np.maximum(pieces, 0), len(borders) - 2)

@@ -15,7 +15,7 @@ from rulec.recordings.recording import Lanelet, Points, Recording, TrackState, i
 from rulec.scenario.recorded.reference_line import pieces_at, turn
 
 REACH_M = 300.0
-"""The road is followed this far ahead of ego and behind it, where the file has so much of it."""
+"""How far (m) ego's road is followed ahead and behind, as far as the file contains it."""
 
 _NEAR_M = 3.0
 _SHORTEST_M = 1.0
@@ -24,12 +24,12 @@ _TURNS_BACK = radians(135)
 
 
 def lanelet_area(lanelet: Lanelet) -> shapely.Polygon:
-    """The area between a lanelet's bounds."""
+    """The polygon between a lanelet's bounds."""
     return shapely.make_valid(shapely.Polygon(np.concatenate((lanelet.right, lanelet.left[::-1]))))
 
 
 def directions_beside(lanelet: Lanelet, points: NDArray[np.object_]) -> NDArray[np.float64]:
-    """The direction (rad) of a lanelet's centre line nearest each point."""
+    """The direction (rad) of a lanelet's centre line at the place nearest to each point."""
     return directions_at(
         lanelet, shapely.line_locate_point(shapely.LineString(lanelet.centre), points)
     )
@@ -45,7 +45,10 @@ def directions_at(lanelet: Lanelet, along: NDArray[np.float64]) -> NDArray[np.fl
 
 
 def lanelet_of(recording: Recording, state: TrackState) -> str | None:
-    """The lanelet under a vehicle, best aligned with it; else the nearest within 3 m."""
+    """The id of the lanelet under a vehicle that is best aligned with it.
+
+    Else the nearest within 3 m.
+    """
     place = shapely.Point(state.x, state.y)
     lanes = [lanelet for lanelet in recording.lanelets.values() if is_lane(lanelet)]
     far = {lanelet.id: float(shapely.distance(lanelet_area(lanelet), place)) for lanelet in lanes}
@@ -60,7 +63,7 @@ def lanelet_of(recording: Recording, state: TrackState) -> str | None:
 
 
 def lanelets_at(recording: Recording, places: Points) -> frozenset[str]:
-    """The lanes at one of the places, and those beside them that lead the same way."""
+    """The lanes at any of the places, and the lanes beside these in the same direction."""
     points = shapely.points(places)
     holding = {
         lanelet.id
@@ -79,7 +82,7 @@ def lanelets_at(recording: Recording, places: Points) -> frozenset[str]:
 
 
 def lanes_beside(recording: Recording, start: str, *, left: bool) -> tuple[str, ...]:
-    """The lanes left or right of a lanelet that lead the same way, nearest first."""
+    """The lanes left or right of a lanelet in the same direction, nearest first."""
     lanes: list[str] = []
     lanelet = recording.lanelets[start]
     while True:
@@ -93,10 +96,10 @@ def lanes_beside(recording: Recording, start: str, *, left: bool) -> tuple[str, 
 
 
 def route(recording: Recording, start: str, targets: frozenset[str]) -> tuple[str, ...]:
-    """The lanelets along ego's road, each followed by a successor.
+    """The lanelets along ego's road, each followed by one of its successors.
 
-    Where the road branches: towards a target if one can be reached, else as straight as possible.
-    A closed road is cut half-way round.
+    Where the road branches, the route leads towards a target if one can be reached, else as
+    straight as possible. A closed road is cut at its half.
     """
     lanelets = recording.lanelets
     way = _way_to(lanelets, start, targets)
@@ -112,9 +115,9 @@ def route(recording: Recording, start: str, targets: frozenset[str]) -> tuple[st
 def roads_beyond(
     recording: Recording, way: Sequence[str]
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """The roads before and after a route, as straight as possible where they branch.
+    """The lanelets before and after a route, as straight as possible where the road branches.
 
-    They may lead to the route again, as on a ring.
+    They may lead back to the route, as on a ring.
     """
     lanelets = recording.lanelets
     ahead = _straight_on(lanelets, [way[-1]], again=True)
@@ -147,9 +150,9 @@ def _straight_on(
     taken: Iterable[str] = (),
     again: bool = False,
 ) -> list[str]:
-    """A way with what follows it, as straight as possible, without the lanelets ``taken``.
+    """A route extended as straight as possible, without the lanelets ``taken``.
 
-    ``again``: lanelets may come again.
+    ``again``: whether a lanelet may occur twice.
     """
     way = list(start)
     seen = {*way, *taken}
@@ -163,7 +166,7 @@ def _straight_on(
             if number in lanelets
             and (again or number not in seen)
             and is_lane(lanelets[number])
-            # A road does not turn back by itself, though one may turn around at its end
+            # A road does not turn back on itself, though vehicles may turn around at its end
             and abs(turn(leaving, _end_heading(lanelets[number], backwards))) < _TURNS_BACK
         ]
         if not options:
@@ -177,18 +180,18 @@ def _straight_on(
 
 
 def lanelet_length(lanelet: Lanelet) -> float:
-    """The length (m) of a lanelet's middle."""
+    """The length (m) of a lanelet's centre line."""
     return line_length(lanelet.centre)
 
 
 def _end_heading(lanelet: Lanelet, backwards: bool) -> float:
-    """The direction in which the way leaves a lanelet at its end."""
+    """The direction (rad) in which the route leaves a lanelet at its end."""
     centre = lanelet.centre[::-1] if backwards else lanelet.centre
     return _direction(centre[-2], centre[-1])
 
 
 def _heading_ahead(lanelet: Lanelet, backwards: bool) -> float:
-    """The direction of a route some 30 m into a lanelet."""
+    """The direction (rad) of the route some 30 m into a lanelet."""
     centre = lanelet.centre[::-1] if backwards else lanelet.centre
     line = shapely.LineString(centre)
     end = min(line.length, _LOOK_M)

@@ -1,4 +1,4 @@
-"""Origin of a recorded scene, and the transformation back to its recording."""
+"""Origin of a recorded scene, and the transformation back to the recording's coordinates."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _Values = NDArray[float64]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SceneOrigin:
-    """A recording and ego's start in it, with the line and the lanes along it.
+    """The recording, ego's start in it, and the line and lanes along which the scene is laid out.
 
-    ``ego_s`` is how far (m) along the line ego starts, ``way`` are the lanelets of its road.
+    ``ego_s`` is ego's start (m) along the line, ``way`` are the lanelets of its road.
     """
 
     recording: Recording
@@ -31,15 +31,15 @@ class SceneOrigin:
     way: tuple[str, ...]
 
     def places(self, s: _Values, d: _Values) -> tuple[Points, _Values]:
-        """Places (x, y in m, a row each) of a scene's coordinates, and the road's direction there.
+        """The recording's places (x, y in m, a row each) of scene coordinates, and road directions.
 
-        Directions (rad) are interpolated along the line's pieces, as those of feet are.
+        Directions (rad) are interpolated along the line's pieces, as for feet.
         """
         line, along = self.line, s + self.ego_s
         piece = np.clip(line.arc.searchsorted(along, "right") - 1, 0, len(line.arc) - 1)
         ahead, part = line.ahead[piece], (along - line.arc[piece]) / line.lengths[piece]
         slope = line.first[piece] + line.change[piece] * part
-        # Who is at d has its foot where the interpolated perpendicular leads through it
+        # The foot of a place is where the interpolated perpendicular leads through the place
         across = self._across(along, d) / np.hypot(1.0, slope)
         foot = line.start[piece] + ahead * (along - line.arc[piece])[:, None]
         left = np.stack((-ahead[:, 1], ahead[:, 0]), axis=1)
@@ -47,7 +47,7 @@ class SceneOrigin:
         return places, np.arctan2(ahead[:, 1], ahead[:, 0]) + np.arctan(slope)
 
     def _across(self, along: _Values, d: _Values) -> _Values:
-        """How far (m) left of the line straightened places are."""
+        """The offset (m) from the line, to the left, of a scene's straightened ``d``."""
         lanes, straight = self.lanes, self.lanes.straight
         bounds = -lanes.from_bounds(np.column_stack((along, np.zeros(len(along)))))
         lane = np.clip(straight.searchsorted(d, "right") - 1, 0, len(straight) - 2)

@@ -1,9 +1,10 @@
-"""Feet of places that are sure to be their only ones, so that no other piece needs to be tried.
+"""Feet that are provably a place's only ones, found by testing one guessed piece instead of all.
 
-A place is before or behind the line through each corner that bounds the fans on either side. As
-long as it is nearer to all pieces than these lines meet, or no farther aside than the two of a fan
-meet any other, those that it is behind come first: then it is in one fan only, and a guess that
-proves right is the answer. What is not sure stays open.
+The fans of two neighbouring pieces are separated by a line through their common corner. Where no
+two of these lines have met yet, a place is in one fan only, so a guessed piece whose fan contains
+the place is the answer. Two tests prove that: the place is nearer to all pieces than any two lines
+meet, or it is no farther aside than the two lines of its fan meet any other. Other places are left
+to the full search.
 """
 
 from __future__ import annotations
@@ -19,13 +20,13 @@ from rulec.recordings.recording import Points
 from rulec.scenario.recorded.borders import Borders
 
 _INSIDE = 1e-3
-"""Whose foot is nearer to the end of a piece than such a part of it may have another."""
+"""Nearer to a piece's end (a part of its length) a foot is not sure to be the only one."""
 
 _AT_ONCE = 1 << 13
-"""So many places are looked at together: what is computed of them stays near at hand."""
+"""Places processed per batch, so that intermediate arrays stay in the processor's cache."""
 
 MANY = 256
-"""For fewer places it takes less to try all pieces than to know where each of them is alone."""
+"""For fewer places, trying all pieces is faster than computing ``PieceFans.alone``."""
 
 _WIDEST, _MOST_PIECES = 64, 512
 _HAIR_M = 1e-6
@@ -35,19 +36,19 @@ _Values = NDArray[float64]
 
 @dataclass(frozen=True, eq=False)
 class PieceFans:
-    """Pieces of a line, a column each.
+    """Pieces of a line, one column each.
 
-    Rows: direction, start and length (m), the slope of the interpolated direction at the beginning
-    and by how much it changes, and the place along the line (m).
+    Rows: direction (2), start (2) and length (m), the slope of the interpolated direction at the
+    beginning and how much it changes, and the place along the line (m).
     """
 
     columns: _Values
 
     @cached_property
     def room(self) -> _Values:
-        """How far (m) from its start a place may be for the fan to have half its length at least.
+        """How far (m) from a piece its fan has half the piece's length at least, minus that length.
 
-        The length of the piece is taken off.
+        With the length subtracted, the distance can be measured from the piece's start.
         """
         lengths, change = self.columns[4], np.abs(self.columns[6])
         with np.errstate(divide="ignore", over="ignore"):
@@ -59,7 +60,7 @@ class PieceFans:
         return {}
 
     def room_around(self, width: int) -> _Values:
-        """The least room of the pieces up to so many away from each."""
+        """For each piece the least ``room`` among the pieces up to ``width`` away from it."""
         if width not in self._rooms:
             padded = np.pad(self.room, width, constant_values=np.inf)
             windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * width + 1)
@@ -68,21 +69,23 @@ class PieceFans:
 
     @cached_property
     def alone(self) -> _Values:
-        """How far (m) aside of each piece a place in its fan is in no other one; 0 of many pieces.
+        """How far (m) aside of each piece a place in its fan is in no other fan.
 
-        As far as both lines that bound the fan lie beyond all before them, and before all others.
+        0 if there are many pieces.
+
+        That is as far as both bounding lines of the fan meet none of the others.
         """
         lengths, first, change = self.columns[4:7]
         if len(lengths) > _MOST_PIECES:
             return np.zeros(len(lengths))
-        # One line through each corner
+        # One bounding line through each corner
         ahead = self.columns[:2, [*range(len(lengths)), -1]]
         corners = self.columns[2:4, [*range(len(lengths)), -1]]
         corners[:, -1] += lengths[-1] * ahead[:, -1]
         slope = np.append(first, first[-1] + change[-1])
         across = np.hypot(1.0, slope)
         normals = (ahead + slope * np.array((-ahead[1], ahead[0]))) / across
-        # How far each corner (row) is beyond each line, and by how much that changes along its own
+        # How far each corner (row) is beyond each line, and its change along the corner's own line
         beyond = corners.T @ normals - (corners * normals).sum(axis=0)
         gained = np.abs(np.outer(normals[0], normals[1]) - np.outer(normals[1], normals[0]))
         beyond[np.triu_indices(len(slope), 1)] *= -1
@@ -93,7 +96,7 @@ class PieceFans:
         return alone
 
     def at(self, s: _Values) -> NDArray[intp]:
-        """The numbers of the pieces at places along the line."""
+        """The numbers of the pieces at places (m) along the line."""
         return self._borders.before(s)
 
     @cached_property
@@ -106,8 +109,8 @@ def sure_feet_near(
 ) -> tuple[Points, NDArray[bool_]]:
     """Frenet coordinates of the places whose only foot within ``reach`` of ``around`` is found.
 
-    ``places`` are in rows of as many (axes: row, place, x and y), ``around`` and ``reach`` those
-    of each row. With flags of the places that are found.
+    ``places`` are in rows of equal length (axes: row, place, x and y), ``around`` and ``reach``
+    have one value per row. The second result is the mask of the places found.
     """
     coordinates = np.full(places.shape, np.nan)
     sure = np.zeros(places.shape[:2], dtype=bool)
@@ -121,7 +124,7 @@ def sure_feet_near(
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Near:
-    """Rows of places, and about where along the line the feet of each row are (m)."""
+    """Rows of places, with the approximate ``s`` (m) of the feet of each row."""
 
     places: Points
     around: _Values
@@ -129,18 +132,18 @@ class _Near:
 
 
 def _find(fans: PieceFans, near: _Near, coordinates: Points, sure: NDArray[bool_]) -> None:
-    """Put the coordinates of the places of a few rows that are sure where they belong."""
+    """Fill in ``coordinates`` and ``sure`` for the places of a few rows whose feet are sure."""
     least, most = (fans.at(near.around + reach) for reach in (-near.reach, near.reach))
     width = int((most - least).max())
     if width > _WIDEST:
         return
     middle = fans.at(near.around)
-    # By place and row: a row has few places, but there are many rows
+    # Axes place, row: rows are many and have few places each, so the long axis comes last
     x, y = np.ascontiguousarray(near.places.T)
     ux, uy, x0, y0, _, _, _, arc = fans.columns.take(middle, axis=1)
     dx, dy = x - x0, y - y0
     along = dx * ux + dy * uy
-    # No piece in question begins farther away than that, but for its length
+    # Upper bound on the distance to the start of a piece in question, apart from its length
     off = np.abs(ux * dy - uy * dx) + np.abs(along - (near.around - arc))
     safe = off < fans.room_around(width)[middle] - near.reach
     pieces = fans.at(arc + along)
@@ -153,16 +156,16 @@ def _find(fans: PieceFans, near: _Near, coordinates: Points, sure: NDArray[bool_
 
 
 def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[bool_]]:
-    """Frenet coordinates of the places whose only foot on the whole line is found, and flags."""
+    """Frenet coordinates of the places whose only foot on the line is found, and their mask."""
     coordinates = np.full(places.shape, np.nan)
     sure = np.zeros(len(places), dtype=bool)
-    # Pieces beyond the ends of the line begin or end at its first and its last corner
+    # The first and last pieces are the straight extensions, so these are the line's own corners
     corners = fans.columns[2:4, 1:].T
     middle, room = corners.mean(axis=0), float(fans.room.min())
     farthest = float(np.abs(corners - middle).sum(axis=1).max())
     chord = corners[-1] - corners[0]
     length = float(np.hypot(*chord))
-    # Along a line that ends where it begins nothing is guessed
+    # No guess for a line that ends where it begins: it has no chord
     if not length or (farthest >= room and len(places) < MANY):
         return coordinates, sure
     ux, uy = (chord / length).tolist()
@@ -185,7 +188,7 @@ def sure_feet(fans: PieceFans, places: Points) -> tuple[Points, NDArray[bool_]]:
 def _on(
     fans: PieceFans, x: _Values, y: _Values, pieces: NDArray[intp]
 ) -> tuple[_Values, _Values, NDArray[bool_]]:
-    """Frenet coordinates of places by one piece each, and flags of those well inside its fan."""
+    """Frenet coordinates of places on a given piece each, and a mask of those well in its fan."""
     own = fans.columns.take(pieces, axis=1, mode="clip")
     ux, uy, x0, y0, lengths, slope, change, arc = own
     dx, dy = x - x0, y - y0
@@ -195,6 +198,6 @@ def _on(
         part = (along + across * slope) / (lengths - across * change)
     inside = (part > _INSIDE) & (part < 1 - _INSIDE)
     part *= lengths
-    # What hypot does beyond this, for numbers near the largest, takes longer
+    # Faster than hypot, whose protection from overflow is not needed
     distance = np.sqrt(np.square(along - part) + np.square(across))
     return arc + part, np.copysign(distance, across), inside

@@ -19,10 +19,10 @@ from rulec.scenario.recorded.reference_line import ReferenceLine
 from rulec.scenario.recorded.route import REACH_M
 
 GOES_ON_S = 600.0
-"""The time (s) for which those present at the end of a recording go on after it."""
+"""How long (s) the participants present at the end of a recording continue after it."""
 
 _LOST_S = 1.0
-"""Who is lost so shortly before a recording ends is taken to be there at its end."""
+"""A participant that disappears this shortly (s) before a recording's end is present there."""
 
 _FAR_M = 10.0
 _SPEED_OVER_S = 0.5
@@ -31,7 +31,7 @@ _AT_ONCE = 20_000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrafficView:
-    """A recording seen along a line from ego's place at time 0, when it has a speed (m/s)."""
+    """A recording seen along a line from ego's place at time 0, with ego's speed (m/s) then."""
 
     recording: Recording
     line: ReferenceLine
@@ -57,12 +57,12 @@ class TrafficView:
         return self.time(max(steps, default=0))
 
     def is_followed_by(self, body: Box, time_s: float) -> bool:
-        """Whether a body in ego's way is behind where ego is by then at its speed."""
+        """Whether a body in ego's path is behind the place that ego has reached by then."""
         return body.d_min < self.ego_d < body.d_max and body.s_max < self.ego_speed * time_s
 
     def boxes(self, outlines: Sequence[Points]) -> list[Box | None]:
-        """The bounds of outlines in the scenario; None far from the road."""
-        # A closed road comes by a place again, too far away to be seen
+        """The bounding boxes of outlines in the scenario; None for one far from the road."""
+        # A closed road returns to the same place, so feet are sought only near ego
         near = np.full(len(outlines), self.ego_s), np.full(len(outlines), REACH_M + _FAR_M)
         if not outlines:
             return []
@@ -141,7 +141,10 @@ def _motion(
     boxes: Sequence[Box | None],
     prediction: model.Prediction,
 ) -> model.Motion | None:
-    """The motion of a participant; None off the road, or if a constant one has no time 0."""
+    """The motion of a participant.
+
+    None off the road, or for a constant one without a state at time 0.
+    """
     now = boxes[0] if steps and (participant.standing or view.time(steps[0]) == 0) else None
     if participant.standing or prediction == "constant" or (now and len(participant.outlines) == 1):
         if now is None:
@@ -154,7 +157,7 @@ def _motion(
     times = [view.time(step) for step in steps]
     known = list(boxes)
     last, is_lost = known[-1], times[-1] < view.until_s
-    # Of who follows nobody knows how it would have braked for ego
+    # How a lost follower would have braked for ego is unknown
     goes_on = last is not None and not (is_lost and view.is_followed_by(last, times[-1]))
     if times[-1] >= view.until_s - _LOST_S and last is not None and goes_on:
         goes_on_s = view.until_s - times[-1] + GOES_ON_S
@@ -176,7 +179,7 @@ def _constant(
 
 
 def _speed(times: Sequence[float], boxes: Sequence[Box | None]) -> float:
-    """The mean speed (m/s) along the road in the last half second."""
+    """The mean speed (m/s) along the road over the last half second."""
     last = boxes[-1]
     first, since = last, times[-1]
     for time, box in zip(reversed(times), reversed(boxes), strict=True):
@@ -189,7 +192,7 @@ def _speed(times: Sequence[float], boxes: Sequence[Box | None]) -> float:
 
 
 def _walking_direction(view: TrafficView, participant: Participant) -> float | None:
-    """The direction (degrees) of a pedestrian that never moves; None if motion tells."""
+    """The direction (degrees) of a pedestrian that never moves; None if its motion shows it."""
     state = next(iter(participant.states.values()), None)
     if participant.object_types[0] != model.PEDESTRIAN or state is None:
         return None

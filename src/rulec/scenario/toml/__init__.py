@@ -1,1 +1,1 @@
-"""Scenarios from TOML files, every mistake with its source location."""
+"""Reading scenarios from TOML files, with a source location for every mistake."""

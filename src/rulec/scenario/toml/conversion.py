@@ -36,7 +36,7 @@ _Part = TypeVar("_Part", RawSurface, RawMissing)
 
 
 def to_scenario(raw: Mapping[str, object], name: str, file: TomlFile) -> Scenario:
-    """The scenario that the tables describe, called ``name`` if they give no name.
+    """The scenario that the tables describe, called ``name`` if they do not contain a name.
 
     Raises RulecError with every mistake that was found.
     """
@@ -95,7 +95,7 @@ def _road(raw: object, file: TomlFile) -> Road | None:
 def _stretches(raw: object, file: TomlFile) -> Iterator[Stretch]:
     before: list[RawSurface] = []
     if isinstance(raw, list) and len(raw) > MOST_STRETCHES:
-        return  # which the road has said
+        return  # already reported for the road
     for table, part in _parts(RawSurface, raw, "road.surface", file):
         for other in before:
             apart = part.s[1] <= other.s[0] or other.s[1] <= part.s[0]
@@ -134,7 +134,7 @@ def _parts(
 
 
 def _is_interval(value: tuple[float, float] | None, table: TomlTable, key: str) -> bool:
-    """True if ``from`` is before ``to`` by more than a hair; else that is a mistake."""
+    """Whether ``from`` is before ``to`` by more than rounding; otherwise a mistake is added."""
     if value is None or value[1] - value[0] >= NARROWEST_M:
         return True
     table.add(

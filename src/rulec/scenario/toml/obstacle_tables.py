@@ -21,7 +21,7 @@ from rulec.vocabulary.partial_values import UNKNOWN, Interval
 LocatedObstacle = tuple[model.Obstacle, TomlTable]
 
 RESERVED = ("position", "surface", "station", "lateral")
-"""What a state calls by these names comes from the partition."""
+"""Signals that come from the partition, so that a file may not define them."""
 
 _PREDICTED = ("s", "d", "speed", "acceleration", "lateral_speed", "until_d")
 
@@ -81,18 +81,18 @@ def read_obstacles(raw: object, file: TomlFile) -> list[LocatedObstacle]:
 
 
 def places_of(obstacle: model.Obstacle, table: TomlTable) -> dict[tuple[str, str], SourceLocation]:
-    """Where the file says what type an obstacle is of, and its signals."""
+    """Where the file gives an obstacle's type and its signals, by (signal, obstacle id)."""
     own = TomlTable(table.file, "", "obstacle.signals", table.number)
     locations = {("", obstacle.id): table.place("type")}
     for name in obstacle.signals:
         place = own.place(name)
-        # A table in braces has no heading.
+        # An inline table has no heading.
         locations[name, obstacle.id] = table.place("signals") if place.line is None else place
     return locations
 
 
 def read_signals(raw: Mapping[str, object], table: TomlTable) -> dict[str, model.SignalValue]:
-    """The signals of a table, of which only the form is checked here."""
+    """The signals of a table; only their form is checked here."""
     signals: dict[str, model.SignalValue] = {}
     for name, value in raw.items():
         if name in RESERVED:
@@ -115,7 +115,7 @@ def read_signals(raw: Mapping[str, object], table: TomlTable) -> dict[str, model
 
 
 def _signal(value: object) -> model.SignalValue | None:
-    """What a signal is said to be; None if it does not fit."""
+    """The value of a signal; None if it has the wrong form."""
     match value:
         case "?":
             return UNKNOWN
@@ -138,9 +138,9 @@ def _number(value: object) -> float | None:
 def _predictions(
     obstacle: RawObstacle, fields: Mapping[str, Any], table: TomlTable, before: int
 ) -> Sequence[model.Alternative]:
-    """The obstacle's motions, the likeliest first; none after mistakes.
+    """The obstacle's motions, the likeliest first; none if there are mistakes.
 
-    So many predictions stand ``before`` these in the file.
+    ``before`` is the number of predictions before these in the file.
     """
     if not obstacle.prediction:
         motion = _motion(obstacle, fields, table)

@@ -1,7 +1,7 @@
 """The fields of a scenario file: names, types, bounds and descriptions.
 
-The words become the "expected" part of messages; ``docs/scenarios.md`` says the same at length.
-The bounds also keep out NaN and infinity.
+The descriptions become the "expected" part of messages; ``docs/scenarios.md`` has the same at
+length. The bounds also exclude NaN and infinity.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from rulec.scenario.scenario_model import SURFACES, Surface
 FARTHEST_M = 1_000_000
 MOST_OBSTACLES = 500
 MOST_STRETCHES = 500
-"""Surfaces of a road, and missing stretches of its lanes: each is held against all others."""
+"""The most surfaces of a road, and missing stretches: each is compared with all others."""
 _Metres = Annotated[float, Meta(ge=-FARTHEST_M, le=FARTHEST_M)]
 _Speed = Annotated[float, Meta(ge=-1000, le=1000)]
 _PRINTABLE = r"^[^\x00-\x1f\x7f]+$"
@@ -167,7 +167,7 @@ class RawObstacle(Struct):
 
 
 class RawPrediction(Struct):
-    """``[[obstacle.prediction]]``: what it does not say is as its obstacle says."""
+    """``[[obstacle.prediction]]``: fields that are left out are taken from the obstacle."""
 
     weight: WeightField
     speed: AlongSpeed | None = None

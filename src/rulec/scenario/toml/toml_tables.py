@@ -1,7 +1,7 @@
-"""Tables of a scenario file, read by their schema with the source location of every mistake.
+"""Tables of a scenario file, read by their schema, with a source location for every mistake.
 
-TOML readers hand out values without positions. Headings and keys that stand on lines of their own,
-as everybody writes them, are found again here; for others the message names the field in words.
+TOML readers return values without positions. Headings and keys on lines of their own, the usual
+style, are found again here; for others the message names the field in words.
 """
 
 from __future__ import annotations
@@ -30,13 +30,16 @@ _KEY = re.compile(r"""\s*(["']?)([^"'=\s]+)\1\s*=""")
 
 @dataclass(frozen=True)
 class TomlFile:
-    """The file that is being read, and the mistakes in it so far."""
+    """The file being read, and the mistakes found in it so far."""
 
     source: Source
     errors: list[Diagnostic] = field(default_factory=list)
 
     def line(self, heading: str, number: int, key: str | None) -> int | None:
-        """The line of a key, else of its table's heading, if either has one of its own."""
+        """The line of a key, else of its table's heading.
+
+        None if neither is on a line of its own.
+        """
         return self._lines.get((heading, number, key), self._lines.get((heading, number, None)))
 
     @cached_property
@@ -59,7 +62,7 @@ class TomlFile:
 
 @dataclass(frozen=True, slots=True)
 class TomlTable:
-    """A table of a file: its name, its heading, and its number (from 1) in an array of tables."""
+    """A table of a file: name in words, heading, and number (from 1) in an array of tables."""
 
     file: TomlFile
     words: str
@@ -67,7 +70,7 @@ class TomlTable:
     number: int = 0
 
     def place(self, key: str | None = None) -> SourceLocation:
-        """The line of a key or of the heading, else the file."""
+        """The location of a key, else of the heading, else of the file."""
         source = self.file.source
         line = self.file.line(self.heading, self.number, key)
         if line is None:
@@ -86,7 +89,7 @@ class TomlTable:
         way_out: str = "",
         code: Code = INCONSISTENT_SCENARIO,
     ) -> None:
-        """Add a mistake in the table, or in one of its fields; ``expected`` is a thing."""
+        """Add a mistake in the table or in one of its fields; ``expected`` is a noun phrase."""
         expected = expected and f"expected {expected}"
         self.file.errors.append(code.at(self.place(key), message, expected=expected, help=way_out))
 
@@ -137,7 +140,10 @@ class TomlTable:
 
 
 def shown(value: object) -> str:
-    """A value in the file's spelling, quoted and shortened; tables and lists in words."""
+    """A value as the file spells it, quoted and shortened.
+
+    Tables and lists are described in words.
+    """
     match value:
         case bool():
             return "`true`" if value else "`false`"
@@ -164,7 +170,7 @@ def _short(text: str) -> str:
 
 
 def _words_of(kind: object) -> str:
-    """A field's description in words, the outermost of its type."""
+    """The description of a field, from the outermost of its types."""
     for part in (*getattr(kind, "__metadata__", ()), *get_args(kind)):
         if isinstance(part, msgspec.Meta):
             if part.description:
