@@ -1,4 +1,4 @@
-"""Navigation graphs evaluated by compiled rulebooks."""
+"""Evaluating navigation graphs by compiled rulebooks."""
 
 from rulec.planning.evaluation import evaluate
 from rulec.planning.maneuvers import Maneuvers

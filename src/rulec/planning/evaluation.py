@@ -1,4 +1,4 @@
-"""A navigation graph evaluated by a compiled rulebook: the way to its maneuvers."""
+"""Evaluating a navigation graph by a compiled rulebook, which gives its maneuvers."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ def evaluate(
 ) -> Maneuvers:
     """Count a graph's paths, and those that keep every hard rule.
 
-    ``after`` has led up to the first layer, ``words`` is what is said in the graph's cells, and
-    ``reading`` what holds where they, or the scenario, do not tell. Raises RulecError: R0502 to
-    R0505 if the graph does not supply what the rules read, R0507 if a hard rule was compiled for
-    another step; R0501 to R0511 if ``after`` is no such past.
+    ``after`` is the trace or monitor that led up to the first layer, ``words`` are the values in
+    the graph's cells, and ``reading`` gives values that they, or the scenario, do not provide.
+    Raises RulecError: R0502 to R0505 if the graph does not supply what the rules read, R0507 if a
+    hard rule was compiled for another step; R0501 to R0511 if ``after`` is not a valid past.
     """
     rules = rules.fitted_to(graph.step)
     traces = graph.trace_graph()
@@ -66,7 +66,7 @@ def _not_judged(
 ) -> tuple[RuleNotJudged, ...]:
     if paths.told is None:
         return ()
-    # As above: only where not all is known.
+    # Imported late, as above: only if not everything is known.
     from rulec.planning.product.possible_instances import not_judged
 
     return tuple(not_judged(paths, rules, past))

@@ -55,21 +55,21 @@ Item = TypeVar("Item")
 AS_WRITTEN = SceneReading()
 
 MOST_BEST = 100
-"""Levels that are not comparable can leave any number of maneuvers that none is better than."""
+"""A limit, since levels that are not comparable can leave any number of equally good maneuvers."""
 
 
 @dataclass(frozen=True)
 class Maneuvers(Rows):
     """Maneuvers of a scenario, evaluated by a rulebook.
 
-    ``rules`` have judged them, by machines for the graph's step. ``paths`` is the graph in terms of
-    their vocabulary. ``hard`` and ``product`` are about what is kept for sure, ``perhaps`` and
-    ``possible`` about what is not violated for sure; where all is known they are the same.
-    ``after`` is what was before, None if there was nothing, and ``past`` what that has come to for
-    the hard rules. ``violated_before`` are the hard rules that it has violated for good; nothing of
-    that counts against a maneuver.
-    ``not_judged`` are rules that no maneuver can be known to violate. ``reading`` says what holds
-    where the scenario does not tell, ``words`` what is said in the cells of a recorded scene.
+    ``rules`` are the rules that judged them, compiled for the graph's step. ``paths`` is the graph
+    in terms of their vocabulary. ``hard`` and ``product`` are about paths that surely keep the
+    rules, ``perhaps`` and ``possible`` about paths that do not surely violate them; if everything
+    is known they are the same. ``after`` is the trace or monitor before, if any, and ``past`` the
+    state in which it left the hard rules. ``violated_before`` are the hard rules that it violated
+    for good; these violations do not count against a maneuver. ``not_judged`` are rules that no
+    maneuver can be known to violate. ``reading`` gives values that the scenario does not provide,
+    ``words`` the values in the cells of a recorded scene.
     """
 
     graph: NavigationGraph
@@ -95,21 +95,21 @@ class Maneuvers(Rows):
 
     @property
     def satisfying(self) -> int:
-        """Number of maneuvers that keep every hard rule, whatever is unknown."""
+        """Number of maneuvers that keep every hard rule, whatever the unknown values are."""
         return self.product.accepted
 
     @property
     def open(self) -> int:
-        """Number of further maneuvers of which no hard rule is known to be violated."""
+        """Number of further maneuvers that are not known to violate a hard rule."""
         return self.possible.accepted - self.product.accepted
 
     @property
     def violating(self) -> int:
-        """Number of maneuvers that violate some hard rule, whatever is unknown."""
+        """Number of maneuvers that violate some hard rule, whatever the unknown values are."""
         return self.traces - self.possible.accepted
 
     def rule_outcomes(self) -> list[RuleOutcomes]:
-        """How many maneuvers keep and violate each rule that can be judged.
+        """For each rule that can be judged, how many maneuvers keep it and how many violate it.
 
         Raises RulecError as ``best`` does.
         """
@@ -122,37 +122,40 @@ class Maneuvers(Rows):
 
     @property
     def judges(self) -> bool:
-        """Whether some hard rule can be judged, if there is any."""
+        """Whether some hard rule can be judged, or there are no hard rules."""
         hard = {rule.name for rule in self.rules.rules if rule.strength == "hard"}
         return not hard or not hard <= {rule.rule for rule in self.not_judged}
 
     @property
     def exact(self) -> bool:
-        """Whether what is open is so; else more has been taken to be possible than is."""
+        """Whether ``open`` is exact.
+
+        Otherwise it may be too high, as more was assumed possible than is.
+        """
         readings = [instance.readings for instance in self.hard.instances]
         return all(reading is None or reading.exact for reading in readings)
 
     @cached_property
     def unknown(self) -> tuple[str, ...]:
-        """Names that rules read and of which not all is known."""
+        """Names that rules read and whose values are not all known."""
         partial = partial_names(state for layer in self.paths.states for state in layer)
         partial |= untold_names(self.rules.vocabulary, self.paths.told)
         return self._read(partial)
 
     @property
     def in_doubt(self) -> bool:
-        """Whether something is unknown that rules read, or hard rules in the past."""
+        """Whether a value that rules read, or a hard rule's state after the past, is unknown."""
         return bool(self.unknown or self.doubtful_past)
 
     @property
     def doubtful_past(self) -> tuple[str, ...]:
-        """The hard rules of which it is not known what the past came to."""
+        """The hard rules whose state after the past is not known."""
         doubtful = self.past.doubtful_rules
         return tuple(rule.name for rule in self.rules.rules if rule.name in doubtful)
 
     @property
     def by_default(self) -> tuple[str, ...]:
-        """Names that rules read and the scenario leaves at their defaults."""
+        """Names that rules read and that the scenario leaves at their defaults."""
         supplied = {name for layer in self.paths.states for state in layer for name in state}
         return self._read(self.rules.vocabulary.declarations.keys() - supplied - {*self.unknown})
 
@@ -166,22 +169,25 @@ class Maneuvers(Rows):
     def cheapest(self, n: int, *, perhaps: bool = False) -> list[Maneuver]:
         """The ``n`` cheapest satisfying maneuvers, or all if there are fewer.
 
-        With ``perhaps`` those that are open are among them. Where ego's motion has bounds they are
-        those of which a trajectory was found that proves that ego can drive them.
+        With ``perhaps`` open maneuvers are included. If ego's motion has bounds, only maneuvers
+        with a trajectory that proves that ego can drive them are returned.
         """
         return self._drivable(self.possible if perhaps else self.product, n)
 
     def _drivable(self, product: Product[Memory], n: int) -> list[Maneuver]:
-        """The ``n`` cheapest of a product; with bounds of ego's motion those that are proved."""
+        """The ``n`` cheapest of a product.
+
+        With bounds of ego's motion, of those proved drivable.
+        """
         if self._search is None:
             return _first(n, cheapest(product))
         return proven(product, n, self.graph, self._search)
 
     @cached_property
     def in_way(self) -> tuple[str, ...]:
-        """Who is in the way of the maneuver that costs least by its cells, if it is undrivable.
+        """The obstacles that make the maneuver of least cost by its cells undrivable.
 
-        Nobody if ego's bounds alone do not let it through.
+        Empty if it is drivable, or if ego's bounds alone prevent it.
         """
         first = next(cheapest(self.possible), None)
         return () if first is None or self._search is None else self._search.in_way(first.nodes)
@@ -190,19 +196,19 @@ class Maneuvers(Rows):
     def _search(self) -> WitnessSearch | None:
         if self.graph.bounds is None:
             return None
-        # NumPy and the solver, 50 ms: only where there is something to prove.
+        # Imported late: NumPy and the solver take 50 ms, and are not always needed.
         from rulec.partition.motion.witness_trajectory import WitnessSearch
 
         return WitnessSearch(self.graph, self.graph.bounds)
 
     @checked_kinds
     def verdict(self, maneuver: Maneuver) -> Verdict:
-        """What a maneuver violates and what is open. Raises RulecError as ``best`` does."""
+        """The violations and open rules of a maneuver. Raises RulecError as ``best`` does."""
         every = self._every.instances
         name = self.graph.scenario.name
         if not any(instance.readings for instance in every):
             return Verdict(name, violations(every, maneuver.nodes), not_judged=self.not_judged)
-        # Letters that are not known, 15 ms: only where not all is.
+        # Imported late (15 ms): only if not everything is known.
         from rulec.monitoring.uncertainty.uncertain_verdict import uncertain_verdict
 
         trace = trace_of(self.paths, maneuver.nodes, name)
@@ -211,22 +217,21 @@ class Maneuvers(Rows):
 
     @checked_kinds
     def best(self, n: int = MOST_BEST) -> list[RankedManeuver]:
-        """The least violating maneuvers: for each lowest penalty one of the cheapest.
+        """The least violating maneuvers: for each minimal penalty one of the cheapest.
 
-        There are several if levels are not comparable; of many, the first ``n``. If there are
-        satisfying maneuvers, these are satisfying and violate soft rules least. Where not all is
-        known the worst counts. Raises RulecError
-        as ``evaluate`` does, for soft rules too.
+        There are several if levels are not comparable, but at most ``n``. If there are satisfying
+        maneuvers, the result are satisfying ones that violate soft rules least. If not everything
+        is known, the worst case counts. Raises RulecError as ``evaluate`` does, for soft rules too.
         """
         best = _first(n, front(self._every, self._ranks))
         return [maneuver for penalty in best for maneuver in self._of_penalty(1, penalty, 1)]
 
     @checked_kinds
     def ranked(self, n: int) -> list[RankedManeuver]:
-        """The ``n`` best maneuvers, least violating first, or all.
+        """The ``n`` best maneuvers, least violating first, or all if there are fewer.
 
-        Each stands behind all that violate less; those with equal penalties are in the order of
-        cost. Raises RulecError as ``best`` does.
+        Each comes after all that violate less; those with equal penalties are ordered by cost.
+        Raises RulecError as ``best`` does.
         """
         penalties = ranked(self._every, self._ranks)
         return _first(
@@ -235,17 +240,17 @@ class Maneuvers(Rows):
 
     @cached_property
     def dead_end(self) -> DeadEnd | None:
-        """Where the last way ends; None if there is a maneuver."""
+        """Where the paths end; None if there is a maneuver."""
         if self.traces:
             return None
-        from rulec.partition.dead_ends import dead_end  # all of the partition, for few answers
+        from rulec.partition.dead_ends import dead_end  # imported late: rarely needed
 
         return dead_end(self.graph)
 
     @cached_property
     def least_braking(self) -> float | None:
-        """How hard every maneuver brakes at least (m/s²), if that is more than 4; None else."""
-        from rulec.partition.emergencies import least_braking  # only in an emergency
+        """The least braking (m/s²) that every maneuver needs, if that is more than 4; else None."""
+        from rulec.partition.emergencies import least_braking  # imported late: rarely needed
 
         least = least_braking(self.graph)
         if least is None or self._search is None:
@@ -254,13 +259,16 @@ class Maneuvers(Rows):
         return least_promised(every, self.graph, self._search.braking_bounds) or least
 
     def without_each_rule(self) -> dict[str, int]:
-        """By hard rule, most first, how many maneuvers violate it and no other hard rule."""
+        """For each hard rule, most first, how many maneuvers violate it and no other hard rule."""
         alone = violating_alone(self.perhaps)
         counts = {name: product.accepted for name, product in alone.items() if product.accepted}
         return dict(sorted(counts.items(), key=lambda item: -item[1]))
 
     def prunings(self) -> list[RulePruning]:
-        """Effect of every rule on the number of maneuvers. Raises RulecError as ``best`` does."""
+        """The effect of every rule on the number of maneuvers.
+
+        Raises RulecError as ``best`` does.
+        """
         every, alone = violating(self._every_perhaps), violating_alone(self.perhaps)
         result = [
             self._pruning(rule, every.get(rule.name), alone.get(rule.name))
@@ -277,7 +285,7 @@ class Maneuvers(Rows):
         ]
 
     def classes(self) -> HomotopyClasses:
-        """Exact number of homotopy classes, by their members' verdicts."""
+        """The exact number of homotopy classes, by their members' verdicts."""
         surely = count_classes(self.hard, self._places)
         if self.perhaps is self.hard:
             return surely
@@ -286,9 +294,9 @@ class Maneuvers(Rows):
 
     @checked_kinds
     def variants(self, n: int) -> list[Variant]:
-        """Cheapest satisfying maneuver of each of the ``n`` cheapest classes.
+        """The cheapest satisfying maneuver of each of the ``n`` cheapest classes.
 
-        Where ego's motion has bounds, of those of which it is proved that ego can drive it.
+        If ego's motion has bounds, only maneuvers proved drivable are considered.
         """
         every = variants(self.product, self._places)
         search = self._search
@@ -302,7 +310,7 @@ class Maneuvers(Rows):
         return _first(n, driven)
 
     def counting_steps(self) -> list[CompiledRule]:
-        """Hard rules that are not stutter-invariant: they may divide a class."""
+        """Hard rules that are not stutter-invariant, which may divide a class."""
         hard = [rule for rule in self.rules.rules if rule.strength == "hard"]
         return [rule for rule in hard if not stutter_invariant(rule.machine)]
 
@@ -328,7 +336,7 @@ class Maneuvers(Rows):
         return node_transformers(self.paths, every, perhaps=True)
 
     def _of_penalty(self, place: int, penalty: Penalty, n: int) -> Iterator[RankedManeuver]:
-        """The ``n`` cheapest with a penalty."""
+        """The ``n`` cheapest maneuvers with a penalty."""
         product = with_penalty(self._every, self._ranks, penalty)
         ranks = self._ranks
         for maneuver in self._drivable(product, n):
@@ -359,7 +367,7 @@ class Maneuvers(Rows):
         )
 
     def rows(self, n: int = 20) -> list[dict[str, Any]]:
-        """One row each of the ``n`` cheapest satisfying maneuvers."""
+        """One row for each of the ``n`` cheapest satisfying maneuvers."""
         return [
             {
                 "number": number,

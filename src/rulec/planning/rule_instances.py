@@ -1,4 +1,4 @@
-"""Rules applied to paths through a navigation graph, and the partition that they need."""
+"""Rules applied to paths through a navigation graph, and the partition that rules need."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ SUPPLIED = frozenset({"surface", *RELATIONS_OF["paper"], *RELATIONS_OF["fine"]})
 def partition_for(
     rules: Rulebook | CompiledRulebook, partition: PartitionName | None
 ) -> PartitionName:
-    """The wanted partition, or the one that the rules need.
+    """The given partition, or the one that the rules need.
 
     Raises RulecError: R0405 if the rules need another one, or two.
     """
@@ -80,7 +80,10 @@ def partition_for(
 def _place_of(
     relations: Collection[str], rules: Rulebook | CompiledRulebook
 ) -> SourceLocation | None:
-    """The first rule that reads one of these; of a compiled file its rulebook."""
+    """The place of the first rule that reads one of these.
+
+    In a compiled file maybe its rulebook's.
+    """
     wanted = set(relations)
     reading = (rule for rule in rules.rules if not wanted.isdisjoint(names_in(rule.formula)))
     name = next(reading).name
@@ -94,17 +97,17 @@ NOTHING_ASSUMED = Assumptions()
 
 @dataclass(frozen=True, slots=True)
 class SceneReading:
-    """What holds of a scenario where it does not tell.
+    """The values assumed for what a scenario does not provide.
 
-    The assumed values hold of what it leaves unknown or does not mention. What else it does not
-    mention has its default or, with ``told_only``, is unknown.
+    The assumed values replace unknown and missing ones. Other missing values have their defaults
+    or, with ``told_only``, are unknown.
     """
 
     assumptions: Assumptions = NOTHING_ASSUMED
     told_only: bool = False
 
     def of(self, graph: TraceGraph) -> TraceGraph:
-        """The graph as it is read."""
+        """The graph with the assumed values."""
         if not self.assumptions and not self.told_only:
             return graph
         told = graph.told
@@ -117,7 +120,7 @@ class SceneReading:
             )
             for layer in graph.states
         ]
-        # Without layers nothing would be told.
+        # With no layers the assumed names would be missing.
         told = told.union(self.assumptions.values)
         told_only = self.told_only or graph.told is not None
         told_only = told_only and not self.assumptions.defaults
@@ -134,9 +137,9 @@ def in_rule_words(
     *,
     words: CellWords | None = None,
 ) -> TraceGraph:
-    """Traces of paths through a graph, about these obstacles, in the words of a vocabulary.
+    """Traces of paths through a graph, about these obstacles, in the terms of a vocabulary.
 
-    With ``words`` these are what is said in its cells, and nothing else is.
+    With ``words`` these are the only values in its cells.
     """
     recorded = None
     if graph.scenario.account is not None:
@@ -161,10 +164,10 @@ def past_for(
     strengths: Collection[Strength],
     after: Before | None,
 ) -> CarriedState:
-    """Carried state of the past, for rules of these strengths. Raises RulecError."""
+    """The state in which the past leaves rules of these strengths. Raises RulecError."""
     if after is None:
         return NO_PAST
-    from rulec.planning.trace_history import past_of  # 30 ms, only where there is a past
+    from rulec.planning.trace_history import past_of  # imported late: 30 ms
 
     return past_of(paths, after, rules, graph.step, strengths)
 
@@ -192,11 +195,11 @@ def bind_rules(
 
 
 _OF_STATES = {code.code for code in (UNDECLARED_NAME, UNFITTING_VALUE, UNKNOWN_OBJECT)}
-"""What is wrong in a state, which may stand so in the scenario's file."""
+"""Codes of mistakes in a state that the scenario's file may have caused."""
 
 
 def _check_said(scenario: Scenario, objects: Mapping[str, str], vocabulary: Vocabulary) -> None:
-    """Raise RulecError R0502, R0503 or R0505 for what a file of a scenario says, where it does."""
+    """Raise RulecError R0502, R0503 or R0505 for wrong values, at their places in the file."""
     obstacles = {obstacle.id: obstacle for obstacle in scenario.obstacles}
     wrong: list[Diagnostic] = []
     odd = set()
@@ -211,7 +214,7 @@ def _check_said(scenario: Scenario, objects: Mapping[str, str], vocabulary: Voca
         diagnostics = _wrong_in(state, own, vocabulary, place)
         if diagnostics and not name:
             odd.add(about)
-        # Of an obstacle of a type that there is not, only that.
+        # If an obstacle's type is unknown, report only that.
         if not (name and about in odd):
             wrong += diagnostics
     if wrong:

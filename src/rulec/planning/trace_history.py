@@ -1,4 +1,4 @@
-"""Past of a trace graph: a trace or monitor before its first layer."""
+"""The past of a trace graph: a trace or monitor before its first layer."""
 
 from __future__ import annotations
 
@@ -46,10 +46,10 @@ def past_of(
     step_s: Fraction,
     strengths: Collection[Strength] = HARD,
 ) -> CarriedState:
-    """Carried state when a graph with this step begins, after the last state of what was before.
+    """The rules' state when a graph with this step begins, after the last state of ``before``.
 
     Raises RulecError: R0501 to R0508 if a trace does not fit the rulebook, R0510 if a snapshot is
-    not of these rules, R0511 if what was before does not lead up to the graph.
+    not of these rules, R0511 if ``before`` does not lead up to the graph.
     """
     check_objects(graph.objects, rulebook.vocabulary)
     monitor, place = _monitor(before, rulebook, step_s, strengths)
@@ -78,7 +78,7 @@ def _begun_before(
     objects: Mapping[str, str],
     vocabulary: Vocabulary,
 ) -> CarriedState:
-    """The past of which the beginning has not been seen: rules that look back may be anywhere."""
+    """The past if its own beginning was not seen: rules that look back may be in any state."""
     looking_back = {
         rule.name: rule
         for rule in rules
@@ -107,7 +107,10 @@ def read_past(path: Path) -> Before:
 
 
 def only_trace(items: Iterable[Trace | RulecError], place: SourceLocation) -> Trace:
-    """Read the one trace of a file. Raises what is wrong with it, or R0511 if there are several."""
+    """The only trace of a file.
+
+    Raises its error if it is invalid, or R0511 if there are several.
+    """
     traces = []
     for trace in islice(items, 2):
         if isinstance(trace, RulecError):

@@ -72,7 +72,7 @@ class OthersBeside:
 
     @cached_property
     def boxes(self) -> dict[str, tuple[NDArray[np.bool_], NDArray[np.float64]]]:
-        """By obstacle where it is at these times, and s_min, s_max, d_min, d_max there."""
+        """Per obstacle: whether it is present at these times, and s_min, s_max, d_min, d_max."""
         result = {}
         for obstacle in self._graph.scenario.obstacles:
             boxes = [swept(obstacle, time, time) for time in self.times.tolist()]

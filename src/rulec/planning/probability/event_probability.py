@@ -1,7 +1,7 @@
 """Exact probability that none of some events happens.
 
-Obstacles do one thing or another, each independently of the others; an event is that several of
-them do certain things. No world, that is what all of them do together, is looked at by itself.
+Each obstacle follows one of its predictions, independently of the others; an event is that several
+obstacles follow certain predictions. Worlds (a prediction for every obstacle) are not enumerated.
 """
 
 from __future__ import annotations
@@ -13,17 +13,17 @@ from functools import cache
 from math import prod
 
 Event = frozenset[tuple[str, int]]
-"""Of these obstacles these predictions come true; the empty event always comes about."""
+"""Obstacles with the predictions that have to come true; the empty event always happens."""
 
 Weights = Mapping[str, Mapping[int, Fraction]]
 """For each obstacle its predictions and their probabilities, which add up to 1."""
 
 
 def none_of(events: Collection[Event], weights: Weights) -> Fraction:
-    """The probability that no event comes about: exact.
+    """The exact probability that no event happens.
 
-    Events that share no obstacle are independent. Of others one obstacle after the other is fixed,
-    which takes time that is exponential only in how far they are entangled.
+    Events that share no obstacle are independent. For the others one obstacle after the other is
+    fixed, which takes time exponential only in how much the events overlap.
     """
 
     @cache

@@ -1,7 +1,8 @@
 """Exact probability that a maneuver keeps each rule, and counts for other predictions.
 
-What an obstacle does is independent of what the others do. Whatever they do, ego goes through the
-same cells. It keeps a rule for some objects if its trace does and none of these objects hits it.
+Obstacles follow their predictions independently of each other. Whatever they do, ego goes through
+the same cells. It keeps a rule for some objects if its trace does and none of these objects hits
+it.
 """
 
 from __future__ import annotations
@@ -25,9 +26,9 @@ from rulec.value_display import short_repr
 
 @dataclass(frozen=True, slots=True)
 class ForObjects:
-    """The probability that a rule is kept for these objects, the scenario's.
+    """The probability that a rule is kept for these objects of the scenario.
 
-    Where not all is known it is ``kept`` for sure, and kept perhaps with the one ``at_most``.
+    If not everything is known, it is at least ``kept`` and at most ``at_most``.
     """
 
     binding: Mapping[str, str]
@@ -37,9 +38,9 @@ class ForObjects:
 
 @dataclass(frozen=True, slots=True)
 class RuleProbability:
-    """Probability that a rule is kept, and by bindings below 1, with bounds as there.
+    """The probability that a rule is kept, with bounds as in ``ForObjects``, and bindings below 1.
 
-    None if the rule counts objects, and these can do more together than can be looked at.
+    None if the rule counts objects, and their predictions have too many combinations.
     """
 
     __repr__ = short_repr
@@ -52,7 +53,7 @@ class RuleProbability:
 
 @dataclass(frozen=True, slots=True)
 class RuleProbabilities:
-    """Probabilities of no collision, of all hard rules (None if unknown), of each rule judged."""
+    """Probabilities of no collision, of all hard rules kept (None if unknown), and of each rule."""
 
     __repr__ = short_repr
 
@@ -65,8 +66,8 @@ class RuleProbabilities:
 def rule_probabilities(maneuvers: Maneuvers, maneuver: Maneuver) -> RuleProbabilities:
     """Exact probabilities of one maneuver. Raises RulecError as ``best`` does.
 
-    Where not all is known they are bounds: of the worlds in which a rule is kept for sure, and of
-    those in which it is not violated for sure.
+    If not everything is known they are bounds: of the worlds in which a rule is surely kept, and of
+    those in which it is not surely violated.
     """
     path = predicted_path(maneuvers.graph, maneuver.nodes)
     surely = perhaps = ViolationEvents(maneuvers, path)
@@ -89,7 +90,7 @@ def rule_probabilities(maneuvers: Maneuvers, maneuver: Maneuver) -> RuleProbabil
 
 
 def _of_all(hits: set[Event], lost: Iterable[Lost | None], weights: Weights) -> Fraction | None:
-    """The probability that nobody hits ego and none of these events comes about."""
+    """The probability that nobody hits ego and none of these events happens."""
     events = set(hits)
     for each in lost:
         if each is None:
@@ -123,9 +124,9 @@ def _of_rule(
 class AlternativeCounts:
     """Numbers of maneuvers if prediction ``number`` of an obstacle comes true.
 
-    All others do what is likeliest. On so many ``traces`` nobody hits ego; those that are
-    ``satisfying`` also keep every hard rule then, and on ``open`` more it depends on what is
-    unknown.
+    All others do what is likeliest. ``traces`` counts the maneuvers on which nobody hits ego,
+    ``satisfying`` those of them that keep every hard rule, and ``open`` those where that depends on
+    unknown values.
     """
 
     __repr__ = short_repr
@@ -139,7 +140,7 @@ class AlternativeCounts:
 
 
 def alternative_counts(maneuvers: Maneuvers) -> list[AlternativeCounts]:
-    """The counts for every prediction that is not an obstacle's likeliest: exact."""
+    """The exact counts for every prediction that is not an obstacle's likeliest."""
     return [
         AlternativeCounts(
             obstacle.id, number, alternative.weight, *_counts(maneuvers, obstacle.id, number)

@@ -1,4 +1,4 @@
-"""In which events a path through a graph loses a rule."""
+"""The events in which a path through a graph violates a rule."""
 
 from __future__ import annotations
 
@@ -37,16 +37,17 @@ from rulec.vocabulary import Vocabulary
 from rulec.witnesses.object_universe import counts_in
 
 MOST_WORLDS = 10_000
-"""So many worlds are looked at one by one for a rule that counts objects, and no more."""
+"""The most worlds that are examined one by one for a rule that counts objects."""
 
 Lost = dict[tuple[str, ...], set[Event]]
-"""The scenario's objects that a rule is about, and the events in which it is lost for them."""
+"""For the objects (of the scenario) that a rule is about, the events in which it is violated."""
 
 
 class ViolationEvents:
     """Events in which rules are violated on one path.
 
-    Where not all is known, those in which they are not kept for sure, or not even ``perhaps``.
+    If not everything is known: events in which they are not surely kept, or with ``perhaps`` those
+    in which they are surely violated.
     """
 
     def __init__(self, maneuvers: Maneuvers, path: PredictedPath, *, perhaps: bool = False) -> None:
@@ -71,7 +72,7 @@ class ViolationEvents:
         return {self._event([name]) for name in self._path.hit}
 
     def events(self, rule: CompiledRule) -> Lost | None:
-        """Events in which a rule is violated; None if too many."""
+        """Events in which a rule is violated; None if there are too many worlds."""
         if counts(rule.formula):
             return self._counting(rule)
         lost: Lost = {}
@@ -82,9 +83,9 @@ class ViolationEvents:
         return lost
 
     def _counting(self, rule: CompiledRule) -> Lost | None:
-        """Events of a rule that counts further objects.
+        """Events for a rule that counts further objects.
 
-        Only what they do differently in the rule's eyes makes a world of its own.
+        Worlds that differ only in ways that do not matter to the rule are examined once.
         """
         in_doubt = self._is_in_doubt(rule)
         alike = PredictionClasses(
@@ -137,7 +138,7 @@ class ViolationEvents:
         return world.get(predicted.of, predicted.number) == predicted.number
 
     def _event(self, names: Collection[str]) -> Event:
-        """Event that these predictions come true; certain ones are left out."""
+        """The event that these predictions come true; certain predictions are left out."""
         return frozenset(
             (predicted.of, predicted.number)
             for predicted in map(self._path.predicted.__getitem__, names)
@@ -170,7 +171,8 @@ class ViolationEvents:
     def _bindings(self, rule: CompiledRule) -> Iterator[Binding]:
         """Bindings whose objects' predictions can come true together.
 
-        Of many only those that may not be kept, unless more than their states decides that.
+        If there are many, only those that may be violated, unless more than the states decides
+        that.
         """
         words = self._words
         cast = Cast(words.objects, self._book.vocabulary, len(self._states), words.present)
@@ -185,7 +187,10 @@ class ViolationEvents:
                 yield binding
 
     def _is_told_by_states(self, rule: CompiledRule) -> bool:
-        """Whether states alone decide for whom a rule is lost: no collision, count or past."""
+        """Whether the states alone decide for whom a rule is violated.
+
+        They do not if an object hits ego, or if the rule counts objects or has a past.
+        """
         is_hit = any(self._concerns(rule, name) for name in self._path.hit)
         return not (is_hit or counts(rule.formula) or self._past.begun(rule.name))
 
@@ -216,16 +221,16 @@ class ViolationEvents:
 
 @dataclass(frozen=True, slots=True)
 class _Columns:
-    """Readers of a path's states, about some objects; the second one where not all is known."""
+    """Readers of a path's states, about some objects; the second one is for unknown values."""
 
     known: LetterReader
     uncertain: UncertainRun | None = None
 
 
 class PredictionClasses:
-    """Predictions of an obstacle that a counting rule cannot tell apart, on one path.
+    """Groups an obstacle's predictions that a counting rule cannot distinguish on one path.
 
-    If all are ``told_apart`` none are alike: where not all is known.
+    With ``told_apart``, used if not everything is known, every prediction is a group of its own.
     """
 
     def __init__(
@@ -247,7 +252,8 @@ class PredictionClasses:
     def groups(self, obstacle: str, binding: Binding) -> list[list[int]]:
         """An obstacle's predictions that do not hit ego, in groups.
 
-        Those of a group count alike in every state, for a rule that is about other objects.
+        The predictions of a group count alike in every state, for a rule that is about other
+        objects.
         """
         result: dict[object, list[int]] = {}
         for number in self._path.weights[obstacle]:
@@ -262,7 +268,7 @@ class PredictionClasses:
 
     def _counted(self, names: list[str], number: int, binding: Binding) -> object:
         if self._told_apart or any(counts(term.body) for term in self._terms):
-            # What it makes of others is not known without them
+            # How nested counts count it depends on other objects
             return number
         layers = range(binding.first, binding.last + 1)
         result: list[int] = []
@@ -277,14 +283,14 @@ class PredictionClasses:
     def _is_counted(
         self, term: Count, layer: int, name: str, bound: tuple[tuple[str, str], ...]
     ) -> bool:
-        """Test it for one object, the other ones that the term speaks of being bound."""
+        """Whether a count counts one object in a layer, with its other variables ``bound``."""
         moment = self._moments[layer]
         first, last = self._words.present.get(name, (0, len(self._moments) - 1))
         if name not in moment.objects or not first <= layer <= last:
             return False
         if not moment.vocabulary.is_subtype(moment.objects[name], term.type):
             return False
-        # If it is not known, whoever reads it is told so
+        # Where it may be unknown, all predictions are told apart instead
         return holds(term.body, {**dict(bound), term.variable: name}, moment) is True
 
 

@@ -1,4 +1,4 @@
-"""Edges on accepted paths of a graph, and on others only."""
+"""The edges on accepted paths of a graph, and those on other paths only."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from rulec.planning.product.graph_product import Memory, Product, ProductNode
 from rulec.planning.product.node_transformers import NodeTransformers
 
 Edge = tuple[int, int]
-"""A node of one layer, and one of the next."""
+"""A node of one layer, and a node of the next."""
 
 
 @dataclass(frozen=True, slots=True)
 class AcceptedEdges:
-    """Nodes by layer and edges between layers that lie on paths.
+    """The nodes of each layer, and the edges between layers, that lie on paths.
 
-    ``possible`` are on some path from the start to a goal, ``accepted`` on one that is accepted.
+    ``possible`` are on a path from the start to a goal, ``accepted`` on an accepted one.
     """
 
     possible_nodes: tuple[frozenset[int], ...]
@@ -25,7 +25,7 @@ class AcceptedEdges:
 
 
 def accepted_edges(transformers: NodeTransformers, product: Product[Memory]) -> AcceptedEdges:
-    """Edges of a graph on accepted and on possible paths of the product explored from it."""
+    """The edges on accepted and on possible paths of the product explored from a graph."""
     nodes = [
         frozenset(i for i, there in enumerate(row) if there) for row in transformers.on_the_way
     ]

@@ -1,4 +1,4 @@
-"""Bindings of rules to a graph's objects that some path may violate."""
+"""The bindings of rules to a graph's objects that some path may violate."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ def graph_bindings(
     read: ReadBits,
     past: CarriedState,
 ) -> Iterator[Binding]:
-    """A rule's bindings, from layer to layer; ``read`` reads the graph's ``NodesInTurn``.
+    """A rule's bindings, with their layers; ``read`` reads the states of ``NodesInTurn``.
 
-    Raises RulecError R0718 if they are too many, even of those that matter.
+    Raises RulecError R0718 if there are too many, even of those that matter.
     """
     cast = Cast(graph.objects, vocabulary, len(graph.states), graph.present)
     if not cast.has_many(types_of(rule)):
         return cast.bindings(rule)
-    # Words of letters that are not known, 10 ms: only where there are many choices.
+    # Imported late (10 ms): only if there are many choices.
     from rulec.monitoring.uncertainty.uncertain_machine import uncertain_machine
 
     nodes = NodesInTurn(graph)
@@ -40,7 +40,7 @@ def graph_bindings(
 
 
 def layer_by_layer(graph: TraceGraph, readers: Sequence[ReadBits]) -> ReadBits:
-    """A reader of a graph's ``NodesInTurn``, of readers of each layer's nodes."""
+    """A reader of a graph's ``NodesInTurn``, made from one reader for each layer's nodes."""
     nodes = NodesInTurn(graph)
 
     def read_bits(

@@ -1,4 +1,4 @@
-"""Bound rule with its reads in every node of a graph."""
+"""A bound rule with its letters in every node of a graph."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from rulec.value_display import short_repr
 
 @dataclass(frozen=True, slots=True)
 class SetMachine:
-    """A deterministic machine whose states are sets of another one's.
+    """A deterministic machine whose states are sets of another machine's states.
 
-    ``successors`` and ``outputs`` are as a ``MealyMonitor``'s.
+    ``successors`` and ``outputs`` are as in a ``MealyMonitor``.
     """
 
     __repr__ = short_repr
@@ -28,10 +28,10 @@ class SetMachine:
 
 @dataclass(frozen=True, slots=True)
 class Readings:
-    """A rule's machines where some letters are not known.
+    """A rule's machines where some letters are unknown.
 
-    What ``surely`` accepts is kept by every completion, what ``perhaps`` rejects is violated by
-    every one. Unless they are ``exact`` more has been taken to be possible.
+    Every completion keeps the rule where ``surely`` accepts, and violates it where ``perhaps``
+    rejects. If not ``exact``, more was assumed possible than is.
     """
 
     surely: SetMachine
@@ -44,11 +44,11 @@ Machine: TypeAlias = MealyMonitor | SetMachine
 
 @dataclass(frozen=True, slots=True)
 class GraphInstance:
-    """A rule with objects bound, and the letter class of every node.
+    """A rule bound to objects, and the letter class of every node.
 
-    ``letters[p]`` are those of layer ``first + p``'s nodes. ``start`` is the state in which the
-    machine waits for them. ``bindings`` are all those of the rule for which all this is the same.
-    Where some letters are not known they, and the start, are those of the ``readings``.
+    ``letters[p]`` are those of the nodes of layer ``first + p``. ``start`` is the machine's state
+    before them. ``bindings`` are all bindings of the rule with the same letters and start. If some
+    letters are unknown, letters and start are those of the ``readings``.
     """
 
     rule: CompiledRule
@@ -59,16 +59,16 @@ class GraphInstance:
 
     @property
     def first(self) -> int:
-        """The first layer in which all objects are there."""
+        """The first layer in which all objects are present."""
         return self.bindings[0].first
 
     @property
     def last(self) -> int:
-        """The last layer in which all objects are there."""
+        """The last layer in which all objects are present."""
         return self.bindings[0].last
 
     def machine(self, *, perhaps: bool = False) -> Machine:
-        """The machine that judges it: whether it is kept for sure, or perhaps."""
+        """The machine that accepts what surely keeps the rule; with ``perhaps``, what may."""
         if self.readings is None:
             return self.rule.machine
         return self.readings.perhaps if perhaps else self.readings.surely

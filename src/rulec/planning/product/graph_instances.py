@@ -1,4 +1,4 @@
-"""Rules bound to a graph's objects, with letters for every node."""
+"""Rules bound to a graph's objects, with the letters of every node."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ def instances(
 ) -> list[GraphInstance]:
     """Bind rules of these strengths to a graph's objects.
 
-    ``step_s`` is the graph's step where that is no decimal, a third of a second for one. Bindings
-    of a rule that every node is the same to are one instance. Those that were settled in the
-    ``past`` are left out, the others go on where they stood; so are rules that cannot be judged,
-    for want of what the graph does not tell. Raises RulecError: R0502 to R0505 if
-    the graph does not supply what the rules read, R0507 if one of these
-    rules was compiled for another step, R0508 if a state contradicts a fact.
+    ``step_s`` is the graph's exact step if it is not a decimal, such as a third of a second.
+    Bindings of a rule with the same letters in every node are one instance. Bindings settled in the
+    ``past`` are left out, the others continue from their state; rules that cannot be judged,
+    because the graph does not provide what they need, are left out too. Raises RulecError: R0502 to
+    R0505 if the graph does not supply what the rules read, R0507 if one of these rules was compiled
+    for another step, R0508 if a state contradicts a fact.
     """
     if graph.told is not None:
         untold = untold_names(rulebook.vocabulary, graph.told)
@@ -57,7 +57,7 @@ def instances(
     possible = None
     doubtful = past.doubtful_rules
     if any(partial) or graph.told is not None or doubtful:
-        # Letters that are not known, 15 ms: only where not all is.
+        # Imported late (15 ms): only if not everything is known.
         from rulec.planning.product.possible_instances import PossibleNodes
 
         possible = PossibleNodes(graph, rulebook, places)
@@ -97,7 +97,7 @@ def instances(
 
 
 def violations(rules: Sequence[GraphInstance], nodes: Sequence[int]) -> tuple[Violation, ...]:
-    """Violations of a path whose letters are known, with the layer of each bad prefix."""
+    """Violations on a path whose letters are known, with the layer of each bad prefix."""
     result = []
     for rule in rules:
         path = nodes[rule.first : rule.last + 1]

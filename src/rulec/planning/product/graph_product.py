@@ -19,36 +19,36 @@ from rulec.trace import TraceGraph
 from rulec.trace.interned import Interned
 
 MOST = 1 << 17
-"""So many kinds of partial paths are kept apart at most, whatever the graph."""
+"""The most product nodes (kinds of partial paths) allowed, however small the graph."""
 
 MOST_PER_NODE = 32
-"""So many for each of its nodes, if that is more. Rules of the law come to less than one."""
+"""The most product nodes per graph node, if that allows more. Rules of law need less than one."""
 
 Joint = tuple[int, ...]
-"""The state of each instance's machine; SAFE where nothing can be lost any more."""
+"""The state of each instance's machine; SAFE where it can no longer be lost."""
 
 Memory = TypeVar("Memory", bound=Hashable)
-"""What of a path's past bears on its future: a joint state, maybe with more."""
+"""What a path's future depends on besides its node: a joint state, maybe with more."""
 
 ProductNode = tuple[int, Memory]
-"""A node's index in its layer, and the memory behind it."""
+"""A node's index in its layer, and the memory after it."""
 
 Enter = Callable[[Sequence[Effect], Memory], Memory | None]
-"""The memory behind a node that has these effects; None if the path is dropped there."""
+"""Gives the memory after a node with these effects; None if the path is dropped there."""
 
 Steps = dict[ProductNode[Memory], list[tuple[ProductNode[Memory], int]]]
 """The successors of product nodes, with costs."""
 
 _DROPPED = -1
-"""In place of a target's index: no path goes on there. As an index it means one behind all."""
+"""Instead of a target's index: the path is dropped. As an index it is the extra last entry."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ProductEdges(Generic[Memory]):
-    """Edges of the product from one layer to ``targets`` in the next, equal if the same.
+    """Edges of the product from one layer to ``targets`` in the next; identical layers share one.
 
-    Each of the ``origins`` has in ``into`` the index of the target that each follower of its node
-    in ``rows`` leads to.
+    For each of the ``origins``, ``into`` has the index of the target that each successor of its
+    node in ``rows`` leads to.
     """
 
     origins: list[ProductNode[Memory]]
@@ -57,7 +57,7 @@ class ProductEdges(Generic[Memory]):
     into: list[list[int]]
 
     def steps(self) -> Steps[Memory]:
-        """Successors of the product nodes of each layer, with costs."""
+        """The successors of each product node, with costs."""
         return {
             origin: [
                 (self.targets[at], cost)
@@ -70,10 +70,10 @@ class ProductEdges(Generic[Memory]):
 
 @dataclass(frozen=True)
 class Product(Generic[Memory]):
-    """The part of graph times memory that can be reached.
+    """The reachable part of the product of graph and memory.
 
-    ``counts[p]`` gives for each product node of layer ``p`` how many partial paths lead to it, and
-    ``ways[p]`` leads on from there. Accepted are the paths that end in one of ``ends``.
+    ``counts[p]`` maps each product node of layer ``p`` to the number of partial paths that lead to
+    it; ``ways[p]`` are the edges from there. Paths that end in one of ``ends`` are accepted.
     """
 
     graph: TraceGraph
@@ -88,7 +88,7 @@ class Product(Generic[Memory]):
 
     @cached_property
     def steps(self) -> tuple[Steps[Memory], ...]:
-        """For the product nodes of each layer their followers in the next one, with costs."""
+        """For each layer the successors of its product nodes, with costs."""
         known = {ways: ways.steps() for ways in set(self.ways)}
         return tuple([known[ways] for ways in self.ways])
 
@@ -106,7 +106,7 @@ def count_paths(graph: TraceGraph) -> int:
 
 
 def kept(transformers: Sequence[Effect], joint: Joint) -> Joint | None:
-    """Joint state after a node; None if a rule is violated there."""
+    """The joint state after a node; None if a rule is violated there."""
     after = tuple(map(getitem, transformers, joint))
     return None if LOST in after else after
 
@@ -121,8 +121,8 @@ def explore_with(
 ) -> Product[Memory]:
     """Build the product forward from the graph's start.
 
-    ``start`` is the memory before the first node, ``enter`` that behind each further one. Raises
-    RulecError: R0616 if it would be too large.
+    ``start`` is the memory before the first node; ``enter`` gives the memory after each node.
+    Raises RulecError: R0616 if it would be too large.
     """
     graph = transformers.graph
     remaining = largest_product(graph)
@@ -130,7 +130,7 @@ def explore_with(
     memory = None if first is None else enter(first, start)
     counts = [{} if memory is None else {(graph.start, memory): 1}]
     ways = []
-    # Where nothing changes from one layer to the next, nor do the ways on from there.
+    # Consecutive layers with equal nodes and edges share their product edges.
     known: dict[object, ProductEdges[Memory]] = {}
     for rows, nodes in zip(transformers.steps, transformers.nodes[1:], strict=True):
         key, origins = (Interned(rows), Interned(nodes)), list(counts[-1])
@@ -140,7 +140,7 @@ def explore_with(
         remaining -= len(onward.targets)
         if remaining < 0:
             raise too_large(graph)
-        # One more, in which paths come together that are dropped.
+        # One extra entry, which collects the dropped paths.
         totals = [0] * (len(onward.targets) + 1)
         for count, indices in zip(counts[-1].values(), onward.into, strict=True):
             for index in indices:
@@ -187,12 +187,12 @@ def _ways(
 
 
 def largest_product(graph: TraceGraph) -> int:
-    """Largest number of product nodes for a graph."""
+    """The largest number of product nodes allowed for a graph."""
     return max(MOST, MOST_PER_NODE * sum(map(len, graph.states)))
 
 
 def too_large(graph: TraceGraph) -> RulecError:
-    """There is no room for so many: a product can be as large as that of all automata."""
+    """The error R0616: the product, which can be as large as that of all automata, is too large."""
     message = (
         f"these rules keep more than {largest_product(graph):,} kinds of partial maneuvers "
         "apart, by where they are, what the automata remember, and what is violated"

@@ -1,9 +1,9 @@
 """Transformers of monitor states by the nodes of a graph.
 
-From the last layer backwards, states of a machine that no path onward from a node tells apart are
-made one: what it remembers of an object often has no bearing any more on what can still happen in
-this graph, and paths that differ in it alone can count together. A machine from whose state every
-path onward is rejected is lost at once, one that can no longer be lost is safe.
+From the last layer backwards, states of a machine that no onward path from a node distinguishes are
+merged: what the machine remembers of an object often no longer matters in the rest of this graph,
+and paths that differ only in that are counted together. A machine in a state from which every
+onward path is rejected is lost at once; one that can no longer be lost is safe.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from rulec.trace import TraceGraph
 from rulec.trace.interned import Interned
 
 Step = tuple[int, int]
-"""A follower in the next layer, and the cost of going there."""
+"""A successor in the next layer, and the cost of going there."""
 
 SAFE = -1
-"""In place of a state: nothing that comes is rejected. As an index it means the last entry."""
+"""Instead of a state: nothing ahead is rejected. As an index it is the last entry."""
 
 LOST = -2
-"""In place of a state: everything that comes is rejected."""
+"""Instead of a state: everything ahead is rejected."""
 
 Effect = tuple[int, ...]
 """For each state of a machine, and last for SAFE: the state after a node, SAFE or LOST."""
@@ -30,12 +30,12 @@ Effect = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class NodeTransformers:
-    """Trimmed graph, with the state transformer of each node and instance.
+    """The trimmed graph, with the state transformer of each node and instance.
 
-    ``steps[p][node]`` are a node's followers from which a goal can be reached.
-    ``nodes[p][node][i]`` is what the node does to ``instances[i]``, those that some path loses;
-    nothing is known of nodes that are on no way from start to a goal, and
-    ``on_the_way[p][node]`` says which are on one. Equal layers are one object.
+    ``steps[p][node]`` are a node's successors from which a goal can be reached.
+    ``nodes[p][node][i]`` is the node's effect on ``instances[i]``, which are the instances that
+    some path loses; it is empty for nodes that are on no path from start to a goal, and
+    ``on_the_way[p][node]`` says which are. Equal layers are one object.
     """
 
     graph: TraceGraph
@@ -46,7 +46,7 @@ class NodeTransformers:
 
     @property
     def starts(self) -> bool:
-        """Test whether some path leads from the start to a goal."""
+        """Whether some path leads from the start to a goal."""
         return self.on_the_way[0][self.graph.start]
 
     @property
@@ -55,7 +55,7 @@ class NodeTransformers:
         return tuple([instance.start for instance in self.instances])
 
     def of(self, chosen: Sequence[int]) -> NodeTransformers:
-        """The effects on some of the instances alone, by index."""
+        """The transformers of only the ``chosen`` instances, by index."""
         rows = {
             layer: tuple([tuple([row[i] for i in chosen]) if row else () for row in layer.value])
             for layer in set(map(Interned, self.nodes))
@@ -70,9 +70,9 @@ class NodeTransformers:
 def node_transformers(
     graph: TraceGraph, instances: Sequence[GraphInstance], *, perhaps: bool = False
 ) -> NodeTransformers:
-    """Transformer of every instance by every node between start and goals.
+    """The transformer of every instance by every node between start and goals.
 
-    What is lost is what is not kept for sure, or not even ``perhaps``.
+    An instance is lost if its rule is not surely kept or, with ``perhaps``, surely violated.
     """
     on_the_way, steps = _trimmed(graph)
     result = [
@@ -99,7 +99,7 @@ def node_transformers(
 def _trimmed(
     graph: TraceGraph,
 ) -> tuple[tuple[tuple[bool, ...], ...], tuple[tuple[tuple[Step, ...], ...], ...]]:
-    """Nodes between the start and some goal, and their followers there with costs.
+    """The nodes between the start and some goal, and their successors there with costs.
 
     Equal layers are one object.
     """
@@ -131,7 +131,7 @@ def _trimmed(
 
 
 def _can_be_lost(instance: GraphInstance, machine: Machine) -> bool:
-    """Test whether the monitor rejects some word of the letters that occur."""
+    """Whether the machine rejects some word of the letters that occur."""
     symbols = set().union(*instance.letters)
     reached, new = {instance.start}, [instance.start]
     while new:
@@ -152,14 +152,14 @@ def _merged(
 ) -> list[tuple[Effect, ...]] | None:
     """Transformers of every layer, with states of equal futures merged.
 
-    None if no path loses the instance: then it does not matter.
+    None if no path loses the instance, so that it does not matter.
     """
     n_states = len(machine.successors)
-    # The machine waits until its objects are there. With their last layer it gives its verdict.
+    # The machine waits until its objects are present; its verdict comes with their last layer.
     waiting, over = [(instance.start,) * n_states], [(SAFE,) * n_states]
     within, final = _columns(machine, final=False), _columns(machine, final=True)
     nobody = {len(layer): (0,) * len(layer) for layer in on_the_way}
-    # Ids as keys, which are made for every layer: the lists here keep what they name.
+    # Ids are cheap keys, and stay valid because the lists here keep the objects alive.
     effects: dict[int, dict[object, Effect]] = {
         id(raw): {} for raw in (waiting, within, final, over)
     }
@@ -212,7 +212,7 @@ def _columns(machine: Machine, *, final: bool) -> list[Effect]:
 
 
 def _in_view_of(futures: Collection[Effect] | None, raw: Effect) -> Effect:
-    """An effect with states made one that no follower's effect tells apart."""
+    """An effect in which states that no successor's effect distinguishes are merged."""
     if futures is None:
         return (*raw, SAFE)
     merged: list[int] = []

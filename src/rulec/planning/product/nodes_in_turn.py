@@ -1,4 +1,4 @@
-"""The nodes of a graph's layers, one after the other."""
+"""The nodes of a graph's layers as one sequence."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Item = TypeVar("Item")
 
 
 class NodesInTurn:
-    """The nodes of all layers, one after the other, as if they were states of one trace."""
+    """The nodes of all layers in one sequence, as if they were the states of one trace."""
 
     def __init__(self, graph: TraceGraph) -> None:
         self._graph = graph
@@ -27,21 +27,21 @@ class NodesInTurn:
 
     @cached_property
     def present(self) -> dict[str, tuple[int, int]]:
-        """Among which nodes objects are that are not in all layers."""
+        """For each object that is not in all layers, the numbers of its first and last node."""
         return {item: self.stretch(*layers) for item, layers in self._graph.present.items()}
 
     def stretch(self, first: int, last: int) -> tuple[int, int]:
-        """The first and the last node of layers, both ends included."""
+        """The numbers of the first and the last node of layers ``first`` to ``last``, inclusive."""
         return self._begins[first], self._begins[last + 1] - 1
 
     def layer_of(self, number: int) -> int:
-        """The layer that a node is in."""
+        """The layer of a node."""
         return bisect_right(self._begins, number) - 1
 
     def by_layer(
         self, values: Sequence[Item], first: int, last: int
     ) -> tuple[tuple[Item, ...], ...]:
-        """What nodes of layers have, by layer."""
+        """The nodes' ``values``, grouped by layer."""
         before = self._begins[first]
         bounds = [begin - before for begin in self._begins[first : last + 2]]
         return tuple([tuple(values[begin:end]) for begin, end in pairwise(bounds)])

@@ -1,8 +1,8 @@
-"""Rules bound to a graph's objects, where the letters of some nodes are not known.
+"""Rules bound to a graph's objects, where the letters of some nodes are unknown.
 
-Paths are judged as traces are in ``rulec.monitoring.uncertainty``: a node has a set of letters, and
-the machine steps on sets of states, one for each way to choose what never changes. These steps are
-made a machine of their own, so that paths can be counted by it.
+Paths are judged like traces in ``rulec.monitoring.uncertainty``: a node has a set of letters, and
+the machine steps on sets of states, one set for each choice of the constants. These steps form a
+machine of their own, by which paths can be counted.
 """
 
 from __future__ import annotations
@@ -30,18 +30,21 @@ from rulec.planning.product.nodes_in_turn import NodesInTurn
 from rulec.trace import Trace, TraceGraph
 
 MOST_SETS = 1 << 10
-"""So many sets of states are told apart; of further ones anything is taken to be possible."""
+"""The most sets of states that are distinguished.
+
+After further ones anything counts as possible.
+"""
 
 _NOBODY = -1
-"""In place of a set of states: facts exclude this choice of constants."""
+"""Instead of a set of states: facts exclude this choice of constants."""
 
 _Word: TypeAlias = tuple[int, ...]
-"""For each node, layer by layer, the classes of its possible letters, as bits."""
+"""For each node, layer by layer, the classes of its possible letters as a bit set."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Start:
-    """The states in which a machine may be, and whether the rule may be settled already."""
+    """The possible states of a machine, and whether the rule may already be settled."""
 
     states: frozenset[int] = frozenset({0})
     perhaps_settled: bool = False
@@ -49,7 +52,7 @@ class _Start:
 
 @dataclass(frozen=True, slots=True)
 class _Alike:
-    """What bindings of a rule have to have in common to be one instance."""
+    """The data that bindings of a rule have in common if they are one instance."""
 
     first: int
     start: _Start
@@ -58,7 +61,7 @@ class _Alike:
 
 
 class PossibleNodes:
-    """The letters that nodes may have, of a checked graph of which not all is known."""
+    """The letters that the nodes of a checked graph with unknown values may have."""
 
     def __init__(
         self,
@@ -90,12 +93,12 @@ class PossibleNodes:
         self._machines: dict[object, tuple[Sequence[tuple[int, ...]], Readings]] = {}
 
     def concern(self, rule: CompiledRule) -> bool:
-        """Whether a rule reads something of which not all is known, or cannot be judged."""
+        """Whether a rule reads values that are not all known, or cannot be judged."""
         reads_partial = not self._partial.isdisjoint(names_in(rule.formula))
         return reads_partial or bool(self.untold(rule, NO_PAST))
 
     def untold(self, rule: CompiledRule, past: CarriedState) -> tuple[str, ...]:
-        """Untold names and types for want of which no path can be known to violate a rule."""
+        """Missing names and types because of which no path can be known to violate a rule."""
         begun = [state for (name, _), state in past.states.items() if name == rule.name]
         if any(begun) or rule.name in past.doubtful_rules:
             return ()
@@ -105,9 +108,10 @@ class PossibleNodes:
         return (*uncertain_machine(rule, None).untold(self._untold), *types)
 
     def instances(self, rule: CompiledRule, past: CarriedState) -> list[GraphInstance]:
-        """Bind a rule to the graph's objects; none if it cannot be judged.
+        """Bind a rule to the graph's objects; no instance if the rule cannot be judged.
 
-        Raises RulecError R0504 if a value without default is missing, R0508 if a state cannot be.
+        Raises RulecError R0504 if a value without default is missing, R0508 for an impossible
+        state.
         """
         if self.untold(rule, past):
             return []
@@ -129,7 +133,10 @@ class PossibleNodes:
     def _words(
         self, rule: CompiledRule, machine: UncertainMachine, binding: Binding
     ) -> tuple[tuple[_Word, ...], bool]:
-        """The letters of every node, one word for each choice of constants that differs."""
+        """The possible letters of every node, one word for each distinct choice of constants.
+
+        The second result is whether these are exact.
+        """
         supposed, is_exact = self._suppositions.of(rule, binding)
         nodes = Binding(binding.objects, *self._nodes.stretch(binding.first, binding.last))
         words: dict[_Word, None] = {}
@@ -153,7 +160,7 @@ class PossibleNodes:
         bound: tuple[Binding, ...],
     ) -> GraphInstance:
         words, start = alike.words, alike.start
-        # By node: the classes for each choice of constants
+        # For each node, the classes for each choice of constants
         symbols = list(zip(*words, strict=True))
         every = set(symbols)
         known = all(len(symbol) == 1 and not symbol[0] & (symbol[0] - 1) for symbol in every)
@@ -172,7 +179,7 @@ class PossibleNodes:
         place = {symbol: number for number, symbol in enumerate(order)}
         letters = self._by_layer([place[symbol] for symbol in symbols], bound[0])
         own = self._machines[key][1]
-        # That it was violated before and that it was just lost are not told apart.
+        # Violated before and violated just now cannot be distinguished.
         vague = start.perhaps_settled and rule.machine.rejecting_sink in start.states
         is_exact = own.exact and alike.exact and not vague
         return GraphInstance(rule, bound, letters, 0, replace(own, exact=is_exact))
@@ -181,7 +188,7 @@ class PossibleNodes:
 def not_judged(
     graph: TraceGraph, rulebook: CompiledRulebook, past: CarriedState
 ) -> Iterator[RuleNotJudged]:
-    """Rules that no path can be known to violate, for want of what the graph does not tell."""
+    """Rules that no path can be known to violate, because the graph lacks what they read."""
     possible = PossibleNodes(replace(graph, states=(), present={}), rulebook, [])
     for rule in rulebook.rules:
         if untold := possible.untold(rule, past):
@@ -193,7 +200,7 @@ def readings(
 ) -> Readings:
     """The machines for words of ``symbols``, from these sets of states.
 
-    A symbol has classes, as bits, for each way to choose what never changes; a start has a set.
+    A symbol has a bit set of classes, and a start a set of states, for each choice of constants.
     """
     anything = ()
     places: dict[tuple[int, ...], int] = {starts: 0}
@@ -214,7 +221,7 @@ def readings(
                 places[target] = len(places)
                 waiting.append(target)
             row.append(places[target])
-            # No set stands for anything; a way on which facts exclude every choice is not kept.
+            # The empty tuple means that anything is possible; if facts exclude every choice it is not kept.
             kept.append(bool(known) and max(step.worst for step in known) == KEPT)
             best = min((step.best for step in known), default=VIOLATED)
             not_lost.append(sets == anything or best == KEPT)

@@ -1,1 +1,1 @@
-"""Order among maneuvers: cost, penalties, homotopy classes."""
+"""Comparing maneuvers: cost, penalties, homotopy classes."""

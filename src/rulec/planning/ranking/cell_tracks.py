@@ -1,4 +1,4 @@
-"""Cells followed through time, and a product's edges split by staying in them and leaving."""
+"""Cells followed through time, and a product's edges divided into staying and leaving."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ CellTracks = tuple[tuple[int, ...], ...]
 def cell_tracks(graph: TraceGraph) -> CellTracks:
     """The place of every node.
 
-    Nodes of consecutive layers are one place if one continues as the other, so that going there is
-    staying, and their states are the same. Places are numbered as they begin.
+    Nodes of consecutive layers are one place if the edge between them is staying and their states
+    are the same. Places are numbered in the order in which they begin.
     """
     parents: list[int] = []
     rows: list[list[int]] = []
@@ -44,10 +44,10 @@ def cell_tracks(graph: TraceGraph) -> CellTracks:
 
 @dataclass(frozen=True, slots=True)
 class TrackProduct:
-    """The product nodes as numbers, in the order of layers.
+    """Product nodes, numbered in the order of layers.
 
     ``nodes[i]`` is the node's index in layer ``layers[i]``, ``place[i]`` its place. ``stays[i]``
-    are the followers of the same place with the costs of going there, ``leaves[i]`` the others.
+    are its successors in the same place with their costs, ``leaves[i]`` the others.
     """
 
     starts: tuple[int, ...]
@@ -59,7 +59,7 @@ class TrackProduct:
     leaves: tuple[tuple[tuple[int, int], ...], ...]
 
     def stayed(self, entered: Collection[int]) -> frozenset[int]:
-        """Product nodes reachable without leaving the cell track."""
+        """The product nodes reachable without leaving the cell track."""
         reached, new = set(entered), list(entered)
         while new:
             for target, _ in self.stays[new.pop()]:
@@ -69,7 +69,7 @@ class TrackProduct:
         return frozenset(reached)
 
     def left(self, here: Collection[int]) -> dict[int, set[int]]:
-        """By place the product nodes where one can be directly after leaving."""
+        """The product nodes reachable by one edge that leaves the track, by place."""
         entered: dict[int, set[int]] = {}
         for node in here:
             for target, _ in self.leaves[node]:

@@ -21,9 +21,10 @@ if TYPE_CHECKING:
 class Maneuver:
     """Path through a graph, with its cost and time margin.
 
-    ``nodes`` are indices, one a layer; ``cost`` is in 1/s. ``margin_s`` is the smallest margin of
-    its changes of cell; None if it never changes. Where ego's motion has bounds a ``trajectory``
-    proves that they allow it; the cost is what that costs and what its ``changes`` of cell do.
+    ``nodes`` are indices, one per layer; ``cost`` is in 1/s. ``margin_s`` is the smallest margin of
+    its changes of cell; None if it never changes. If ego's motion has bounds, a ``trajectory``
+    proves that the path can be driven; the cost is the trajectory's plus that of the ``changes`` of
+    cell.
     """
 
     __repr__ = short_repr
@@ -38,8 +39,8 @@ class Maneuver:
 def cheapest(product: Product[Memory]) -> Iterator[Maneuver]:
     """Accepted paths by ascending cost, ties by ascending nodes.
 
-    Best-first search. The cost still to come is known exactly for every product node, so a path is
-    only ever extended towards a goal, and each next maneuver costs one walk through the layers.
+    Best-first search. The remaining cost is known exactly for every product node, so a path is only
+    ever extended towards a goal, and each next maneuver takes one pass through the layers.
     """
     graph = product.graph
     to_come = costs_to_come(product)
@@ -63,7 +64,7 @@ def cheapest(product: Product[Memory]) -> Iterator[Maneuver]:
 
 
 def costs_to_come(product: Product[Memory]) -> list[dict[ProductNode[Memory], int]]:
-    """Least cost from each product node to a goal, by layer."""
+    """The least cost from each product node to a goal, by layer."""
     costs = [dict.fromkeys(product.ends, 0)]
     for steps in reversed(product.steps):
         later = costs[-1]
@@ -77,7 +78,7 @@ def costs_to_come(product: Product[Memory]) -> list[dict[ProductNode[Memory], in
 
 
 def maneuver(graph: TraceGraph, path: tuple[int, ...], cost: int) -> Maneuver:
-    """Path with its margin; ``cost`` is in the graph's unit."""
+    """A path as a maneuver, with its margin; ``cost`` is in the graph's unit."""
     margins = [
         graph.margins[layer][node][graph.successors[layer][node].index(target)]
         for layer, (node, target) in enumerate(pairwise(path))

@@ -1,8 +1,8 @@
-"""Accepted paths in the order of what driving them costs at least, found from their beginnings.
+"""Accepted paths ordered by a lower bound on their driving cost, found from their beginnings.
 
-What the first part of a path costs at least is told by a linear program; its changes of cell cost,
-and those to come do, at least. The part that promises least is gone on with, each time. Where that
-takes too long a beam search gets to the end, though not always by what costs least.
+A linear program bounds the driving cost of a path's beginning; the cost of its changes of cell, and
+the least cost of those to come, are added. The beginning with the lowest bound is extended first.
+Where that takes too long, a beam search reaches the end, but not always by the cheapest path.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
     from rulec.partition.motion.way_bounds import WayBound, WayBounds
 
 ALIKE = 0.01
-"""Of parts that promise as much but for this, the longest one is gone on with."""
+"""Of beginnings whose bounds differ by less than this, the longest is extended first."""
 
 _Costs: TypeAlias = list[dict[ProductNode[Memory], float]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GuidedWay:
-    """A path, without its cost, which is at least what it ``promises``."""
+    """A path without its cost, and the lower bound that it ``promises``."""
 
     maneuver: Maneuver
     promises: float
@@ -36,9 +36,9 @@ class GuidedWay:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Part(Generic[Memory]):
-    """The first part of a path up to a ``node``: its changes of cell, and what driving it costs.
+    """A path's beginning up to a ``node``: the cost of its changes of cell, and its driving cost.
 
-    The bound is that of all but its last cell, unless ``is_known``.
+    The bound is that of the beginning without its last cell, unless ``is_known``.
     """
 
     path: tuple[int, ...]
@@ -65,10 +65,10 @@ def guided_ways(
     *,
     driving_only: bool = False,
 ) -> Iterator[GuidedWay]:
-    """Paths, the cheapest first but for ``ALIKE``; so many bounds are found at most.
+    """Paths by ascending bound, up to ``ALIKE``; at most ``most`` linear programs are solved.
 
-    Those of which a bound tells that they cannot be driven are left out. With ``driving_only``
-    changes of cell cost nothing.
+    Paths whose bound shows that they cannot be driven are left out. With ``driving_only`` changes
+    of cell cost nothing.
     """
     to_come = _changes_to_come(product, graph, free=driving_only)
     queue: list[tuple[int, int, float, int, _Part[Memory]]] = []
@@ -103,7 +103,7 @@ def guided_ways(
 def beam_ways(
     product: Product[Memory], graph: NavigationGraph, bounds: WayBounds, width: int
 ) -> Iterator[GuidedWay]:
-    """Paths of which in every layer those ``width`` parts are gone on with that promise least.
+    """Paths found by extending, in every layer, only the ``width`` beginnings of lowest bound.
 
     Source: Lowerre, "The HARPY speech recognition system" (1976).
     """
@@ -139,7 +139,7 @@ def _onward(
     *,
     free: bool = False,
 ) -> Iterator[_Part[Memory]]:
-    """The parts that are one cell longer; if ``free`` changes of cell cost nothing."""
+    """The parts that are one cell longer; if ``free``, changes of cell cost nothing."""
     layer = len(part.path) - 1
     for step, _ in product.steps[layer][part.node]:
         if step in to_come[layer + 1]:
@@ -149,7 +149,7 @@ def _onward(
 
 
 def change_cost(graph: NavigationGraph, p: int, node: int, target: int) -> float:
-    """What going from a cell of layer ``p`` to one of the next costs by its margin."""
+    """The cost, by its margin, of going from a cell of layer ``p`` to one of the next."""
     margin = graph.margins[p][node][graph.successors[p][node].index(target)]
     if margin is None or graph.costs_nothing(p, node, target):
         return 0.0
@@ -159,7 +159,7 @@ def change_cost(graph: NavigationGraph, p: int, node: int, target: int) -> float
 def _changes_to_come(
     product: Product[Memory], graph: NavigationGraph, *, free: bool
 ) -> _Costs[Memory]:
-    """What changes of cell cost at least from each product node to a goal, by layer."""
+    """The least cost of changes of cell from each product node to a goal, by layer."""
     costs: _Costs[Memory] = [dict.fromkeys(product.ends, 0.0)]
     for p in reversed(range(len(product.steps))):
         later = costs[-1]

@@ -1,7 +1,7 @@
-"""Homotopy classes: paths through the same cell tracks in one order.
+"""Homotopy classes: paths through the same cell tracks in the same order.
 
-Classes are words over places; a path spells its class as it changes from one to the next. As for
-any automaton, words are counted over the sets of product nodes that a word can lead to.
+A class is a word of places; a path adds a letter to its word when it changes place. As for any
+automaton, words are counted over the sets of product nodes that a word can lead to.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from rulec.planning.ranking.cheapest import Maneuver, costs_to_come, maneuver
 from rulec.value_display import short_repr
 
 REJECTED: Joint = (LOST,)
-"""In place of a joint state: a rule has been lost."""
+"""Instead of a joint state: a rule has been violated."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Way:
-    """Cheapest path to a product node, and the number of paths."""
+    """The cheapest path to a product node, and the number of paths."""
 
     node: int
     before: _Way | None
@@ -33,14 +33,14 @@ class _Way:
 
 
 _Ways = dict[int, _Way]
-"""The ways of a class to each product node that it can lead to."""
+"""For each product node that a class can lead to, its cheapest path and their number."""
 
 
 @dataclass(frozen=True, slots=True)
 class HomotopyClasses:
     """Numbers of homotopy classes by their members' verdicts.
 
-    Of those that are ``rejected`` so many are ``open``: some member violates nothing for sure.
+    ``open`` of the ``rejected`` ones have a member that does not surely violate anything.
     """
 
     accepted: int
@@ -50,18 +50,18 @@ class HomotopyClasses:
 
     @property
     def total(self) -> int:
-        """All of them."""
+        """The number of all classes."""
         return self.accepted + self.rejected + self.divided
 
     @property
     def satisfying(self) -> int:
-        """Those with a member that is accepted."""
+        """The number of classes with an accepted member."""
         return self.accepted + self.divided
 
 
 @dataclass(frozen=True, slots=True)
 class Variant:
-    """Homotopy class with an accepted path, and its cheapest one.
+    """A homotopy class with an accepted path, and its cheapest one.
 
     ``places`` are its cell tracks in order, ``members`` its number of accepted paths.
     """
@@ -74,7 +74,7 @@ class Variant:
 
 
 def count_classes(transformers: NodeTransformers, tracks: CellTracks) -> HomotopyClasses:
-    """The classes of all paths from start to a goal, exactly."""
+    """The exact numbers of classes of all paths from start to a goal."""
 
     def enter(row: Sequence[Effect], memory: Joint) -> Joint:
         after = None if memory == REJECTED else kept(row, memory)
@@ -82,7 +82,7 @@ def count_classes(transformers: NodeTransformers, tracks: CellTracks) -> Homotop
 
     product = explore_with(transformers, enter, transformers.waiting)
     tracked = track_product(product, tracks)
-    # Ends are the last of the numbered nodes.
+    # The ends have the last numbers.
     verdicts = [memory != REJECTED for _, memory in product.counts[-1]]
     first = len(tracked.nodes) - len(verdicts)
     accepted = frozenset(first + i for i, verdict in enumerate(verdicts) if verdict)
@@ -91,7 +91,7 @@ def count_classes(transformers: NodeTransformers, tracks: CellTracks) -> Homotop
         ways[0][tracked.stayed(tracked.starts)] = 1
     counts: Counter[tuple[bool, bool]] = Counter()
     for layer in range(len(ways)):
-        # Whoever changes place is in a later layer, so no way to these sets is still to come.
+        # A change of place leads to a later layer, so all ways to these sets are known.
         for here, words in ways[layer].items():
             ends = here & tracked.ends
             counts[not ends.isdisjoint(accepted), not ends <= accepted] += words
@@ -105,8 +105,8 @@ def count_classes(transformers: NodeTransformers, tracks: CellTracks) -> Homotop
 def variants(product: Product[Memory], tracks: CellTracks) -> Iterator[Variant]:
     """Classes with an accepted path, cheapest first, ties by tracks.
 
-    Best-first search over words. The least cost of a word's members still to come is known exactly,
-    so a word is only ever made longer if a class needs it.
+    Best-first search over words. The least remaining cost of a word's members is known exactly, so
+    a word is only extended if a class needs it.
     """
     tracked = track_product(product, tracks)
     costs = costs_to_come(product)
@@ -152,7 +152,7 @@ def _join(ways: _Ways, target: int, cost: int, way: _Way) -> None:
 
 
 def _stayed(tracked: TrackProduct, to_come: Mapping[int, int], entered: _Ways) -> _Ways:
-    """Close a set of product nodes under staying in their track."""
+    """Extend a set of product nodes by all that are reachable within their track."""
     ways = dict(entered)
     waiting = list(entered)
     heapify(waiting)

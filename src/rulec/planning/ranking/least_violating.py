@@ -1,8 +1,8 @@
-"""The least violating paths, found without walking them all.
+"""The least violating paths, found without enumerating all paths.
 
 A path is lost to an instance at most once: then its penalty is added and its machine drops out. So
-partial paths carry their penalty beside the machines' states. They are extended lowest penalty
-first, so those that violate much are not touched while there are better ones.
+partial paths carry their penalty with the machines' states. They are extended lowest penalty first,
+so that those that violate much are not examined while there are better ones.
 """
 
 from __future__ import annotations
@@ -23,20 +23,20 @@ from rulec.trace.interned import Interned
 from rulec.value_display import short_repr
 
 Paying = tuple[graph_product.Joint, Penalty]
-"""The machines' states, and what has been violated so far."""
+"""The machines' states, and the penalty so far."""
 
 Place = tuple[int, int, graph_product.Joint]
-"""A layer, a node in it, and the machines' states behind it."""
+"""A layer, a node in it, and the machines' states after it."""
 
 
 @dataclass(frozen=True, slots=True)
 class RankedManeuver:
-    """A maneuver beside others by what it violates: see ``docs/ranking.md``.
+    """A maneuver ranked by what it violates: see ``docs/ranking.md``.
 
     ``place`` is 1 if no maneuver violates less, else 1 more than the last place of those that do.
-    ``penalty`` are the weights of what it violates, summed up by rank, ranks without any left out.
-    So many ``members`` have this penalty; of them this is one of the cheapest. Where not all is
-    known what is ``open`` counts as violated; ``at_least`` is the penalty without it.
+    ``penalty`` is the sum of the weights of what it violates, by rank, without ranks of sum 0.
+    ``members`` is the number of maneuvers with this penalty; this is one of the cheapest. If not
+    everything is known, ``open`` rules count as violated; ``at_least`` is the penalty without them.
     """
 
     __repr__ = short_repr
@@ -51,12 +51,12 @@ class RankedManeuver:
 
 
 def front(transformers: NodeTransformers, ranks: PenaltyOrder) -> Iterator[Penalty]:
-    """Pareto front of the paths' penalties, in order, lazily."""
+    """The Pareto front of the paths' penalties, in order, lazily."""
     penalties: list[Penalty] = []
     passed: dict[Place, list[Penalty]] = {}
 
     def worth(place: Place, penalty: Penalty) -> bool:
-        """Test that no other path here has a lower penalty."""
+        """Whether no other path here has a lower penalty."""
         others = passed.setdefault(place, [])
         if any(ranks.at_most(numbers, penalty) for numbers in (*penalties, *others)):
             return False
@@ -69,7 +69,7 @@ def front(transformers: NodeTransformers, ranks: PenaltyOrder) -> Iterator[Penal
 
 
 def ranked(transformers: NodeTransformers, ranks: PenaltyOrder) -> Iterator[tuple[int, Penalty]]:
-    """Every penalty of some path, behind all that are lower.
+    """Every penalty of some path, each after all that are lower.
 
     With each comes its place: 1 in the front, else 1 more than the last place of lower penalties.
     """
@@ -91,7 +91,7 @@ def ranked(transformers: NodeTransformers, ranks: PenaltyOrder) -> Iterator[tupl
 def with_penalty(
     transformers: NodeTransformers, ranks: PenaltyOrder, penalty: Penalty
 ) -> graph_product.Product[Paying]:
-    """The product in which just the paths of one penalty are accepted."""
+    """The product in which only the paths with one penalty are accepted."""
     fee = _fees(transformers, ranks)
 
     def enter(row: Sequence[Effect], memory: Paying) -> Paying | None:
@@ -110,10 +110,10 @@ def with_penalty(
 def _ascending(
     transformers: NodeTransformers, ranks: PenaltyOrder, worth: Callable[[Place, Penalty], bool]
 ) -> Iterator[Penalty]:
-    """Penalties of paths in order; only those ``worth`` it are extended.
+    """Penalties of paths in order; only those that are ``worth`` it are extended.
 
-    Of partial paths with one penalty the longer ones come first, so goals are soon found. Raises
-    R0616 if there are too many that are worth it.
+    Among partial paths with one penalty the longer ones come first, so goals are found soon. Raises
+    R0616 if too many are worth it.
     """
     remaining = graph_product.largest_product(transformers.graph)
     fee = _fees(transformers, ranks)
@@ -150,7 +150,7 @@ def _ascending(
 def _fees(
     transformers: NodeTransformers, ranks: PenaltyOrder
 ) -> Callable[[Sequence[Effect], graph_product.Joint], tuple[graph_product.Joint, Penalty]]:
-    """Next states of the monitors at a node, and their penalties."""
+    """A function that gives the next states of the monitors at a node, and the penalty added."""
     prices = [
         (ranks.of(instance.rule), ranks.weight(instance.rule) * len(instance.bindings))
         for instance in transformers.instances

@@ -16,7 +16,7 @@ from rulec.monitoring.verdict import Violation
 from rulec.rulebook.rulebook_model import Strength
 
 Penalty = tuple[int, ...]
-"""For each rank the summed weights of what is violated there, in units of ``PenaltyOrder``."""
+"""For each rank the sum of the weights of what is violated, in units of ``PenaltyOrder``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class PenaltyRank:
 
 @dataclass(frozen=True, slots=True)
 class PenaltyOrder:
-    """Ranks of a rulebook's rules, each behind all above it.
+    """Ranks of a rulebook's rules, each after all above it.
 
     ``above[i]`` are the indices of the ranks above ``ranks[i]``. Weights are counted in ``unit``,
     of which each is a whole multiple.
@@ -48,14 +48,14 @@ class PenaltyOrder:
         )
 
     def weight(self, rule: CompiledRule) -> int:
-        """Penalty that each violated binding of the rule adds."""
+        """The penalty that each violated binding of the rule adds."""
         return int(rule.weight / self.unit)
 
     def at_most(self, left: Penalty, right: Penalty) -> bool:
-        """Test whether the left penalty is as low as the right one.
+        """Whether the left penalty is at most the right one.
 
-        It is if above every rank in which it is higher there is left in which it is lower. Adding
-        the same to both changes nothing, adding to left makes it no lower.
+        It is if for every rank in which it is higher there is a rank above in which it is lower.
+        Adding the same to both changes nothing, adding to the left makes it no lower.
         """
         return all(
             any(left[higher] < right[higher] for higher in self.above[index])
@@ -64,12 +64,12 @@ class PenaltyOrder:
         )
 
     def by_rank(self, penalty: Penalty) -> dict[PenaltyRank, Fraction]:
-        """The penalty as sums of weights; ranks without any are left out."""
+        """The penalty as sums of weights; ranks with sum 0 are left out."""
         parts = zip(self.ranks, penalty, strict=True)
         return {rank: part * self.unit for rank, part in parts if part}
 
     def of_violations(self, violations: Iterable[Violation], rules: CompiledRulebook) -> Penalty:
-        """The penalty of what is violated by one maneuver."""
+        """The penalty of the violations of one maneuver."""
         by_name = {rule.name: rule for rule in rules.rules}
         due = [0] * len(self.ranks)
         for rule in (by_name[violation.rule] for violation in violations):
@@ -80,8 +80,8 @@ class PenaltyOrder:
 def ranks_of(rulebook: CompiledRulebook) -> PenaltyOrder:
     """The ranks of a rulebook's rules.
 
-    In tuples of one number per rank, compared from left to right, what is lower by priority comes
-    first: a rank stands behind all above it, and among others as the rulebook names the levels.
+    If penalties are compared as tuples, from left to right, lower ones by priority come first: a
+    rank stands after all above it, and otherwise in the rulebook's order of levels.
     """
     order = rulebook.priorities
 

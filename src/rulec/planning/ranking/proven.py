@@ -1,7 +1,7 @@
-"""The cheapest maneuvers of which a trajectory proves that ego can drive them.
+"""The cheapest maneuvers with a trajectory that proves that ego can drive them.
 
-What a path costs at least is known from its beginning on, by linear programs. Paths are looked at
-in this order, until none can be cheaper than those found, or so many have been looked at.
+Linear programs bound a path's cost from its beginning on. Paths are tried in the order of their
+bounds until none can be cheaper than those found, or a limit on tries is reached.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from rulec.partition.motion.witness_trajectory import WitnessSearch
 
 MOST_TRIED = 40
-"""So many paths are looked at for each maneuver that is wanted."""
+"""The most paths tried for each maneuver wanted."""
 
 MOST_BOUNDS, MORE_BOUNDS = 1_500, 100
-"""So many beginnings of paths, too, and so many more for each that is wanted."""
+"""The most beginnings of paths bounded, and how many more for each maneuver wanted."""
 
 BEAM = 16
-"""So many beginnings of each length go on where those were not enough."""
+"""The width of the beam search that follows where those were not enough."""
 
 
 def proven(
@@ -35,8 +35,8 @@ def proven(
 ) -> list[Maneuver]:
     """The ``n`` cheapest accepted paths that can be driven, with their trajectories.
 
-    Where bounds do not lead to so many, a beam search does; where that does not either, those are
-    looked at that cost least by their cells.
+    If the search by bounds does not find that many, a beam search continues, and then the paths of
+    least cost by their cells are tried.
     """
     maneuvers: list[Maneuver] = []
     looked_at: set[tuple[int, ...]] = set()
@@ -68,7 +68,7 @@ def _add(
 def with_trajectory(
     maneuver: Maneuver, graph: NavigationGraph, search: WitnessSearch
 ) -> Maneuver | None:
-    """The maneuver with a trajectory, and what both cost; None if none was found."""
+    """The maneuver with a trajectory, and the cost of both; None if no trajectory was found."""
     trajectory = search.of(maneuver.nodes)
     if trajectory is None:
         return None
@@ -83,7 +83,7 @@ def with_trajectory(
 def least_promised(
     product: Product[Memory], graph: NavigationGraph, bounds: WayBounds
 ) -> float | None:
-    """What driving costs at least on every accepted path; None if that takes too long to find."""
+    """The least driving cost of all accepted paths; None if that takes too long to find."""
     ways = guided_ways(product, graph, bounds, MOST_BOUNDS, driving_only=True)
     first = next(ways, None)
     return None if first is None else max(first.promises - ALIKE, 0.0)

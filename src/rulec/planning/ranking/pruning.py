@@ -1,4 +1,4 @@
-"""Numbers of paths that each rule rejects, also alone."""
+"""The number of paths that each rule rejects, and that it alone rejects."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rulec.planning.ranking.cheapest import Maneuver
 from rulec.value_display import short_repr
 
 NOBODY = -1
-"""In place of a rule: none has been violated."""
+"""Instead of a rule: none has been violated."""
 
 Blaming = tuple[Joint, int]
 """The machines' states, and the one rule that has been violated so far, or NOBODY."""
@@ -22,13 +22,12 @@ Blaming = tuple[Joint, int]
 
 @dataclass(frozen=True, slots=True)
 class RulePruning:
-    """Numbers of maneuvers that violate a rule, and that rule alone.
+    """Numbers of maneuvers that violate a rule, and that violate only that rule.
 
-    ``alone`` violated is a rule if no other hard one is known to be; None for a soft rule, which
-    rejects nothing. On ``open`` more maneuvers it is not known whether the rule is kept. The
+    ``alone`` counts maneuvers that are not known to violate another hard rule; None for a soft
+    rule, which rejects nothing. ``open`` counts further maneuvers that may violate the rule. The
     example is one of the cheapest that violate the rule alone, if there are any, else of those that
-    violate it; None if there are none of these either. The violations are those of the rule by the
-    example.
+    violate it, else None. The violations are those of the rule by the example.
     """
 
     __repr__ = short_repr
@@ -43,7 +42,7 @@ class RulePruning:
 
 @dataclass(frozen=True, slots=True)
 class RuleOutcomes:
-    """The numbers of maneuvers that keep a rule, that violate it, and of which neither is known."""
+    """The numbers of maneuvers that surely keep a rule, surely violate it, and do neither."""
 
     rule: CompiledRule
     kept: int
@@ -52,14 +51,14 @@ class RuleOutcomes:
 
     @property
     def judged(self) -> bool:
-        """Whether it is kept or violated for sure by half of the maneuvers or more."""
+        """Whether at least half of the maneuvers surely keep or surely violate it."""
         return self.kept + self.violated >= self.open and self.kept + self.violated > 0
 
 
 def outcomes_of(
     rule: CompiledRule, surely: NodeTransformers, perhaps: NodeTransformers, paths: int
 ) -> RuleOutcomes:
-    """The outcomes of a rule on all paths, of which there are so many."""
+    """The outcomes of a rule on all ``paths``, given as a number."""
 
     def accepted(transformers: NodeTransformers) -> int:
         names = [instance.rule.name for instance in transformers.instances]
@@ -71,7 +70,7 @@ def outcomes_of(
 
 
 def violating(transformers: NodeTransformers) -> dict[str, Product[Blaming]]:
-    """Product of the paths that violate it, for each rule that some path violates."""
+    """For each rule that some path violates, the product of the paths that violate it."""
     rules = [instance.rule.name for instance in transformers.instances]
     products = {}
     for rule in dict.fromkeys(rules):
@@ -82,7 +81,7 @@ def violating(transformers: NodeTransformers) -> dict[str, Product[Blaming]]:
 
 
 def violating_alone(transformers: NodeTransformers) -> dict[str, Product[Blaming]]:
-    """Product of the paths that violate it alone, for each rule that some do."""
+    """For each rule that some path violates alone, the product of these paths."""
     rules = [instance.rule.name for instance in transformers.instances]
     numbers = {rule: number for number, rule in enumerate(dict.fromkeys(rules))}
     product = _blaming(transformers, [numbers[rule] for rule in rules])
@@ -91,7 +90,7 @@ def violating_alone(transformers: NodeTransformers) -> dict[str, Product[Blaming
 
 
 def _blaming(transformers: NodeTransformers, of: Sequence[int]) -> Product[Blaming]:
-    """Product of paths that violate at most one rule, which ``of`` gives by instance."""
+    """Product of the paths that violate at most one rule; ``of`` maps instances to rules."""
 
     def enter(row: Sequence[Effect], memory: Blaming) -> Blaming | None:
         joint, blamed = memory
@@ -102,7 +101,7 @@ def _blaming(transformers: NodeTransformers, of: Sequence[int]) -> Product[Blami
         if len(lost | ({blamed} - {NOBODY})) > 1:
             return None
         (blamed,) = lost
-        # Whatever else becomes of this rule, it has been violated.
+        # This rule has been violated, whatever its other instances do.
         states = zip(after, of, strict=True)
         return tuple([SAFE if rule == blamed else state for state, rule in states]), blamed
 

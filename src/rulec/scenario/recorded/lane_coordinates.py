@@ -269,7 +269,7 @@ def _beside(strip: _Strip, *, left: bool) -> list[_Beside]:
 
 
 def _bounds(strip: _Strip, lanes: Sequence[tuple[_Beside, bool]]) -> list[_Values]:
-    """The left bounds of lanes or, where that is false, their right ones, on the grid."""
+    """The offsets of lanes' bounds on the grid: left where the flag is true, else right."""
     bounds_of = [
         [(k, lanelet.left if left else lanelet.right) for k, lanelet in enumerate(lane) if lanelet]
         for lane, left in lanes
