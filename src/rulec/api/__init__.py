@@ -1,1 +1,1 @@
-"""Public interface: a session with every verb, and verbs as functions."""
+"""Public interface: a session with every verb, and the verbs as functions."""

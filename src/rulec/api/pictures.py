@@ -46,9 +46,10 @@ def trace_drawing(
     *,
     every_row: bool = False,
 ) -> Drawing:
-    """Draw what violated rules read over time, or ``every_row``. Raises RulecError.
+    """Draw the values that violated rules read over time, or ``every_row``. Raises RulecError.
 
-    ``objects`` are those to show, if not all; ``patterns`` have chosen the rules, for the title.
+    ``objects`` are the objects to show, all if empty; ``patterns`` are those that selected the
+    rules, for the title.
     """
     verdict = verify(trace, rules)
     shown = ribbon(trace, rules, verdict, objects, every_row=every_row)
@@ -64,9 +65,9 @@ def drive_drawing(
 ) -> Drawing:
     """Draw a judged drive from above, at the first violation or at a time (s of the recording).
 
-    ``trace`` is the drive's; if empty it is the one with the first violation in time of the rules
-    ``kept`` (None: of any rule). Raises RulecError: R0612 if there is no such drive, or it is not
-    there at that time.
+    ``trace`` names the drive; if empty it is the one with the earliest violation of the rules
+    ``kept`` (None: of any rule). Raises RulecError: R0612 if there is no such drive, or it has no
+    state at that time.
     """
     drive, verdict = _chosen_drive(verdicts, trace, kept)
     scene = drive_scene(drive, verdict, verdicts, kept)
@@ -129,7 +130,7 @@ def scene_drawing(
 def graph_drawing(
     graph: NavigationGraph, maneuvers: Maneuvers | None = None, maneuver: Maneuver | None = None
 ) -> Drawing:
-    """A navigation graph, layer by layer, with a maneuver."""
+    """Draw a navigation graph, layer by layer, with a maneuver."""
     hard = maneuvers.hard if maneuvers else node_transformers(graph.trace_graph(), ())
     product = maneuvers.product if maneuvers else explore(hard)
     edges = accepted_edges(hard, product)

@@ -1,6 +1,6 @@
 """Verbs of a session about rulebooks: explain, diff, analyze, audit, show."""
 
-# Imports within functions: what all verbs of this file need takes 340 ms, a session alone 25 ms.
+# Imports are within functions: all that these verbs need takes 340 ms, a session alone 25 ms.
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ if TYPE_CHECKING:
     from rulec.trace import Trace
 
 _NARROWEST = 10
-"""So many columns the text of a rule needs."""
+"""The least number of columns for the text of a rule."""
 
 Kind = Literal["rulebooks", "vocabularies", "scenarios", "codes"]
 
 
 class RulebookQuestions(RulebookVerbs):
-    """The verbs of a session that answer what is asked about rulebooks."""
+    """The verbs of a session that answer questions about rulebooks."""
 
     @overload
     def explain(self, subject: str) -> Code: ...
@@ -54,10 +54,10 @@ class RulebookQuestions(RulebookVerbs):
     ) -> Code | Explanation:
         """Explain a code such as R0104, or a trace's violations by state.
 
-        A recorded ``Drive`` knows by which numbers its words were decided, and its margins have
-        these, too.
+        For a recorded ``Drive`` the margins include the numbers from which its signals were
+        derived.
 
-        Raises KeyError for a code that there is not.
+        Raises KeyError for an unknown code.
         """
         if isinstance(subject, str):
             from rulec.report.findings.code_registry import code_named
@@ -93,11 +93,11 @@ class RulebookQuestions(RulebookVerbs):
     ) -> RulebookDiff:
         """Compare the rules of two rulebooks, with witnesses for each difference.
 
-        Both are names or paths of sources. With ``patterns`` only rules are compared whose name one
-        of these matches; ``*`` and ``?`` are wild. ``step_s`` is the step of the traces that rules
-        with bounds in seconds are compared on, ``witnesses`` the number of traces to find for each
-        difference; ``paired`` are rules of the first with rules of the second of another name that
-        they are compared with; ``on_progress`` is called with the number of rules compared. Raises
+        Both are names or paths of sources. With ``patterns`` only rules whose name matches one of
+        them are compared; ``*`` and ``?`` are wildcards. ``step_s`` is the step of the traces on
+        which rules with bounds in seconds are compared, ``witnesses`` the number of traces to find
+        for each difference; ``paired`` maps rules of the first rulebook to rules of the second with
+        another name; ``on_progress`` is called with the number of rules compared. Raises
         RulecError.
         """
         from dataclasses import replace
@@ -119,7 +119,7 @@ class RulebookQuestions(RulebookVerbs):
             most=witnesses,
             paired=paired or {},
         )
-        # What rules that were not asked for depend on is not asked for either.
+        # With patterns no settings are compared, since other rules may depend on them.
         settings = () if patterns else setting_pairs(lineage, second_lineage)
         return replace(diff, settings=settings, files=(*book.paths, *second_book.paths))
 
@@ -132,8 +132,8 @@ class RulebookQuestions(RulebookVerbs):
     ) -> tuple[Diagnostic, ...]:
         """Find defects of a rulebook by its rules' automata. Raises RulecError.
 
-        ``on_progress`` is called with the number of questions about rules that have been answered.
-        ``spread`` has them answered ahead, as the command does in several processes.
+        ``on_progress`` is called with the number of questions answered so far. ``spread`` answers
+        them in advance, as the command does in several processes.
         """
         from rulec.analysis.lint.rulebook_findings import rulebook_findings
         from rulec.rulebook.allowances import without_allowed
@@ -142,7 +142,7 @@ class RulebookQuestions(RulebookVerbs):
         loaded = read_rulebook(reference, self.search_path, self.at)
         book, extends = loaded.rulebook, loaded.books[-1].extends
         above = [Path(file.span.source.name) for file in loaded.books[-2:-1]]
-        # On the same side of the road: a treaty's near side is that of the party's traffic.
+        # Compared for the same side of traffic: a treaty's near side is that of the party.
         bases = [read_rulebook(name, self.search_path, book.at, book.traffic) for name in above]
         findings = rulebook_findings(
             book,
@@ -161,11 +161,11 @@ class RulebookQuestions(RulebookVerbs):
         law: str | Path | None = None,
         law_now: str | Path | None = None,
     ) -> Audit:
-        """Say what a rulebook rests on: citations, examples, certainty. Raises RulecError.
+        """Report the basis of a rulebook: citations, examples, certainty. Raises RulecError.
 
-        ``run_examples``: compile it, too, and find out which of its examples fail. ``law`` is a
-        file with the text of its law, in which what rules cite is looked for; ``law_now`` the same
-        law as it has become, where what rules rest on may have changed.
+        ``run_examples``: also compile it and report its failing examples. ``law`` is a file with
+        the text of its law, in which the cited provisions are looked up; ``law_now`` is the present
+        version of that law, to find changes in what rules rest on.
         """
         from rulec.analysis.audit.law_text import read_law_text
         from rulec.analysis.audit.rulebook_audit import audit
@@ -181,10 +181,10 @@ class RulebookQuestions(RulebookVerbs):
     def audit_source(
         self, reference: str | Path, source: str | Path, where: RecordingSource | None = None
     ) -> SourceAudit:
-        """Say which rules can be judged on what a source tells.
+        """Report which rules can be judged on the data of a source.
 
-        ``source`` is a format, such as ``commonroad``, of which some files may tell less, or a file
-        of recorded traffic; ``where`` says how to read that. Raises RulecError.
+        ``source`` is a format, such as ``commonroad``, of which some files may provide less, or a
+        file of recorded traffic; ``where`` says how to read that. Raises RulecError.
         """
         from rulec.analysis.audit.source_audit import audit_source
         from rulec.extraction.selection import RequestedDrives, selected_drives
@@ -205,7 +205,7 @@ class RulebookQuestions(RulebookVerbs):
         return audit_source(rulebook, str(source), words)
 
     def tree(self, reference: str | Path) -> BookLineage:
-        """Trace everything in a rulebook to its origin and through its changes."""
+        """Trace everything in a rulebook to its origin, with its changes."""
         from rulec.analysis.lineage.book_lineage import read_with_lineage
 
         return read_with_lineage(reference, self.search_path, self.at)[1]
@@ -215,7 +215,7 @@ class RulebookQuestions(RulebookVerbs):
     def show(self, reference: str | Path, rule: str, *, width: int = 80) -> str:
         """Describe a rule in English, by formula, automaton and examples, as text.
 
-        Raises KeyError for a rule that there is not, RulecError.
+        Raises KeyError for an unknown rule, RulecError.
         """
         if width < _NARROWEST:
             raise ValueError(f"`width` is {_NARROWEST} columns or more, not {width}")
@@ -240,9 +240,9 @@ class RulebookQuestions(RulebookVerbs):
         form: Literal["html", "markdown"] = "html",
         language: LanguageCode = "en",
     ) -> str:
-        """A rulebook as a lawyers' document, HTML or Markdown. Raises RulecError.
+        """A rulebook as a document for lawyers, HTML or Markdown. Raises RulecError.
 
-        The page in HTML has its examples as pictures. What authors wrote stays in their language.
+        The HTML page shows its examples as pictures. Texts by the authors stay in their language.
         """
         from rulec.analysis.lineage.book_lineage import read_with_lineage
         from rulec.logic.sentences.language import LANGUAGES
@@ -268,7 +268,7 @@ class RulebookQuestions(RulebookVerbs):
         return as_html(text, page, figures.by_address)
 
     def new_rulebook(self, name: str, extends: str | None = None) -> str:
-        """The text of a new rulebook, perhaps extending another. Raises RulecError."""
+        """The text of a new rulebook, optionally extending another. Raises RulecError."""
         from rulec.rulebook import template
 
         today = datetime.now().astimezone().date()
@@ -277,7 +277,7 @@ class RulebookQuestions(RulebookVerbs):
         return template.new_rulebook_upon(name, extends, today, self._folders())
 
     def list(self, kind: Kind = "rulebooks") -> tuple[Listed, ...]:
-        """The rulebooks, vocabularies, scenarios or codes that there are, with a title."""
+        """The available rulebooks, vocabularies, scenarios or codes, with their titles."""
         from rulec.report.text.listing import Listed
 
         if kind not in (kinds := get_args(Kind)):

@@ -1,6 +1,6 @@
 """Verbs about rulebooks: read, compile, write, check, test."""
 
-# Imports within functions: what all verbs of this file need takes 340 ms, a session alone 25 ms.
+# Imports are within functions: all that these verbs need takes 340 ms, a session alone 25 ms.
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ class RulebookVerbs(SessionSettings):
     def load_rulebook(self, reference: str | Path) -> Rulebook:
         """Read a rulebook: names resolved, types checked, not compiled.
 
-        ``reference`` is a name, looked for in the search path and among the rulebooks that ship
-        with rulec; or a path, which contains a ``/`` or ends in ``.rules``. Raises RulecError, with
-        every mistake in it, in those that it extends, in their vocabularies.
+        ``reference`` is a name, looked up in the search path and among the rulebooks that ship with
+        rulec; or a path, which contains a ``/`` or ends in ``.rules``. Raises RulecError with every
+        mistake in it, in the rulebooks that it extends and in their vocabularies.
         """
         from rulec.rulebook.loader import read_rulebook
 
@@ -59,12 +59,12 @@ class RulebookVerbs(SessionSettings):
     ) -> CompiledRulebook:
         """Compile a rulebook: name, path of source or compiled file, or Rulebook.
 
-        Without ``step_s`` it fits itself to the step of the traces that it meets; with it, it is
-        for this step (s) alone, or for several, a float meaning the decimal that is written.
+        Without ``step_s`` it adapts to the step of the traces to judge; with it, it is for this
+        step (s) alone, or for several; a float means its decimal notation.
 
         Raises:
             RulecError: mistakes in the source; R0401 to R0403 if there is no automaton, R0407 for a
-                bound that is no multiple of the step, R0507 if it was compiled for another one.
+                bound that is not a multiple of the step, R0507 if it was compiled for another one.
         """
         from rulec.api.rulebook_compilation import compile_rulebook
 
@@ -75,18 +75,17 @@ class RulebookVerbs(SessionSettings):
     def write_compiled(
         self, rulebook: CompiledRulebook, folder: str | Path, *, certificate: bool = True
     ) -> tuple[Path, ...]:
-        """Write RULE.hoa for every rule and RULEBOOK.json; the paths.
+        """Write RULE.hoa for every rule and RULEBOOK.json; returns the paths.
 
-        With ``certificate`` the rules are compiled by a second compiler, too, where Spot was the
-        first one, and the file says which tables are the same. Raises RulecError, R0417 if some are
-        not.
+        With ``certificate`` rules compiled by Spot are also compiled by a second compiler, and the
+        file says which tables are equal. Raises RulecError, R0417 if some are not.
         """
         from rulec.automata.bundle.bundle_file import write_compiled
 
-        # With two steps it could judge no trace.
+        # A rulebook with two steps could not judge any trace.
         rulebook = rulebook.at_one_step()
         if certificate:
-            # What compiles takes 30 ms to load.
+            # Imported late: the compiler takes 30 ms to load.
             from rulec.automata.second_compiler import certified
 
             rulebook = certified(rulebook)
@@ -101,14 +100,14 @@ class RulebookVerbs(SessionSettings):
         prove: bool = False,
         language: Literal["c", "rust", "ros2"] = "c",
     ) -> tuple[Path, ...]:
-        """Write a monitor in C99: header, source, Makefile, CMakeLists.txt; the paths.
+        """Write a monitor in C99: header, source, Makefile, CMakeLists.txt; returns the paths.
 
-        In another ``language`` it is a crate of Rust, or a package for ROS 2 around the C.
+        In another ``language`` it is a Rust crate, or a ROS 2 package around the C code.
 
-        ``objects`` are how many there may be at a time, by type; without it 16 of each type that is
-        below no other. If it is to ``prove`` it is compiled and held against its tables before it
-        is written, with a report. Raises RulecError R0750 if there can be no such monitor, and to
-        prove R0751 to R0753.
+        ``objects`` is the greatest number of objects at a time, by type; the default is 16 of each
+        type that has no supertype. With ``prove`` it is compiled and compared with its tables
+        before it is written, with a report. Raises RulecError R0750 if no such monitor is possible,
+        and with ``prove`` R0751 to R0753.
         """
         from rulec.code_generation.monitor_files import write_monitor
 
@@ -122,10 +121,10 @@ class RulebookVerbs(SessionSettings):
         folder: str | Path,
         step_s: float | Fraction | None = None,
     ) -> tuple[Path, ...]:
-        """Write a rulebook's formulas in LTL, for Spot, PRISM and nuXmv; the paths.
+        """Write a rulebook's formulas in LTL, for Spot, PRISM and nuXmv; returns the paths.
 
-        ``step_s`` are the seconds between two states; None for the step of the rules' examples.
-        Raises RulecError R0407 for bounds that are no multiple of it, and R0754.
+        ``step_s`` is the number of seconds between two states; None for the step of the rules'
+        examples. Raises RulecError R0407 for bounds that are not multiples of it, and R0754.
         """
         from rulec.automata.compiler import lower
         from rulec.automata.thresholds import exact_step
@@ -141,17 +140,17 @@ class RulebookVerbs(SessionSettings):
         return tuple(write_ltl(rulebook, lower(rulebook, step), Path(folder)))
 
     def verify_compiled(self, path: str | Path) -> tuple[RuleProof, ...]:
-        """Hold the tables of a compiled rulebook's file against its formulas, without Spot.
+        """Compare the tables in a compiled rulebook's file with its formulas, without Spot.
 
-        What has been found of each rule; one is proved if its ``because`` is empty. Raises
-        RulecError: R0701, and for a file that is no compiled rulebook, or damaged.
+        Returns one result for each rule, which is proved if its ``because`` is empty. Raises
+        RulecError: R0701, and for a file that is not a compiled rulebook, or damaged.
         """
         from rulec.automata.bundle.bundle_proof import proofs_of_file
 
         return tuple(proofs_of_file(Path(path)))
 
     def check(self, *references: str | Path) -> Checked:
-        """List all diagnostics of rulebooks and vocabularies, and raise nothing.
+        """List all diagnostics of rulebooks and vocabularies, without raising them.
 
         Each is a name, a file, or a folder (all .rules files in it).
         """
@@ -161,7 +160,7 @@ class RulebookVerbs(SessionSettings):
         return check(names, bytes, self._folders(), self.at)
 
     def format(self, text: str, name: str = "<text>") -> str:
-        """A rulebook's or vocabulary's text in the one canonical form. Raises RulecError."""
+        """A rulebook's or vocabulary's text in the canonical form. Raises RulecError."""
         from rulec.rulebook.batch.batch_format import formatted
 
         return formatted(name, None, text.encode("utf-8", "surrogatepass")).after.decode()

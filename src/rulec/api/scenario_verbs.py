@@ -1,6 +1,6 @@
 """Verbs about scenarios: navigation graph, maneuvers, envelopes, pictures."""
 
-# Imports within functions: what all verbs of this file need takes 220 ms, a session alone 25 ms.
+# Imports are within functions: all that these verbs need takes 220 ms, a session alone 25 ms.
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class ScenarioVerbs(SessionSettings):
     """The verbs of a session that are about scenarios and pictures."""
 
     def load_scenario(self, reference: str | Path, choice: Choice | None = None) -> Scenario:
-        """Load a scenario by name or path; the choice suits recorded scenes."""
+        """Load a scenario by name or path; ``choice`` is for recorded scenes."""
         from rulec.scenario import load_scenario
 
         return load_scenario(reference, choice)
@@ -57,12 +57,12 @@ class ScenarioVerbs(SessionSettings):
     ) -> Maneuvers:
         """Count the maneuvers that keep every hard rule, without enumerating them.
 
-        ``after`` is what was before, up to one step before the scenario begins: a trace, a
-        ``Monitor``, or its snapshot. Without a ``partition`` it is the one whose relations the
-        rules read. The ``assumptions`` are about what the scenario leaves unknown or does not
-        mention; what else it does not mention has its default, or with ``told_only`` is unknown.
-        A recorded scene whose traffic keeps to the other side than the rules' is mirrored. Source:
-        algorithm 1 of the paper. Raises RulecError.
+        ``after`` is the past, up to one step before the scenario begins: a trace, a ``Monitor``, or
+        its snapshot. The default ``partition`` is the one whose relations the rules read.
+        ``assumptions`` are values for what is unknown or missing in the scenario; other missing
+        values have their defaults, or with ``told_only`` are unknown. A recorded scene is mirrored
+        if its side of traffic is not that of the rules. Source: algorithm 1 of the paper. Raises
+        RulecError.
         """
         from rulec.monitoring.assumptions import Assumptions, check_assumed
         from rulec.planning import SceneReading, evaluate, partition_for
@@ -73,29 +73,29 @@ class ScenarioVerbs(SessionSettings):
         options["partition"] = partition_for(compiled, options.get("partition"))
         scene = self.load_scenario(scenario) if isinstance(scenario, str | Path) else scenario
         if scene.account is not None:
-            # Extraction, 100 ms: only of recorded scenes
+            # Imported late: extraction takes 100 ms, and is only needed for recorded scenes
             from rulec.cell_words import on_side_of
 
             scene = on_side_of(compiled, scene)
         graph = self.navigation_graph(scene, **options)
         account, words = graph.scenario.account, None
-        # The paper's words are those of the paper's cells
+        # As in the paper, its relations come from the cells, not from the recording
         is_papers = graph.partition == "paper" or graph.bounds is None
         if account is not None and account.origin is not None and not is_papers:
-            # As above
+            # Imported late, as above
             from rulec.cell_words import cell_words
 
             words = cell_words(graph, compiled)
         return evaluate(graph, compiled, after, reading, words)
 
     def envelope(self, graph: NavigationGraph, nodes: Sequence[int]) -> Sequence[Envelope]:
-        """The bounds of a maneuver by layer. Raises RulecError R0609 without path."""
+        """The bounds of a maneuver by layer. Raises RulecError R0609 if ``nodes`` is not a path."""
         from rulec.partition import envelope
 
         return envelope(graph, tuple(nodes))
 
     def envelopes(self, maneuvers: Maneuvers, n: int = 1) -> tuple[Sequence[Envelope], ...]:
-        """The envelopes of the ``n`` cheapest maneuvers that are satisfying, or open."""
+        """The envelopes of the ``n`` cheapest maneuvers that are satisfying or open."""
         cheapest = maneuvers.cheapest(n, perhaps=True)
         return tuple(self.envelope(maneuvers.graph, maneuver.nodes) for maneuver in cheapest)
 
@@ -107,7 +107,7 @@ class ScenarioVerbs(SessionSettings):
         limit: int = 10_000_000,
         **options: Unpack[GraphOptions],
     ) -> Iterator[Trace]:
-        """Generate a scenario's maneuvers lazily as traces, in the rules' words."""
+        """Generate a scenario's maneuvers lazily as traces, in the rules' vocabulary."""
         from rulec.trace.plain_unknowns import with_plain_unknowns
         from rulec.trace.trace_model import all_traces
 
@@ -144,9 +144,9 @@ class ScenarioVerbs(SessionSettings):
     ) -> bytes:
         """Draw a scene over time, a navigation graph, or a judged trace.
 
-        A trace is judged by ``rules`` and cannot be drawn without. ``maneuver`` is the one to show,
-        of maneuvers the cheapest, if there is one; ``as_graph`` takes the navigation graph instead
-        of the scene. A PNG takes the extra ``pictures``. The answer is the content of a file.
+        A trace needs the ``rules`` that judge it. ``maneuver`` is the one to show, by default the
+        cheapest if ``subject`` is ``Maneuvers``; ``as_graph`` draws the navigation graph instead of
+        the scene. PNG requires the extra ``pictures``. Returns the content of a file.
         """
         from rulec.api import pictures
         from rulec.partition import NavigationGraph

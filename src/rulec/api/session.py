@@ -1,4 +1,4 @@
-"""A session: all verbs, with shared search path, day and warning listener."""
+"""A session: all verbs, with a shared search path, day and warning listener."""
 
 from __future__ import annotations
 
@@ -11,5 +11,5 @@ class Session(RulebookQuestions, TraceVerbs, ScenarioVerbs):
     """Every verb of rulec, for one search path and one day.
 
     ``Session(search_path=(), at="", on_warning=...)``. The functions of the package ``rulec`` are
-    those of a session without any of these.
+    those of a session with the default settings.
     """

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def ignore(_: object) -> None:
-    """Say nothing of warnings or progress."""
+    """Ignore warnings or progress."""
 
 
 @dataclass(frozen=True)
@@ -27,9 +27,9 @@ class SessionSettings:
 
     Args:
         search_path: folders of rulebooks and vocabularies, before those that ship with rulec.
-        at: the day (ISO) whose law it is; if empty, that of each rulebook's `law` line or else
+        at: the day (ISO) whose law applies; if empty, that of each rulebook's `law` line or else
             today.
-        on_warning: is called with what is odd, but not wrong, in a source.
+        on_warning: called with warnings about a source.
     """
 
     search_path: Sequence[str | Path] = ()
@@ -37,8 +37,8 @@ class SessionSettings:
     on_warning: Callable[[Sequence[Diagnostic]], object] = field(default=ignore, repr=False)
 
     def __init_subclass__(cls) -> None:
-        """Let every verb say what it is given of the wrong kind."""
-        # A verb of two names is one function
+        """Make every verb check the types of its arguments."""
+        # A verb with two names stays one function
         checked = {verb: checked_kinds(verb) for verb in vars(cls).values() if isfunction(verb)}
         for name, verb in list(vars(cls).items()):
             if isfunction(verb) and not name.startswith("_"):
@@ -64,7 +64,7 @@ class SessionSettings:
         return tuple(Path(folder) for folder in self.search_path)
 
     def _compiled(self, rules: Rules) -> CompiledRulebook:
-        # On every trace that is judged, so a rulebook that is compiled already comes first.
+        # Called for every trace, so imported late, and fast for a compiled rulebook.
         from rulec.api.rulebook_compilation import machines
 
         return machines(rules, self.search_path, self._warn, self.at)

@@ -1,6 +1,6 @@
 """Verbs about traces and recorded traffic: read, write, verify."""
 
-# Imports within functions: what all verbs of this file need takes 150 ms, a session alone 25 ms.
+# Imports are within functions: all that these verbs need takes 150 ms, a session alone 25 ms.
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ class TraceVerbs(SessionSettings):
     def read_traces(self, path: str | Path) -> Iterator[Trace | RulecError]:
         """Read the traces of a file: ``.csv``, ``.parquet``, else JSON Lines; lazily.
 
-        In place of a trace that is none there is the RulecError.
+        A RulecError takes the place of an invalid trace.
         """
         from rulec.trace.formats.trace_files import read_traces
 
         return read_traces(path)
 
     def write_traces(self, traces: Iterable[Trace], path: str | Path) -> None:
-        """Write traces in the format of the file's name. Raises RulecError."""
+        """Write traces in the format given by the file's name. Raises RulecError."""
         from rulec.files import written_whole
         from rulec.trace.formats.trace_files import (
             check_writable,
@@ -71,11 +71,11 @@ class TraceVerbs(SessionSettings):
     def verify(self, trace: Trace, rules: Rules, assumptions: Assumptions | None = None) -> Verdict:
         """Judge a trace by every rule, for every binding of its variables.
 
-        ``assumptions`` say what holds where the trace does not tell, and how it ends.
+        ``assumptions`` give values for what is unknown in the trace, and say how it ends.
 
         Raises:
-            RulecError: R0501 to R0508 if it is no trace, or the rules cannot judge it.
-            TypeError: for the path of a file, which other verbs take.
+            RulecError: R0501 to R0508 if the trace is invalid, or the rules cannot judge it.
+            TypeError: for the path of a file, which other verbs accept.
         """
         from rulec.monitoring.assumptions import check_assumed
         from rulec.monitoring.verify import verify
@@ -96,10 +96,10 @@ class TraceVerbs(SessionSettings):
     ) -> Iterator[Verdict | NotJudged]:
         """Judge many traces fast, and yield their verdicts in order.
 
-        In place of a verdict that cannot be given there is a ``NotJudged``. With the ``engine``
-        ``"c"`` the monitor in C judges, compiled by your own compiler; what C does not tell, for
-        want of values, Python does, and each verdict says by its ``engine`` which of them did.
-        Raises RulecError R0751 if there is no compiler.
+        A ``NotJudged`` takes the place of a verdict that cannot be given. With the ``engine``
+        ``"c"`` a monitor in C, built by your own compiler, judges them; traces that it cannot judge
+        because of unknown values are judged in Python, and ``engine`` of each verdict says which of
+        them judged it. Raises RulecError R0751 if there is no compiler.
         """
         from rulec.monitoring.assumptions import check_assumed
         from rulec.monitoring.batch.batch_verify import verify_many
@@ -116,7 +116,7 @@ class TraceVerbs(SessionSettings):
         return verify_many(traces, compiled)
 
     def verify_columns(self, columns: TraceColumns, rules: Rules) -> list[VerdictColumns]:
-        """Judge traces given as arrays, with one answer per rule and binding. Raises RulecError."""
+        """Judge traces given as arrays; one result per rule and binding. Raises RulecError."""
         from rulec.monitoring.batch.columns.column_reader import NotGivenError
         from rulec.monitoring.batch.engine import verify_columns
         from rulec.monitoring.monitoring_messages import MISSING_VALUE
@@ -131,7 +131,7 @@ class TraceVerbs(SessionSettings):
             raise MISSING_VALUE.error(None, message) from None
 
     def verify_cells(self, cells: TraceCells, rules: Rules) -> list[VerdictColumns]:
-        """Judge traces each of whose states is one of a few."""
+        """Judge traces whose states are given as numbers of a few distinct states."""
         from rulec.monitoring.batch.engine import verify_cells
 
         return list(verify_cells(cells, self._compiled(rules).fitted_to(cells.step_s)))
@@ -144,10 +144,10 @@ class TraceVerbs(SessionSettings):
         form: str | None = None,
         scenario_id: str | None = None,
     ) -> Recording:
-        """Read the recording in a file, of several there the one that ``scenario_id`` names.
+        """Read the recording in a file; ``scenario_id`` selects one of several.
 
-        ``map_path`` is the map for formats that have no roads of their own; ``form``, such as
-        ``"sumo"``, is for files that do not show their format. Raises RulecError.
+        ``map_path`` is the map for formats that do not contain roads; ``form``, such as ``"sumo"``,
+        is for files whose format cannot be detected. Raises RulecError.
         """
         from rulec.recordings.recording_files import read_recording
         from rulec.recordings.recording_format import RecordingSource
@@ -156,7 +156,7 @@ class TraceVerbs(SessionSettings):
         return read_recording(RecordingSource(Path(path), roads, form, scenario_id))
 
     def formats(self) -> tuple[ListedFormat, ...]:
-        """The formats of recorded traffic and of maps, with the words that each can tell."""
+        """The formats of recorded traffic and of maps, with the signals that each can provide."""
         from rulec.report.recordings.format_listing import listed_formats, words_in_order
 
         return listed_formats(words_in_order())
@@ -170,14 +170,13 @@ class TraceVerbs(SessionSettings):
     ) -> RecordingVerdicts:
         """Judge the drives of recorded vehicles, each in turn as ego.
 
-        ``recording`` is a file (``map_path`` has its roads if it has none), or what has been read
-        from it, roads and all; ``wanted`` says whose drives, by which thresholds, on which
-        assumptions.
+        ``recording`` is a file (``map_path`` has its roads if it contains none), or a recording
+        already read, with its roads; ``wanted`` selects drives, thresholds and assumptions.
 
         Raises:
-            RulecError: R0507 if the rules do not fit the step, R0612 for a vehicle that is not
-                there, R0610 for a file that is no recording.
-            TypeError: for anything else than a file or a recording, such as a data frame.
+            RulecError: R0507 if the rules do not fit the step, R0612 for an unknown vehicle, R0610
+                for a file that is not a recording.
+            TypeError: for anything other than a file or a recording, such as a data frame.
         """
         from rulec.extraction.recording_verdicts import RecordingVerdicts
         from rulec.extraction.selection import RequestedDrives
@@ -197,16 +196,16 @@ class TraceVerbs(SessionSettings):
         rules: Rules,
         after: ArrayLike | None = None,
     ) -> Scores:
-        """Judge sampled futures of ego in a world, each as a drive that was recorded.
+        """Judge sampled futures of ego in a world, each like a recorded drive.
 
         ``candidates`` is an array of three axes: candidate, state, and x, y (m), heading (rad) and
         speed (m/s) of ego's middle, one state for each step after the world's present. ``after``
-        are states that lead up to it, the last one being the present, such as ``world.past``. What
-        these have violated by themselves is not charged; by such rules a candidate is judged anew.
+        are the states that lead up to it, the last one being the present, such as ``world.past``.
+        What these violate by themselves is not charged; by such rules a candidate is judged anew.
 
         Raises:
-            RulecError: R0780 for arrays that make no sense, R0507 for rules compiled for another
-                step than the world's.
+            RulecError: R0780 for invalid arrays, R0507 for rules compiled for another step than the
+                world's.
         """
         from rulec.scoring.score import score
 
@@ -224,15 +223,14 @@ class TraceVerbs(SessionSettings):
     ) -> Iterator[DriveMoments | RulecError]:
         """Find the moments at which a formula holds in drives: of a file, a recording, or traces.
 
-        The formula has its variables before it, as in ``(v: vehicle) gap(v) < 5 m``. It is in the
-        words of a ``vocabulary`` (``road`` if neither is named), of a ``rulebook``, with its
-        definitions, or of both. ``wanted`` and
-        ``map_path`` are as for ``verify_recording``. In place of a trace that cannot be asked there
-        is the RulecError.
+        The formula starts with its variables, as in ``(v: vehicle) gap(v) < 5 m``. It uses the
+        names of a ``vocabulary`` (``road`` if neither is given), of a ``rulebook``, with its
+        definitions, or of both. ``wanted`` and ``map_path`` are as for ``verify_recording``. A
+        RulecError takes the place of a trace that cannot be searched.
 
         Raises:
-            RulecError: for a formula that is none, a file that cannot be read, and what
-                ``verify_recording`` raises of recordings.
+            RulecError: for an invalid formula, a file that cannot be read, and what
+                ``verify_recording`` raises for recordings.
         """
         from rulec.extraction.moment_search import in_recordings, in_traces
         from rulec.extraction.selection import RequestedDrives
@@ -267,12 +265,12 @@ class TraceVerbs(SessionSettings):
     ) -> ViolationRates:
         """How often rules are violated, with intervals, from files and folders of findings.
 
-        These are what ``rulec verify --exposure -o FILE`` and ``rulec fleet`` write. ``by`` is what
-        drives are told apart by, ``seed`` what drives of the bootstrap are drawn by.
+        These are written by ``rulec verify --exposure -o FILE`` and ``rulec fleet``. ``by`` are the
+        keys by which drives are grouped, ``seed`` is the seed of the bootstrap.
 
         Raises:
-            RulecError: R0701, R0706, R0715 if drives were judged differently, R0716 for what has
-                none, R0717 without the extra ``rates``.
+            RulecError: R0701, R0706, R0715 if drives were judged differently, R0716 for files
+                without such rows, R0717 without the extra ``rates``.
         """
         from rulec.rates.drive_counts import GroupKey as Known
         from rulec.rates.rates_of_findings import rates_of_findings
@@ -301,14 +299,13 @@ class TraceVerbs(SessionSettings):
     ) -> bytes:
         """Draw a recorded drive from above, at its first violation or at a time of the recording.
 
-        ``ego`` is a vehicle, or a drive such as ``373#2``; if empty it is the vehicle that
-        violates a rule first in time. ``only`` are the names of the rules whose violations are
-        shown, if not all.
-        A page (``"html"``) has all moments. PNG and PDF take the extra ``pictures``.
+        ``ego`` is a vehicle, or a drive such as ``373#2``; if empty it is the vehicle with the
+        earliest violation. ``only`` are the names of the rules whose violations are shown, all if
+        empty. A page (``"html"``) has all moments. PNG and PDF require the extra ``pictures``.
 
         Raises:
-            RulecError: R0612 for a drive that is not there, R0707 for a file that cannot be made,
-                and what ``verify_recording`` raises.
+            RulecError: R0612 for an unknown drive, R0707 for a file that cannot be made, and what
+                ``verify_recording`` raises.
         """
         from dataclasses import replace
 

@@ -24,11 +24,11 @@ def load_rulebook(
 ) -> Rulebook:
     """Read a rulebook: names resolved, types checked, not compiled.
 
-    ``reference`` is a name, looked for as NAME.rules and NAME/NAME.rules in the folders of
+    ``reference`` is a name, looked up as NAME.rules and NAME/NAME.rules in the folders of
     ``search_path`` and then among the rulebooks that ship with rulec; or a path, which contains a
-    ``/`` or ends in ``.rules``. ``at`` is the day (ISO) whose law it is; if empty, that of its
-    `law` line or else today. Raises RulecError, with every mistake in it, in those that it extends,
-    in their vocabularies.
+    ``/`` or ends in ``.rules``. ``at`` is the day (ISO) whose law applies; if empty, that of its
+    `law` line or else today. Raises RulecError with every mistake in it, in the rulebooks that it
+    extends and in their vocabularies.
     """
     return Session(search_path, at).load_rulebook(reference)
 
@@ -42,7 +42,7 @@ def compile_rulebook(
 ) -> CompiledRulebook:
     """Compile a rulebook: name, path of source or compiled file, or Rulebook.
 
-    ``warn`` is called with what is odd, but not wrong. The rest is as for ``load_rulebook`` and
+    ``warn`` is called with warnings. The rest is as for ``load_rulebook`` and
     ``Session.compile_rulebook``.
     """
     return Session(search_path, at, warn).compile_rulebook(reference, step_s=step_s)

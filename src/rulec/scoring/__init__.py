@@ -1,1 +1,1 @@
-"""Scores of sampled futures of a vehicle among others."""
+"""Scoring sampled futures of a vehicle among others."""

@@ -1,4 +1,4 @@
-"""What one candidate comes to."""
+"""The score of one candidate."""
 
 from __future__ import annotations
 
@@ -13,15 +13,16 @@ from rulec.value_display import short_repr
 
 @dataclass(frozen=True, slots=True)
 class CandidateScore:
-    """What one candidate comes to, by its ``number``, after what was before.
+    """The score of candidate ``number``, after its past.
 
-    ``violations`` and ``open`` verdicts are those that it is charged with; the step of a violation
-    is a state of the candidate, from 0, before 0 one of the past, None if its end decides.
-    ``not_judged`` are rules that the world tells too little for. ``off_road`` of its states are in
-    no drive, because ego is on no lane there that leads its way, so that no rule is judged in
-    these, or with ego's middle beside all lanes, or driven backwards; ``why`` says more. ``drives``
-    are what ``verify_recording`` gives of past and candidate; of many candidates they are made when
-    they are asked for. ``late`` states pass before what the past has violated is kept for good.
+    ``violations`` and ``open`` verdicts are those charged to it; the step of a violation is a state
+    of the candidate, from 0, negative for a state of the past, None if the end decides.
+    ``not_judged`` are rules for which the world provides too little. ``off_road`` is the number of
+    its states that are in no drive, because ego is on no lane there in its direction, so that no
+    rule is judged, or with ego's middle beside all lanes, or driven backwards; ``why`` gives the
+    reason. ``drives`` are those of ``verify_recording`` for past and candidate; if there are many
+    candidates they are computed on demand. ``late`` is the number of states until everything that
+    the past violated is kept for good.
     """
 
     __repr__ = short_repr
@@ -37,7 +38,10 @@ class CandidateScore:
 
     @property
     def satisfied(self) -> bool | None:
-        """Whether no hard rule is violated; None if one is open, or not judged all the way."""
+        """Whether no hard rule is violated.
+
+        None if one is open, or not judged for the whole candidate.
+        """
         if any(violation.strength == "hard" for violation in self.violations):
             return False
         is_open = any(result.strength == "hard" for result in self.open)

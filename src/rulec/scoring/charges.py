@@ -1,4 +1,4 @@
-"""What candidates are charged with: columns for all, and each by itself when somebody asks."""
+"""What candidates are charged with: as columns for all, and for each one on demand."""
 
 from __future__ import annotations
 
@@ -28,10 +28,11 @@ _Judged: TypeAlias = JudgedTrace | Verdict | NotJudged
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CandidateCharges:
-    """A candidate of which it is known what it does not keep; its score is made when asked for.
+    """A candidate whose violations are known, and whose score is made on demand.
 
-    Of its ``drives``, which begin in these of its states, only what they come to is kept if there
-    are many candidates: all else of one is found ``again``, by its number.
+    ``begins`` are the states of the candidate in which its ``drives`` begin. If there are many
+    candidates only the drives' verdicts are kept; everything else is recomputed by ``again`` from
+    the candidate's number.
     """
 
     number: int
@@ -42,14 +43,14 @@ class CandidateCharges:
     again: Callable[[int], CandidateScore] | None = None
 
     def later(self, again: Callable[[int], CandidateScore]) -> CandidateCharges:
-        """The same without the drives, which are found ``again``."""
+        """The same without the drives, which ``again`` recomputes."""
         judged = list(map(_judged, self.drives))
         return CandidateCharges(
             self.number, judged, self.begins, off_road=self.off_road, why=self.why, again=again
         )
 
     def score(self) -> CandidateScore:
-        """What the candidate comes to."""
+        """The candidate's score."""
         drives = [x.with_verdict() if isinstance(x, JudgedDrive) else x for x in self.drives]
         violations: list[Violation] = []
         doubtful: list[OpenVerdict] = []
@@ -81,13 +82,16 @@ def _judged(drive: JudgedDrive | _Judged | NoDrive) -> _Judged | NoDrive:
 
 
 def at(violation: Violation, begins: int) -> Violation:
-    """A violation by a drive that begins in this state of a candidate, in its states."""
+    """A drive's violation with its step counted in the candidate's states.
+
+    The drive begins there.
+    """
     step = violation.step
     return replace(violation, step=step + begins) if begins and step is not None else violation
 
 
 class CandidateScores(Sequence[CandidateScore]):
-    """The scores of candidates in their order, each made when it is first asked for."""
+    """The scores of candidates in their order, each made on first access."""
 
     def __init__(self, charges: Sequence[CandidateCharges | CandidateScore]) -> None:
         self.charges = list(charges)
@@ -110,7 +114,7 @@ class CandidateScores(Sequence[CandidateScore]):
         return candidate
 
     def __eq__(self, other: object) -> bool:
-        """Whether they are the same scores."""
+        """Whether the scores are equal."""
         return isinstance(other, Sequence) and tuple(self) == tuple(other)
 
     __hash__ = None  # type: ignore[assignment]
@@ -123,7 +127,7 @@ class CandidateScores(Sequence[CandidateScore]):
 
 
 def forget_reasons(charges: Sequence[CandidateCharges]) -> None:
-    """Forget why what candidates leave open is so, for which all that they say is kept."""
+    """Free the reasons of open verdicts, from which nothing is recomputed."""
     judged = [
         own for candidate_charges in charges for own in map(_judged, candidate_charges.drives)
     ]
@@ -132,7 +136,7 @@ def forget_reasons(charges: Sequence[CandidateCharges]) -> None:
 
 
 class Charged(NamedTuple):
-    """What candidates are charged with, each choice of objects by itself: whom, and which rule.
+    """Pairs of candidates and rules charged to them, one for each choice of objects.
 
     Both are numbers from 0; candidates ascend.
     """
@@ -143,9 +147,9 @@ class Charged(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ScoreColumns:
-    """What all candidates come to: what they violate and what is open, states off the road, late.
+    """Of all candidates: violated and open rules, states off the road, and late states.
 
-    As many are ``late`` as pass before what the past has violated is kept for good.
+    ``late`` is the number of states until everything that the past violated is kept for good.
     """
 
     violated: Charged
@@ -155,7 +159,7 @@ class ScoreColumns:
 
 
 def columns_of(candidates: Sequence[CandidateScore], rules: CompiledRulebook) -> ScoreColumns:
-    """What all candidates come to, for which no score need be made."""
+    """The columns of all candidates, without making their scores."""
     charges = candidates.charges if isinstance(candidates, CandidateScores) else candidates
     places = {rule.name: place for place, rule in enumerate(rules.rules)}
     whose, which, are_violated = map(np.concatenate, zip(*_rows(charges, places), strict=True))
@@ -177,7 +181,7 @@ _Rows: TypeAlias = tuple[NDArray[intp], NDArray[intp], NDArray[bool_]]
 def _rows(
     charges: Sequence[CandidateCharges | CandidateScore], places: Mapping[str, int]
 ) -> Iterator[_Rows]:
-    """All that candidates are charged with; ``places`` are the numbers of rules."""
+    """Everything charged to candidates; ``places`` are the numbers of rules."""
     told: list[tuple[int, int, bool]] = []
     judged: dict[Findings, dict[int, int]] = defaultdict(dict)
     for number, candidate in enumerate(charges):

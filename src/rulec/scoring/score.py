@@ -1,4 +1,4 @@
-"""Scores of futures: each is extracted and judged as a drive that was recorded."""
+"""Scoring futures: each is extracted and judged like a recorded drive."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from rulec.scoring.traffic_world import TrafficWorld
 from rulec.trace.trace_arrays import TraceArrays
 
 _Pasts: TypeAlias = "WeakKeyDictionary[TrafficWorld, tuple[Any, tuple[Violation, ...]]]"
-"""By worlds the last past that was asked about, and what it violates by itself."""
+"""For each world the last past asked about, and the violations of that past alone."""
 
 
 def score(
@@ -44,15 +44,15 @@ def score(
     rules: CompiledRulebook,
     after: ArrayLike | None = None,
 ) -> Scores:
-    """Judge what one might do next, each candidate by itself, after what was before.
+    """Judge possible futures of ego, each candidate by itself, after its past.
 
-    ``candidates`` (candidate x state x 4) has x, y (m), heading (rad) and speed (m/s), a state for
-    each step of the world from the one after its present on; ``after`` (state x 4) leads up to it,
-    and may have no states. Each is what ``verify_recording`` says of the recording in which ego
-    drives so, past and candidate together. Raises RulecError R0780.
+    ``candidates`` (candidate x state x 4) has x, y (m), heading (rad) and speed (m/s), one state
+    for each step of the world from the one after its present on; ``after`` (state x 4) are the
+    states up to the present, and may be empty. The verdicts are those of ``verify_recording`` for
+    the recording in which ego drives past and candidate. Raises RulecError R0780.
     """
     paths, past = world.candidates_of(candidates), world.past_of(after)
-    # Many candidates have some ten thousand parts, none of which is garbage
+    # Many candidates create tens of thousands of objects, none of which is garbage
     with no_garbage_collection():
         return _scored(paths, past, world, rules)
 
@@ -72,7 +72,7 @@ def _scored(
     before = before if key == about else ()
     is_asked = key != about and len(past) > 0
     if is_asked:
-        # Alone, and before all others, to see what it has violated whatever comes
+        # The past alone, first, to find what it violates whatever follows
         bodies.insert(0, world.body_at(past, steps[0]))
     roundings = rounded_rulebooks(rules, world.recording.step_s)
     beside, back = world.beside_lanes(paths), world.drives_back(paths, past)
@@ -81,7 +81,7 @@ def _scored(
     candidates: dict[int, CandidateCharges | CandidateScore] = {}
     is_awaited = is_asked
     for block in _judged(bodies, world, roundings, steps):
-        # What is among many is mostly looked at no more
+        # Of many candidates, most are never looked at again
         is_kept = len(block) == len(bodies)
         if is_awaited:
             before, is_awaited = _violated(block.pop(0)[1]), False
@@ -107,9 +107,9 @@ def _scored(
             candidates.update({x.number: x if is_kept else x.later(again) for x in charges})
         if not is_kept:
             forget_reasons(charges)
-        # Before the next ones are made
+        # Freed before the next block is made
         del block, charges
-    # The next candidates are mostly asked about after the same past.
+    # The next candidates mostly have the same past.
     known[world] = about, before
     ordered = CandidateScores([candidates[number] for number in range(len(paths))])
     return Scores(roundings[0], ordered, before, paths, first)
@@ -122,7 +122,7 @@ def _by_itself(
     rules: CompiledRulebook,
     number: int,
 ) -> CandidateScore:
-    """What one of the candidates comes to, with its drives."""
+    """The score of one candidate, computed alone and with its drives."""
     (found,) = _scored(paths[number : number + 1], past, world, rules).candidates
     return found
 
@@ -138,7 +138,7 @@ def _judged(
     roundings: Sequence[CompiledRulebook],
     steps: tuple[int, int],
 ) -> Iterator[list[tuple[int, list[JudgedDrive | NoDrive]]]]:
-    """What the drives come to of some bodies at a time, by number, of which 0 is the first."""
+    """The judged drives of some bodies at a time, with the body's index."""
     rules = roundings[0]
     drives, mirrored = world.drives(rules.traffic, *steps)
     if mirrored:
@@ -165,9 +165,10 @@ def _charges(
     first: int,
     off_lanes: tuple[NDArray[np.bool_], NDArray[np.bool_]],
 ) -> list[CandidateCharges]:
-    """Candidates from a step on, by number, charged with all that their drives violate.
+    """Candidates with everything that their drives violate; ``first`` is their first step.
 
-    ``off_lanes`` flags the states of all that are beside all lanes, and in which ego drives back.
+    ``off_lanes`` are masks of all candidates' states beside all lanes, and of those driven
+    backwards.
     """
     members = np.array([number for number, _ in block], dtype=np.intp)
     beside, back = (flags[members] for flags in off_lanes)
@@ -195,7 +196,7 @@ def _charges(
 
 
 def _why(drives: Sequence[JudgedDrive | NoDrive], *, leaves: bool, goes_back: bool) -> str:
-    """Why states of a candidate are not judged, or off the road."""
+    """The reason why states of a candidate are not judged, or off the road."""
     reasons = [drive.why for drive in drives if isinstance(drive, NoDrive)]
     judged = [drive.judged for drive in drives if isinstance(drive, JudgedDrive)]
     reasons += [str(drive.error) for drive in judged if isinstance(drive, NotJudged)]
@@ -212,10 +213,10 @@ def _anew(
     roundings: Sequence[CompiledRulebook],
     steps: tuple[int, int],
 ) -> list[CandidateScore]:
-    """The scores with what was violated before judged by what comes alone.
+    """The scores, with rules that the past violated judged anew by the future alone.
 
-    ``steps`` are the candidates' first one, and the one from which on they are judged so: half of
-    their time is left to mend what goes on.
+    ``steps`` are the candidates' first step, and the one from which they are judged so: the first
+    half of their time is left for ending a violation that goes on.
     """
     first, begin = steps
     known = {rule_for(violation) for violation in before}
@@ -260,9 +261,9 @@ def _anew(
 
 
 class _Future(NamedTuple):
-    """What a candidate's drive says by the names that some rules read, and the step it begins in.
+    """The values of a candidate's drive that some rules read, and the step in which it begins.
 
-    The number is the candidate's.
+    ``number`` is the candidate's.
     """
 
     number: int
@@ -270,7 +271,7 @@ class _Future(NamedTuple):
     trace: TraceArrays
 
     def since(self, step: int) -> TraceArrays:
-        """The drive from a step on, as if nothing were known of what was before."""
+        """The drive from a step on, as if nothing before were known."""
         return self.trace.since(max(step - self.first_step, 0))
 
 
@@ -280,10 +281,9 @@ def _mended_after(
     books: Sequence[CompiledRulebook],
     steps: tuple[int, int],
 ) -> dict[int, int]:
-    """How many states of candidates, by number, pass before what was violated is kept for good.
+    """For each candidate the number of states until what the past violated is kept for good.
 
-    What is kept from some state on is kept from any later one on, so half of them are asked about
-    at a time.
+    Found by bisection, since what is kept from some state on is kept from any later one on.
     """
     first, begin = steps
     low, high = np.zeros(len(futures), dtype=int), np.full(len(futures), begin - first)

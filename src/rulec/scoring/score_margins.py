@@ -22,8 +22,8 @@ from rulec.value_display import short_repr
 class RuleMargin:
     """By how much a rule is violated or kept for some objects, in a state of the candidate.
 
-    Of a violation it is what decides it; of anything else the state of the candidate in which a
-    comparison that the rule makes comes nearest to turning over.
+    For a violation it is the margin that decides it; otherwise it is in the state in which a
+    comparison of the rule comes nearest to changing its value.
     """
 
     __repr__ = short_repr
@@ -41,7 +41,7 @@ def margins_of(
     rules: CompiledRulebook,
     first: int,
 ) -> Iterator[RuleMargin]:
-    """The margins of a candidate, whose first state is that step of the recording."""
+    """The margins of a candidate, whose first state is step ``first`` of the recording."""
     keys = {rule_for(violation) for violation in charged}
     for drive in drives:
         if not isinstance(drive.answer, Verdict):
@@ -70,7 +70,7 @@ def _nearest(
     violated: Collection[RuleFor],
     begins: int,
 ) -> Iterator[RuleMargin]:
-    """For each choice of objects the state in which a number comes nearest to deciding."""
+    """For each choice of objects the state in which a comparison is nearest to changing."""
     trace = drive.trace
     cast = Cast(trace.objects, rules.vocabulary, len(trace.states), trace.present)
     for binding in cast.bindings(rule):
@@ -95,7 +95,7 @@ def _margins_in(
     rules: CompiledRulebook,
 ) -> Iterator[Margin]:
     view = StateView(drive.trace.states[state], {}, rules.vocabulary)
-    # What only says when the rule asks for anything is no limit that it sets
+    # A comparison that only triggers the rule is not a limit that it sets
     when = set() if rule.trigger is None else set(atoms_of(rule.trigger))
     for atom in dict.fromkeys(atoms_of(rule.formula)):
         if atom in when:

@@ -1,4 +1,4 @@
-"""What many candidates come to takes much room, and little of it is read: that is made again."""
+"""Candidates' scores without their drives, which take much memory and are recomputed on demand."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _OneDrive: TypeAlias = DriveVerdict | NoDrive
 
 
 class _Again:
-    """What one candidate comes to, scored by itself when somebody asks for it."""
+    """The score of one candidate, recomputed on first access."""
 
     def __init__(self, scored: Callable[[], CandidateScore]) -> None:
         self._scored = scored
@@ -26,14 +26,14 @@ class _Again:
         return self._scored()
 
     def reasons(self, place: int) -> OpenReasons:
-        """Why one of the open verdicts is open."""
+        """The reasons of the open verdict at an index."""
         own = self.found.open[place]
         return OpenReasons(own.because, own.depends_on, own.outcomes, own.exact)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _LaterDrives(Sequence[_OneDrive]):
-    """A candidate's drives, of which there are so many."""
+    """A candidate's drives, ``n_drives`` in number, recomputed on access."""
 
     again: _Again
     n_drives: int
@@ -51,7 +51,7 @@ class _LaterDrives(Sequence[_OneDrive]):
         return self.again.found.drives[place]
 
     def __eq__(self, other: object) -> bool:
-        """Whether they are the same drives."""
+        """Whether the drives are equal."""
         return isinstance(other, Sequence) and tuple(self) == tuple(other)
 
     __hash__ = None  # type: ignore[assignment]
@@ -63,7 +63,7 @@ class _LaterDrives(Sequence[_OneDrive]):
 def without_drives(
     found: CandidateScore, n_drives: int, scored: Callable[[], CandidateScore]
 ) -> CandidateScore:
-    """A candidate's score without its drives and reasons, which ``scored`` finds again."""
+    """A candidate's score without its drives and reasons, which ``scored`` recomputes."""
     again = _Again(scored)
     doubtful = [
         OpenVerdict.explained_later(

@@ -1,4 +1,4 @@
-"""What futures come to: verdicts, penalties, places, a guard and a reward."""
+"""Scores of futures: verdicts, penalties, places, a guard and a reward."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ _MOST_WORTH = 1_000_000
 
 @dataclass(frozen=True, eq=False)
 class Scores(Rows):
-    """What candidates come to, in their order, and how they compare.
+    """The scores of candidates, in their order, and their comparison.
 
-    ``paths`` are their states: candidate, state, and x, y (m), heading (rad), speed (m/s).
-    ``violated_before`` is what the past has violated by itself: of these rules, for these objects,
+    ``paths`` are the candidates' states: candidate, state, and x, y (m), heading (rad), speed
+    (m/s). ``violated_before`` are the violations of the past alone: for these rules and objects,
     candidates are judged by the second half of their states, as if nothing had been before.
     """
 
@@ -57,30 +57,30 @@ class Scores(Rows):
 
     @cached_property
     def penalties(self) -> NDArray[float64]:
-        """The weights of what each candidate (row) violates for sure, by rank (column)."""
+        """The weights of what each candidate (row) surely violates, by rank (column)."""
         return self._weights(self._columns.violated)
 
     @cached_property
     def penalties_at_most(self) -> NDArray[float64]:
-        """The same with what is open, as if that were violated."""
+        """Like ``penalties``, with open rules counted as violated."""
         return self._weights(self._columns.violated, self._columns.open)
 
     @cached_property
     def off_road(self) -> NDArray[intp]:
-        """How many states of each candidate are on no lane that leads its way, or beside all."""
+        """Per candidate, the number of states on no lane in its direction, or beside all lanes."""
         return self._columns.off_road
 
     @cached_property
     def allowed(self) -> NDArray[bool_]:
-        """Flags of candidates that stay on the road, and of which no hard rule is violated or open.
+        """Mask of the candidates that stay on the road, with no hard rule violated or open.
 
-        What is open may be violated: who straddles two lanes shall gain nothing by it.
+        An open rule may be violated: straddling two lanes must not be an advantage.
         """
         return self.perhaps_allowed & ~self._are_hard(self._columns.open)
 
     @cached_property
     def perhaps_allowed(self) -> NDArray[bool_]:
-        """Flags of candidates that stay on the road, and violate no hard rule for sure."""
+        """Mask of the candidates that stay on the road, with no hard rule surely violated."""
         allowed: NDArray[bool_] = ~self._are_hard(self._columns.violated) & (self.off_road == 0)
         return allowed
 
@@ -88,8 +88,8 @@ class Scores(Rows):
     def places(self) -> NDArray[intp]:
         """The place of each candidate: 1 if none violates less, else 1 more than those that do.
 
-        Fewer states off the road come first, then the order of penalties, what is open counting as
-        violated, then that of what is violated for sure, then who is less ``late``.
+        Compared are, in this order: states off the road (fewer first), penalties with open rules
+        counted as violated, penalties of sure violations, and ``late`` states.
         """
         places = np.zeros(len(self), dtype=intp)
         kinds = list(zip(*self._comparable, strict=True))
@@ -103,17 +103,17 @@ class Scores(Rows):
 
     @property
     def best(self) -> int:
-        """The number of the least violating candidate, the first of those that are alike."""
+        """The number of the least violating candidate, the first one of equals."""
         first = (self.places == 1).nonzero()[0]
         return int(first[0])
 
     def reward(self, worth: float = 10.0) -> NDArray[float64]:
-        """A number for each candidate, 0 for one that violates nothing, else less.
+        """A number for each candidate: 0 if it violates nothing, otherwise less.
 
-        Each rank counts ``worth`` times the highest one below it, the lowest 1, and a state off the
-        road ``worth`` times the highest of all; what is open counts as violated. It is less by the
-        share of its states, below 1, for which a candidate is ``late``. Raises ValueError for a
-        worth by which a rank would count less than one below it.
+        Each rank counts ``worth`` times the next lower one, the lowest 1, and a state off the road
+        ``worth`` times the highest rank; open rules count as violated. The share of ``late`` states
+        (below 1) is subtracted. Raises ValueError for a worth with which a rank would count less
+        than a lower one.
         """
         finite("worth", worth)
         if not 1 <= worth <= _MOST_WORTH:
@@ -131,9 +131,10 @@ class Scores(Rows):
         return rewards + 0.0
 
     def nearest_allowed(self, number: int) -> int | None:
-        """The allowed candidate nearest to one: itself if it is, None if there is none.
+        """The allowed candidate nearest to one: itself if it is allowed, None if none is.
 
-        By the mean distance (m) of their places. Raises IndexError for a number that there is not.
+        The distance is the mean distance (m) of their places. Raises IndexError for an unknown
+        number.
         """
         number = self._known(number)
         allowed = self.allowed.nonzero()[0]
@@ -145,20 +146,20 @@ class Scores(Rows):
     def margins(self, number: int) -> tuple[RuleMargin, ...]:
         """By how much a candidate violates or keeps rules, in their units, where numbers decide.
 
-        Raises IndexError for a number that there is not.
+        Raises IndexError for an unknown number.
         """
         score = self.candidates[self._known(number)]
         drives = [drive for drive in score.drives if isinstance(drive, DriveVerdict)]
         return tuple(margins_of(drives, score.violations, self.rules, self._first))
 
     def _known(self, number: int) -> int:
-        """The number of a candidate; one from the end would be a slip in a planner's loop."""
+        """A candidate's number, checked; a negative one would be a bug in a planner's loop."""
         if not 0 <= expected("number", "int", number) < len(self):
             raise IndexError(f"candidates are numbered from 0 to {len(self) - 1}, not {number}")
         return int(number)
 
     def rows(self) -> list[dict[str, Any]]:
-        """One row a candidate."""
+        """One row for each candidate."""
         return [
             {
                 "candidate": score.number,
@@ -173,9 +174,9 @@ class Scores(Rows):
         ]
 
     def outcomes(self, rule: str) -> list[str]:
-        """What each candidate does to a rule: kept, violated, open or not judged.
+        """The outcome of a rule for each candidate: kept, violated, open or not judged.
 
-        The worst for all choices of objects. Raises ValueError for a rule that there is not.
+        It is the worst for all choices of objects. Raises ValueError for an unknown rule.
         """
         known = [compiled_rule.name for compiled_rule in self.rules.rules]
         if expected("rule", "str", rule) not in known:
@@ -196,7 +197,7 @@ class Scores(Rows):
         return penalties
 
     def _are_hard(self, charged: Charged) -> NDArray[bool_]:
-        """Flags of candidates that are charged with hard rules."""
+        """Mask of the charges that are about hard rules."""
         are_hard = np.array([rule.strength == "hard" for rule in self.rules.rules], dtype=bool)
         found = np.zeros(len(self), dtype=bool)
         found[charged.candidates[are_hard[charged.rules]]] = True

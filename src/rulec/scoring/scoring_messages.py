@@ -1,4 +1,4 @@
-"""Messages about futures to be scored."""
+"""Messages about scoring futures."""
 
 from __future__ import annotations
 

@@ -31,21 +31,21 @@ from rulec.value_display import short_repr
 _COLUMNS = ("x", "y", "heading", "speed")
 _NO_STATES = 0, len(_COLUMNS)
 _BESIDE_M = 0.5
-"""Of 1,900 states of recorded vehicles one is farther beside all lanes."""
+"""Greatest distance (m) from the lanes; 1 of 1,900 states of recorded vehicles is farther away."""
 
 _NUMBERS = "iufO"
-"""The kinds of NumPy's arrays that may hold numbers."""
+"""The kinds of NumPy arrays that may hold numbers."""
 
 
 @dataclass(frozen=True, eq=False)
 class TrafficWorld:
     """A recorded or live world, prepared once for any number of futures of ``ego``.
 
-    The ``recording`` has the map and everybody with all that is known or predicted of them; ego is
-    one of its participants, by default the one that the file names. The present is the step at
-    ``now_s`` (s of the recording), by default ego's last one; what ego did later is ignored.
-    ``wanted`` are thresholds and assumptions; its egos are ignored. Raises RulecError R0612 for an
-    ego that is not there, or a time at which nobody is.
+    The ``recording`` has the map and all participants with everything known or predicted of them;
+    ego is one of them, by default the one that the file names. The present is the step at ``now_s``
+    (s of the recording), by default ego's last one; ego's later states are ignored. ``wanted``
+    gives thresholds and assumptions; its egos are ignored. Raises RulecError R0612 if ego is not in
+    the recording, or nobody is there at that time.
     """
 
     __repr__ = short_repr
@@ -97,7 +97,7 @@ class TrafficWorld:
 
     @cached_property
     def past(self) -> NDArray[float64]:
-        """Ego's states up to the present without a gap, a row each: x, y, heading, speed."""
+        """Ego's states up to the present without a gap, one row each: x, y, heading, speed."""
         rows = []
         step = self.now
         while (state := self._body.states.get(step)) is not None:
@@ -106,7 +106,7 @@ class TrafficWorld:
         return np.array(rows[::-1], dtype=float).reshape(-1, len(_COLUMNS))
 
     def recording_of(self, candidate: ArrayLike, after: ArrayLike | None = None) -> Recording:
-        """The recording in which ego drives a candidate, after what was before.
+        """The recording in which ego drives a candidate, after its past.
 
         Ego is the last of its participants. Raises RulecError R0780.
         """
@@ -115,7 +115,7 @@ class TrafficWorld:
         return self._with_ego(body)
 
     def past_of(self, after: ArrayLike | None) -> NDArray[float64]:
-        """What was before as an array, empty for nothing. Raises RulecError R0780."""
+        """The past as an array, with no rows for None. Raises RulecError R0780."""
         return _numbers("what was before", [] if after is None else after, 2, or_none=True)
 
     def candidates_of(self, candidates: ArrayLike) -> NDArray[float64]:
@@ -123,7 +123,7 @@ class TrafficWorld:
         return _numbers("candidates", candidates, 3)
 
     def beside_lanes(self, paths: NDArray[float64]) -> NDArray[bool_]:
-        """Flags of states in which ego's middle is clearly beside all lanes, as on a verge."""
+        """Mask of the states in which ego's middle is clearly beside all lanes, as on a verge."""
         x, y = paths[..., 0].ravel(), paths[..., 1].ravel()
         beside = np.ones(len(x), dtype=bool)
         for number in self._lanes.query(shapely.box(x.min(), y.min(), x.max(), y.max())).tolist():
@@ -131,7 +131,7 @@ class TrafficWorld:
             left, low, right, high = area.bounds
             own = (beside & (x >= left) & (x <= right) & (y >= low) & (y <= high)).nonzero()[0]
             beside[own] = ~shapely.intersects_xy(area, x[own], y[own])
-        # Distances take ten times as long
+        # Distances cost ten times as much, so only the states left need them
         off = beside.nonzero()[0]
         if not len(off):
             return beside.reshape(paths.shape[:-1])
@@ -141,9 +141,9 @@ class TrafficWorld:
         return beside.reshape(paths.shape[:-1])
 
     def drives_back(self, paths: NDArray[float64], past: NDArray[float64]) -> NDArray[bool_]:
-        """Flags of states to which ego goes against its heading, faster than at walking pace.
+        """Mask of the states reached by driving against ego's heading faster than at walking pace.
 
-        The lanes that it is judged on lead the way that it looks, which is not the one it goes.
+        Such states cannot be judged by the lanes, which lead in the direction of the heading.
         """
         before = np.empty_like(paths)
         before[:, 1:] = paths[:, :-1]
@@ -155,16 +155,16 @@ class TrafficWorld:
         return back
 
     def body_along(self, future: NDArray[float64], past: NDArray[float64]) -> Participant:
-        """Ego along a candidate after what was before."""
+        """Ego driving a candidate, after its past."""
         return self.body_at(np.concatenate((past, future)), self.now + 1 - len(past))
 
     def bodies_along(self, futures: NDArray[float64], past: NDArray[float64]) -> list[Participant]:
-        """Ego along each candidate after what was before."""
+        """Ego driving each candidate, after its past."""
         before = past[None].repeat(len(futures), axis=0)
         return self._bodies(np.concatenate((before, futures), axis=1), self.now + 1 - len(past))
 
     def body_at(self, rows: NDArray[float64], first: int) -> Participant:
-        """Ego in states from a step on. What its lamps show is known up to the present."""
+        """Ego in states from step ``first`` on. Its lamps are known up to the present."""
         (body,) = self._bodies(rows[None], first)
         return body
 
@@ -174,7 +174,7 @@ class TrafficWorld:
         rows = np.concatenate((rows, gained[..., None]), axis=2)
         size = self._size
         every = rows.reshape(-1, rows.shape[2])
-        # Here they take a twentieth of the time that they take one by one
+        # All at once: twenty times as fast as one by one
         outlines = rectangles(every[:, :2], every[:, 2], *size).reshape(n_bodies, n_states, -1, 2)
         steps = np.arange(first, first + n_states, dtype=np.int64)
         lamps = self._body.lamps
@@ -189,16 +189,16 @@ class TrafficWorld:
         return bodies
 
     def drives(self, traffic: Traffic, first: int, last: int) -> tuple[CandidateDrives, bool]:
-        """What is prepared for rules of a side of traffic, and candidates of a range of steps.
+        """The data prepared for rules of a side of traffic, and candidates of a range of steps.
 
-        With whether all of it is mirrored.
+        The second result is whether all of it is mirrored.
         """
         side, mirrored = chosen_side(self.recording, self.wanted, traffic)
         low, high = self._span or (first, last)
         span = min(first, low), max(last, high)
         key = side, mirrored, span, first == span[0]
         if key not in self._prepared:
-            # Ego is there when a candidate is: not before, as it may have been
+            # Ego exists only while a candidate does, not in its recorded states before
             there = np.zeros((last + 1 - first, len(_COLUMNS)))
             recording = self._with_ego(self.body_at(there, first))
             if mirrored:
@@ -209,13 +209,13 @@ class TrafficWorld:
 
     def _with_ego(self, body: Participant) -> Recording:
         found = replace(self._known, participants=(*self._others, body), ego=self.ego)
-        # A candidate that jerks makes nothing that was recorded less exact
+        # A jerky candidate must not raise the noise estimated from the recording
         noise_m = whole_recording(self._known).noise_m
         return replace(found, whole=replace(whole_recording(found), noise_m=noise_m))
 
     @cached_property
     def _lanes(self) -> shapely.STRtree:
-        # Nobody drives by the sidewalks, verges and parking places that some maps draw
+        # Some maps also have sidewalks, verges and parking places, which are not lanes
         lanes = filter(is_lane, self.recording.lanelets.values())
         areas = [*map(lanelet_area, lanes)]
         shapely.prepare(areas)
@@ -224,7 +224,7 @@ class TrafficWorld:
     @cached_property
     def _known(self) -> Recording:
         found = mended(self.recording, self.wanted.thresholds.away_s)
-        # Who plans a future knows which way ego looks in it
+        # A planned future always has ego's headings
         return replace(found, complete=found.complete | {HEADINGS})
 
     @cached_property
@@ -237,7 +237,7 @@ class TrafficWorld:
 
     @cached_property
     def _span(self) -> tuple[int, int] | None:
-        """The first and the last step of the others that move."""
+        """The first and the last step of the other moving participants."""
         steps = [list(body.outlines) for body in self._others if not body.standing]
         ends = [(min(own), max(own)) for own in steps if own]
         if not ends:
@@ -246,7 +246,7 @@ class TrafficWorld:
 
     @cached_property
     def _size(self) -> tuple[float, float, float]:
-        """Ego's length and width (m), and how far its centre lies ahead of its middle."""
+        """Ego's length and width (m), and how far (m) its centre is ahead of its middle."""
         outlines = self._body.outlines
         if isinstance(outlines, TrackOutlines):
             return outlines.track.length, outlines.track.width, outlines.track.shift
@@ -262,7 +262,7 @@ def _numbers(
 ) -> NDArray[float64]:
     try:
         given = np.array(values, subok=True)
-        # NumPy makes numbers of texts and days, and of what a mask says is none
+        # NumPy would convert texts, dates and masked values to numbers
         is_masked = type(given) is not np.ndarray and np.ma.is_masked(given)
         is_odd = is_masked or given.dtype.kind not in _NUMBERS
         found = np.array([] if is_odd else given, dtype=float)
@@ -273,7 +273,7 @@ def _numbers(
             "give lists of numbers, or `numpy.array(…, dtype=float)`, in which all are alike long"
         )
         raise BAD_CANDIDATES.error(None, f"{what}: that is no array of numbers", help=way_out)
-    # So is a past that is cut before its first state, also as a list
+    # An empty past is allowed, also as a list
     if or_none and found.shape in {(0,), _NO_STATES}:
         return np.empty(_NO_STATES)
     shape = "(candidates, states, 4)" if n_axes == 3 else "(states, 4)"
