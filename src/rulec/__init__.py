@@ -1,6 +1,6 @@
 """A compiler for traffic law: rulebooks in, automata out, maneuvers judged.
 
-A look at all of it::
+An overview::
 
     import rulec
 
@@ -16,8 +16,8 @@ is used.
 
 from __future__ import annotations
 
-# Nothing is imported here, for until the command line has prepared its signals Ctrl-C would print
-# a traceback. Checkers of types take this name for true.
+# Nothing is imported here: until the command line has set its signal handlers, Ctrl-C would print
+# a traceback. Type checkers take this name for true.
 TYPE_CHECKING = False
 
 if TYPE_CHECKING:
@@ -202,7 +202,7 @@ _HOME = {
     "rulec.vocabulary": "Vocabulary",
     "rulec.vocabulary.partial_values": "UNKNOWN Interval",
 }
-"""The names that each module gives."""
+"""Maps each module to the public names that it defines."""
 
 _MODULES = {name: module for module, names in _HOME.items() for name in names.split()}
 
@@ -213,13 +213,13 @@ def __getattr__(name: str) -> Any:
     module = "rulec.version" if name == "__version__" else _MODULES.get(name)
     if module is None and name != "fleet":
         raise AttributeError(f"module 'rulec' has no attribute {name!r}")
-    # Nothing is imported at the top, see there.
+    # Imported late, see the comment at the top.
     from importlib import import_module
 
     if module is None:
-        return import_module("rulec.fleet")  # public, too
+        return import_module("rulec.fleet")  # also public
 
-    # It is there from now on, and found without asking.
+    # Stored, so that it is found without this function from now on.
     public = globals()[name] = getattr(import_module(module), name)
     return public
 

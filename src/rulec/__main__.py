@@ -1,4 +1,4 @@
-"""Lets ``python -m rulec`` run the command line."""
+"""Makes ``python -m rulec`` run the command line."""
 
 import sys
 

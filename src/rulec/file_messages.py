@@ -201,7 +201,7 @@ _DOCUMENTS = {
     b"\xd0\xcf\x11\xe0": "an office document",
     b"%PDF": "a PDF",
 }
-"""How files begin that people write texts in and that are none."""
+"""First bytes of files that are mistaken for text files."""
 
 
 def not_utf8(name: str, data: bytes, position: int) -> Diagnostic:
@@ -263,7 +263,7 @@ def unwritable(path: Path, problem: OSError) -> Diagnostic:
 
 
 def no_input(problem: OSError) -> RulecError:
-    """The error about standard input that cannot be read."""
+    """The error for standard input that cannot be read."""
     return NO_INPUT.error(
         SourceLocation("standard input"),
         f"standard input cannot be read: {reason_in_words(problem)}",
@@ -272,10 +272,11 @@ def no_input(problem: OSError) -> RulecError:
 
 
 def refused(problem: OSError, *, is_gone: bool) -> Diagnostic:
-    """What is said of a refusal of the system that no other message speaks of.
+    """The message for an operating system error that has no message of its own.
 
-    Of an error with a name in it, it is that file or program, else the working folder if that
-    ``is_gone``, else standard output: whatever reads and whatever else writes says its name.
+    An error with a file name in it is about that file or program; otherwise it is about the working
+    folder if that ``is_gone``, else about standard output, since all other reads and writes name
+    their file.
     """
     why = reason_in_words(problem)
     if problem.filename is not None:

@@ -1,12 +1,12 @@
-"""Files of a folder that belong together: all of them are the new ones, or all the old ones.
+"""Sets of files in a folder that are replaced together: all are new, or all are old.
 
-A list of what is to get which name (the manifest) is written once all new files are on the disk.
-From then on the new ones count: whoever writes to the folder next does what a killed program had
-left to do. Before, what it left behind is removed.
+A list of the new files and their final names (the manifest) is written once all new files are on
+the disk. From then on the new ones count: the next program that writes to the folder finishes what
+a killed program left undone. Before that point, leftover new files are removed.
 
-A manifest that came with a stranger's files is not obeyed: it names, for itself and for each new
-file, the number (inode) that the system has given it, and for the latter the time of its last
-change (ctime). Nobody can choose these, nor does a checkout or an archive bring them along.
+A manifest that came with somebody else's files is ignored: it contains, for itself and for each new
+file, the inode number given by the system, and for the new files the time of the last change
+(ctime). Nobody can choose these, and neither a checkout nor an archive restores them.
 """
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ _MOST_BYTES = 100_000_000
 
 
 def write_together(folder: Path, contents: Mapping[str, bytes]) -> None:
-    """Write files of a folder, given by their names, together or not at all.
+    """Write files of a folder, given by their names, all or none.
 
     One file is open at a time.
 
     Raises RulecError: R0702 if one cannot be written, R0730 for links out of the tree, R0731 for
-        pipes and devices.
+    pipes and devices.
     """
     with refusals(folder), _alone_in(folder):
         _finish(folder)
@@ -65,7 +65,7 @@ def write_together(folder: Path, contents: Mapping[str, bytes]) -> None:
                 _commit(folder, mark, names)
                 _finish(folder)
         except BaseException:
-            # Whatever happened: if there is a manifest the new files count, else the old ones.
+            # In any case: if there is a manifest the new files count, else the old ones.
             with _signals_held_back():
                 _finish(folder)
             raise
@@ -73,10 +73,10 @@ def write_together(folder: Path, contents: Mapping[str, bytes]) -> None:
 
 @contextmanager
 def _signals_held_back() -> Iterator[None]:
-    """Let Ctrl-C and other wishes that this program end wait until the block has ended.
+    """Delay Ctrl-C and other termination signals until the block has ended.
 
-    Else they could come between two files' new names, and leave the rest to the next program.
-    Threads other than the first are never told of signals.
+    Otherwise a signal could come between two renames, and leave the rest to the next program. Only
+    the main thread receives signals, so other threads delay nothing.
     """
     came: list[int] = []
     before: dict[int, Any] = {}
@@ -96,10 +96,10 @@ def _signals_held_back() -> Iterator[None]:
 
 @contextmanager
 def _alone_in(folder: Path) -> Iterator[None]:
-    """Wait until no other program writes files of a folder together."""
+    """Wait until no other program writes a set of files to the folder."""
     handle = os.open(folder, os.O_RDONLY)
     try:
-        with suppress(OSError):  # some file systems have no locks
+        with suppress(OSError):  # some file systems do not support locks
             fcntl.flock(handle, fcntl.LOCK_EX)
         yield
     finally:
@@ -115,7 +115,7 @@ def _write_new(part: Path, path: Path, content: bytes) -> None:
 
 
 def _commit(folder: Path, mark: str, names: Mapping[str, str]) -> None:
-    """Let new files count from now on, in one step: the manifest gets its name."""
+    """Make new files count from now on, in one step: the manifest gets its final name."""
     part = f".rulec-{mark}-{len(names)}.part"
     try:
         with open(folder / part, "xb", opener=private) as stream:
@@ -132,7 +132,7 @@ def _commit(folder: Path, mark: str, names: Mapping[str, str]) -> None:
 
 
 def _finish(folder: Path) -> None:
-    """Give new files their names if they count, and remove what is left of them."""
+    """Rename new files to their final names if they count, and remove the rest of them."""
     for part, (name, *identity) in _left_to_do(folder / MANIFEST).items():
         if is_part(folder / part) and _identity(folder / part) == identity:
             with refusals(folder / name):
@@ -146,18 +146,18 @@ def _finish(folder: Path) -> None:
 
 
 def is_part(path: Path) -> bool:
-    """True for a file that was to get another name, and is no link."""
+    """Whether a path is a file of an unfinished set, and not a link."""
     return bool(_PART.fullmatch(path.name)) and not path.is_symlink() and is_ordinary(path)
 
 
 def _identity(path: Path) -> list[int]:
-    """What nobody can choose of a file: its number, and when it was last changed (ns)."""
+    """Attributes of a file that nobody can choose: inode, and time of the last change (ns)."""
     status = path.stat()
     return [status.st_ino, status.st_ctime_ns]
 
 
 def _left_to_do(manifest: Path) -> Mapping[str, tuple[str, int, int]]:
-    """New files, the names that they get, and their identities.
+    """The new files of a manifest, with their final names and identities.
 
     None without a manifest, or if it was not written here by this user.
     """
@@ -180,5 +180,5 @@ class _Manifest(msgspec.Struct, forbid_unknown_fields=True):
 
 
 def _is_name(name: str) -> bool:
-    """True for the name of a file in the folder itself, which a manifest may give away."""
+    """Whether a name from a manifest is that of a file in the folder itself."""
     return bool(name) and name not in (".", "..") and "/" not in name and "\0" not in name

@@ -1,4 +1,4 @@
-"""Files: read as bytes or UTF-8 text, unpacked on the way, written whole or never."""
+"""Files: read as bytes or UTF-8 text, decompressed if needed, written completely or not at all."""
 
 from __future__ import annotations
 
@@ -28,26 +28,31 @@ from rulec.file_messages import (
 from rulec.work_trees import refuse_link_out
 
 MAX_SOURCE_BYTES: Final = 5_000_000
-"""A rulebook has thousands of characters; millions are a mistake."""
+"""The largest rulebook source (bytes); rulebooks have thousands of characters."""
 
 MAX_LAW_BYTES: Final = 5_000_000
-"""The text of a law, or a saved audit; no state's road traffic act has half of it."""
+"""The largest law text or saved audit (bytes); no road traffic act has half of that."""
 
 MAX_SAVED_BYTES: Final = 100_000_000
-"""A compiled rulebook or a saved monitor."""
+"""The largest compiled rulebook or saved monitor (bytes)."""
 
 MAX_SETTINGS_BYTES: Final = 1_000_000
-"""A project's settings."""
+"""The largest settings file (bytes)."""
 
 LARGEST_UNPACKED: Final = 4_000_000_000
-"""Bytes of a packed file, unpacked; a thousandth of them may hide so many."""
+"""The largest size (bytes) of a decompressed file.
+
+A file a thousandth of that may expand so far.
+"""
 
 PACKED: Final = b"\x1f\x8b"
-"""How files packed with gzip begin (RFC 1952)."""
+"""The first bytes of gzip files (RFC 1952)."""
 
 STANDARD_INPUT_COPY: Final = "RULEC_STANDARD_INPUT"
-"""The environment variable that names a copy of standard input: a file of the copy's name in the
-working folder means that copy, in processes that work for this one, too."""
+"""The environment variable with the name of a copy of standard input, also for worker processes.
+
+A file of that name in the working folder means the copy.
+"""
 
 FileState = tuple[int, int]
 """A file's size (bytes) and the time at which it was last changed (ns)."""
@@ -57,7 +62,7 @@ _noted: ContextVar[dict[str, FileState] | None] = ContextVar("_noted", default=N
 
 @contextmanager
 def files_read() -> Iterator[dict[str, FileState]]:
-    """What files are opened for reading in the block, and what they are like then."""
+    """The files opened for reading in the block, with their state at that time."""
     states: dict[str, FileState] = {}
     token = _noted.set(states)
     try:
@@ -67,7 +72,7 @@ def files_read() -> Iterator[dict[str, FileState]]:
 
 
 def note_read(path: str | Path) -> FileState | None:
-    """Say that a file counts as read here, perhaps before; what it is like, if it is there."""
+    """Record that a file counts as read here; its state when first read, None if it is missing."""
     try:
         state = file_state(path)
     except OSError:
@@ -77,17 +82,17 @@ def note_read(path: str | Path) -> FileState | None:
 
 
 def file_state(path: str | Path) -> FileState:
-    """What a file is like. Raises OSError."""
+    """The size and time of a file. Raises OSError."""
     result = Path(path).stat()
     return result.st_size, result.st_mtime_ns
 
 
 OF_OTHERS: Final = stat.S_IWGRP | stat.S_IWOTH
-"""Permissions to write for anybody but the owner."""
+"""Write permissions for anybody but the owner."""
 
 
 def is_own(status: os.stat_result) -> bool:
-    """Tell whether a file or a folder is this user's, and nobody else may write to it."""
+    """Whether a file or folder belongs to this user, and nobody else may write to it."""
     return status.st_uid == os.geteuid() and not status.st_mode & OF_OTHERS
 
 
@@ -95,16 +100,16 @@ def is_own(status: os.stat_result) -> bool:
 def written_whole(path: Path, *, in_place: bool = False) -> Iterator[IO[bytes]]:
     """Open a stream that replaces a file only when the block succeeds.
 
-    A file that is replaced keeps its permissions, and has to permit it. It is on the disk before
-    the old one is gone.
+    A replaced file keeps its permissions, and has to be writable. The new file is on the disk
+    before the old one is removed.
 
     Args:
         path: the file; a link is followed, unless it leads out of its tree.
-        in_place: refuse a file that would not be the same afterwards: that has further names, or
-            an owner who cannot be kept.
+        in_place: refuse a file that would not be the same afterwards: one with further hard links,
+            or an owner who cannot be kept.
 
     Raises RulecError: R0702 if the file cannot be written, R0730 behind a link out of the tree,
-        R0734 with ``in_place``.
+    R0734 with ``in_place``.
     """
     refuse_link_out(path)
     with refusals(path):
@@ -112,13 +117,13 @@ def written_whole(path: Path, *, in_place: bool = False) -> Iterator[IO[bytes]]:
             with path.open("wb") as stream:
                 yield stream
             return
-        real = Path(os.path.realpath(path))  # the file behind a link, not the link, is replaced
+        real = Path(os.path.realpath(path))  # replaces the file behind a link, not the link
         if in_place and real.stat().st_nlink > 1:
             raise not_the_same(path, "it has several names, which would not be one file any more")
-        # Of a long name only the beginning: a folder takes no more than 255 bytes.
+        # Only the beginning of a long name: file names have at most 255 bytes.
         beginning = os.fsencode(real.name)[:200].decode("utf-8", "ignore")
         name = real.with_name(f".{beginning}.{os.urandom(8).hex()}.part")
-        # What is made here is made inside the `try`: whenever a signal comes, nothing stays behind.
+        # Everything is created inside the `try`, so that nothing is left behind by a signal.
         try:
             with open(name, "xb", opener=private) as stream:
                 yield stream
@@ -134,7 +139,7 @@ def written_whole(path: Path, *, in_place: bool = False) -> Iterator[IO[bytes]]:
 
 @contextmanager
 def refusals(path: Path) -> Iterator[None]:
-    """What goes wrong with a file that is written, as a message. Raises RulecError R0702."""
+    """Turn OSErrors of writing a file into RulecError R0702."""
     try:
         yield
     except OSError as problem:
@@ -142,7 +147,7 @@ def refusals(path: Path) -> Iterator[None]:
 
 
 def is_replaced(path: Path) -> bool:
-    """Whether a file may be replaced; what is a pipe or a device such as /dev/null is not."""
+    """Whether a file may be replaced; a pipe or a device such as /dev/null may not."""
     if path.is_dir():
         raise IsADirectoryError(EISDIR, "it is a folder")
     if not path.exists():
@@ -153,9 +158,9 @@ def is_replaced(path: Path) -> bool:
 
 
 def refuse_unwritable(path: Path, *, is_folder: bool = False) -> None:
-    """Refuse a file, or a folder for files, of which can be told that it cannot be written.
+    """Refuse a file, or a folder for files, if it is already clear that it cannot be written.
 
-    It is asked before there is anything to write, which may take long; nothing is made.
+    Called before computing the content, which may take long; nothing is created.
 
     Raises RulecError: R0702; R0730 behind a link out of the tree.
     """
@@ -177,9 +182,9 @@ def refuse_unwritable(path: Path, *, is_folder: bool = False) -> None:
 
 
 def put_on_disk(stream: IO[bytes]) -> None:
-    """Wait until what was written would survive that the machine stops."""
+    """Wait until what was written would survive a crash of the machine."""
     stream.flush()
-    with suppress(OSError):  # some file systems cannot
+    with suppress(OSError):  # some file systems do not support it
         os.fsync(stream.fileno())
 
 
@@ -194,14 +199,15 @@ def put_folder_on_disk(folder: Path) -> None:
 
 
 def private(name: str, flags: int) -> int:
-    """Open a file that is for its owner alone."""
+    """Open a file that only its owner may access."""
     return os.open(name, flags, 0o600)
 
 
 def as_before(name: Path, path: Path) -> bool:
-    """Give a new file the permissions and the owner of the one that it replaces, if there is one.
+    """Give a new file the permissions and the owner of the file that it replaces, if any.
 
-    Returns whether the owner could be kept. A new one has the default permissions of the umask.
+    Returns whether the owner could be kept. Without an old file it has the umask's default
+    permissions.
     """
     is_kept = True
     if path.exists():
@@ -216,18 +222,18 @@ def as_before(name: Path, path: Path) -> bool:
         mask = os.umask(0)
         os.umask(mask)
         mode = 0o666 & ~mask
-    name.chmod(mode)  # after the owner, with whom some permissions go
+    name.chmod(mode)  # after the owner, since changing it clears some permissions
     return is_kept
 
 
 def from_here(file: str) -> str:
-    """A file below the working folder as it is named from there, as runners of tests want it."""
+    """The relative name of a file below the working folder, as test runners expect it."""
     below = os.path.relpath(file) if os.path.isabs(file) else file  # noqa: PTH117 - a name alone
     return file if below.startswith(os.pardir) else below
 
 
 def is_folder(path: Path) -> bool:
-    """True for a folder; a name that nothing can have, such as one too long, is none."""
+    """Whether a path is a folder; False for impossible names, such as one that is too long."""
     try:
         return path.is_dir()
     except (OSError, ValueError):
@@ -235,7 +241,7 @@ def is_folder(path: Path) -> bool:
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder and those above it. Raises RulecError R0702, R0730."""
+    """Make a folder and its parents. Raises RulecError R0702, R0730."""
     refuse_link_out(path)
     with refusals(path):
         path.mkdir(parents=True, exist_ok=True)
@@ -247,10 +253,10 @@ def opened(
     way_out: str = "check its name and its permissions",
     labels: tuple[Label, ...] = (),
 ) -> Iterator[IO[bytes]]:
-    """A file opened for reading; one that is packed with gzip is unpacked on the way.
+    """A file opened for reading; a gzip file is decompressed while it is read.
 
-    Raises RulecError: R0701, with this way out and these labels; while it is read, R0701 for what
-    is packed and damaged, or larger than ``LARGEST_UNPACKED``.
+    Raises RulecError: R0701, with this way out and these labels; while reading, R0701 for a damaged
+    gzip file, or one larger than ``LARGEST_UNPACKED``.
     """
     try:
         stream = _in_place_of(path).open("rb")
@@ -273,7 +279,7 @@ def opened(
 
 
 def _beside(path: Path) -> str:
-    """The question whether a file beside a missing one is meant; empty if none is called alike."""
+    """A question suggesting a file with a similar name in the folder; empty if there is none."""
     with suppress(OSError, ValueError):
         near = nearest_name(path.name, sorted(os.listdir(path.parent)), alike=0.8)  # noqa: PTH208 - names alone
         if near is not None:
@@ -282,7 +288,7 @@ def _beside(path: Path) -> str:
 
 
 def read_whole(stream: IO[bytes], path: Path, most: int) -> bytes:
-    """The bytes of an open file that is read as a whole. Raises RulecError R0736 beyond a limit."""
+    """All bytes of an open file. Raises RulecError R0736 if there are more than ``most``."""
     data = stream.read(most + 1)
     if len(data) > most:
         raise TOO_LONG_TO_READ.error(
@@ -299,10 +305,10 @@ def _in_place_of(path: Path) -> Path:
 
 
 class _Unpacking(RawIOBase):
-    """The content of a packed file, up to a limit."""
+    """The decompressed content of a gzip file, up to a limit."""
 
     def __init__(self, stream: IO[bytes], path: Path) -> None:
-        # 1 ms: only for what is packed.
+        # Imported late (1 ms): only needed for gzip files.
         import gzip
         import zlib
 
@@ -321,7 +327,7 @@ class _Unpacking(RawIOBase):
 
     def seek(self, offset: int, whence: int = 0) -> int:
         if whence == SEEK_END:
-            # Where the end is shows only there.
+            # The position of the end is only known after reading everything.
             while self.read(1 << 16):
                 pass
             whence = SEEK_CUR
@@ -350,12 +356,12 @@ class _Unpacking(RawIOBase):
 
 
 def decoded(name: str, data: bytes) -> Source:
-    """The text of a file in UTF-8, whatever editor it came from.
+    """The text of a UTF-8 file, normalized.
 
-    A byte order mark is dropped, every line end becomes one line feed, and letters with marks take
-    their composed form, so that names that look alike are alike.
+    A byte order mark is dropped, every line end becomes one line feed, and letters with diacritics
+    are composed, so that names that look the same are the same.
 
-    Raises RulecError: R0101 if it is in another encoding, or no text at all.
+    Raises RulecError: R0101 if it has another encoding, or is not text.
     """
     try:
         text = data.decode("utf-8")
@@ -371,7 +377,7 @@ def without_null(source: Source) -> Source:
     if null >= 0:
         place = Span(source, null, null + 1).place
         raise NOT_UTF8.error(
-            # It is no rulebook, and may be anything, such as a process's environment.
+            # The file may be anything, such as a process's environment, so its content is not shown.
             replace(place, excerpt=""),
             "the file holds a null character and is not a text",
             help="give a file of plain text in UTF-8",
@@ -381,7 +387,7 @@ def without_null(source: Source) -> Source:
 
 @contextmanager
 def no_garbage_collection() -> Iterator[None]:
-    """Let no garbage be looked for while much is read, or made of it, that stays: it takes long."""
+    """Switch garbage collection off while many long-lived objects are built: nothing is freed."""
     was_on = gc.isenabled()
     gc.disable()
     try:

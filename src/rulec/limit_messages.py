@@ -1,4 +1,4 @@
-"""Messages about limits on what a question may cost."""
+"""Messages about limits on the cost of a question."""
 
 from __future__ import annotations
 

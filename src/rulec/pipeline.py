@@ -1,8 +1,8 @@
 """The compiler on one page: source text, trees, rulebook, formulas, automata.
 
-Each call takes what the one before it has made. What is wrong is raised as RulecError: a file that
-is not there by ``find``; all mistakes in the sources by ``resolve``; bounds that do not fit the
-step, and automata that are too large, by ``build_automata``.
+Each call takes the result of the one before it. Errors are raised as RulecError: a missing file by
+``find``; all mistakes in the sources by ``resolve``; bounds that do not fit the step, and automata
+that are too large, by ``build_automata``.
 """
 
 from __future__ import annotations
@@ -36,13 +36,12 @@ def compile_source(
     Args:
         reference: as for ``load_rulebook``.
         search_path: folders of rulebooks and vocabularies.
-        at: the day (ISO) whose law it is; if empty, that of its `law` line or else today.
+        at: the day (ISO) whose law applies; if empty, that of its `law` line or else today.
         step_s: the seconds between two states of the traces to be judged; None for the step of each
-            rule's own examples, and then for any other that is met.
+            rule's own examples, and then for any other step that occurs.
         any_step: rules without examples need not fit the step that these would have.
-        on_warning: is told what is odd, but not wrong: an example, for one, that comes out
-            otherwise than it says.
-        question: the key by which the cache is to keep the rulebook, compiled for any step.
+        on_warning: called with warnings, such as an example whose verdict is not the stated one.
+        question: the key under which the cache stores the rulebook, compiled for any step.
     """
     file = find(reference, search_path)
     trees = parse_all(file)

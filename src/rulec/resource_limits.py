@@ -1,8 +1,8 @@
-"""Limits on what a question may cost where its input's size does not say; ``docs/limits.md``.
+"""Limits on the cost of a question that its input's size does not bound; ``docs/limits.md``.
 
-Whoever is about to take time or memory that grows with a value asks ``within`` first. The limits
-in force are those of the environment variable ``RULEC_LIMITS``, which the processes that work for
-this one inherit; ``rulec --limit`` sets it.
+Code that is about to use time or memory growing with a value calls ``within`` first. The limits in
+force are those of the environment variable ``RULEC_LIMITS``, which worker processes inherit;
+``rulec --limit`` sets it.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 VARIABLE: Final = "RULEC_LIMITS"
-"""The environment variable: settings such as ``choices=5000000``, with spaces between them."""
+"""The environment variable: settings such as ``choices=5000000``, separated by spaces."""
 
 MOST_DIGITS: Final = 1000
-"""Digits of a number that is read exactly; rulebooks, compiled files and saved monitors alike."""
+"""The most digits of a number read exactly, in rulebooks, compiled files and saved monitors."""
 
 
 @dataclass(frozen=True, slots=True)
 class ResourceLimit:
-    """A limit by name: how many of ``counted`` there may be, and what else helps."""
+    """A limit by name: the greatest number of ``counted``, and what else helps."""
 
     name: str
     usual: int
@@ -37,16 +37,19 @@ class ResourceLimit:
     way_out: str
 
     def value(self) -> int:
-        """The limit in force. Raises RulecError R0719 if the environment sets one wrongly."""
+        """The limit in force.
+
+        Raises RulecError R0719 if its setting in the environment is invalid.
+        """
         return settings_in(os.environ.get(VARIABLE, "").split()).get(self.name, self.usual)
 
     def within(self, amount: int, place: SourceLocation | None, whose: str = "") -> None:
-        """Raise RulecError R0718 if there are more.
+        """Raise RulecError R0718 if the amount exceeds the limit.
 
         Args:
-            amount: how many there are, or would be.
-            place: the input that asks for them.
-            whose: what they are of, such as "rule `gap`".
+            amount: the actual or expected number.
+            place: the input that requires it.
+            whose: what it belongs to, such as "rule `gap`".
         """
         if amount > self.value():
             raise self.exceeded(place, whose, f"{amount:,}" if amount < 10**18 else "over 10^18")
@@ -54,7 +57,7 @@ class ResourceLimit:
     def exceeded(
         self, place: SourceLocation | None, whose: str = "", amount: str = ""
     ) -> RulecError:
-        """The error of an amount, in words if it is known, that is beyond the limit in force."""
+        """The error for an amount (in words, if known) that exceeds the limit in force."""
         amount = amount or f"more than {self.value():,}"
         of = f"{whose}: " if whose else ""
         return OVER_LIMIT.error(
@@ -181,7 +184,7 @@ LIMITS: Final = {
         LOOKBACK,
     )
 }
-"""All limits that can be lifted."""
+"""All limits that can be changed."""
 
 
 def settings_in(texts: Iterable[str]) -> dict[str, int]:
@@ -207,7 +210,7 @@ _NUMBER = re.compile(r"[0-9]{1,15}")
 
 @contextmanager
 def in_force(texts: Iterable[str]) -> Iterator[None]:
-    """Limits set, here and in processes started meanwhile, while the block runs.
+    """Set limits, here and in processes started meanwhile, while the block runs.
 
     Raises RulecError R0719.
     """
@@ -218,7 +221,7 @@ def in_force(texts: Iterable[str]) -> Iterator[None]:
 
 @contextmanager
 def variable_set(name: str, value: str) -> Iterator[None]:
-    """Set an environment variable in a block; afterwards it is what it was, or unset."""
+    """Set an environment variable in a block, and restore it afterwards."""
     before = os.environ.get(name)
     os.environ[name] = value
     try:

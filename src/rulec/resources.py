@@ -17,7 +17,7 @@ def _folder(name: str) -> Path:
 
 
 def grammar_file(name: str) -> Path:
-    """A grammar, such as ``rulec.lark``."""
+    """The path of a grammar, such as ``rulec.lark``."""
     return _folder("grammar") / name
 
 
@@ -27,7 +27,7 @@ def rulebooks_folder() -> Path:
 
 
 def package_files() -> Iterator[tuple[str, os.stat_result]]:
-    """Files of code, grammar and phrases in rulec, in a fixed order."""
+    """The files of code, grammar and phrases in rulec, in a fixed order."""
     phrases = rulebooks_folder() / "vocabulary" / "phrases"
     folders = [str(_PACKAGE), str(_folder("grammar")), str(phrases)]
     while folders:
@@ -52,7 +52,7 @@ def scenarios_folder() -> Path:
 
 @cache
 def code_digest(names: tuple[str, ...]) -> bytes:
-    """A digest of what is in these files and folders of rulec's code; ``grammar`` is its own."""
+    """A digest of these files and folders of rulec's code; ``grammar`` is the grammars' folder."""
     seen = sha256()
     for path in [_folder(name) if name == "grammar" else _PACKAGE / name for name in names]:
         files = [path] if path.is_file() else sorted(path.rglob("*"))

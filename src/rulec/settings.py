@@ -25,13 +25,13 @@ _LONGEST_NAME = 100
 
 
 def search_path(folder: Path | None = None) -> tuple[Path, ...]:
-    """Folders searched first for rulebooks and vocabularies.
+    """The folders that are searched first for rulebooks and vocabularies.
 
     Args:
-        folder: where to look for ``rulec.toml``, and above which, if not in the working folder; no
-            such file means no folders.
+        folder: where the upward search for ``rulec.toml`` begins; the working folder if None.
+            Without such a file there are no folders.
 
-    Raises RulecError: R0701 if it cannot be read, R0101 or R0704 for what is wrong in it.
+    Raises RulecError: R0701 if it cannot be read, R0101 or R0704 for mistakes in it.
     """
     file = _nearest(folder or Path.cwd())
     return () if file is None else _folders(file, _read(file))
@@ -39,14 +39,14 @@ def search_path(folder: Path | None = None) -> tuple[Path, ...]:
 
 @dataclass(frozen=True, slots=True)
 class Exclusion:
-    """What is left alone below a folder: ``patterns`` as gitignore(5) has them."""
+    """Files below a folder to be left alone: ``patterns`` as in gitignore(5)."""
 
     folder: Path
     patterns: tuple[str, ...]
 
 
 def exclusion() -> Exclusion | None:
-    """What the ``exclude`` of ``rulec.toml`` says; None without. Raises RulecError, as above."""
+    """The ``exclude`` setting of ``rulec.toml``; None without it. Raises RulecError, as above."""
     file = _nearest(Path.cwd())
     patterns = [] if file is None else _read(file)["exclude"]
     return None if file is None or not patterns else Exclusion(file.parent, tuple(patterns))
@@ -59,12 +59,12 @@ def settings_file() -> Path | None:
 
 def _nearest(folder: Path) -> Path | None:
     files = (place / FILE_NAME for place in (folder, *folder.parents))
-    # A pipe or a link to nowhere is refused, and not passed over for settings of somebody above.
+    # A pipe or a broken link is refused, not skipped in favour of settings farther up.
     return next((file for file in files if os.path.lexists(file) and not file.is_dir()), None)
 
 
 def _read(file: Path) -> Mapping[str, list[str]]:
-    """The settings, each a list of texts."""
+    """The settings, each as a list of texts."""
     refuse_no_source(file)
     with opened(file) as stream:
         source = decoded(str(file), read_whole(stream, file, MAX_SETTINGS_BYTES))
@@ -93,7 +93,7 @@ def _folders(file: Path, settings: Mapping[str, list[str]]) -> tuple[Path, ...]:
     for item, path in zip(folders, result, strict=True):
         try:
             is_folder = stat.S_ISDIR(path.stat().st_mode)
-        except (OSError, ValueError):  # also too long a name, and one with a null character
+        except (OSError, ValueError):  # including a name that is too long or has a null character
             is_folder = False
         if "\0" in item or Path(item).is_absolute() or leads_out(path, tree):
             raise OUT_OF_TREE.error(

@@ -1,4 +1,4 @@
-"""TOML files, read alike on every Python, with places of errors."""
+"""Reading TOML files, the same on every Python version, with places of errors."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def parsed_toml(source: Source, code: Code, how: str) -> dict[str, Any]:
     Args:
         source: the file's text.
         code: the code of the diagnostic if it is not TOML.
-        how: the way out in that case, how such a file is written.
+        how: the way out in that case: how such a file is written.
 
     Raises RulecError: with that code, at the place of the mistake.
     """

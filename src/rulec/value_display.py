@@ -11,10 +11,10 @@ from typing import Any
 from rulec.version import install_command
 
 LONGEST_REPR = 160
-"""A ``repr`` has at most so many characters and no line's end."""
+"""The most characters of a ``repr``, which has no line break."""
 
 MOST_HTML_ROWS = 200
-"""A table in a notebook shows so many rows."""
+"""The most rows of a table in a notebook."""
 
 _LONGEST_VALUE = 60
 _MOST_ITEMS = 3
@@ -37,10 +37,10 @@ def _items(value: Any) -> list[tuple[str, Any]]:
 
 
 def brief(value: object) -> str:
-    """A value in a few words, however long, and however deep its lists are."""
+    """A value in a few words, however long it is and however deeply its lists are nested."""
     try:
         return _brief(value)
-    except (RecursionError, ValueError):  # or a whole number of thousands of digits
+    except (RecursionError, ValueError):  # or an integer with thousands of digits
         return f"({type(value).__name__})"
 
 
@@ -64,17 +64,17 @@ def _brief(value: object) -> str:
 def _size(value: Collection[object]) -> int:
     try:
         return len(value)
-    except TypeError:  # an array of no axes
+    except TypeError:  # an array without axes
         return 0
 
 
 def short_count(number: int) -> str:
-    """A count as people read it, however large."""
+    """A count in readable form, however large."""
     return f"{number:,}" if number < 10**15 else "more than 10^15"
 
 
 class Rows:
-    """A list of things that shows itself as rows of a table."""
+    """A list of items that is shown as rows of a table."""
 
     __slots__ = ()
 
@@ -105,7 +105,7 @@ class Rows:
 
     def _repr_html_(self) -> str:
         rows = self.rows()
-        # Names of characters, 1 ms: only in notebooks.
+        # Imported late (1 ms): only needed in notebooks.
         from html import escape
 
         text = f"<p><code>{escape(repr(self))}</code></p>"
@@ -119,7 +119,7 @@ class Rows:
 
 
 def _line(tag: str, cells: Any) -> str:
-    # Names of characters, 1 ms: only in notebooks.
+    # Imported late (1 ms): only needed in notebooks.
     from html import escape
 
     return "<tr>" + "".join(f"<{tag}>{escape(str(cell))}</{tag}>" for cell in cells) + "</tr>"

@@ -1,7 +1,7 @@
-"""The work tree that a file stands in: links out of it, pipes and devices are refused.
+"""The work tree that contains a file: links out of it, pipes and devices are refused.
 
-Whoever wrote the checkout chose what its files are. A link may lead to any file of this machine,
-and a pipe never ends.
+The author of a checkout chose its files, which need not be trusted: a link may lead to any file of
+this machine, and a pipe may never end.
 """
 
 from __future__ import annotations
@@ -14,31 +14,31 @@ from rulec.diagnostics import Label, SourceLocation
 from rulec.file_messages import LINK_OUT, NO_ORDINARY_FILE, UNREADABLE_FILE, reason_in_words
 
 _OF_THE_SYSTEM = ("/dev/", "/proc/self/fd/")
-"""Its links are the machine's own, such as ``/dev/stdout``."""
+"""Folders whose links are the system's own, such as ``/dev/stdout``."""
 
 
 def tree_of(folder: Path) -> Path:
-    """The git work tree that a folder is in; the folder itself if it is in none.
+    """The git work tree that contains a folder; the folder itself if there is none.
 
-    Links in the folder's own name are left as they are: who names them means them.
+    Links in the folder's own name are kept, because the user gave them deliberately.
     """
     here = Path(os.path.abspath(folder))  # noqa: PTH100 - Path.absolute() keeps `..`
     return next((place for place in (here, *here.parents) if os.path.lexists(place / ".git")), here)
 
 
 def leads_out(path: Path, tree: Path | None = None) -> bool:
-    """True for what is behind a link out of a tree, by default that of the path itself."""
+    """Whether a path is behind a link out of a tree, by default the tree of the path itself."""
     root = os.path.realpath(tree or tree_of(path.parent))
     real = os.path.realpath(path)
     return real != root and not real.startswith(root.rstrip("/") + "/")
 
 
 def refuse_link_out(path: Path, labels: tuple[Label, ...] = (), tree: Path | None = None) -> None:
-    """Refuse what is behind a link out of its tree. Raises RulecError R0730, R0701."""
+    """Refuse a path behind a link out of its tree. Raises RulecError R0730, R0701."""
     try:
         if str(path).startswith(_OF_THE_SYSTEM) or not leads_out(path, tree):
             return
-    except (OSError, ValueError) as problem:  # a null character, or too long a name
+    except (OSError, ValueError) as problem:  # a null character, or a name that is too long
         message = f"the file cannot be read: {reason_in_words(problem)}"
         raise UNREADABLE_FILE.error(
             SourceLocation(str(path)), message, help="check its name", labels=labels
@@ -52,7 +52,7 @@ def refuse_link_out(path: Path, labels: tuple[Label, ...] = (), tree: Path | Non
 
 
 def is_ordinary(path: Path) -> bool:
-    """True for a file, also behind a link, that is no pipe, socket, device or folder."""
+    """Whether a path is a file, also behind a link, and not a pipe, socket, device or folder."""
     try:
         return stat.S_ISREG(path.stat().st_mode)
     except (OSError, ValueError):
@@ -60,9 +60,9 @@ def is_ordinary(path: Path) -> bool:
 
 
 def refuse_no_source(path: Path, labels: tuple[Label, ...] = (), tree: Path | None = None) -> None:
-    """Refuse what cannot be a source of its tree.
+    """Refuse a path that cannot be a source of its tree.
 
-    What is not there at all, or a folder, is left to whoever opens it.
+    Missing files and folders are left to the code that opens them.
 
     Raises RulecError: R0730 for a link out of the tree, R0731 for pipes, sockets and devices.
     """

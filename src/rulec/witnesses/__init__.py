@@ -1,1 +1,1 @@
-"""States, traces and counterexamples synthesised from what monitors read."""
+"""Synthesis of states, traces and counterexamples from what monitors read."""

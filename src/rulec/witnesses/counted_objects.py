@@ -1,6 +1,6 @@
-"""Additional objects of a state that satisfy the counts of rules.
+"""Additional objects in a state that satisfy the counts of rules.
 
-The search is breadth first over how many objects each count has reached.
+The search is breadth first over the number of objects that each count has reached.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ from rulec.witnesses.state_synthesis import (
 from rulec.witnesses.undecided import UndecidedError
 
 MOST_COUNTED_OBJECTS = 40
-"""No more objects are added to those that rules speak of."""
+"""The most objects that are added to those in the rules' variables."""
 
 MOST_TRIED = 20_000
 
 
 @dataclass(frozen=True, slots=True)
 class CountedObject:
-    """Additional object: its type, the counts it adds to, and its values."""
+    """An additional object: its type, the counts it adds to (1 or 0 each), and its values."""
 
     type: str
     adds: tuple[int, ...]
@@ -57,15 +57,15 @@ CountedObjects = tuple[CountedObject, ...]
 def fewest_counted_objects(
     state: JointState, object_kinds: CountedObjectKinds
 ) -> CountedObjects | None:
-    """Find the fewest additional objects that satisfy the counts, or None."""
+    """The fewest additional objects that satisfy the counts, or None."""
     universe = object_kinds.universe
     counts = _counts_of(state)
     if not counts:
         return ()
     sums = tuple(dict(state.counted)[count] for count in counts)
     if _comes_out(state, universe, dict(zip(counts, sums, strict=True))):
-        return ()  # mostly; kinds of objects take a search each
-    # Of those that add to the same counts the first is enough; most types are alike.
+        return ()  # the usual case; finding kinds of objects takes long
+    # Of kinds that add to the same counts the first is enough; most types have the same.
     kinds: dict[tuple[int, ...], CountedObject] = {}
     for kind in object_kinds.of(state):
         kinds.setdefault(kind.adds, kind)
@@ -92,7 +92,7 @@ def fewest_counted_objects(
 def counted_objects_of_types(
     state: JointState, object_kinds: CountedObjectKinds, types: Sequence[str]
 ) -> CountedObjects | None:
-    """Find an additional object of each type for the counts, or None."""
+    """An additional object of each of the ``types`` so that the counts are satisfied, or None."""
     universe = object_kinds.universe
     counts = _counts_of(state)
     kinds = object_kinds.of(state, types) if types else []
@@ -109,7 +109,7 @@ def counted_objects_of_types(
 
 
 def _enough(count: Count, state: JointState) -> int:
-    """Number of counted objects from which on more make no difference."""
+    """The number of counted objects above which further ones make no difference."""
     most = 0
     for read, _ in state.number_digits:
         if any(term == count for _, term in read.terms):
@@ -131,10 +131,10 @@ def _comes_out(state: JointState, universe: ObjectUniverse, counted: Mapping[Cou
 
 
 class CountedObjectKinds:
-    """Additional objects of a universe that counts distinguish.
+    """The kinds of additional objects of a universe that counts distinguish.
 
-    What they depend on in a state, mostly nothing, is told once, for states are many. They are told
-    from those of another universe ``before`` where that had no axioms but the first ones of this.
+    There are many states, so what does not depend on the state is computed once. It is derived from
+    another universe's kinds (``before``) if that universe's axioms are the first ones of this.
     """
 
     def __init__(self, universe: ObjectUniverse, before: CountedObjectKinds | None = None) -> None:
@@ -145,7 +145,7 @@ class CountedObjectKinds:
         self._fitting: dict[object, list[_FittingType]] = {}
 
     def of(self, state: JointState, types: Sequence[str] = ()) -> list[CountedObject]:
-        """Those of a state, of most general types first.
+        """The kinds for a state, most general types first.
 
         Their types are those that are counted, and ``types``, which another state may need.
         """
@@ -188,19 +188,19 @@ class CountedObjectKinds:
             )
 
     def _with_own(self, known: _FittingType) -> _FittingType:
-        """A type that is known from the universe before, and what the own axioms make of it."""
+        """A type known from the universe before, adapted to this universe's further axioms."""
         own = axioms_about(EXTRA, known.counted.type, self._own)
         if all(
             axiom.holds_by_default and known.reached.isdisjoint(axiom.subjects) for axiom in own
         ):
-            return known  # they are about what nothing asks
+            return known  # nothing reads what they are about
         axioms = (*known.axioms, *own)
         vocabulary = Itself(self.universe.vocabulary)
         return _fitting_type(known.counted.type, known.places, known.bodies, axioms, vocabulary)
 
     def _of_type(self, counted: _CountedType, state: JointState) -> tuple[CountedObject, ...]:
         vocabulary = self.universe.vocabulary
-        # The digit that the state gives to what is not about the object, and what it gives to sums.
+        # The state's digits of reads that are not about the object, and its part of mixed sums.
         given = tuple(
             [
                 _digit(counted.reads[place], state, vocabulary)
@@ -219,12 +219,13 @@ class CountedObjectKinds:
 
 @dataclass(frozen=True, slots=True)
 class _CountedType:
-    """A type of additional objects, and what decides which counts one adds to.
+    """A type of additional objects, and what decides which counts such an object adds to.
 
-    Letters are those of ``reads``; sets of them are the bits of integers. ``counted`` has for each
-    count those in which it counts, ``allowed`` for each axiom those in which it holds. The
-    ``inputs`` from a state are the digits of reads that are not about the object, and the sum of
-    such terms in those that are. Objects are kept in ``by_given``, by what a state gives.
+    Letters are those of ``reads``; sets of letters are bit sets. ``counted`` has for each count the
+    letters with which the object counts, ``allowed`` for each axiom those with which it holds.
+    ``inputs`` are values taken from a state: the digits of reads that are not about the object, and
+    for sums about the object the total of the other terms. ``by_given`` caches objects by these
+    values.
     """
 
     type: str
@@ -238,11 +239,11 @@ class _CountedType:
 
 @dataclass(frozen=True, slots=True)
 class _FittingType:
-    """A type of additional objects, with what decides which of the axioms matter to it.
+    """A type of additional objects, and what decides which axioms matter to it.
 
     The first of the ``places`` is the number of all counts, the others are those of the ``bodies``.
-    ``axioms`` are those about such an object, ``reached`` is what those that can tell anything
-    about the bodies are about, and these.
+    ``axioms`` are those about such an object; ``reached`` are the subjects of the bodies and of the
+    axioms relevant to them.
     """
 
     counted: _CountedType
@@ -252,7 +253,7 @@ class _FittingType:
     reached: Set[Subject]
 
 
-# Most rules of two rulebooks are asked about with the same objects and axioms.
+# Cached: most rules of two rulebooks are compared with the same objects and axioms.
 @lru_cache(maxsize=1024)
 def _fitting_type(
     kind: str,
@@ -262,7 +263,7 @@ def _fitting_type(
     vocabulary: Itself[Vocabulary],
 ) -> _FittingType:
     read = [reads_of(body, vocabulary.item) for body in bodies]
-    # Others would multiply the states to go through, and its words in them have their defaults.
+    # Irrelevant axioms would only multiply the states: what they read can have its defaults.
     relevant = relevant_axioms(axioms, read)
     about = (*bodies, *(axiom.formula for axiom in relevant))
     counted = _counted_type(kind, places, about, vocabulary)
@@ -270,7 +271,7 @@ def _fitting_type(
     return _FittingType(counted, places, bodies, axioms=axioms, reached=reached)
 
 
-# Universes of a few objects and one vocabulary have the same additional ones.
+# Cached: small universes of one vocabulary have the same additional objects.
 @lru_cache(maxsize=1024)
 def _counted_type(
     kind: str,
@@ -278,7 +279,7 @@ def _counted_type(
     about: tuple[Formula, ...],
     vocabulary: Itself[Vocabulary],
 ) -> _CountedType:
-    """What is known of a type, from the bodies of the counts at some places, and axioms.
+    """The data of a type, from the bodies of the counts at some places, and axioms.
 
     The first of the ``places`` is the number of all counts.
     """
@@ -300,10 +301,10 @@ def _counted_type(
 def _first_of_each(
     counted: _CountedType, known: Sequence[int | Fraction], vocabulary: Vocabulary
 ) -> Iterator[CountedObject]:
-    """The first object that adds to the same counts, for all that can be.
+    """For each possible set of counts that an object adds to, the first such object.
 
-    ``known`` has for each read the digit that the state gives it, or, of what is to be told of the
-    object, what the state gives to its sum.
+    ``known`` has for each read the digit that the state gives it, or, for reads about the object,
+    the state's part of the sum.
     """
     reads = [
         _unknown(read, given) if is_about_it and isinstance(read, NumberRead) else read
@@ -335,7 +336,7 @@ def _first_of_each(
             yield CountedObject(counted.type, adds, values | float_values(solved))
 
 
-# The sums of most states are alike.
+# Cached: most states have the same sums.
 @lru_cache(maxsize=256)
 def _solver(sums: tuple[NumberRead, ...], vocabulary: Itself[Vocabulary]) -> NumberSolver:
     return NumberSolver(sums, vocabulary.item, {})
@@ -348,13 +349,13 @@ def _digit(read: Read | NumberRead, state: JointState, vocabulary: Vocabulary) -
 
 
 def _rest_of(read: Read | NumberRead) -> list[tuple[Fraction, Term]]:
-    """The terms of a sum that are not about the object, though others are."""
+    """The terms of a sum that are not about the object, if others are."""
     terms = () if isinstance(read, Read) else read.terms
     return [pair for pair in terms if EXTRA not in variables_of(pair[1])]
 
 
 def _unknown(read: NumberRead, known: int | Fraction) -> NumberRead:
-    """Sum of the unknown terms, with known ones moved into the thresholds."""
+    """The sum of the unknown terms, with the known ones moved into the thresholds."""
     unknown = tuple(pair for pair in read.terms if EXTRA in variables_of(pair[1]))
     if not known and len(unknown) == len(read.terms):
         return read

@@ -37,14 +37,14 @@ from rulec.witnesses.state_synthesis import (
 
 @dataclass(frozen=True, slots=True)
 class CoverageWitness:
-    """State for a letter; ``besides`` says in words what cannot be chosen."""
+    """A state for a letter; ``besides`` describes in words what cannot be chosen."""
 
     says: ExampleState
     besides: tuple[str, ...] = ()
 
 
 def is_possible(read: Read | NumberRead, digit: int) -> bool:
-    """Tell whether a state can have this digit; False only if certain."""
+    """Whether a state can have this digit; False only if that is certain."""
     if isinstance(read, Read) or scale(read).quantity is None:
         return True
     bounds = (-inf, *scale(read).floors, inf)
@@ -52,7 +52,7 @@ def is_possible(read: Read | NumberRead, digit: int) -> bool:
 
 
 def can_be(monitor: MealyMonitor, letter: int, *, below_zero: bool = False) -> bool:
-    """Tell whether some state has a letter; with numbers below zero only if they are wanted."""
+    """Whether some state has a letter; numbers below zero only if ``below_zero``."""
     digits = digits_of(letter, monitor.reads)
     return (
         monitor.letters[letter] != IMPOSSIBLE
@@ -62,13 +62,13 @@ def can_be(monitor: MealyMonitor, letter: int, *, below_zero: bool = False) -> b
 
 
 LettersByConstants: TypeAlias = Mapping[Digits, Mapping[int, int]]
-"""First letter of each letter class, by the digits of what cannot change in a trace."""
+"""The first letter of each letter class, by the digits of what is constant in a trace."""
 
 
 def possible_letters(monitor: MealyMonitor, vocabulary: Vocabulary) -> LettersByConstants:
-    """First letter of every letter class that some state has, without numbers below zero if any.
+    """The first letter of each letter class that some state has, if possible without negatives.
 
-    A trace has letters with the same constants alone; those come first that have defaults.
+    All letters of a trace have the same constants; constants with default values come first.
     """
     constant = constant_reads(monitor.reads, vocabulary)
     first: dict[Digits, dict[int, int]] = {}
@@ -97,7 +97,7 @@ def possible_letters(monitor: MealyMonitor, vocabulary: Vocabulary) -> LettersBy
 def truth_values(
     propositions: Sequence[Proposition], monitor: MealyMonitor
 ) -> Mapping[Proposition, tuple[bool, ...]]:
-    """Truth values of each proposition in possible states, True first."""
+    """The truth values of each proposition in possible states, True first."""
     excluded = {
         (place, digit)
         for place, read in enumerate(monitor.reads)
@@ -126,12 +126,12 @@ def coverage_witness(
 ) -> CoverageWitness:
     """Synthesise a state in which a rule's monitor reads the letter.
 
-    Where chosen numbers would contradict one of the ``axioms``, they are left to the reader.
+    Numbers whose choice would contradict one of the ``axioms`` are left to the reader.
     """
     digits = list(zip(monitor.reads, digits_of(letter, monitor.reads), strict=True))
     says = values_of(digits, vocabulary)
     numbers = [(read, digit) for read, digit in digits if isinstance(read, NumberRead)]
-    # What is compared by itself has less of a choice than what is also part of a sum.
+    # Quantities compared by themselves have less choice than those that are also in sums.
     numbers.sort(key=lambda pair: len(pair[0].terms))
     chosen, left = _choose([pair for pair in numbers if not counts_read(pair[:1])], vocabulary)
     says.update({(term.name, term.arguments): number for term, number in chosen.items()})
@@ -168,7 +168,7 @@ def coverage_witness(
 def _choose(
     numbers: NumberDigits, vocabulary: Vocabulary
 ) -> tuple[dict[QuantityTerm, float], list[NumberRead]]:
-    """Numbers with these digits, and the sums left without any."""
+    """Numbers with these digits, and the sums for which none were chosen."""
     chosen = numbers_near_thresholds(numbers, vocabulary)
     if chosen is not None:
         return chosen, []

@@ -1,8 +1,8 @@
 """Exact solutions of linear inequalities by Fourier-Motzkin elimination.
 
-Unknowns are eliminated one after the other, and then given numbers in the opposite order, each
-between the bounds that those before it leave. The systems are those of one state of a rule: a
-handful of unknowns and of inequalities.
+Unknowns are eliminated one after the other, then given numbers in the opposite order, each between
+the bounds that the numbers chosen before leave. The systems are those of one state of a rule: a
+handful of unknowns and inequalities.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class LinearBound:
 
 
 class TooManyBoundsError(Exception):
-    """Elimination would make more inequalities than its caller has time for."""
+    """Elimination would create more inequalities than the caller allows."""
 
 
 def solve(
@@ -41,13 +41,13 @@ def solve(
     any_number: bool = False,
     on_elimination: Callable[[int], None] | None = None,
 ) -> dict[Term, Fraction] | None:
-    """Solve a system by numbers with short decimals, or by ``any_number``; None if there are none.
+    """Solve a system by numbers with short decimals, or by ``any_number``; None if unsolvable.
 
     The last of the ``unknowns`` is given its number first: the ``preferred`` one where it fits,
-    else zero, which for those in ``near_bounds`` is no better than others, or one near a bound. The
-    system is not searched again if the first numbers tried for ``whole`` unknowns leave no room.
-    ``on_elimination`` is told beforehand how many inequalities an elimination makes, and may raise
-    ``TooManyBoundsError``.
+    else zero (for unknowns in ``near_bounds`` zero is not preferred) or a number near a bound. If
+    the first numbers tried for ``whole`` unknowns leave no solution, the search is not repeated.
+    ``on_elimination`` is called before each elimination with the number of inequalities that it
+    creates, and may raise ``TooManyBoundsError``.
     """
     stages: list[tuple[Term, list[LinearBound]]] = []
     rest = list(system)
@@ -60,7 +60,7 @@ def solve(
         return None
     solution: dict[Term, Fraction] = {}
     for unknown, bounds in reversed(stages):
-        # Those from below come first, as the numbers beside them are tried first.
+        # Lower bounds first, as the numbers near them are tried first.
         limits = sorted(
             [
                 (bound.coefficients[unknown], _remaining_limit(bound, solution), bound.strict)
@@ -91,7 +91,7 @@ def solve(
 
 
 def _remaining_limit(bound: LinearBound, solution: Mapping[Term, Fraction]) -> Fraction:
-    """What the unknowns with a number leave of a limit."""
+    """The part of a limit that remains after subtracting the unknowns with a number."""
     left = bound.limit
     for name, factor in bound.coefficients.items():
         if name in solution:
@@ -106,7 +106,7 @@ def _n_eliminated(unknown: Term, system: Sequence[LinearBound]) -> int:
 
 
 def _eliminate(unknown: Term, system: Sequence[LinearBound]) -> list[LinearBound]:
-    """The inequalities that the system implies for the other unknowns."""
+    """The inequalities for the other unknowns that the system implies."""
     rest = [bound for bound in system if not bound.coefficients.get(unknown)]
     above = [bound for bound in system if bound.coefficients.get(unknown, 0) > 0]
     below = [bound for bound in system if bound.coefficients.get(unknown, 0) < 0]
@@ -120,7 +120,7 @@ def _eliminate(unknown: Term, system: Sequence[LinearBound]) -> list[LinearBound
 
 
 def _per_one(unknown: Term, bounds: Sequence[LinearBound]) -> list[LinearBound]:
-    """The same inequalities, multiplied such that this unknown counts once."""
+    """The same inequalities, scaled so that this unknown's coefficient is 1 or -1."""
     scaled = []
     for bound in bounds:
         own = abs(bound.coefficients[unknown])
@@ -134,7 +134,7 @@ def _per_one(unknown: Term, bounds: Sequence[LinearBound]) -> list[LinearBound]:
 def _candidates(
     preferred: Fraction | None, ends: Sequence[Fraction], *, whole: bool, zero_first: bool
 ) -> Iterator[Fraction]:
-    """Numbers at and beside the interval's ends, shortest decimals first."""
+    """Numbers at and near the interval's ends, shortest decimals first."""
     if preferred is not None and (preferred.denominator == 1 or not whole):
         yield preferred
     if zero_first or not ends:

@@ -1,7 +1,7 @@
 """Joint letters of several monitors: their letters in one common state.
 
-The product of their decision diagrams is walked level by level, sums of numbers first, for these
-depend on each other.
+The product of their decision diagrams is searched level by level, starting with sums of numbers,
+because these depend on each other.
 """
 
 from __future__ import annotations
@@ -32,26 +32,26 @@ from rulec.witnesses.relevant_axioms import ground_axioms, relevant_axioms, subj
 from rulec.witnesses.undecided import UndecidedError
 
 JointLetter = tuple[int, ...]
-"""For each monitor the class of the letter that it reads."""
+"""The letter class that each monitor reads."""
 
 Way = tuple[int, int, int, JointLetter]
-"""Its number of digits that are not the default, its place, the digits, and classes of counts."""
+"""The number of non-default digits, a serial number, the digits, and the classes of counts."""
 
 MOST_LETTERS = 20_000
 
 _SUMS_TRIED = 20
 _COUNTS_TRIED = 100
-"""What it counts as, in steps of search, to solve inequalities and to look for objects to count."""
+"""Search steps charged for solving inequalities, and for looking for objects to count."""
 
 
 class JointAlphabet:
     """Joint letters of monitors, each with the plainest state that gives it.
 
-    States are those that the universe's axioms allow; numbers fit together, and there can be as
-    many further objects as counts ask for. Raises UndecidedError where that is too much to tell.
+    States satisfy the universe's axioms, their numbers are consistent, and they may have as many
+    further objects as the counts need. Raises UndecidedError if that is too much to decide.
 
-    ``candidates`` are the letters that can be read as far as the diagrams tell, in order. To tell
-    whether some state gives one takes a search of its own, so that is done for those asked for.
+    ``candidates`` are, in order, the letters that the diagrams allow. Whether some state gives a
+    letter takes a search of its own, so that is done on demand.
     """
 
     def __init__(
@@ -93,11 +93,11 @@ class JointAlphabet:
         self._search()
 
     def as_usual(self, axioms: Sequence[Axiom]) -> JointAlphabet:
-        """The alphabet of the states in which these axioms hold, too, that say what is as usual.
+        """The alphabet of the states in which further axioms hold, which require default values.
 
-        Each says of one declaration that it has its default. It shares with this one what is known.
-        ``is_exact`` tells whether every letter comes from such a state, as far as ``candidates`` do
-        otherwise; if not, there are all that do, and maybe more.
+        Each axiom says that one declaration has its default. The result shares the data of this
+        alphabet. ``is_exact``: whether every letter comes from such a state, as far as
+        ``candidates`` generally do; otherwise all such letters are included, and maybe others.
         """
         usual = copy(self)
         usual._universe = replace(self._universe, axioms=(*self._universe.axioms, *axioms))
@@ -110,7 +110,7 @@ class JointAlphabet:
             level = levels.get(subject_of(own))
             default = None if level is None else self._defaults[level]
             if level is None or default is None or not instance.holds_by_default:
-                # What nothing reads is as usual, but what only sums read is not known.
+                # What nothing reads has its default; what only sums read may not.
                 usual.is_exact &= instance.holds_by_default and instance.subjects.isdisjoint(
                     subjects_read(self._joint.reads)
                 )
@@ -118,7 +118,7 @@ class JointAlphabet:
             usual._digits[level] = (default,)
             usual._usual |= 1 << level
             if isinstance(own, NumberRead):
-                # It is told apart from the numbers around it, on the ways that there are already.
+                # Add thresholds around the default; existing ways stay valid.
                 reads[level] = merged([reads[level], own], self._universe.vocabulary)
                 usual._defaults[level] = state_synthesis.default_digit(
                     reads[level], self._universe.vocabulary
@@ -150,13 +150,13 @@ class JointAlphabet:
         self.candidates: Sequence[JointLetter] = tuple(ways_to)
 
     def read_of(self, name: str) -> Read | None:
-        """The joint read of an enumeration or signal about nobody, None if there is none."""
+        """The joint read of an enumeration or signal without objects, None if there is none."""
         reads = (read for read in self._joint.reads if isinstance(read, Read))
         return next((read for read in reads if (read.name, read.variables) == (name, ())), None)
 
     @property
     def is_counting(self) -> bool:
-        """True if to tell whether some state gives a letter may take long."""
+        """Whether deciding if some state gives a letter may take long, because of counts."""
         return bool(self._counts)
 
     def state(self, letter: JointLetter) -> state_synthesis.JointState | None:
@@ -166,20 +166,20 @@ class JointAlphabet:
         return self._states[letter]
 
     def can_be_read(self, letter: JointLetter) -> bool:
-        """True if some state gives the letter. Raises UndecidedError."""
+        """Whether some state gives the letter. Raises UndecidedError."""
         return self.state(letter) is not None
 
     def states_of(self, word: Iterable[JointLetter]) -> list[state_synthesis.JointState]:
-        """A state for each letter of a word, all of which can be read."""
+        """A state for each letter of a word of possible letters."""
         return [state for letter in word if (state := self.state(letter)) is not None]
 
     @property
     def letters(self) -> list[JointLetter]:
-        """All that can be read."""
+        """All letters that some state gives."""
         return list(filter(self.can_be_read, self.candidates))
 
     def _take(self, steps: int) -> None:
-        """Count steps of the search; other questions are not to wait for this one for ever."""
+        """Count steps of the search, and raise UndecidedError beyond the limit."""
         self._steps_left -= steps
         if self._steps_left < 0:
             raise UndecidedError(
@@ -192,11 +192,11 @@ class JointAlphabet:
         return int(default is not None and digit != default)
 
     def _level(self, nodes: Sequence[int]) -> int:
-        """The first joint read that a node tests; the number of them if none does."""
+        """The first joint read that a node tests; the number of joint reads if there is none."""
         return int(min(self._diagrams.level(nodes), len(self._joint.reads)))
 
     def _after(self, nodes: Nodes, level: int) -> Iterator[tuple[int, Nodes]]:
-        """The digits of a joint read that break no axiom, and the nodes after each."""
+        """The digits of a joint read that violate no axiom, and the nodes after each."""
         rows = self._diagrams.restricted(nodes, level, self._sizes[level])
         for digit in self._digits[level]:
             axioms = self._diagrams.open_axioms(rows[digit][self._n_keys :])
@@ -206,8 +206,8 @@ class JointAlphabet:
     def _numbered(
         self, nodes: Nodes, number_digits: tuple[tuple[int, int], ...]
     ) -> Iterator[tuple[tuple[tuple[int, int], ...], Nodes]]:
-        """Possible digits of sums, and the nodes after each of them."""
-        # A number that is as usual is, too, where only sums tell it apart that are chosen later.
+        """Possible digits of the sums, and the nodes after each combination."""
+        # Fix a usual number to its default even where only sums chosen later depend on it.
         decided = number_digits[-1][0] + 1 if number_digits else 0
         usual = self._usual >> decided << decided
         level = self._level(nodes)
@@ -223,7 +223,7 @@ class JointAlphabet:
                 yield from self._numbered(following, chosen)
 
     def _fits(self, number_digits: tuple[tuple[int, int], ...]) -> bool:
-        """Tell whether sums can have these digits, all but the last checked."""
+        """Whether sums can have these digits; all but the last are known to be possible."""
         self._take(_SUMS_TRIED)
         if number_digits not in self._fitting:
             reads = [(self._joint.reads[level], digit) for level, digit in number_digits]
@@ -248,7 +248,7 @@ class JointAlphabet:
     def _state(
         self, chosen: Sequence[tuple[int, int]], classes: Sequence[int]
     ) -> state_synthesis.JointState | None:
-        """A state with these digits at these levels; ``classes`` are those of counts."""
+        """A state with these digits at these levels; ``classes`` are those of the counts."""
         vocabulary = self._universe.vocabulary
         counted = tuple(
             (function.count, function.counted[letter_class])
@@ -256,7 +256,7 @@ class JointAlphabet:
         )
         digits = [(self._joint.reads[level], digit) for level, digit in chosen]
         sums = [(read, digit) for read, digit in digits if isinstance(read, NumberRead)]
-        # Many states differ in nothing but what is no number.
+        # Many states have the same numbers.
         key = tuple(chosen[: len(sums)]), tuple([number for _, number in counted])
         if key not in self._numbers:
             numbers = state_synthesis.solve_numbers(sums, vocabulary, dict(counted))

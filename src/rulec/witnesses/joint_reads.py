@@ -1,4 +1,4 @@
-"""Joint reads of letter functions, one per subject."""
+"""Joint reads of letter functions: one read for each subject."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rulec.witnesses.state_synthesis import value_of
 
 @dataclass(frozen=True, slots=True)
 class JointDigits:
-    """View of a joint read: ``digits[joint digit]`` is a function's own digit."""
+    """Maps a joint read to a function's read: ``digits[joint digit]`` is the function's digit."""
 
     joint: int
     digits: tuple[int, ...]
@@ -24,27 +24,27 @@ class JointDigits:
 
 @dataclass(frozen=True, slots=True)
 class JointReads:
-    """Joint reads, numbers first, and the views of each function's reads."""
+    """Joint reads, numbers first, and how each function's reads follow from them."""
 
     reads: Reads
     views: tuple[tuple[JointDigits, ...], ...]
 
     def own_digits(self, index: int, joint_digits: Sequence[int]) -> tuple[int, ...]:
-        """The digits of one function's reads, given those of the joint ones."""
+        """The digits of one function's reads, given the joint digits."""
         return tuple(view.digits[joint_digits[view.joint]] for view in self.views[index])
 
 
 def joint_reads(functions: Sequence[LetterFunction], vocabulary: Vocabulary) -> JointReads:
-    """Merge what letter functions read.
+    """Merge the reads of letter functions.
 
-    A number is told apart by all their thresholds, an enumeration by all the values that any of
-    them tells apart.
+    The joint read of a number distinguishes the thresholds of all, that of an enumeration the
+    values that any of them distinguishes.
     """
     together: dict[object, list[Read | NumberRead]] = {}
     for function in functions:
         for read in function.reads:
             together.setdefault(subject_of(read), []).append(read)
-    # What depends on several numbers at once is settled first, see ``JointAlphabet``.
+    # Numbers come first, because sums depend on each other, see ``JointAlphabet``.
     subjects = sorted(together, key=lambda joint: not isinstance(together[joint][0], NumberRead))
     position = {subject: number for number, subject in enumerate(subjects)}
     reads = tuple(merged(together[subject], vocabulary) for subject in subjects)
@@ -60,12 +60,12 @@ def joint_reads(functions: Sequence[LetterFunction], vocabulary: Vocabulary) -> 
 
 
 def subject_of(read: Read | NumberRead) -> object:
-    """What a read is about: of one that others are about, too, there is one joint read."""
+    """The subject of a read; reads with the same subject share one joint read."""
     return normal(read)[0] if isinstance(read, NumberRead) else (read.name, read.variables)
 
 
 def normal(read: NumberRead) -> tuple[tuple[tuple[Fraction, Term], ...], Fraction]:
-    """Normal form of a read's sum, and the factor between the two.
+    """The normal form of a read's sum, and the factor between the two.
 
     In normal form terms are sorted by their text, and the first coefficient is 1.
     """
@@ -80,7 +80,7 @@ def normal(read: NumberRead) -> tuple[tuple[tuple[Fraction, Term], ...], Fractio
 
 
 def merged(reads: Sequence[Read | NumberRead], vocabulary: Vocabulary) -> Read | NumberRead:
-    """The joint read of reads about one subject."""
+    """The joint read of reads with one subject."""
     first = reads[0]
     if isinstance(first, NumberRead):
         passed = {
@@ -97,9 +97,9 @@ def merged(reads: Sequence[Read | NumberRead], vocabulary: Vocabulary) -> Read |
 
 
 def _scaled(read: NumberRead) -> tuple[list[Threshold], bool]:
-    """Thresholds scaled to the normal form, and whether they are passed upward there."""
+    """Thresholds scaled to the normal form, and whether the sum still passes them upward."""
     _, factor = normal(read)
-    # The larger a sum, the smaller its negative: one passes where the other stays below.
+    # A negative factor reverses the order, and turns an inclusive threshold into an exclusive one.
     upward = factor > 0
     thresholds = [
         Threshold(threshold.limit / factor, threshold.inclusive is upward)

@@ -1,6 +1,6 @@
 """Monitors, axioms and counts as functions from letters to classes.
 
-Letters are numbers in mixed radix, as those of a monitor.
+Letters are numbers in mixed radix, as for monitors.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from rulec.witnesses.object_universe import (
 from rulec.witnesses.undecided import UndecidedError
 
 MOST_LETTERS = 1 << 15
-"""An axiom or a count that reads more than these is left undecided."""
+"""An axiom or a count that reads more letters than this is left undecided."""
 
 Reads = tuple[Read | NumberRead, ...]
 Digits: TypeAlias = tuple[int, ...]
@@ -50,7 +50,7 @@ def digits_of(letter: int, reads: Sequence[Read | NumberRead]) -> Digits:
 
 
 def is_natural(read: Read | NumberRead, digit: int) -> bool:
-    """Tell whether a quantity with this digit need not be below zero."""
+    """Whether a quantity with this digit need not be negative."""
     if isinstance(read, Read) or scale(read).quantity is None:
         return True
     return digit == len(scale(read).floors) or scale(read).floors[digit] > 0
@@ -65,7 +65,7 @@ def letter_of(digits: Sequence[int], reads: Sequence[Read | NumberRead]) -> int:
 
 
 def constant_reads(reads: Sequence[Read | NumberRead], vocabulary: Vocabulary) -> tuple[bool, ...]:
-    """Tell of each read whether it cannot change in a trace: it has one digit in all states."""
+    """For each read whether its digit is the same in all states of a trace, being a constant."""
     constants = frozenset(vocabulary.constants)
     return tuple(
         read.name in constants
@@ -79,7 +79,7 @@ def constant_reads(reads: Sequence[Read | NumberRead], vocabulary: Vocabulary) -
 
 @dataclass(frozen=True, slots=True)
 class LetterFunction:
-    """Function from letters of some reads about objects to letter classes."""
+    """A function from letters of some reads about objects to letter classes."""
 
     reads: Reads
     letters: tuple[int, ...]
@@ -90,7 +90,7 @@ class LetterFunction:
 
 
 def monitor_function(machine: MealyMonitor, names: Mapping[str, str]) -> LetterFunction:
-    """Letter function of a rule's monitor for a binding of its variables."""
+    """The letter function of a rule's monitor for a binding of its variables."""
 
     def renamed(term: ltl.Term) -> ltl.Term:
         match canonical_term(term):
@@ -109,7 +109,7 @@ def monitor_function(machine: MealyMonitor, names: Mapping[str, str]) -> LetterF
 
 
 def axiom_function(formula: ltl.Formula, vocabulary: Vocabulary) -> LetterFunction:
-    """Letter function of a non-temporal formula: 1 or 0. Raises UndecidedError."""
+    """The letter function of a non-temporal formula: 1 or 0. Raises UndecidedError."""
     reads, (holds,) = truths_of([formula], vocabulary)
     letters = range(count_letters(reads))
     return LetterFunction(reads, tuple(holds >> letter & 1 for letter in letters))
@@ -117,9 +117,9 @@ def axiom_function(formula: ltl.Formula, vocabulary: Vocabulary) -> LetterFuncti
 
 @dataclass(frozen=True, slots=True)
 class CountFunction:
-    """Number of the universe's own objects that count: ``counted[class]``.
+    """The number of the universe's own objects that count: ``counted[class]``.
 
-    Its class also tells apart all else that the count depends on, besides further objects.
+    Its class also distinguishes everything else that the count depends on, except further objects.
     """
 
     count: ltl.Count
@@ -127,12 +127,12 @@ class CountFunction:
     counted: tuple[int, ...]
 
     def counted_in(self, digits: Sequence[int]) -> int:
-        """Number of counted objects in the letter with these digits."""
+        """The number of counted objects in the letter with these digits."""
         return self.counted[self.function.value(digits)]
 
 
 def count_function(count: ltl.Count, universe: ObjectUniverse) -> CountFunction:
-    """A count as a function of its universe. Raises UndecidedError if others stand in it."""
+    """A count as a function of its universe. Raises UndecidedError if it contains other counts."""
     if any(True for _ in counts_in(count.body)):
         raise UndecidedError("a count stands inside another one")
     vocabulary = universe.vocabulary
@@ -147,7 +147,7 @@ def count_function(count: ltl.Count, universe: ObjectUniverse) -> CountFunction:
         for read in reads_of(plain_body_of(count, EXTRA, Itself(vocabulary)), vocabulary)
         if not speaks_of_extra(read)
     }
-    # In the order of the first mention; where both read a number, its thresholds are the own ones.
+    # In the order of first mention; for a number in both, the thresholds of `own` are used.
     reads = tuple((own | around | own).values())
     beside = [place for place, key in enumerate(own | around) if key in around]
     truths = _truths(bodies, reads)
@@ -162,7 +162,7 @@ def count_function(count: ltl.Count, universe: ObjectUniverse) -> CountFunction:
 
 
 def counts_read(reads: Iterable[Read | NumberRead]) -> list[ltl.Count]:
-    """The counts in the sums that are read, each once."""
+    """The distinct counts in the sums that are read."""
     sums = [read for read in reads if isinstance(read, NumberRead)]
     terms = dict.fromkeys(term for read in sums for _, term in read.terms)
     return [term for term in terms if isinstance(term, ltl.Count)]
@@ -170,15 +170,15 @@ def counts_read(reads: Iterable[Read | NumberRead]) -> list[ltl.Count]:
 
 @lru_cache(maxsize=1024)
 def body_of(count: ltl.Count, name: str) -> ltl.Formula:
-    """Condition that an object must satisfy to be counted."""
+    """The condition that an object must satisfy to be counted."""
     return _settled(rename_variables(count.body, {count.variable: name}))
 
 
 @lru_cache(maxsize=1024)
 def plain_body_of(count: ltl.Count, name: str, vocabulary: Itself[Vocabulary]) -> ltl.Formula:
-    """The same without what decides nothing, as in ``other = v and ...`` of who is not v.
+    """The same without parts that decide nothing, such as ``other = v and ...`` for another object.
 
-    Where a name has no default a state has to tell it all the same, and nothing is left out.
+    Nothing is left out if it has a name without default, whose value a state has to give anyway.
     """
     whole = body_of(count, name)
     defaults = [vocabulary.item.declarations[each].default for each in names_of(whole)]
@@ -195,7 +195,7 @@ def _settled(formula: ltl.Formula) -> ltl.Formula:
 
 
 def speaks_of_extra(read: Read | NumberRead) -> bool:
-    """Tell whether a read is about an additional, counted object."""
+    """Whether a read is about an additional, counted object."""
     if isinstance(read, Read):
         return EXTRA in read.variables
     return any(EXTRA in variables_of(term) for _, term in read.terms)
@@ -212,7 +212,7 @@ def _all_of(formulas: Sequence[ltl.Formula]) -> ltl.Formula:
 def truths_of(formulas: Sequence[ltl.Formula], vocabulary: Vocabulary) -> tuple[Reads, list[int]]:
     """Joint reads of non-temporal formulas, and the letters that satisfy each.
 
-    A set of letters is the bits of an integer. Raises UndecidedError if there are too many.
+    A set of letters is a bit set. Raises UndecidedError if there are too many.
     """
     reads = reads_of(_all_of(formulas), vocabulary)
     return reads, _truths(formulas, reads)

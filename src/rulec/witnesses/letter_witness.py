@@ -1,7 +1,7 @@
 """Letters of one rule's monitor as states of the world.
 
-A letter fixes what the rule reads. Where the rule counts objects, what the counts read of the
-rule's own objects is chosen too, so that with further objects the counts come out.
+A letter fixes what the rule reads. If the rule counts objects, the values that the counts read of
+the rule's own objects are chosen too, so that further objects can give the right counts.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ from rulec.witnesses.trace_synthesis import place_objects
 from rulec.witnesses.undecided import UndecidedError
 
 MOST_CHOICES = 4096
-"""Of what counts read of a rule's own objects no more combinations are tried."""
+"""The most combinations tried of values that counts read of a rule's own objects."""
 
 
 @dataclass(frozen=True, slots=True)
 class WitnessTrace:
-    """A trace as an example says it: further objects, and the states.
+    """A trace in the form of an example: further objects, and the states.
 
-    Where the objects that counts need cannot be told, ``required`` has for each state how many they
-    are for each count, the rule's own included.
+    If the objects for the counts cannot be determined, ``required`` has for each state the number
+    of objects for each count, including the rule's own.
     """
 
     objects: tuple[Variable, ...]
@@ -75,11 +75,11 @@ class LetterWitnesses:
         ]
 
     def constants(self, letter: int) -> Digits:
-        """The digits of what cannot change: letters of one trace have the same."""
+        """The digits of what is constant in a trace; all letters of one trace share them."""
         return tuple(compress(self._digits[letter], self._constant))
 
     def all_constants(self) -> list[Digits]:
-        """All that letters of a trace can have for what cannot change, with most defaults first."""
+        """All possible digits of the constants in a trace, those with most defaults first."""
         letters = (letter for members in self._members for letter in members)
         plain = tuple(compress(self._plain, self._constant))
         return sorted(
@@ -87,13 +87,16 @@ class LetterWitnesses:
         )
 
     def plainest(self, letter_class: int, constants: Digits | None = None) -> int | None:
-        """Possible letter of a class with most defaults, of those with ``constants``, or None."""
+        """The possible letter of a class, maybe with given ``constants``, with most defaults.
+
+        Or None.
+        """
         return self._nearest_of(letter_class, self._plain, constants)
 
     def nearest(self, letter: int, constants: Digits | None = None) -> list[tuple[int, int]]:
-        """Nearest possible letter in every other class, after its Hamming distance.
+        """The nearest possible letter in every other class, with its Hamming distance.
 
-        With ``constants`` only of letters that have them.
+        With ``constants`` only letters that have them.
         """
         own, digits = self._monitor.letters[letter], self._digits[letter]
         nearest = [
@@ -106,13 +109,13 @@ class LetterWitnesses:
         ]
 
     def state(self, letter: int) -> state_synthesis.JointState | None:
-        """A state that has this letter; None if none has it."""
+        """A state that has this letter; None if there is none."""
         if letter not in self._states:
             self._states[letter] = self._state(letter)
         return self._states[letter]
 
     def trace(self, word: Sequence[int]) -> WitnessTrace:
-        """A trace with these letters, all of them possible."""
+        """A trace with these letters, all of which are possible."""
         states = [state for letter in word if (state := self.state(letter)) is not None]
         assert len(states) == len(word), "only possible letters are read"
         if self._undecided.isdisjoint(word):
@@ -146,9 +149,9 @@ class LetterWitnesses:
         return counts, joint_reads(functions, self._universe.vocabulary)
 
     def _counted_state(self, digits: Sequence[int]) -> state_synthesis.JointState | None:
-        """State with these digits of the monitor's reads and fitting counts.
+        """A state with these digits of the monitor's reads and fitting counts.
 
-        What the monitor leaves open has its default where it can.
+        What the monitor leaves open has its default where possible.
         """
         counts, joint = self._joint_counts
         choices = [self._allowed(level, digits) for level in range(len(joint.reads))]
@@ -166,7 +169,7 @@ class LetterWitnesses:
         return None
 
     def _allowed(self, level: int, digits: Sequence[int]) -> list[int]:
-        """Digits of a joint read that the monitor's allow, default first."""
+        """The digits of a joint read that are compatible with the monitor's, default first."""
         _, joint = self._joint_counts
         read = joint.reads[level]
         default = state_synthesis.default_digit(read, self._universe.vocabulary)
@@ -182,7 +185,7 @@ class LetterWitnesses:
         return sorted(allowed, key=lambda joint_digit: joint_digit != default)
 
     def _stem(self, kind: str) -> str:
-        """The variable by which the rule counts objects of a type."""
+        """The variable with which the rule counts objects of a type."""
         is_subtype = self._universe.vocabulary.is_subtype
         return next(count.variable for count in self._counts if is_subtype(kind, count.type))
 

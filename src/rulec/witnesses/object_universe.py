@@ -1,4 +1,4 @@
-"""Universe of objects for comparing rules, with its axioms."""
+"""A universe of objects for comparing rules, with its axioms."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from rulec.vocabulary import Vocabulary
 from rulec.vocabulary.vocabulary_model import choices
 
 COUNTED = "?"
-"""The variable of every count in a universe; that of one with counts inside is longer."""
+"""The variable of every count in a universe; repeated if the count contains counts."""
 
 EXTRA = "+"
-"""An object that is there only to be counted, before it has a name."""
+"""The name of an object that exists only to be counted, before it is given a name."""
 
 
 T = TypeVar("T")
@@ -25,7 +25,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Itself(Generic[T]):
-    """A key that is equal for the same object alone, for equal ones take long to compare."""
+    """A key compared by identity, because comparing equal objects would take long."""
 
     item: T
 
@@ -38,7 +38,7 @@ class Itself(Generic[T]):
 
 @dataclass(frozen=True, slots=True)
 class ObjectUniverse:
-    """Objects that are always present, their types, and the axioms on them.
+    """Objects that are always present, their types, and the axioms about them.
 
     ``unsaid`` are declarations that traces leave out.
     """
@@ -65,7 +65,7 @@ class ObjectUniverse:
 
 
 def applied_to(axiom: Axiom, names: Mapping[str, str]) -> ltl.Formula:
-    """An axiom, said of objects."""
+    """An axiom's formula with objects for its variables."""
     return rename_variables(_canonical(axiom.formula), names)
 
 
@@ -83,11 +83,11 @@ def canonical_term(term: ltl.Term) -> ltl.Term:
     if not isinstance(term, ltl.Count):
         return term
     body = _canonical(term.body)
-    # No object has such a name, and no count inside another one has the same.
+    # Objects never have such names, and nested counts get names of different lengths.
     name = COUNTED * (1 + max((len(count.variable) for count in counts_in(body)), default=0))
     return ltl.Count(name, term.type, rename_variables(body, {term.variable: name}))
 
 
 def counts_in(formula: ltl.Formula) -> Iterator[ltl.Count]:
-    """The counts that a formula compares, not those inside of others."""
+    """The counts that a formula compares, without those inside other counts."""
     yield from (read for read in reads_in(formula) if isinstance(read, ltl.Count))

@@ -1,7 +1,7 @@
-"""The axioms that can tell anything about what is read: its cone of influence.
+"""The axioms that matter to what is read: its cone of influence.
 
-All others hold where everything that they speak of has its default, and share nothing with what is
-read; so in any state their part can be as by default, and they decide nothing.
+All others hold if everything that they are about has its default, and share nothing with what is
+read; so in any state their part can have its defaults, and they decide nothing.
 """
 
 from __future__ import annotations
@@ -20,57 +20,57 @@ from rulec.witnesses.object_universe import Itself, ObjectUniverse, applied_to, 
 from rulec.witnesses.state_synthesis import Subject, default_digit
 
 MOST_KEPT = 20_000
-"""So many axioms, said of some objects, are kept for the next question about them."""
+"""The most ground axioms that are kept for later questions about the same objects."""
 
 
 @dataclass(frozen=True, eq=False)
 class GroundAxiom:
-    """An axiom that is said of objects: its formula, and what is asked of it again and again."""
+    """An axiom with objects for its variables: its formula, and cached properties."""
 
     formula: Formula
     vocabulary: Vocabulary
 
     @cached_property
     def function(self) -> LetterFunction:
-        """Its letter function. Raises UndecidedError."""
+        """The axiom's letter function. Raises UndecidedError."""
         return axiom_function(self.formula, self.vocabulary)
 
     @cached_property
     def is_counting(self) -> bool:
-        """True if it compares a count."""
+        """Whether the axiom compares a count."""
         return any(True for _ in counts_in(self.formula))
 
     @cached_property
     def objects(self) -> frozenset[str]:
-        """The objects that it speaks of."""
+        """The objects that the axiom is about."""
         return frozenset(variables_of(self.formula))
 
     @cached_property
     def subjects(self) -> frozenset[Subject]:
-        """What it is about; what its counts read are functions of their own."""
+        """The subjects that the axiom reads, without those that its counts read."""
         return subjects_read(self.function.reads)
 
     @cached_property
     def holds_by_default(self) -> bool:
-        """True if it holds where everything that it reads has its default."""
+        """Whether the axiom holds if everything that it reads has its default."""
         return _holds_by_default(self.function, self.vocabulary)
 
 
 def ground_axioms(universe: ObjectUniverse) -> Iterator[GroundAxiom]:
-    """The axioms, said of the universe's objects; those of one vocabulary are kept."""
+    """The axioms for the universe's objects; cached for each vocabulary."""
     known = _known_instances(Itself(universe.vocabulary))
     if len(known) > MOST_KEPT:
         known.clear()
     for axiom, names in universe.axiom_bindings():
         key = id(axiom), *names.values()
         if key not in known:
-            # It is kept beside it, so that no other one can have its number.
+            # Keeping the axiom alive ensures that its id is not reused.
             known[key] = axiom, GroundAxiom(applied_to(axiom, names), universe.vocabulary)
         yield known[key][1]
 
 
 def axioms_about(name: str, kind: str, universe: ObjectUniverse) -> tuple[GroundAxiom, ...]:
-    """The axioms that count nothing, said of one more object beside the universe's."""
+    """The axioms without counts about one more object besides the universe's."""
     known = _about(Itself(universe.vocabulary))
     key = name, kind, tuple(universe.objects.items()), tuple(map(id, universe.axioms))
     if key not in known:
@@ -101,9 +101,9 @@ def _known_instances(_: Itself[Vocabulary]) -> dict[tuple[object, ...], tuple[Ax
 
 
 def relevant_axioms(axioms: Sequence[GroundAxiom], read: Iterable[Reads]) -> list[GroundAxiom]:
-    """The axioms, in their order, that speak of what is read, or lead from it to more.
+    """The axioms, in their order, connected with what is read, directly or through others.
 
-    Those that defaults break are among them, and those that count objects. Raises UndecidedError.
+    Axioms that defaults violate, and those that count objects, are included. Raises UndecidedError.
     """
     reached = {subject for reads in read for subject in subjects_read(reads)}
     waiting = {number: axiom.subjects for number, axiom in enumerate(axioms)}
@@ -124,7 +124,7 @@ def relevant_axioms(axioms: Sequence[GroundAxiom], read: Iterable[Reads]) -> lis
 
 
 def subjects_read(reads: Reads) -> frozenset[Subject]:
-    """What reads are about; what their counts read are functions of their own."""
+    """The subjects of reads, without those that their counts read."""
     subjects: set[Subject] = set()
     for read in reads:
         if isinstance(read, Read):
@@ -136,7 +136,7 @@ def subjects_read(reads: Reads) -> frozenset[Subject]:
 
 
 def hold_by_default(functions: Iterable[LetterFunction], vocabulary: Vocabulary) -> bool:
-    """True if every function without counts is 1 where everything that it reads has its default."""
+    """Whether every function without counts is 1 if everything that it reads has its default."""
     return all(_holds_by_default(function, vocabulary) for function in functions)
 
 

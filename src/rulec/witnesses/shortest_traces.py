@@ -1,6 +1,6 @@
 """Shortest words on which monitors give verdicts, and shortest traces of one rule.
 
-The product of several monitors is searched breadth first, and built as far as the search gets.
+The product of several monitors is searched breadth first, and only built as far as needed.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from rulec.witnesses.undecided import UndecidedError
 
 MOST_STATES = 50_000
 MOST_STEPS = 3_000_000
-"""States of a product that a search looks at, and steps from one to another."""
+"""The most states and transitions of a product that a search examines."""
 
 ProductState = tuple[int, ...]
 
@@ -31,9 +31,9 @@ def shortest_word(
 ) -> tuple[JointLetter, ...] | None:
     """Find a shortest non-empty word with these verdicts, or None.
 
-    Of several the first in the order of ``letters``, of those that can be read; that is asked only
-    where it matters. A single monitor is searched to its end; raises UndecidedError where a product
-    is too large for that.
+    Among several, the first in the order of ``letters`` that can be read is returned;
+    ``can_be_read`` is only called where it matters. A single monitor is searched completely; raises
+    UndecidedError if a product is too large for that.
     """
     start: ProductState = (0,) * len(monitors)
     words: dict[ProductState, tuple[JointLetter, ...]] = {start: ()}
@@ -70,11 +70,11 @@ def shortest_word(
 
 @dataclass(frozen=True, slots=True)
 class ShortestTraces:
-    """Accepted trace and shortest rejected trace of a rule, each or None.
+    """An accepted trace and a shortest rejected trace of a rule, each or None.
 
-    No shorter trace is rejected. The accepted one differs from it in one state where that is
-    possible, and else shows more of the rule than a trace that never leaves the first state of its
-    automaton, if any does. What cannot change is the same in all states.
+    The accepted trace differs from the rejected one in one state if possible; otherwise it shows
+    more of the rule than a trace that never leaves the first state of its automaton, if possible.
+    What cannot change is the same in all states.
     """
 
     accepted: WitnessTrace | None
@@ -82,9 +82,9 @@ class ShortestTraces:
 
 
 def shortest_traces(rule: CompiledRule, vocabulary: Vocabulary) -> ShortestTraces:
-    """Find the traces, their states in the rule's variables.
+    """Find the traces, with states in terms of the rule's variables.
 
-    States that no world can be in, such as one with `speed < 30` and `speed > 50`, do not occur.
+    Impossible states, such as one with `speed < 30` and `speed > 50`, do not occur.
     """
     monitor = rule.machine
     witnesses = LetterWitnesses(rule, vocabulary)
@@ -103,9 +103,9 @@ def shortest_traces(rule: CompiledRule, vocabulary: Vocabulary) -> ShortestTrace
 def _shortest(
     monitor: MealyMonitor, witnesses: LetterWitnesses, *, accepted: bool
 ) -> list[int] | None:
-    """A shortest word of letters that one trace can have, with most defaults of what is constant.
+    """A shortest word of letters with the same constants, with most defaults of these.
 
-    Mostly the plainest letters of all agree on that; only else it is searched for each value.
+    Mostly the plainest letters have the same constants; only if not, each value is searched.
     """
     plainest = _shortest_with(None, monitor, witnesses, accepted=accepted)
     if plainest is None or len(set(map(witnesses.constants, plainest))) == 1:
@@ -130,9 +130,9 @@ def _shortest_with(
 
 
 def _after_first_state(monitor: MealyMonitor) -> MealyMonitor:
-    """Monitor that accepts only words whose runs leave the first state.
+    """A monitor that accepts only words whose runs leave the first state.
 
-    State ``n + 1`` is state ``n`` of a run that has left; state 0 the first one until then.
+    State ``n + 1`` is state ``n`` of a run that has left; state 0 is the first one before that.
     """
     moved = [tuple([target + 1 for target in row]) for row in monitor.successors]
     first = tuple([target + 1 if target else 0 for target in monitor.successors[0]])
@@ -152,14 +152,14 @@ def _after_first_state(monitor: MealyMonitor) -> MealyMonitor:
 def _near_miss(
     monitor: MealyMonitor, rejected: Sequence[int], witnesses: LetterWitnesses
 ) -> list[int] | None:
-    """Accepted word that differs from the rejected one in one letter.
+    """An accepted word that differs from the rejected one in one letter.
 
-    It is as late as possible, changed as little as possible, and then so that the run visits most
-    states of the monitor.
+    The change is as late and as small as possible, and then so that the run visits most states of
+    the monitor.
     """
     for place in reversed(range(len(rejected))):
         candidates = []
-        # A single state may differ in what cannot change; in a longer word it is as it was.
+        # In a word of one letter even a constant may differ; in a longer word it may not.
         constants = witnesses.constants(rejected[place]) if len(rejected) > 1 else None
         for distance, letter in witnesses.nearest(rejected[place], constants):
             word = [*rejected[:place], letter, *rejected[place + 1 :]]

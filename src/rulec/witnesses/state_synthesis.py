@@ -20,7 +20,7 @@ from rulec.vocabulary.vocabulary_model import default_value
 from rulec.witnesses.fourier_motzkin import LinearBound, solve
 
 Subject = tuple[str, tuple[str, ...]]
-"""A declaration and the objects that it is asked about."""
+"""A declaration and the objects that it is applied to."""
 
 Value = bool | str | float
 
@@ -28,14 +28,15 @@ Digits = Sequence[tuple[Read | NumberRead, int]]
 """Reads, each with the digit of its value."""
 
 NumberDigits = Sequence[tuple[NumberRead, int]]
-"""Sums, and how many of its thresholds each of them passes."""
+"""Sums, each with the number of its thresholds that it passes."""
 
 
 @dataclass(frozen=True, slots=True)
 class JointState:
-    """A state: the values that decide, all others may be anything.
+    """A state: the values that matter; all others are arbitrary.
 
-    ``number_digits`` are sums that decide, ``counted`` says how many of its own objects count.
+    ``number_digits`` are the sums that matter, ``counted`` is the number of its own objects that
+    each count counts.
     """
 
     values: Mapping[Subject, Value]
@@ -43,7 +44,7 @@ class JointState:
     counted: tuple[tuple[Count, int], ...] = ()
 
     def value(self, subject: Subject, vocabulary: Vocabulary) -> Value:
-        """The value that decides, or the default one."""
+        """The subject's value in the state, or the default."""
         value = self.values.get(subject)
         return default_value(vocabulary.declarations[subject[0]]) if value is None else value
 
@@ -53,7 +54,7 @@ class JointState:
         vocabulary: Vocabulary,
         counted: Mapping[Count, int],
     ) -> Fraction:
-        """The value of a sum, where so many objects are counted."""
+        """The value of a sum, with the given numbers for its counts."""
         total = Fraction(0)
         for factor, term in terms:
             value: Value = (
@@ -88,7 +89,7 @@ def float_values(numbers: Mapping[Term, Fraction]) -> dict[Subject, Value]:
 
 
 def values_of(digits: Digits, vocabulary: Vocabulary) -> dict[Subject, Value]:
-    """The values of what is no number."""
+    """The values of reads that are not numbers."""
     return {
         (read.name, read.variables): value_of(read, digit, vocabulary)
         for read, digit in digits
@@ -99,15 +100,15 @@ def values_of(digits: Digits, vocabulary: Vocabulary) -> dict[Subject, Value]:
 def solve_numbers(
     number_digits: NumberDigits, vocabulary: Vocabulary, least: Mapping[Count, int]
 ) -> dict[Term, Fraction] | None:
-    """Numbers with these digits, preferably defaults, and counts from ``least`` on."""
+    """Numbers with these digits, preferably defaults, and counts at least ``least``."""
     solver = NumberSolver([read for read, _ in number_digits], vocabulary, least)
     return solver.solve([digit for _, digit in number_digits])
 
 
 class NumberSolver:
-    """Numbers for the digits of some sums, preferably defaults, and counts from ``least`` on.
+    """Finds numbers for digits of some sums, preferably defaults, and counts at least ``least``.
 
-    What the sums have in common is told once, for there are many digits.
+    What does not depend on the digits is computed once, because there are many digits.
     """
 
     def __init__(
@@ -151,13 +152,13 @@ class NumberSolver:
 
 
 def _terms_of(reads: Sequence[NumberRead]) -> list[Term]:
-    """What the sums add up, quantities first."""
+    """The terms of the sums, quantities first."""
     terms = dict.fromkeys(term for read in reads for _, term in read.terms)
     return sorted(terms, key=lambda term: isinstance(term, Count))
 
 
 def _apart(reads: Sequence[NumberRead]) -> list[list[int]]:
-    """The places of sums in groups, so that no term is in two of these."""
+    """The indices of sums in groups that share no term."""
     groups: list[tuple[set[Term], list[int]]] = []
     for place, read in enumerate(reads):
         terms, places = {term for _, term in read.terms}, [place]
@@ -179,10 +180,9 @@ def _part_solved(
     *,
     is_natural: bool,
 ) -> Mapping[Term, Fraction] | None:
-    """Numbers with these digits, if ``is_natural`` from zero on.
+    """Numbers with these digits, not negative if ``is_natural``.
 
-    Of each term is ``given`` its default, None if there is none, or how many objects count at
-    least.
+    ``given`` has each term's default (None if it has none), or the least number of counted objects.
     """
     least = {term: int(number or 0) for term, number in given if isinstance(term, Count)}
     system, quantities, counts = _linear_system(number_digits, least)
@@ -201,14 +201,15 @@ def numbers_near_thresholds(
 ) -> dict[QuantityTerm, float] | None:
     """Numbers of quantities with these digits, close to the thresholds, for tests.
 
-    Of a sum of several quantities one is close, the others have their defaults, or are zero, unless
-    they are compared by themselves. None if there are none, or if floats cannot write them.
+    In a sum of several quantities one is close, the others have their defaults or are zero, unless
+    they are compared by themselves. None if there are no such numbers, or floats cannot represent
+    them.
     """
     system, quantities, _ = _linear_system(number_digits, {})
     preferred: dict[Term, Fraction] = {}
     listed: list[QuantityTerm] = []
     order: list[Term] = []
-    # A quantity that is compared by itself has less of a choice than one in a sum only.
+    # Quantities compared by themselves have less choice than those in sums only.
     for read, _ in sorted(number_digits, key=lambda pair: len(pair[0].terms)):
         addends = [term for _, term in read.terms]
         new = [term for term in quantities if term not in listed and term in addends]
@@ -227,7 +228,7 @@ def numbers_near_thresholds(
 
 
 def _natural(quantities: Iterable[QuantityTerm]) -> list[LinearBound]:
-    """Bounds at zero: most quantities are nothing below it, though nobody has said so."""
+    """Lower bounds at zero: most quantities are never negative, though no declaration says so."""
     return [LinearBound({term: Fraction(-1)}, Fraction(0)) for term in quantities]
 
 
@@ -255,7 +256,7 @@ def required_counts(state: JointState, vocabulary: Vocabulary) -> dict[Count, in
 
 
 def are_consistent(number_digits: NumberDigits) -> bool:
-    """Tell whether numbers with these digits exist; counts are natural numbers."""
+    """Whether numbers with these digits exist; counts are natural numbers."""
     system, quantities, counts = _linear_system(number_digits, {})
     return solve(system, [*quantities, *counts], {}, frozenset(counts)) is not None
 
@@ -298,7 +299,7 @@ def value_of(read: Read, digit: int, vocabulary: Vocabulary) -> bool | str:
 
 
 def default_digit(read: Read | NumberRead, vocabulary: Vocabulary) -> int | None:
-    """Digit of a read by defaults alone; None if one is missing."""
+    """The digit of a read if everything has its default; None if a default is missing."""
     if isinstance(read, Read):
         default = vocabulary.declarations[read.name].default
         return None if default is None else read.digit(default)
@@ -315,7 +316,10 @@ def default_digit(read: Read | NumberRead, vocabulary: Vocabulary) -> int | None
 def subjects_of(
     vocabulary: Vocabulary, objects: Mapping[str, str], names: Set[str] | None = None
 ) -> Iterator[tuple[Subject, Declaration]]:
-    """Subjects that states can have values for, all or of some names, and their declarations."""
+    """The subjects for which states can have values, with their declarations.
+
+    All or of some names.
+    """
     for name, declaration in vocabulary.declarations.items():
         if names is not None and name not in names:
             continue

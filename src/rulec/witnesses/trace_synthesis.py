@@ -26,11 +26,11 @@ def place_objects(
 ) -> tuple[dict[str, str], list[dict[Subject, Value]]]:
     """Name the objects that the counts of all states need besides the universe's.
 
-    ``stem`` gives for a type what the names of such objects begin with. Returns their types by
-    name, and the values of each state. Raises UndecidedError if the objects counted in one state
-    are in the way in another.
+    ``stem`` gives the beginning of the names of such objects by type. Returns their types by name,
+    and the values of each state. Raises UndecidedError if objects that one state needs contradict
+    another.
     """
-    # Each type as often as any state needs it.
+    # Each type as often as the state that needs most of it.
     most: Counter[str] = Counter()
     kinds = CountedObjectKinds(universe)
     for state in states:
@@ -63,8 +63,8 @@ def synthesize_trace(
 ) -> Trace:
     """Synthesise a trace through these states for which ``shows`` holds.
 
-    Raises UndecidedError if the objects that are there to be counted are in the way, or if what
-    cannot change would have to.
+    Raises UndecidedError if objects needed for counts prevent that, or if a constant would have to
+    change.
     """
     objects, placed = place_objects(states, universe, str)
     all_objects = {**universe.objects, **objects}
@@ -78,8 +78,8 @@ def synthesize_trace(
             if shows(trace):
                 return trace
         except RulecError:
-            # Facts of several objects may rule out objects that are there to be counted, or the
-            # value that what cannot change was given.
+            # Facts about several objects may exclude objects added for counts, or the value
+            # chosen for a constant.
             if not types and not changing:
                 raise
     if changing:
@@ -92,9 +92,9 @@ def synthesize_trace(
 def _changing_constants(
     placed: Sequence[Mapping[Subject, Value]], universe: ObjectUniverse
 ) -> dict[Subject, tuple[Value, ...]]:
-    """What states differ in though it cannot change, with its values, in the order of the states.
+    """The constants whose values differ between states, with the values in the order of states.
 
-    Automata read each state for itself, and what a state does not say has its default.
+    Automata read each state separately, and a missing value has its default.
     """
     declarations = universe.vocabulary.declarations
     constants = set(universe.vocabulary.constants)
@@ -113,9 +113,10 @@ def _changing_constants(
 def _settled(
     placed: list[dict[Subject, Value]], changing: Mapping[Subject, Sequence[Value]]
 ) -> Iterator[list[dict[Subject, Value]]]:
-    """The states with one value throughout for what cannot change.
+    """The states, with one value throughout for each constant that changes.
 
-    A value that one state says holds in all of them, so that what the others say is no default.
+    A value that one state gives is used in all of them, so that other states do not have the
+    default.
     """
     for chosen in product(*changing.values()):
         settled = dict(zip(changing, chosen, strict=True))

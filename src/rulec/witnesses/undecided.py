@@ -1,14 +1,14 @@
-"""Error for questions that are too large or not supported."""
+"""Errors for questions that are too large or not supported."""
 
 from __future__ import annotations
 
 
 class UndecidedError(Exception):
-    """The question is left open; the text says why, as a clause."""
+    """The question is left undecided; the text gives the reason as a clause."""
 
 
 class ChangingConstantsError(UndecidedError):
-    """The shortest words change what cannot change in a trace; others may not.
+    """The shortest words change what is constant in a trace; other words may not.
 
     ``names`` are the declarations whose values would have to change.
     """

@@ -221,7 +221,7 @@ def readings(
                 places[target] = len(places)
                 waiting.append(target)
             row.append(places[target])
-            # An empty tuple: anything is possible. Without a known step facts exclude all: not kept.
+            # `sets` is empty if anything is possible. If facts exclude every choice it is not kept.
             kept.append(bool(known) and max(step.worst for step in known) == KEPT)
             best = min((step.best for step in known), default=VIOLATED)
             not_lost.append(sets == anything or best == KEPT)

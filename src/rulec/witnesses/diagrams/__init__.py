@@ -1,1 +1,1 @@
-"""Decision diagrams of what is read together, and ways through them."""
+"""Decision diagrams of joint reads, and plainest ways through them."""

@@ -19,14 +19,14 @@ Children = tuple[int, ...]
 
 
 class _Nodes:
-    """The unique table: every node once. A leaf's only child is its class."""
+    """The unique table: every node exists once. The only child of a leaf is its class."""
 
     def __init__(self) -> None:
         self._known: dict[tuple[float, Children], int] = {}
         self._nodes: list[tuple[float, Children]] = []
 
     def add(self, level: float, *children: int) -> int:
-        """Node that tests a level, or a leaf, which tests infinity."""
+        """The node that tests a level, or a leaf, whose level is infinity."""
         if level != inf and children.count(children[0]) == len(children):
             return children[0]
         key = (level, children)
@@ -37,16 +37,16 @@ class _Nodes:
         return node
 
     def level(self, nodes: Iterable[int]) -> float:
-        """Index of the first read that one of some nodes tests; infinity for leaves."""
+        """The index of the first read that any of some nodes tests; infinity for leaves."""
         known = self._nodes
         return min([known[node][0] for node in nodes])
 
     def is_open(self, node: int) -> bool:
-        """True if a node tests something."""
+        """Whether a node tests something, so that it is not a leaf."""
         return self._nodes[node][0] != inf
 
     def value(self, node: int) -> int:
-        """The class of a node that tests nothing any more."""
+        """The class of a leaf."""
         return self._nodes[node][1][0]
 
 
@@ -65,7 +65,7 @@ class _OwnDiagram(_Nodes):
         (self.root,) = nodes
 
     def after(self, node: int, place: int, digit: int) -> int:
-        """Restriction of a node to one digit of a read."""
+        """The restriction of a node to one digit of a read."""
         own, children = self._nodes[node]
         if own == place:
             return children[digit]
@@ -80,14 +80,14 @@ class _OwnDiagram(_Nodes):
 
 @lru_cache(maxsize=1024)
 def _own_diagram(letters: tuple[int, ...], sizes: tuple[int, ...]) -> _OwnDiagram:
-    """Kept, because a rule is compared to many others."""
+    """The diagram of a letter function; cached, because a rule is compared with many others."""
     return _OwnDiagram(letters, sizes)
 
 
 class DecisionDiagrams(_Nodes):
     """All nodes of some diagrams over the same joint reads.
 
-    ``false`` and ``true`` are the leaves of functions that have no other classes than 0 and 1.
+    ``false`` and ``true`` are the leaves of functions with classes 0 and 1 only.
     """
 
     def __init__(self) -> None:
@@ -96,7 +96,7 @@ class DecisionDiagrams(_Nodes):
         self.false, self.true = self.add(inf, 0), self.add(inf, 1)
 
     def of(self, function: LetterFunction, views: Sequence[JointDigits]) -> int:
-        """The diagram of a function: its class, given the joint digits."""
+        """The diagram of a function in terms of the joint digits."""
         own = _own_diagram(function.letters, tuple(read.size for read in function.reads))
         by_level: dict[int, list[tuple[int, JointDigits]]] = {}
         for place, view in enumerate(views):
@@ -121,7 +121,7 @@ class DecisionDiagrams(_Nodes):
         return built(own.root, 0)
 
     def restricted(self, nodes: Sequence[int], level: float, size: int) -> list[tuple[int, ...]]:
-        """Restrictions of nodes to each of the digits of a joint read."""
+        """The restrictions of nodes to each of the digits of a joint read."""
         known = self._nodes
         rows = [
             children if own == level else (node,) * size
@@ -131,7 +131,7 @@ class DecisionDiagrams(_Nodes):
         return list(zip(*rows, strict=True))
 
     def open_axioms(self, nodes: Iterable[int]) -> tuple[int, ...] | None:
-        """Those of some functions that are not true yet, each once; None if one is false."""
+        """The distinct functions among some that are not yet true; None if one is false."""
         left = {*nodes}
         if self.false in left:
             return None
@@ -139,9 +139,9 @@ class DecisionDiagrams(_Nodes):
         return tuple(sorted(left))
 
     def support(self, nodes: Iterable[int]) -> int:
-        """The joint reads on which functions of some nodes depend, as the bits of an integer."""
+        """A bit set of the joint reads on which functions of some nodes depend."""
         supports = self._supports
-        # Children are numbered before their parents.
+        # Children have smaller numbers than their parents.
         for level, children in self._nodes[len(supports) :]:
             own = 0 if level == inf else 1 << int(level)
             supports.append(reduce(or_, [supports[child] for child in children], own) if own else 0)

@@ -1,7 +1,7 @@
-"""Ways through decision diagrams with fewest digits other than default ones.
+"""Ways through decision diagrams with the fewest digits that are not defaults.
 
-Nodes that share no read are walked apart, for what one of them chooses is nothing to the others.
-Those of settled classes are left behind, so that a walk is the same whatever has been settled.
+Groups of nodes that share no read are searched separately, since their choices are independent.
+Nodes of settled classes are dropped, so that a search is the same whatever has been settled.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ MOST_NODES = 200_000
 Nodes = tuple[int, ...]
 
 Ways = Mapping[tuple[int, ...], tuple[int, int]]
-"""For some classes how many digits are not the default ones, at least, and the digits chosen.
+"""For each tuple of classes the least number of non-default digits, and the digits chosen.
 
-They come in the order of the first ways to them: smaller digits at earlier levels first.
+In the order of the first ways to them: smaller digits at earlier levels first.
 """
 
 _BITS = 16
@@ -29,7 +29,7 @@ _DIGIT = (1 << _BITS) - 1
 
 
 def chosen_digit(level: int, digit: int) -> int:
-    """The number of one chosen digit; of several, at different levels, it is the sum."""
+    """A number that encodes one chosen digit; several, at different levels, are added."""
     return (digit + 1) << level * _BITS
 
 
@@ -46,9 +46,9 @@ def digits_chosen(chosen: int) -> list[tuple[int, int]]:
 
 @dataclass(frozen=True, slots=True)
 class Choices:
-    """The number of digits, those that may be chosen, and the default one, of each level.
+    """For each level the number of digits, those that may be chosen, and the default one.
 
-    At the ``usual`` levels, the bits of an integer, there is a single one, the default.
+    At the ``usual`` levels (a bit set) the only choice is the default.
     """
 
     sizes: Sequence[int]
@@ -59,11 +59,11 @@ class Choices:
 
 @dataclass(frozen=True, slots=True)
 class _Parts:
-    """What hangs together among some nodes.
+    """Nodes divided into groups that share reads.
 
-    Open ``keys``, each once, with the axioms ``around`` them, and groups of axioms ``apart``.
-    ``whole`` picks the classes of all keys from those of open ones, followed by the ``settled``; it
-    is None if they are the same.
+    Distinct open ``keys``, the axioms ``around`` them, and groups of axioms ``apart``. ``whole``
+    builds the classes of all keys from those of the open ones, followed by the ``settled``; None if
+    these are the same.
     """
 
     keys: Nodes
@@ -75,17 +75,17 @@ class _Parts:
 
 @dataclass(frozen=True, slots=True)
 class KnownWays:
-    """What searches in the same diagrams have found."""
+    """Results of searches in the same diagrams."""
 
     walked: dict[object, Ways] = field(default_factory=dict)
     parts: dict[tuple[Nodes, Nodes], _Parts] = field(default_factory=dict)
 
 
 class WaySearch:
-    """A search for the plainest ways, which tells ``take`` of its steps.
+    """A search for the plainest ways, which reports its steps to ``take``.
 
-    What other searches in the same diagrams have found is ``known``. Raises UndecidedError if there
-    are too many ways.
+    ``known`` are results of other searches in the same diagrams. Raises UndecidedError if there are
+    too many ways.
     """
 
     def __init__(
@@ -100,7 +100,7 @@ class WaySearch:
         self._n_nodes = 0
 
     def ways(self, keys: Nodes, axioms: Nodes) -> Ways:
-        """The ways to each of the classes of these keys on which no axiom is broken."""
+        """The plainest way to each tuple of classes of the keys such that no axiom is violated."""
         parts = self._known.parts.get((keys, axioms))
         if parts is None:
             parts = self._known.parts[keys, axioms] = self._parts(keys, axioms)
@@ -130,7 +130,7 @@ class WaySearch:
         whole = None
         if open_keys and open_keys != keys:
             numbers = count(len(open_keys))
-            # There are two places or more, for some are open, and not all.
+            # There are at least two keys, some open and some not, so itemgetter gives a tuple.
             whole = itemgetter(
                 *(open_keys.index(key) if key in open_keys else next(numbers) for key in keys)
             )
@@ -138,7 +138,7 @@ class WaySearch:
         return _Parts(open_keys, around, apart, settled, whole)
 
     def _groups(self, keys: Nodes, axioms: Nodes) -> list[Nodes]:
-        """The axioms that hang together with the keys, then other groups of them."""
+        """The axioms connected with the keys by shared reads, then further connected groups."""
         support = self._diagrams.support
         left = {axiom: support((axiom,)) for axiom in axioms}
         reached, groups = support(keys), []
@@ -154,10 +154,10 @@ class WaySearch:
             reached = next(iter(left.values()))
 
     def _walked(self, keys: Nodes, axioms: Nodes) -> Ways:
-        """The ways for keys that are open, each once, and axioms that hang together with them."""
+        """The ways for distinct open keys and the axioms connected with them."""
         choices, diagrams = self._choices, self._diagrams
         nodes = keys + axioms
-        # What is as usual matters only to nodes that read it; others are known from other searches.
+        # Usual levels matter only to nodes that read them; other results are shared by searches.
         key = keys, axioms, choices.usual and choices.usual & diagrams.support(nodes)
         known = self._known.walked.get(key)
         if known is not None:
